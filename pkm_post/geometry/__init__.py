@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Geometry: arrays in, arrays out. Nothing here knows of machines, tools or files."""
+
+from pkm_post.geometry.arcs import arc_points, arc_sweep
+from pkm_post.geometry.great_circle import along, along_rates, angle_between, towards
+from pkm_post.geometry.hermite import hermite_accelerations, hermite_lengths, hermite_speeds
+from pkm_post.geometry.vectors import dot, norm, unit
+
+__all__ = [
+    "along",
+    "along_rates",
+    "angle_between",
+    "arc_points",
+    "arc_sweep",
+    "dot",
+    "hermite_accelerations",
+    "hermite_lengths",
+    "hermite_speeds",
+    "norm",
+    "towards",
+    "unit",
+]

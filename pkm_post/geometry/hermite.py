@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cubic Hermite segments: what a controller plays between two position-velocity-time points.
+
+p(t) = p0 + v0 t + c2 t^2 + c3 t^3 with c2 = (3 d - (2 v0 + v1) T) / T^2, c3 = (-2 d + (v0 + v1) T) / T^3, d = p1 - p0:
+the one cubic with these ends. Positions and speeds are (N, 6), durations T (N,); the share of the duration that has
+gone is a number or (M,), which gives (N, M, 6).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+
+
+def _coefficients(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array]:
+    """c2 T^2 and c3 T^3, each (N, 6): in units of length, so that nothing is divided by a short time."""
+    distance = p1 - p0
+    span = duration[:, None]
+    return 3 * distance - (2 * v0 + v1) * span, -2 * distance + (v0 + v1) * span
+
+
+def hermite_lengths(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, share: Array) -> Array:
+    """Positions at shares of the duration, (N, M, 6)."""
+    square, cube = _coefficients(p0, v0, p1, v1, duration)
+    x = share[None, :, None]
+    linear = v0 * duration[:, None]
+    return p0[:, None] + x * (linear[:, None] + x * (square[:, None] + x * cube[:, None]))
+
+
+def hermite_speeds(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, share: Array) -> Array:
+    """Speeds at shares of the duration, (N, M, 6)."""
+    square, cube = _coefficients(p0, v0, p1, v1, duration)
+    x = share[None, :, None]
+    return v0[:, None] + x * (2 * square[:, None] + 3 * x * cube[:, None]) / duration[:, None, None]
+
+
+def hermite_accelerations(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array]:
+    """Accelerations at both ends, (N, 6) each; between them they are linear, so these are the extremes."""
+    square, cube = _coefficients(p0, v0, p1, v1, duration)
+    per_square_second = np.square(duration)[:, None]
+    return 2 * square / per_square_second, (2 * square + 6 * cube) / per_square_second

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Diagnostics: faults of the input, collected while reading and checking, told to people as text.
+
+Every fault has a code; ``RULES`` says for each code how grave it is, what is wrong in general and what to do.
+A diagnostic adds where it was and what was found there. Faults of the caller are ``ValueError`` and do not come here.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+class Severity(enum.Enum):
+    """How grave a fault is: an error stops the job, a warning is shown, and the job goes on."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where in the input something stands.
+
+    Attributes:
+        file: file name as the user gave it.
+        operation: name of the CAM operation, empty when the file has none.
+        line: line, or number of the command in its operation, from 1; 0 when it concerns the whole.
+        column: column from 1; 0 when it concerns the whole line.
+    """
+
+    file: str
+    operation: str = ""
+    line: int = 0
+    column: int = 0
+
+    def __str__(self) -> str:
+        position = ":".join(str(number) for number in (self.line, self.column) if number)
+        return ": ".join(part for part in (self.file, self.operation, position and f"line {position}") if part)
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One row of the table of faults: severity, cause and cure."""
+
+    severity: Severity
+    cause: str
+    cure: str
+
+
+def _error(cause: str, cure: str) -> Rule:
+    return Rule(Severity.ERROR, cause, cure)
+
+
+def _warning(cause: str, cure: str) -> Rule:
+    return Rule(Severity.WARNING, cause, cure)
+
+
+RULES: dict[str, Rule] = {
+    # J: the CAM job
+    "J101": _error("the file cannot be opened as a FreeCAD document", "check the path, or save the document again"),
+    "J102": _error("there is no CAM job to post", "add a Job in the CAM workbench, or name the job with --job"),
+    "J103": _error("the job has no active operation with a path", "activate an operation and recompute"),
+    "J104": _error("the command is unknown or has no meaning here", "remove it, or use a G0, G1, G2 or G3 move"),
+    "J105": _error("a cutting move has no feed", "set the feed in the tool controller, in mm/min above zero"),
+    "J106": _error("an arc in this plane is not supported", "use XY-plane arcs (G17), or straight moves"),
+    "J107": _error("the arc does not fit its end points", "regenerate the operation; the radii must agree to 0.005 mm"),
+    "J108": _error(
+        "a dress-up or array that does not know tool-axis words stands above moves that have them",
+        "remove it, or apply it to an operation without tool-axis words",
+    ),
+    "J109": _error("only some of the cutting moves have a tool axis", "give every G1 of the operation I J K words"),
+    "J110": _error("the tool axis has no direction", "give I J K words that are not all zero"),
+    "J111": _error("the job uses several fixtures", "post one fixture at a time"),
+    "J112": _error("the operation has no tool controller", "choose a tool controller for it"),
+    "J113": _error(
+        "the gauge length of the tool is unknown",
+        "set the property GaugeLength of its tool controller, or pass --tool-length NUMBER=MM",
+    ),
+    "J114": _error("two tools have the same number", "give every tool controller its own tool number"),
+    "J115": _error("rotary words have no meaning on this machine", "give the tool axis as I J K words"),
+    "J116": _error("the operation could not be computed", "repair it in FreeCAD until it recomputes without error"),
+    "J117": _error("the job's options are not understood", "correct the arguments of the post-processor"),
+    "J118": _warning("the tool axis was not of unit length and was normalised", "write unit vectors with 6 decimals"),
+    "J119": _error("a move is not a finite number", "regenerate the operation"),
+    # M: the machine file
+    "M101": _error("the machine file cannot be read", "check the path; python3 -m pkm_post machine list shows presets"),
+    "M102": _error("the machine file is not valid TOML", "correct it at the place shown"),
+    "M103": _error("an entry is missing", "add it; docs/machine-file.md describes every entry"),
+    "M104": _error("an entry has the wrong form", "correct it; docs/machine-file.md describes every entry"),
+    "M105": _error("an entry is not known", "remove it or correct its spelling"),
+    "M106": _error("the geometry contradicts itself", "correct the joints, the stroke or the rest pose"),
+    # K: what the machine can reach
+    "K101": _error("a strut would be too short", "move or turn the part on the table, or use another tool length"),
+    "K102": _error("a strut would be too long", "move or turn the part on the table, or use another tool length"),
+    "K103": _error("a base joint would swing too far", "tilt the tool less, or move the part"),
+    "K104": _error("a platform joint would swing too far", "tilt the tool less, or move the part"),
+    "K105": _error("the path comes too near to a singular pose", "tilt the tool less, or move the part"),
+    "K106": _error("the tool axis turns by half a turn in one move", "put a move between that says which way to turn"),
+    "K107": _error("the spindle speed is beyond the machine", "reduce it"),
+    "K108": _error("the work offset is unknown to the machine", "add it to the machine file, or pass --work-offset"),
+    "K109": _error("the matrix is not a rotation, a mirror or a shift", "use a matrix without scale or shear"),
+    # N: the normals of the surface and compensation with them
+    "N101": _error("a contact point, normal or tool axis is no number or has no direction", "regenerate the path"),
+    "N102": _error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),
+    "N103": _error("the normal is parallel to the tool axis and no direction of travel is known", "lean the tool"),
+    "K110": _warning("the feed is beyond the machine and is limited", "program a feed that the machine can run"),
+    # T: the binary trajectory
+    "T101": _error("the file is not a trajectory file", "give a .pkmt file"),
+    "T102": _error("the trajectory file has a version that this program does not know", "use a newer PKM Post"),
+    "T103": _error("the trajectory file is damaged", "make it again from its source"),
+    "T104": _error("the trajectory was made for another machine", "post the job again for this machine"),
+    # C: the controller's program
+    "C101": _error("the program has a line that is not understood", "post the job again; do not edit the program"),
+    "C102": _error("the program is larger than the controller's memory", "post fewer operations at a time"),
+    "C103": _error("the line is too long for the controller", "use fewer decimals in the machine file"),
+    "C104": _error("an event has no code of the controller", "give it one under [controller.codes] in the machine file"),
+    # V: the certificate
+    "V101": _error("the tool tip leaves the programmed path", "ask for a wider tolerance, or report this as a fault"),
+    "V102": _error("the tool axis leaves the programmed axis", "ask for a wider tolerance, or report this as a fault"),
+    "V103": _error("a strut is faster than the machine allows", "report this as a fault of the feed planner"),
+    "V104": _error("a strut accelerates more than the machine allows", "report this as a fault of the feed planner"),
+    "V105": _error("the program does not start or end at rest", "post the job again; do not edit the program"),
+    "V106": _error("a strut leaves its stroke", "move or turn the part on the table"),
+    "V107": _error("no pose of the platform belongs to the strut lengths", "post the job again; do not edit it"),
+    "V108": _error("the feed is exceeded", "report this as a fault of the feed planner"),
+    "V109": _error("the program does not carry out the events of the job", "post the job again; do not edit it"),
+    "V110": _error("the program does not follow the whole path", "post the job again; do not edit it"),
+    # F: files
+    "F101": _error("the output cannot be written", "check the folder, its permissions and the free space"),
+    "F102": _warning("the picture was not made: matplotlib is missing", "install python3-matplotlib"),
+}
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One fault at one place.
+
+    Attributes:
+        code: key into ``RULES``.
+        place: where it is.
+        found: what was found there, in the words of the input.
+    """
+
+    code: str
+    place: Place
+    found: str
+
+    @property
+    def severity(self) -> Severity:
+        """How grave it is."""
+        return RULES[self.code].severity
+
+    def __str__(self) -> str:
+        rule = RULES[self.code]
+        return f"{self.place}: {rule.severity.value} {self.code}: {rule.cause}: {self.found}; {rule.cure}"
+
+
+def errors(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """The diagnostics that stop a job."""
+    return tuple(item for item in diagnostics if item.severity is Severity.ERROR)
+
+
+class Refused(Exception):
+    """The job cannot be done because of its input. Raised by the pipeline alone, when all that is wrong is known."""
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        self.diagnostics = tuple(diagnostics)
+        super().__init__("\n".join(str(item) for item in self.diagnostics))

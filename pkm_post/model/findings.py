@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Findings: what the certificate measured, each with its limit, the moment and the source line where it is worst."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pkm_post.model.diagnostics import Diagnostic, Place
+from pkm_post.model.program import Array
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """What was asked for.
+
+    Attributes:
+        tip: how far the tool tip may be from the programmed path, mm.
+        axis: how far the tool axis may be from the programmed one, rad.
+    """
+
+    tip: float
+    axis: float
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One quantity at its worst.
+
+    Attributes:
+        code: diagnostic that is given when it does not hold.
+        name: what was measured.
+        unit: unit of value and limit, as printed.
+        value: the worst value found, in that unit.
+        limit: what it must not exceed; for a margin, what it must not fall below.
+        holds: whether it holds.
+        time: seconds since the start where it is worst.
+        place: the source line that is executed there.
+    """
+
+    code: str
+    name: str
+    unit: str
+    value: float
+    limit: float
+    holds: bool
+    time: float
+    place: Place
+
+    def diagnostic(self) -> Diagnostic:
+        """The fault, for a finding that does not hold."""
+        found = f"{self.name} {self.value:.6g} {self.unit}, allowed {self.limit:.6g} {self.unit}"
+        return Diagnostic(self.code, self.place, f"{found}, {self.time:.3f} s after the start")
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """The result of playing a program.
+
+    Attributes:
+        findings: one for each quantity, in a fixed order.
+        duration: s, without dwells.
+        intervals: number of cubics played.
+        instants: number of poses computed by forward kinematics.
+        time: (K,) s, at the start of each interval.
+        tip_deviation: (K,) largest in the interval, mm.
+        axis_deviation: (K,) largest in the interval, rad.
+    """
+
+    findings: tuple[Finding, ...]
+    duration: float
+    intervals: int
+    instants: int
+    time: Array
+    tip_deviation: Array
+    axis_deviation: Array
+
+    @property
+    def holds(self) -> bool:
+        """Whether everything holds."""
+        return all(finding.holds for finding in self.findings)

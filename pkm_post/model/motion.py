@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Motion: tool poses by time in the machine frame {M}, with their exact rates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.model.columns import RowType, freeze
+from pkm_post.model.event import Event
+from pkm_post.model.program import Array
+
+MOTION_BY_TIME: dict[str, RowType] = {
+    "time_ms": (np.int64, ()),
+    "tip": (np.float64, (3,)),
+    "axis": (np.float64, (3,)),
+    "spin": (np.float64, ()),
+    "tip_rate": (np.float64, (3,)),
+    "axis_rate": (np.float64, (3,)),
+    "spin_rate": (np.float64, ()),
+    "tool_length": (np.float64, ()),
+    "segment": (np.int32, ()),
+}
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Columns of M knots in time.
+
+    Attributes:
+        time_ms: (M,) whole milliseconds since the start, strictly increasing; dwells do not count.
+        tip: (M, 3) tool tip.
+        axis: (M, 3) unit tool axis.
+        spin: (M,) spin.
+        tip_rate: (M, 3) velocity of the tip, mm/s.
+        axis_rate: (M, 3) rate of the unit tool axis, 1/s.
+        spin_rate: (M,) rate of the spin, rad/s.
+        tool_length: (M,) gauge length of the tool in use.
+        segment: (M,) the trajectory segment the knot lies on; at a joint the earlier one.
+        events: what happens, by knot: the motion rests at knot r, the event takes place, the motion goes on.
+    """
+
+    time_ms: Array
+    tip: Array
+    axis: Array
+    spin: Array
+    tip_rate: Array
+    axis_rate: Array
+    spin_rate: Array
+    tool_length: Array
+    segment: Array
+    events: tuple[Event, ...]
+
+    def __post_init__(self) -> None:
+        freeze(self, len(self.time_ms), MOTION_BY_TIME)
+
+    def __len__(self) -> int:
+        return len(self.time_ms)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Program: cutter locations in the work frame {C}, modal state resolved, as they were read.
+
+Row i moves the tool tip from ``position[i - 1]`` to ``position[i]`` and the tool axis with it. Row 0 says where the
+path begins: it is reached by a rapid move. Units: mm, rad, s, mm/s.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pkm_post.model.columns import RowType, freeze
+from pkm_post.model.diagnostics import Place
+from pkm_post.model.event import Event
+from pkm_post.model.tool import Tool
+
+Array = np.ndarray[Any, Any]
+
+
+class Kind(enum.IntEnum):
+    """How a row gets to its end. The numbers are written to trajectory files."""
+
+    RAPID = 0
+    LINE = 1
+    ARC = 2
+    """Circular or helical, right-handed about the arc axis: at most one full turn."""
+
+
+MOTION_COLUMNS: dict[str, RowType] = {
+    "kind": (np.uint8, ()),
+    "feed": (np.float64, ()),
+    "arc_centre": (np.float64, (3,)),
+    "arc_axis": (np.float64, (3,)),
+    "operation": (np.int32, ()),
+    "line": (np.int32, ()),
+}
+
+
+@dataclass(frozen=True)
+class Program:
+    """Columns of N motions.
+
+    Attributes:
+        kind: (N,) ``Kind``.
+        position: (N, 3) tool tip at the end of the row, in {C}.
+        tool_axis: (N, 3) unit tool axis there, from the tip towards the spindle, in {C}.
+        feed: (N,) programmed tip speed in mm/s; NaN on rapid rows.
+        arc_centre: (N, 3) centre of the arc in {C}; NaN on other rows.
+        arc_axis: (N, 3) unit axis the arc turns about right-handed; NaN on other rows.
+        operation: (N,) index into ``operations``.
+        line: (N,) line (or command number, from 1) in the source of that operation.
+        events: what happens between rows, in order.
+        operations: names of the operations the rows come from.
+        tools: the tools used, by number.
+        source: name of the file the program comes from.
+    """
+
+    kind: Array
+    position: Array
+    tool_axis: Array
+    feed: Array
+    arc_centre: Array
+    arc_axis: Array
+    operation: Array
+    line: Array
+    events: tuple[Event, ...]
+    operations: tuple[str, ...]
+    tools: dict[int, Tool]
+    source: str
+
+    def __post_init__(self) -> None:
+        vectors: dict[str, RowType] = {"position": (np.float64, (3,)), "tool_axis": (np.float64, (3,))}
+        freeze(self, len(self.kind), MOTION_COLUMNS | vectors)
+
+    def __len__(self) -> int:
+        return len(self.kind)
+
+    def place(self, row: int) -> Place:
+        """Where row ``row`` stands in the source."""
+        return Place(self.source, self.operations[self.operation[row]], int(self.line[row]))

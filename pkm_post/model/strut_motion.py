@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""StrutMotion: six strut lengths and speeds by time; what a controller plays.
+
+Between two knots each strut follows the one cubic that has the lengths and speeds of both (position-velocity-time,
+PVT: a cubic Hermite).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.model.columns import RowType, freeze
+from pkm_post.model.event import Event
+from pkm_post.model.program import Array
+
+STRUT_COLUMNS: dict[str, RowType] = {
+    "time_ms": (np.int64, ()),
+    "length": (np.float64, (6,)),
+    "speed": (np.float64, (6,)),
+}
+
+
+@dataclass(frozen=True)
+class StrutMotion:
+    """Columns of M knots in time.
+
+    Attributes:
+        time_ms: (M,) whole milliseconds since the start, strictly increasing; dwells do not count.
+        length: (M, 6) joint-to-joint strut lengths in mm.
+        speed: (M, 6) their rates in mm/s.
+        events: what happens, by knot: the motion rests at knot r, the event takes place, the motion goes on.
+    """
+
+    time_ms: Array
+    length: Array
+    speed: Array
+    events: tuple[Event, ...]
+
+    def __post_init__(self) -> None:
+        freeze(self, len(self.time_ms), STRUT_COLUMNS)
+
+    def __len__(self) -> int:
+        return len(self.time_ms)

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Trajectory: parametric segments in the machine frame {M}; the content of the binary trajectory file.
+
+Segment i runs from the end of segment i - 1 (the start pose for i = 0) to its own end pose: the tip along a line or
+an arc, the tool axis along the great circle, the spin linearly, all in step. Units: mm, rad, s, mm/s.
+[paper section 5.1]
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.model.columns import RowType, freeze
+from pkm_post.model.diagnostics import Place
+from pkm_post.model.event import Event
+from pkm_post.model.program import MOTION_COLUMNS, Array
+from pkm_post.model.tool import Tool
+
+TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
+    "tip": (np.float64, (3,)),
+    "axis": (np.float64, (3,)),
+    "spin": (np.float64, ()),
+    "sweep": (np.float64, ()),
+    "length": (np.float64, ()),
+    "angle": (np.float64, ()),
+    "smooth": (np.bool_, ()),
+    "exact_stop": (np.bool_, ()),
+    "tool": (np.int32, ()),
+}
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Columns of N segments, none of them of zero extent.
+
+    Attributes:
+        kind: (N,) ``Kind``.
+        tip: (N, 3) tool tip at the end of the segment.
+        axis: (N, 3) unit tool axis there.
+        spin: (N,) turn of the platform about the tool axis there.
+        feed: (N,) tip speed in mm/s, finite on every row: rapid moves carry the machine's rapid speed.
+        arc_centre: (N, 3) centre of the arc; NaN on lines.
+        arc_axis: (N, 3) unit axis the arc turns about right-handed; NaN on lines.
+        sweep: (N,) angle of the arc, 0 < sweep <= 2 pi; 0 on lines.
+        length: (N,) length of the tip's way.
+        angle: (N,) angle the tool axis turns.
+        smooth: (N,) the tip's direction continues into the next segment without a corner.
+        exact_stop: (N,) the motion comes to rest at the end of the segment.
+        tool: (N,) tool number.
+        operation: (N,) index into ``operations``.
+        line: (N,) line in the source of that operation.
+        start_tip: (3,) tool tip before the first segment.
+        start_axis: (3,) unit tool axis before the first segment.
+        start_spin: spin before the first segment.
+        events: what happens between segments, in order.
+        operations: names of the operations.
+        tools: the tools used, by number; their lengths are those the trajectory was made for.
+        machine_from_work: (4, 4) work offset that was applied.
+        machine: name of the machine it was made for.
+        machine_fingerprint: SHA-256 of that machine's file, hexadecimal.
+        source: name of the file the program came from.
+    """
+
+    kind: Array
+    tip: Array
+    axis: Array
+    spin: Array
+    feed: Array
+    arc_centre: Array
+    arc_axis: Array
+    sweep: Array
+    length: Array
+    angle: Array
+    smooth: Array
+    exact_stop: Array
+    tool: Array
+    operation: Array
+    line: Array
+    start_tip: Array
+    start_axis: Array
+    start_spin: float
+    events: tuple[Event, ...]
+    operations: tuple[str, ...]
+    tools: dict[int, Tool]
+    machine_from_work: Array
+    machine: str
+    machine_fingerprint: str
+    source: str
+
+    def __post_init__(self) -> None:
+        freeze(self, len(self.kind), TRAJECTORY_COLUMNS)
+        freeze(self, 3, {"start_tip": (np.float64, ()), "start_axis": (np.float64, ())})
+        freeze(self, 4, {"machine_from_work": (np.float64, (4,))})
+
+    def __len__(self) -> int:
+        return len(self.kind)
+
+    def place(self, row: int) -> Place:
+        """Where segment ``row`` stands in the source."""
+        return Place(self.source, self.operations[self.operation[row]], int(self.line[row]))
+
+    def tool_length(self) -> Array:
+        """Gauge length of the tool in use, (N,) in mm."""
+        numbers = np.array(sorted(self.tools), dtype=np.int32)
+        lengths = np.array([self.tools[number].length for number in sorted(self.tools)])
+        length: Array = lengths[np.searchsorted(numbers, self.tool)]
+        return length
+
+    def tip_before(self) -> Array:
+        """Tool tip at the start of each segment, (N, 3).
+
+        At a tool change the platform stands still: the tip of the new tool is where its own length puts it.
+        """
+        before = np.vstack([self.start_tip, self.tip[:-1]])
+        longer = np.diff(self.tool_length(), prepend=self.tool_length()[:1])
+        return before - longer[:, None] * self.axis_before()
+
+    def axis_before(self) -> Array:
+        """Tool axis at the start of each segment, (N, 3)."""
+        return np.vstack([self.start_axis, self.axis[:-1]])
+
+    def spin_before(self) -> Array:
+        """Spin at the start of each segment, (N,)."""
+        return np.concatenate([[self.start_spin], self.spin[:-1]])
