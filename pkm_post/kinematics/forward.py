@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Forward kinematics: from six strut lengths to the tool pose, by Newton's method on the rotation group.
+
+dx = J^-1 (l - l(x)); the tip moves by the linear part, the platform turns by the rotation of the angular part. A
+hexapod has up to 40 poses for one set of lengths: the one nearest to the guess is found, or none.
+[Merlet2006 chapter 4]
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array, cross, norm
+from pkm_post.kinematics.orientation import platform_rotation
+from pkm_post.model import Machine
+
+_LENGTH_TOLERANCE = 1e-10
+"""mm: Newton stops when no strut is off by more; about a thousand roundings of a metre-long strut."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Poses found.
+
+    Attributes:
+        tip: (N, 3) tool tips in {M}, mm.
+        rotation: (N, 3, 3) rotations R_T of the platform; the tool axis is the third column.
+        converged: (N,) whether the pose has the lengths asked for; the other rows mean nothing.
+    """
+
+    tip: Array
+    rotation: Array
+    converged: np.ndarray[tuple[int], np.dtype[np.bool_]]
+
+    @property
+    def axis(self) -> Array:
+        """Tool axes, (N, 3)."""
+        return self.rotation[:, :, 2]
+
+
+def forward(
+    machine: Machine,
+    lengths: Array,
+    tool_length: Array,
+    guess_tip: Array,
+    guess_axis: Array,
+    guess_spin: Array,
+    iterations: int = 20,
+) -> Solution:
+    """Tool poses that have the given strut lengths.
+
+    Args:
+        machine: the geometry.
+        lengths: (N, 6) strut lengths, mm.
+        tool_length: (N,) gauge lengths, mm.
+        guess_tip: (N, 3) tips to start from.
+        guess_axis: (N, 3) unit tool axes to start from.
+        guess_spin: (N,) spins to start from.
+        iterations: Newton steps before a row is given up.
+    """
+    tip = np.array(guess_tip, dtype=np.float64)
+    rotation = platform_rotation(guess_axis, guess_spin)
+    converged = np.zeros(len(tip), dtype=bool)
+    open_rows = np.arange(len(tip))
+    for _ in range(iterations):
+        jacobian, residual = _linearise(machine, tip[open_rows], rotation[open_rows], tool_length[open_rows])
+        residual = lengths[open_rows] - residual
+        done = np.max(np.abs(residual), axis=1) < _LENGTH_TOLERANCE
+        converged[open_rows[done]] = True
+        regular = np.abs(np.linalg.det(jacobian)) > 0
+        keep = ~done & regular
+        open_rows, jacobian, residual = open_rows[keep], jacobian[keep], residual[keep]
+        if not len(open_rows):
+            break
+        step = np.linalg.solve(jacobian, residual[..., None])[..., 0]
+        tip[open_rows] += step[:, :3]
+        rotation[open_rows] = _rotation_of(step[:, 3:]) @ rotation[open_rows]
+    return Solution(tip, rotation, converged)
+
+
+def _linearise(machine: Machine, tip: Array, rotation: Array, tool_length: Array) -> tuple[Array, Array]:
+    """Tip Jacobians (N, 6, 6) and strut lengths (N, 6) at poses given by rotation matrices."""
+    reach = (machine.spindle_nose + tool_length)[:, None]
+    arm = (reach * rotation[:, :, 2])[:, None, :] + machine.platform_joints @ rotation.transpose(0, 2, 1)
+    strut = tip[:, None, :] + arm - machine.base_joints
+    length = norm(strut)
+    direction = strut / length[..., None]
+    return np.concatenate([direction, cross(arm, direction)], axis=-1), length
+
+
+def _rotation_of(vector: Array) -> Array:
+    """Rotation matrices of rotation vectors (N, 3), by Rodrigues' formula."""
+    angle = norm(vector)
+    safe = np.where(angle > 0, angle, 1.0)
+    x, y, z = (vector / safe[:, None]).T
+    zero = np.zeros_like(x)
+    skew = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(-1, 3, 3)
+    sine, rest = np.sin(angle)[:, None, None], (1 - np.cos(angle))[:, None, None]
+    return np.eye(3) + sine * skew + rest * (skew @ skew)

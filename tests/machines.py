@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines for the tests: the assumed example, LinuxCNC's genhexkins default, and the Nategh-Agheli hexapod."""
+
+import numpy as np
+
+from pkm_post.model import Machine
+
+INCH = 25.4
+
+
+def machine(base, platform, reach=0.0, stroke=(0.0, np.inf), characteristic_length=200.0) -> Machine:
+    """A machine of joints alone: limits wide open, rest axes along the struts of an upright platform."""
+    base, platform = np.asarray(base, dtype=float), np.asarray(platform, dtype=float)
+    upright = np.tile([0.0, 0.0, 1.0], (6, 1))
+    return Machine(
+        name="test", fingerprint="0" * 64, base_joints=base, platform_joints=platform, spindle_nose=reach,
+        strut_stroke=stroke, strut_speed=500.0, strut_acceleration=5000.0, base_rest=-upright, base_cone=np.pi,
+        platform_rest=upright, platform_cone=np.pi, characteristic_length=characteristic_length,
+        least_singular_value=0.0, home_tip=np.array([0.0, 0.0, 300.0]), rapid_speed=250.0, feed_speed=200.0,
+        tip_acceleration=2000.0, axis_speed=1.0, spindle_speed=24000.0, work_offsets={"G54": np.eye(4)},
+        controller={},
+    )  # fmt: skip
+
+
+def ring(radius, angles_deg, z):
+    angles = np.radians(angles_deg)
+    return np.column_stack([radius * np.cos(angles), radius * np.sin(angles), np.full(6, z)])
+
+
+def example() -> Machine:
+    """The assumed example machine, from its ring formulas; platform plane 80 mm above the spindle nose."""
+    base = ring(600, [12, 108, 132, 228, 252, 348], 1400)
+    platform = ring(200, [48, 72, 168, 192, 288, 312], 0)
+    return machine(base, platform, reach=80.0, stroke=(750.0, 1250.0))
+
+
+def genhexkins() -> Machine:
+    """LinuxCNC's default hexapod, converted from inches."""
+    base = np.array([[-22.95, 13.25], [22.95, 13.25], [22.95, 13.25], [0, -26.5], [0, -26.5], [-22.95, 13.25]])
+    platform = np.array(
+        [[-1, 11.5], [1, 11.5], [10.459, -4.884], [9.459, -6.616], [-9.459, -6.616], [-10.459, -4.884]]
+    )
+    flat = np.zeros((6, 1))
+    return machine(np.hstack([base, flat]) * INCH, np.hstack([platform, flat]) * INCH)
+
+
+def nategh() -> Machine:
+    """The hexapod machine tool of Nategh and Agheli (2009), nominal geometry."""
+    return machine(
+        ring(325, [20, 100, 140, 220, 260, 340], 0),
+        ring(125, [42.5, 77.5, 162.5, 197.5, 282.5, 317.5], 0),
+        characteristic_length=125.0,
+    )
+
+
+def direction(tilt_deg, azimuth_deg):
+    tilt, azimuth = np.radians(tilt_deg), np.radians(azimuth_deg)
+    return np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
+
+
+def axis_and_spin(rotation):
+    """The tool axis and spin that give a rotation matrix; for poses published as Euler angles."""
+    from pkm_post.kinematics import platform_rotation
+
+    axis = rotation[:, 2]
+    rest = platform_rotation(axis[None], np.zeros(1))[0].T @ rotation
+    return axis, np.arctan2(rest[1, 0], rest[0, 0])
+
+
+def rotation_about(coordinate, degrees):
+    angle = np.radians(degrees)
+    i, j = [(1, 2), (2, 0), (0, 1)][coordinate]
+    matrix = np.eye(3)
+    matrix[i, i] = matrix[j, j] = np.cos(angle)
+    matrix[i, j], matrix[j, i] = -np.sin(angle), np.sin(angle)
+    return matrix
+
+
+def random_poses(rng, count, tilt_deg=30.0):
+    """Poses inside the example machine: tip, axis, spin, gauge length."""
+    tip = rng.uniform([-100, -100, 150], [100, 100, 350], (count, 3))
+    tilt, azimuth = rng.uniform(0, tilt_deg, count), rng.uniform(0, 360, count)
+    axis = direction(tilt, azimuth).T
+    return tip, axis, np.radians(rng.uniform(-20, 20, count)), np.full(count, 120.0)
