@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faults of a machine file, by entry, and the lines of the text they are told at.
+
+Enters: the text, the document ``tomllib`` made of it and faults by the name of their entry. Leaves: diagnostics in the
+order of the text. ``tomllib`` keeps no lines for entries: they are found by looking for the keys again.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from pkm_post.machine_file.fields import Name
+from pkm_post.model import Diagnostic, Place
+
+_PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
+_DOTTED = rf"{_PART}(?:\s*\.\s*{_PART})*"
+_SECTION = re.compile(rf"\s*\[{{1,2}}\s*({_DOTTED})\s*\]{{1,2}}\s*(?:#.*)?$")
+_KEY = re.compile(rf"\s*({_DOTTED})\s*=")
+_TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault: code of its rule, name of the entry, what was found there."""
+
+    code: str
+    name: Name
+    found: str
+
+
+def _parts(dotted: str) -> Name:
+    return tuple(part.strip("\"'") for part in re.findall(_PART, dotted))
+
+
+def _stands(document: Any, name: Name) -> bool:
+    """Whether the document has such an entry: a row of numbers in brackets looks like the head of a section."""
+    for part in name:
+        if not isinstance(document, dict) or part not in document:
+            return False
+        document = document[part]
+    return True
+
+
+def _entry_lines(text: str, document: dict[str, Any]) -> dict[Name, int]:
+    """The line, from 1, of every section and key that starts a line."""
+    lines: dict[Name, int] = {}
+    section: Name = ()
+    for number, line in enumerate(text.split("\n"), start=1):
+        head, key = _SECTION.match(line), _KEY.match(line)
+        name = _parts(head[1]) if head else (*section, *_parts(key[1])) if key else ()
+        if not name or not _stands(document, name):
+            continue
+        section = name if head else section
+        for length in range(1, len(name) + 1):
+            lines.setdefault(name[:length], number)
+    return lines
+
+
+def _line(name: Name, lines: dict[Name, int]) -> int:
+    """The line of the entry, or of the smallest section around it, or 0."""
+    return next((lines[name[:length]] for length in range(len(name), 0, -1) if name[:length] in lines), 0)
+
+
+def tell(faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]) -> tuple[Diagnostic, ...]:
+    """The faults as diagnostics, from the first line to the last."""
+    lines = _entry_lines(text, document)
+    placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])
+    return tuple(
+        Diagnostic(fault.code, Place(file, line=line), f"{'.'.join(fault.name)}: {fault.found}")
+        for line, fault in placed
+    )
+
+
+def not_toml(fault: Exception, file: str, text: str) -> Diagnostic:
+    """The diagnostic of a text that is no TOML, at the place ``tomllib`` names in its message."""
+    message = str(fault)
+    place = _TOML_PLACE.search(message)
+    if place is None:
+        return Diagnostic("M102", Place(file), message)
+    if place[1] is None:
+        return Diagnostic(
+            "M102", Place(file, line=text.rstrip("\n").count("\n") + 1), f"{message[: place.start()]} at the end"
+        )
+    return Diagnostic("M102", Place(file, line=int(place[1]), column=int(place[2])), message[: place.start()])

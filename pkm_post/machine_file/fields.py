@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fields: every entry that a machine file may have, in the order of the documentation.
+
+What enters and leaves are rows, no numbers: the name of the entry, its form, its dimension (the unit in the file), its
+default and the attribute of ``model.Machine`` it becomes. The reader and docs/machine-file.md follow this table; a new
+entry is a new row. ``*`` stands for a name that the user chooses.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pkm_post.machine_file import forms, units
+from pkm_post.machine_file.forms import Form
+from pkm_post.machine_file.units import Dimension
+
+Name = tuple[str, ...]
+REQUIRED: Any = object()
+ANY = "*"
+
+
+@dataclass(frozen=True)
+class Field:
+    """One entry.
+
+    Attributes:
+        entry: its sections and its key, joined by dots.
+        form: what its value looks like.
+        dimension: which unit it is in.
+        default: its value when the file has none: None for nothing, ``REQUIRED`` when the entry must be there.
+        attribute: the attribute of ``Machine`` it becomes as it is, empty when something is made of it first.
+    """
+
+    entry: str
+    form: Form
+    dimension: Dimension = units.PLAIN
+    default: Any = REQUIRED
+    attribute: str = ""
+
+    @property
+    def name(self) -> Name:
+        """Sections and key, one by one."""
+        return tuple(self.entry.split("."))
+
+    def entries(self, chosen: list[str]) -> list[str]:
+        """The entries this row stands for, when the user chose these names."""
+        return [self.entry.replace(ANY, name) for name in chosen] if ANY in self.entry else [self.entry]
+
+
+MOST_DECIMALS = 9
+LARGEST_COUNT = 2**31 - 1
+
+FIELDS: tuple[Field, ...] = (
+    Field("name", forms.NAME, attribute="name"),
+    Field("description", forms.PROSE, default=""),
+    *(Field(f"units.{quantity}", forms.choice(*sizes)) for quantity, sizes in units.UNITS.items()),
+    Field("base.joints", forms.SIX_POINTS, units.LENGTH, attribute="base_joints"),
+    Field("platform.joints", forms.SIX_POINTS, units.LENGTH, attribute="platform_joints"),
+    Field("platform.spindle_nose", forms.NUMBER, units.LENGTH, attribute="spindle_nose"),
+    Field("struts.stroke", forms.STROKE, units.LENGTH, attribute="strut_stroke"),
+    Field("struts.speed", forms.POSITIVE, units.SPEED, attribute="strut_speed"),
+    Field("struts.acceleration", forms.POSITIVE, units.ACCELERATION, attribute="strut_acceleration"),
+    Field("joints.base_cone", forms.HALF_ANGLE, units.ANGLE, attribute="base_cone"),
+    Field("joints.platform_cone", forms.HALF_ANGLE, units.ANGLE, attribute="platform_cone"),
+    Field("joints.rest_pose", forms.POINT, units.LENGTH),
+    Field("joints.rest_tool_length", forms.NOT_NEGATIVE, units.LENGTH),
+    Field("joints.base_rest", forms.SIX_DIRECTIONS, default=None),
+    Field("joints.platform_rest", forms.SIX_DIRECTIONS, default=None),
+    Field("singularity.characteristic_length", forms.POSITIVE, units.LENGTH, attribute="characteristic_length"),
+    Field("singularity.least_singular_value", forms.POSITIVE, attribute="least_singular_value"),
+    Field("tool_path.home_tip", forms.POINT, units.LENGTH, attribute="home_tip"),
+    Field("tool_path.rapid_speed", forms.POSITIVE, units.SPEED, attribute="rapid_speed"),
+    Field("tool_path.feed_speed", forms.POSITIVE, units.SPEED, attribute="feed_speed"),
+    Field("tool_path.tip_acceleration", forms.POSITIVE, units.ACCELERATION, attribute="tip_acceleration"),
+    Field("tool_path.axis_speed", forms.POSITIVE, units.TURNING_RATE, attribute="axis_speed"),
+    Field("spindle.speed", forms.POSITIVE, units.SPINDLE_SPEED, attribute="spindle_speed"),
+    Field("work_offsets.*.origin", forms.POINT, units.LENGTH, default=None),
+    Field("work_offsets.*.rotation_z", forms.NUMBER, units.ANGLE, default=0.0),
+    Field("work_offsets.*.matrix", forms.POSE, units.LENGTH, default=None),
+    Field("controller.kind", forms.choice("turbo_pmac")),
+    Field("controller.letters", forms.LETTERS),
+    Field("controller.coordinate_system", forms.whole_number(1, 16), default=1),
+    Field("controller.program", forms.whole_number(1, 32767), default=1),
+    Field("controller.length_decimals", forms.whole_number(1, MOST_DECIMALS), default=6),
+    Field("controller.speed_decimals", forms.whole_number(1, MOST_DECIMALS), default=4),
+    Field("controller.counts_per_mm", forms.POSITIVE, units.COUNT_DENSITY),
+    Field("controller.zero_length", forms.SIX_NUMBERS, units.LENGTH),
+    Field("controller.approach_speed", forms.POSITIVE, units.SPEED),
+    Field("controller.memory_words", forms.whole_number(1, LARGEST_COUNT), default=237568),
+    Field("controller.line_limit", forms.whole_number(1, LARGEST_COUNT), default=159),
+    Field("controller.codes.tool_change", forms.CODE),
+    Field("controller.codes.spindle_clockwise", forms.CODE),
+    Field("controller.codes.spindle_counterclockwise", forms.CODE),
+    Field("controller.codes.spindle_stop", forms.CODE),
+    Field("controller.codes.coolant_flood", forms.CODE),
+    Field("controller.codes.coolant_mist", forms.CODE),
+    Field("controller.codes.coolant_off", forms.CODE),
+    Field("controller.codes.stop", forms.CODE),
+    Field("controller.codes.optional_stop", forms.CODE),
+)
+
+
+def section_tree() -> dict[str, Any]:
+    """The table as nested sections: a dict is a section, a ``Field`` an entry."""
+    tree: dict[str, Any] = {}
+    for field in FIELDS:
+        *sections, key = field.name
+        section = tree
+        for part in sections:
+            section = section.setdefault(part, {})
+        section[key] = field
+    return tree

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Forms: what the value of an entry may look like, in words and as a reading function.
+
+Enters: one value as ``tomllib`` gives it and the factor of its unit. Leaves: the same in mm, rad, s as a number, a
+numpy array or a text, or ``FormError`` that says what was there instead. The words are those of the documentation.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+LARGEST = 1e12
+"""A number beyond this, an infinity or a NaN is a slip: no quantity of a machine comes near it."""
+SHORTEST_DIRECTION = 1e-9
+RIGID_TOLERANCE = 1e-6
+"""How far a typed matrix may be from a rotation: six decimals are common."""
+AXIS_LETTERS = "ABCUVWXYZ"
+STRUTS = 6
+MOST_SHOWN = 60
+"""Characters of a wrong value that a diagnostic repeats."""
+
+
+class FormError(Exception):
+    """A value has not the form that its entry asks for; the text says what was found."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """One form: its words, after "expected", and the function that reads a value and converts it."""
+
+    words: str
+    read: Callable[[Any, float], Any]
+
+
+def _shorten(text: str) -> str:
+    return text if len(text) <= MOST_SHOWN else text[: MOST_SHOWN - 3] + "..."
+
+
+_SHOWN: dict[type, Callable[[Any], str]] = {
+    bool: lambda value: str(value).lower(),
+    int: lambda value: str(value) if abs(value) <= LARGEST else f"a number beyond {LARGEST:g}",
+    float: repr,
+    str: lambda value: _shorten(repr(value)),
+    list: lambda value: f"a list of {len(value)}",
+    dict: lambda value: "a table",
+}
+
+
+def shown(value: Any) -> str:
+    """A value of the file in a few words."""
+    return _SHOWN.get(type(value), str)(value)
+
+
+def _is_number(value: Any) -> bool:
+    # The comparison also turns away NaN, infinities and integers that no float can hold.
+    return isinstance(value, int | float) and not isinstance(value, bool) and -LARGEST <= value <= LARGEST
+
+
+def _collect(value: Any, shape: tuple[int, ...], at: tuple[int, ...] = ()) -> Any:
+    """The nested lists of ``value`` as floats, when they have exactly this shape."""
+    where = f" at place {', '.join(map(str, at))}" if at else ""
+    if not shape and _is_number(value):
+        return float(value)
+    if not shape or not isinstance(value, list) or len(value) != shape[0]:
+        raise FormError(shown(value) + where)
+    return [_collect(item, shape[1:], (*at, index)) for index, item in enumerate(value, start=1)]
+
+
+def _numbers(
+    words: str,
+    shape: tuple[int, ...] = (),
+    accept: Callable[[Array], Any] = lambda numbers: True,
+    finish: Callable[[Array], Any] = lambda numbers: numbers,
+) -> Form:
+    """A form of numbers: their shape, what is accepted of them once converted, what they become."""
+
+    def read(value: Any, factor: float) -> Any:
+        numbers = np.array(_collect(value, shape)) * factor
+        if not accept(numbers):
+            raise FormError(_shorten(str(value)))
+        return finish(numbers)
+
+    return Form(words, read)
+
+
+def _unit(directions: Array) -> Array:
+    return np.asarray(directions / np.linalg.norm(directions, axis=1, keepdims=True))
+
+
+def _read_pose(value: Any, factor: float) -> Array:
+    pose = np.array(_collect(value, (4, 4)))
+    rotation = pose[:3, :3]
+    rigid = np.abs(rotation @ rotation.T - np.eye(3)).max() <= RIGID_TOLERANCE and np.linalg.det(rotation) > 0.0
+    if not rigid or np.any(pose[3] != (0.0, 0.0, 0.0, 1.0)):
+        raise FormError("a matrix that is no rigid motion")
+    left, _, right = np.linalg.svd(rotation)
+    pose[:3, :3] = left @ right  # the nearest rotation: typed decimals must not stretch a path
+    pose[:3, 3] *= factor
+    return pose
+
+
+def _text(words: str, accept: Callable[[str], Any]) -> Form:
+    def read(value: Any, factor: float) -> str:
+        if not isinstance(value, str) or not accept(value):
+            raise FormError(shown(value))
+        return value
+
+    return Form(words, read)
+
+
+def choice(*names: str) -> Form:
+    """The form of an entry that is one of a few words."""
+    return _text(f"one of {', '.join(names)}", names.__contains__)
+
+
+def whole_number(least: int, most: int) -> Form:
+    """The form of an entry that counts, from ``least`` to ``most``."""
+
+    def read(value: Any, factor: float) -> int:
+        if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
+            raise FormError(shown(value))
+        return value
+
+    return Form(f"a whole number from {least} to {most}", read)
+
+
+def _read_letters(value: Any, factor: float) -> tuple[str, ...]:
+    letters = value if isinstance(value, list) else []
+    known = [letter for letter in letters if isinstance(letter, str) and len(letter) == 1 and letter in AXIS_LETTERS]
+    if len(known) != len(letters) or len(set(known)) != STRUTS or len(letters) != STRUTS:
+        raise FormError(", ".join(map(shown, letters)) or shown(value))
+    return tuple(known)
+
+
+_CODE = re.compile(r"(?:[ -z|~]|\{value:(?:0?[1-9])?d\}|\{value:\.[0-9]f\})+")
+"""Printable ASCII, braces only around the number of the event."""
+
+NUMBER = _numbers("a number", finish=float)
+POSITIVE = _numbers("a number above 0", (), lambda number: number > 0.0, float)
+NOT_NEGATIVE = _numbers("a number, 0 or above", (), lambda number: number >= 0.0, float)
+HALF_ANGLE = _numbers(
+    "an angle above 0 and at most a right angle", (), lambda angle: 0.0 < angle <= math.pi / 2.0, float
+)
+STROKE = _numbers(
+    "2 numbers, 0 < first < second",
+    (2,),
+    lambda stroke: 0.0 < stroke[0] < stroke[1],
+    lambda stroke: (float(stroke[0]), float(stroke[1])),
+)
+POINT = _numbers("3 numbers", (3,))
+SIX_NUMBERS = _numbers("6 numbers", (STRUTS,), finish=lambda numbers: tuple(map(float, numbers)))
+SIX_POINTS = _numbers("6 rows of 3 numbers", (STRUTS, 3))
+SIX_DIRECTIONS = _numbers(
+    "6 rows of 3 numbers, none of them all zero",
+    (STRUTS, 3),
+    lambda rows: np.linalg.norm(rows, axis=1).min() > SHORTEST_DIRECTION,
+    _unit,
+)
+POSE = Form("4 rows of 4 numbers, a rotation and a shift", _read_pose)
+NAME = _text("a text of one line", lambda text: text.strip() and text.isprintable())
+PROSE = _text("a text", lambda text: True)
+CODE = _text("a line of ASCII, the number as {value:d} or {value:.3f}", _CODE.fullmatch)
+LETTERS = Form(f"6 different letters out of {' '.join(AXIS_LETTERS)}", _read_letters)

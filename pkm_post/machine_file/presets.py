@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Presets: the machine files that come with the add-on, found by name.
+
+Enters: what a user wrote for a machine, a preset's name or a path. Leaves: the path of the file to read.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+FOLDER = Path(__file__).parents[2] / "resources" / "machines"
+SUFFIX = ".toml"
+
+
+def presets() -> list[str]:
+    """The names of the machines that come with the add-on, in alphabetical order."""
+    return sorted(path.stem for path in FOLDER.glob(f"*{SUFFIX}"))
+
+
+def find_machine(name_or_path: str) -> Path | None:
+    """The machine file that is meant.
+
+    Args:
+        name_or_path: the name of a preset, or a path: anything with a separator or the suffix ``.toml``.
+
+    Returns:
+        The path as it was given, whether there is such a file or not; for a name the preset's path, None if unknown.
+    """
+    if "/" in name_or_path or "\\" in name_or_path or name_or_path.endswith(SUFFIX):
+        return Path(name_or_path)
+    return FOLDER / f"{name_or_path}{SUFFIX}" if name_or_path in presets() else None

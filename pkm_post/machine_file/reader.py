@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reading a machine file: a TOML text enters, a ``model.Machine`` in mm, rad and s leaves.
+
+All faults are collected in one run: first the form of every entry after the table of fields, then what the well-formed
+entries say against each other. A file with a fault gives no machine, as a limit that was misread can break one.
+"""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from pkm_post.machine_file.faults import Fault, not_toml, tell
+from pkm_post.machine_file.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
+from pkm_post.machine_file.forms import FormError, shown
+from pkm_post.machine_file.rest_pose import contradictions, rest_axes
+from pkm_post.machine_file.units import factor, stated_units
+from pkm_post.machine_file.work_offsets import offset_names, stated_poses, work_offsets
+from pkm_post.model import Diagnostic, Machine, Place
+
+CONTROLLER = "controller"
+
+
+def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+    """Read a machine file and check all of it.
+
+    Args:
+        path: the file, as the user named it: diagnostics show it so.
+
+    Returns:
+        The machine, or None when the file has a fault; and every fault, in the order of the text.
+    """
+    file = str(path)
+    try:
+        content = path.read_bytes()
+        text = content.decode("utf-8")
+    except (OSError, ValueError) as fault:
+        return None, (Diagnostic("M101", Place(file), getattr(fault, "strerror", None) or str(fault)),)
+    try:
+        document = tomllib.loads(text)
+    except (ValueError, RecursionError) as fault:
+        return None, (not_toml(fault, file, text),)
+    offsets = offset_names(document)
+    values, faults = _read_entries(document, offsets)
+    faults += stated_poses(offsets, document) + contradictions(values)
+    if faults:
+        return None, tell(faults, file, text, document)
+    return _machine(values, offsets, hashlib.sha256(content).hexdigest()), ()
+
+
+def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[str, Any], list[Fault]]:
+    """Every entry converted, by its dotted name, defaults where the file has none; and what is wrong with entries."""
+    units = stated_units(document)
+    optional = [field for field in FIELDS if field.default is not REQUIRED]
+    values = {entry: field.default for field in optional for entry in field.entries(offsets)}
+    faults: list[Fault] = []
+    present: set[Name] = set()
+    for name, known, value in _walk(document, section_tree(), ()):
+        present.add(name)
+        try:
+            if known is None:
+                faults.append(Fault("M105", name, _suggestion(name)))
+            elif isinstance(known, Field):
+                values[".".join(name)] = known.form.read(value, factor(known.dimension, units))
+            else:
+                faults.append(Fault("M104", name, f"expected a table, got {shown(value)}"))
+        except FormError as wrong:
+            values.pop(".".join(name), None)
+            faults.append(Fault("M104", name, f"expected {known.form.words}, got {wrong}"))
+    return values, faults + _missing(present)
+
+
+def _walk(table: dict[str, Any], tree: dict[str, Any], above: Name) -> Iterator[tuple[Name, Any, Any]]:
+    """Each entry of the document: its name, its ``Field`` (a dict for a section, None if unknown) and its value."""
+    for key, value in table.items():
+        known = tree.get(key, tree.get(ANY))
+        if isinstance(known, dict) and isinstance(value, dict):
+            yield from _walk(value, known, (*above, key))
+        else:
+            yield (*above, key), known, value
+
+
+def _missing(present: set[Name]) -> list[Fault]:
+    """The required entries that are not there; those in a section of wrong form have been told with it."""
+    return [
+        Fault("M103", field.name, f"expected {field.form.words}")
+        for field in FIELDS
+        if field.default is REQUIRED
+        and not any(field.name[:length] in present for length in range(1, len(field.name) + 1))
+    ]
+
+
+def _suggestion(name: Name) -> str:
+    """The known name nearest to an unknown one."""
+    known = dict.fromkeys(".".join(field.name[:length]) for field in FIELDS for length in range(1, len(field.name) + 1))
+    nearest = difflib.get_close_matches(".".join(name), known, n=1)
+    return f"the nearest known entry is {nearest[0]}" if nearest else "no known entry is like it"
+
+
+def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Machine:
+    base_rest, platform_rest = rest_axes(values)
+    return Machine(
+        fingerprint=fingerprint,
+        base_rest=base_rest,
+        platform_rest=platform_rest,
+        work_offsets=work_offsets(offsets, values),
+        controller=_controller(values),
+        **{field.attribute: values[field.entry] for field in FIELDS if field.attribute},
+    )
+
+
+def _controller(values: dict[str, Any]) -> dict[str, Any]:
+    """The entries below ``controller``, nested as in the file, in mm and mm/s."""
+    settings: dict[str, Any] = {}
+    for field in FIELDS:
+        if field.name[0] == CONTROLLER:
+            _, *sections, key = field.name
+            section = settings
+            for part in sections:
+                section = section.setdefault(part, {})
+            section[key] = values[field.entry]
+    return settings
