@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Feed: corner blending, look-ahead and timing. Arrays alone: no machine, no kinematics."""
+
+from pkm_post.feed.knots import knots
+from pkm_post.feed.limits import PLANNED_SHARE, Bounded, limits
+from pkm_post.feed.profile import speed_profile
+from pkm_post.feed.schedule import Schedule, by_time
+from pkm_post.feed.stations import Stations, stations
+from pkm_post.feed.tool_path import ToolPath
+
+__all__ = [
+    "PLANNED_SHARE",
+    "Bounded",
+    "Schedule",
+    "Stations",
+    "ToolPath",
+    "by_time",
+    "knots",
+    "limits",
+    "speed_profile",
+    "stations",
+]

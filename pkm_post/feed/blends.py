@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Blends: how far before and after a joint of two segments the path may leave them to round the corner.
+
+A joint whose direction changes by D (unit tangents by path length) is rounded over the half width d on both sides
+with the cubic step W(v) = 3 v^2 - 2 v^3, v = (x + d) / 2d: the rounded path starts and ends with the curvature of its
+segments, and at the joint it is off by |D| times the integral of W up to the joint, 3/16 d |D|. The tool axis is
+rounded in step with the tip, in the tangent plane of the sphere at the joint. Enters: changes at the joints, lengths,
+tolerances. Leaves: half widths.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+
+OFFSET = 3 / 16
+"""Deviation at the joint by half width and change of direction."""
+_BOW = 0.02
+"""Deviation by half width squared and change of curvature: the largest of (2v - 1)^2 W(v) / 2, rounded up."""
+_NEGLIGIBLE = 1e-12
+"""Changes below this bound nothing; keeps the quotients finite."""
+_SHARE = 0.45
+"""Part of the shorter neighbour that a blend may use; two blends on one segment never meet."""
+
+
+def half_widths(
+    tip_change: Array, curvature_change: Array, axis_change: Array, neighbour: Array, tip: float, axis: float
+) -> Array:
+    """Half widths of the blends that keep within the tolerances, (N,) in path length.
+
+    Args:
+        tip_change: (N,) length of the change of the tip's tangent at each joint.
+        curvature_change: (N,) length of the change of the tip's curvature vector, 1/mm.
+        axis_change: (N,) length of the change of the tool axis' rate, rad by path length.
+        neighbour: (N,) length of the shorter of the two segments; 0 where the motion stops.
+        tip: tolerance of the tip, mm.
+        axis: tolerance of the tool axis, rad.
+    """
+    by_corner = (tip / 2) / (OFFSET * np.maximum(tip_change, _NEGLIGIBLE))
+    by_bow = np.sqrt((tip / 2) / (_BOW * np.maximum(curvature_change, _NEGLIGIBLE)))
+    by_axis = axis / (OFFSET * np.maximum(axis_change, _NEGLIGIBLE))
+    return np.minimum.reduce([by_corner, by_bow, by_axis, _SHARE * neighbour])
+
+
+def step(x: Array, half_width: Array) -> tuple[Array, Array, Array, Array]:
+    """The integral of W, W itself, W' and W'' at distances x from the joint, -d <= x <= d, (N,) each."""
+    width = 2 * half_width
+    v = (x + half_width) / width
+    return (
+        width * v**3 * (1 - v / 2),
+        v**2 * (3 - 2 * v),
+        6 * v * (1 - v) / width,
+        6 * (1 - 2 * v) / width**2,
+    )

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Limits: how fast the path may be run at each station, from arrays alone.
+
+For a quantity y(s) of the path with derivatives y', y'' by path length and the speed v = s': its rate is y' v and its
+acceleration y' v' + y'' v^2. Enters: y', y'' of everything that is limited, with the limits. Leaves: at each station
+the highest v^2 and the highest |v'|. Nothing here knows of machines: struts, tip and axis are columns like any other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+
+PLANNED_SHARE = 0.6
+"""Share of each acceleration limit that is planned: the cubic a controller plays across a switch from full
+acceleration to full braking reaches 5/3 of it at its end (shown in docs/feed.md and in the tests)."""
+_FOR_CURVATURE = 0.5
+"""Share of the planned acceleration that the curvature of the path may use up; the rest speeds up and brakes."""
+_STEEPEST = 1e6
+"""mm/s^2: stands for no limit, where nothing limited moves; keeps the sums of the profile finite."""
+
+
+@dataclass(frozen=True)
+class Bounded:
+    """A vector of the path with limits on the size of its rate and acceleration.
+
+    Attributes:
+        first: (M, C) derivatives by path length.
+        second: (M, C) second derivatives.
+        speed: limit of the rate, infinite where there is none.
+        acceleration: limit of the acceleration, infinite where there is none.
+        each: whether every column has the limit for itself (struts), or the vector as a whole (tip).
+    """
+
+    first: Array
+    second: Array
+    speed: float
+    acceleration: float
+    each: bool
+
+    def sizes(self) -> tuple[Array, Array]:
+        """Sizes of first and second derivative by column of its own limit, (M, C) or (M, 1)."""
+        if self.each:
+            return np.abs(self.first), np.abs(self.second)
+        return tuple(np.sqrt(np.sum(d**2, axis=1, keepdims=True)) for d in (self.first, self.second))  # type: ignore[return-value]
+
+
+def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
+    """Highest speed squared and highest acceleration along the path at each station, (M,) each.
+
+    Args:
+        feed: (M,) programmed speed by path length.
+        bounded: everything with limits of its own.
+    """
+    bounded = tuple(bounded)
+    square = feed**2
+    for item in bounded:
+        first, second = item.sizes()
+        square = _least(square, item.speed, first, 2)
+        square = _least(square, _FOR_CURVATURE * PLANNED_SHARE * item.acceleration, second, 1)
+    along = np.full(len(feed), _STEEPEST)
+    for item in bounded:
+        if np.isfinite(item.acceleration):
+            first, second = item.sizes()
+            left = PLANNED_SHARE * item.acceleration - second * square[:, None]
+            along = np.minimum(along, np.min(left / np.maximum(first, np.finfo(float).tiny), axis=1))
+    return square, along
+
+
+def _least(square: Array, limit: float, size: Array, power: int) -> Array:
+    if not np.isfinite(limit):
+        return square
+    worst = np.maximum(np.max(size, axis=1), np.finfo(float).tiny)
+    with np.errstate(over="ignore"):
+        return np.minimum(square, (limit / worst) ** power)

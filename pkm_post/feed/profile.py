@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Profile: speed along the path, from rest to rest, as fast as the limits allow.
+
+With x = v^2 the acceleration along the path is half of dx/ds, so that a bound on acceleration is a bound on the slope
+of x: x_j <= x_i + 2 a_i (s_j - s_i). The largest such x under given ceilings is a running minimum of x - C with C the
+sum of the slopes, once from the left and once from the right: look-ahead of any depth without a loop.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+
+
+def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
+    """Highest speed squared at every station, (M,); between stations it is linear in s.
+
+    Args:
+        s: (M,) path lengths, not decreasing.
+        ceiling: (M,) highest speed squared; 0 where the motion rests.
+        acceleration: (M,) highest acceleration along the path.
+    """
+    in_cell = np.minimum(acceleration[1:], acceleration[:-1])
+    climb = np.concatenate([[0.0], np.cumsum(2 * in_cell * np.diff(s))])
+    forward = np.minimum.accumulate(ceiling - climb) + climb
+    backward = np.minimum.accumulate((forward + climb)[::-1])[::-1] - climb
+    return np.clip(backward, 0.0, ceiling)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stations: the places on a tool path where its limits are asked for and its speed is planned.
+
+Enough of them that what the limits depend on is close to straight between two: every blend is cut evenly, and between
+blends the tip moves and the axis turns only a little from one station to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.feed.tool_path import ToolPath
+from pkm_post.geometry import norm
+from pkm_post.geometry.vectors import Array
+
+_CELLS_IN_HALF_BLEND = 4
+_LONGEST_CELL = 5.0
+"""mm"""
+_WIDEST_CELL = np.radians(1.0)
+"""rad of axis turn, or of arc sweep"""
+
+
+@dataclass(frozen=True)
+class Stations:
+    """Columns of M stations in order.
+
+    Attributes:
+        segment: (M,) segment each station lies on; a joint is the end of the earlier one.
+        u: (M,) path length on that segment.
+        s: (M,) path length since the start.
+        rest: (M,) whether the motion stops there.
+    """
+
+    segment: Array
+    u: Array
+    s: Array
+    rest: np.ndarray[tuple[int], np.dtype[np.bool_]]
+
+
+def stations(path: ToolPath) -> Stations:
+    """The stations of a path."""
+    extent = path.segments.extent
+    entry, leave = path.blend[:-1], path.blend[1:]
+    middle = extent - entry - leave
+    turn = np.maximum(norm(path.segments.axis_rate), path.segments.turn) * middle
+    cells = np.column_stack([
+        np.where(entry > 0, _CELLS_IN_HALF_BLEND, 0),
+        np.maximum(2, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
+        np.where(leave > 0, _CELLS_IN_HALF_BLEND, 0),
+    ]).ravel()
+    begin = np.column_stack([0 * entry, entry, extent - leave]).ravel()
+    width = np.column_stack([entry, middle, leave]).ravel()
+    part = np.repeat(np.arange(len(cells)), cells)
+    number = np.arange(len(part)) - np.repeat(np.cumsum(cells) - cells, cells) + 1
+    segment = part // 3
+    u = begin[part] + width[part] * (number / cells[part])
+    last = np.append(segment[1:] != segment[:-1], True)
+    u[last] = extent
+    return Stations(
+        segment=np.concatenate([[0], segment]),
+        u=np.concatenate([[0.0], u]),
+        s=np.concatenate([[0.0], path.starts[segment] + u]),
+        rest=np.concatenate([[True], last & path.rests[segment + 1]]),
+    )

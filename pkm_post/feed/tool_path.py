@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""ToolPath: the way of tip, axis and spin with rounded corners, as a function of path length s.
+
+Enters: a trajectory and how far tip and axis may leave it at its corners. Leaves: poses with exact first and second
+derivatives at any s. Tip and axis are rounded in step, so that cutting direction and tool attitude stay together; the
+axis always turns along great circles, never through Euler angles [paper section 5.2].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.feed.blends import half_widths, step
+from pkm_post.feed.segments import Segments
+from pkm_post.geometry import along_rates, norm
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Poses, Trajectory
+
+
+@dataclass(frozen=True)
+class ToolPath:
+    """A path of N segments with the N - 1 blends between them.
+
+    Attributes:
+        segments: the segments before rounding.
+        starts: (N + 1,) path length s at the start of each segment, and at the end of all.
+        blend: (N + 1,) half width of the blend at the start of each segment; 0 at rests and at both ends.
+        rests: (N + 1,) whether the motion stops at the start of each segment; true at both ends.
+        feed: (N,) highest speed by path length, mm/s.
+        tool_length: (N,) gauge length in use.
+    """
+
+    segments: Segments
+    starts: Array
+    blend: Array
+    rests: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    feed: Array
+    tool_length: Array
+
+    @classmethod
+    def of(cls, trajectory: Trajectory, tip_tolerance: float, axis_tolerance: float) -> ToolPath:
+        """The path of a trajectory.
+
+        Args:
+            trajectory: at least one segment.
+            tip_tolerance: how far the tip may leave the segments at corners, mm.
+            axis_tolerance: how far the tool axis may, rad.
+        """
+        segments = Segments.of(trajectory)
+        rests = np.concatenate([[True], trajectory.exact_stop])
+        return cls(
+            segments=segments,
+            starts=np.concatenate([[0.0], np.cumsum(segments.extent)]),
+            blend=_blends(segments, rests, tip_tolerance, axis_tolerance),
+            rests=rests,
+            feed=trajectory.feed,
+            tool_length=trajectory.tool_length(),
+        )
+
+    def at(self, s: Array) -> Poses:
+        """Poses at path lengths s, (M,); at a joint the earlier segment counts."""
+        segment = np.clip(np.searchsorted(self.starts, s) - 1, 0, len(self.segments) - 1)
+        return self.within(segment, s - self.starts[segment])
+
+    def within(self, segment: Array, u: Array) -> Poses:
+        """Poses at path lengths u, (M,), of the segments named, with derivatives by path length."""
+        tip, axis = self.segments.tip_at(segment, u), self.segments.axis_at(segment, u)
+        rate = self.segments.spin_rate[segment]
+        spin = [self.segments.spin[segment] + u * rate, rate.copy(), np.zeros_like(rate)]
+        distance_to_end = self.segments.extent[segment] - u
+        for joint, x in ((segment, u), (segment + 1, -distance_to_end)):
+            rows = np.flatnonzero(np.abs(x) < self.blend[joint])
+            if len(rows):
+                self._round(joint[rows], x[rows], rows, tip, axis, spin)
+        return Poses(*tip, *axis, *spin, tool_length=self.tool_length[segment], segment=segment)
+
+    def _round(
+        self, joint: Array, x: Array, rows: Array, tip: tuple[Array, ...], axis: tuple[Array, ...], spin: list[Array]
+    ) -> None:
+        """Overwrite the rows that lie in blends, at distances x from the joints at the starts of segments ``joint``.
+
+        With p1, p2 the two segments prolonged, D the change of tangent and H the integral of W:
+        p = (1 - W) p1 + W p2 + D (H - W x); where both are lines this is p1 + D H.
+        """
+        before, seg = joint - 1, self.segments
+        at_end = seg.extent[before]
+        h, w, w1, w2 = (value[:, None] for value in step(x, self.blend[joint]))
+        change = seg.tip_at(joint, 0 * x)[1] - seg.tip_at(before, at_end)[1]
+        one, two = seg.tip_at(before, at_end + x), seg.tip_at(joint, x)
+        apart = two[0] - one[0] - change * x[:, None]
+        tip[0][rows] = one[0] + w * apart + change * h
+        tip[1][rows] = (1 - w) * one[1] + w * two[1] + w1 * apart
+        tip[2][rows] = (1 - w) * one[2] + w * two[2] + w1 * (2 * (two[1] - one[1]) - change) + w2 * apart
+
+        rate = seg.axis_at(before, at_end)[1]
+        change = seg.axis_rate[joint] - rate
+        tangent = along_rates(seg.axis[joint], x[:, None] * rate + h * change, rate + w * change, w1 * change)
+        for value, rounded in zip(axis, tangent, strict=True):
+            value[rows] = rounded
+
+        turn = seg.spin_rate[before]
+        change = seg.spin_rate[joint] - turn
+        spin[0][rows] = seg.spin[joint] + turn * x + change * h[:, 0]
+        spin[1][rows] = turn + change * w[:, 0]
+        spin[2][rows] = change * w1[:, 0]
+
+
+def _blends(segments: Segments, rests: Array, tip_tolerance: float, axis_tolerance: float) -> Array:
+    blend = np.zeros(len(segments) + 1)
+    joint = np.arange(1, len(segments))
+    before, at_end, at_start = joint - 1, segments.extent[:-1], np.zeros(len(joint))
+    _, tangent_end, bend_end = segments.tip_at(before, at_end)
+    _, tangent_start, bend_start = segments.tip_at(joint, at_start)
+    axis_change = segments.axis_rate[1:] - segments.axis_at(before, at_end)[1]
+    neighbour = np.where(rests[1:-1], 0.0, np.minimum(segments.extent[1:], segments.extent[:-1]))
+    blend[1:-1] = half_widths(
+        norm(tangent_start - tangent_end),
+        norm(bend_start - bend_end),
+        norm(axis_change),
+        neighbour,
+        tip_tolerance,
+        axis_tolerance,
+    )
+    return blend

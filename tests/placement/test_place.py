@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+import numpy as np
+import pytest
+from machines import example, rotation_about
+from programs import BALL, ON_PALLET, cone, program, square_with_arc
+
+from pkm_post.geometry import norm
+from pkm_post.model import Event, EventKind, Kind, Tool
+from pkm_post.placement.place import place
+
+
+def test_work_offset_turns_points_and_axes():
+    offset = np.eye(4)
+    offset[:3, :3], offset[:3, 3] = rotation_about(2, 90), [10, 20, 150]
+    made = cone(20)
+    trajectory, faults = place(made, example(), offset)
+    assert not faults
+    np.testing.assert_allclose(trajectory.tip[:, 0], 10 - made.position[:, 1], atol=1e-12)
+    np.testing.assert_allclose(trajectory.tip[:, 1], 20 + made.position[:, 0], atol=1e-12)
+    np.testing.assert_allclose(trajectory.axis[:, 0], -made.tool_axis[:, 1], atol=1e-15)
+    np.testing.assert_array_equal(trajectory.start_tip, example().home_tip)
+
+
+def test_rows_that_move_nothing_are_left_out_and_their_events_kept():
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.DWELL, 1.0), Event(4, EventKind.SPINDLE, 0))
+    made = program([[0, 0, 60], [10, 0, 60], [10, 0, 60], [10, 10, 60]], events=events)
+    trajectory, _ = place(made, example(), ON_PALLET)
+    assert trajectory.line.tolist() == [1, 2, 4]
+    assert [(event.row, event.kind) for event in trajectory.events] == [
+        (0, EventKind.TOOL_CHANGE), (2, EventKind.DWELL), (3, EventKind.SPINDLE),
+    ]  # fmt: skip
+    assert trajectory.exact_stop.tolist() == [False, True, True]
+
+
+def test_arc_and_helix_have_their_sweep_and_length():
+    trajectory, _ = place(square_with_arc(), example(), ON_PALLET)
+    arcs = trajectory.kind == Kind.ARC
+    np.testing.assert_allclose(trajectory.sweep[arcs], [np.pi, 2 * np.pi])
+    np.testing.assert_allclose(trajectory.length[arcs], [10 * np.pi, np.hypot(10 * np.pi, 4)])
+
+
+def test_smooth_joints_are_told_from_corners():
+    # From home straight down, then on down; and the half circle meets its lines without a corner; the rest are corners.
+    trajectory, _ = place(square_with_arc(), example(), ON_PALLET)
+    assert trajectory.smooth.tolist() == [True, False, True, True, False, False, False]
+    start = np.zeros((3, 3))
+    start[:, 0] = [0, 10, 20]
+    straight, _ = place(program(start + [0, 0, 60]), example(), ON_PALLET)
+    assert straight.smooth.tolist() == [False, True, False]
+
+
+def test_feeds_are_limited_with_a_warning():
+    made = program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], feed=np.array([np.nan, 30.0, 900.0]))
+    trajectory, faults = place(made, example(), ON_PALLET)
+    assert trajectory.feed.tolist() == [250.0, 30.0, 200.0]
+    assert [(fault.code, fault.place.line) for fault in faults] == [("K110", 3)]
+    assert "F54000 mm/min, limited to 12000" in str(faults[0])
+
+
+@pytest.mark.parametrize(
+    ("code", "made"),
+    [
+        ("K106", program([[0, 0, 60], [10, 0, 60]], np.array([[0, 0, 1.0], [0, 0, -1.0]]))),
+        ("K107", program([[0, 0, 60], [1, 0, 60]], events=(Event(1, EventKind.SPINDLE, -24001),))),
+    ],
+)
+def test_what_the_machine_cannot_do_is_an_error(code, made):
+    trajectory, faults = place(made, example(), ON_PALLET)
+    assert trajectory is None
+    assert [fault.code for fault in faults] == [code]
+
+
+def test_at_a_tool_change_the_platform_stands_still():
+    longer = Tool(2, "long", 8.0, 4.0, 150.0)
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.TOOL_CHANGE, 2))
+    tilt = np.radians([0.0, 10, 10, 0])
+    axis = np.column_stack([np.sin(tilt), 0 * tilt, np.cos(tilt)])
+    made = program([[0, 0, 60], [10, 0, 60], [20, 0, 60], [30, 0, 60]], axis, events=events, tools={1: BALL, 2: longer})
+    trajectory, _ = place(made, example(), ON_PALLET)
+    reach = example().spindle_nose + trajectory.tool_length()
+    platform_after = trajectory.tip[1] + reach[1] * trajectory.axis[1]
+    platform_before = trajectory.tip_before()[2] + reach[2] * trajectory.axis_before()[2]
+    np.testing.assert_allclose(platform_before, platform_after, atol=1e-12)
+    np.testing.assert_allclose(trajectory.length, norm(trajectory.tip - trajectory.tip_before()), atol=1e-12)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Programs for the tests: small jobs built from arrays."""
+
+import numpy as np
+
+from pkm_post.model import Event, EventKind, Kind, Program, Tool
+
+ON_PALLET = np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 150], [0, 0, 0, 1]])
+"""A work offset that puts the jobs below well inside the example machine."""
+BALL = Tool(1, "ball", 12.0, 6.0, 120.0)
+
+
+def program(position, axis=None, kind=None, feed=30.0, events=None, centre=None, turn=None, tools=None) -> Program:
+    """A program with one operation; row 0 is a rapid unless kinds are given."""
+    position = np.asarray(position, dtype=float)
+    count = len(position)
+    kind = np.array([Kind.RAPID] + [Kind.LINE] * (count - 1) if kind is None else kind)
+    axis = np.tile([0.0, 0.0, 1.0], (count, 1)) if axis is None else axis
+    blank = np.full((count, 3), np.nan)
+    return Program(
+        kind=kind,
+        position=position,
+        tool_axis=axis,
+        feed=np.where(kind == Kind.RAPID, np.nan, feed),
+        arc_centre=blank if centre is None else centre,
+        arc_axis=blank if turn is None else turn,
+        operation=np.zeros(count),
+        line=np.arange(1, count + 1),
+        events=(Event(0, EventKind.TOOL_CHANGE, 1),) if events is None else events,
+        operations=("Finish",),
+        tools={1: BALL} if tools is None else tools,
+        source="part.FCStd",
+    )
+
+
+def cone(count=200, turns=1.0, tilt_deg=15.0) -> Program:
+    """A path down a cone of elliptic section with the axis leaning outwards; five degrees of freedom move."""
+    turn = np.linspace(0, 2 * np.pi * turns, count)
+    tilt = np.radians(tilt_deg)
+    position = np.column_stack([60 * np.cos(turn), 40 * np.sin(turn), np.linspace(80, 40, count)])
+    axis = np.column_stack([
+        np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.full(count, np.cos(tilt)),
+    ])  # fmt: skip
+    return program(position, axis)
+
+
+def square_with_arc() -> Program:
+    """Straight moves with right angles, a half circle that leaves a line smoothly, and a helix down."""
+    position = [[0, 0, 60], [0, 0, 40], [30, 0, 40], [30, 20, 40], [0, 20, 40], [0, 0, 40], [0, 0, 36]]
+    kind = [Kind.RAPID, Kind.LINE, Kind.LINE, Kind.ARC, Kind.LINE, Kind.LINE, Kind.ARC]
+    centre, turn = np.full((7, 3), np.nan), np.full((7, 3), np.nan)
+    centre[3], turn[3] = [30, 10, 40], [0, 0, 1]
+    centre[6], turn[6] = [5, 0, 40], [0, 0, -1]
+    return program(position, kind=kind, centre=centre, turn=turn)
