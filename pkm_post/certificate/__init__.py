@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Certificate: a program read back, played as the controller plays it, and compared with the programmed path."""
+
+from pkm_post.certificate.certify import certify
+
+__all__ = ["certify"]

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Playback: what the machine does when a controller plays a strut motion.
+
+Every interval is the cubic the controller makes of it, sampled at even shares; forward kinematics turns the six
+lengths of every instant back into tip and axis. Enters: the strut motion as read back, and a planned motion as the
+place where the search for each pose begins; the poses found do not depend on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds, norm
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import forward
+from pkm_post.kinematics.jacobian import jacobian_of_struts
+from pkm_post.model import Machine, Motion, StrutMotion
+
+INSTANTS = 8
+"""Instants of each interval that are looked at; the first is the knot itself."""
+_CHUNK = 4096
+
+
+@dataclass(frozen=True)
+class Played:
+    """Worst values of each of K intervals, (K,) unless said otherwise.
+
+    Attributes:
+        found: whether a pose belongs to every instant.
+        tip: deviation of the tip, mm.
+        axis: deviation of the tool axis, rad.
+        tip_speed: speed of the tip, mm/s.
+        strut_speed: mm/s.
+        strut_acceleration: mm/s^2; exact, as it is linear inside an interval.
+        shortest: shortest strut length, mm.
+        longest: longest strut length, mm.
+    """
+
+    found: Array
+    tip: Array
+    axis: Array
+    tip_speed: Array
+    strut_speed: Array
+    strut_acceleration: Array
+    shortest: Array
+    longest: Array
+
+
+def play(struts: StrutMotion, machine: Machine, ruler: TrajectoryRuler, motion: Motion) -> Played:
+    """Play a strut motion and measure it.
+
+    Args:
+        struts: the motion to play, K + 1 knots.
+        machine: the geometry.
+        ruler: measures poses against the programmed trajectory.
+        motion: the planned motion with the same knots.
+    """
+    intervals = len(struts) - 1
+    result = np.empty((8, intervals))
+    for first in range(0, intervals, _CHUNK):
+        rows = np.arange(first, min(first + _CHUNK, intervals))
+        result[:, rows] = _play(struts, machine, ruler, motion, rows)
+    return Played(result[0] > 0, *result[1:])
+
+
+def _play(struts: StrutMotion, machine: Machine, ruler: TrajectoryRuler, motion: Motion, rows: Array) -> Array:
+    after = rows + 1
+    duration = (struts.time_ms[after] - struts.time_ms[rows]) / 1000
+    cubic = struts.length[rows], struts.speed[rows], struts.length[after], struts.speed[after], duration
+    share = np.arange(INSTANTS) / INSTANTS
+    length, speed = hermite_lengths(*cubic, share), hermite_speeds(*cubic, share)
+    instant = np.repeat(rows, INSTANTS)
+    tool_length = motion.tool_length[instant + 1]
+    pose = forward(
+        machine,
+        length.reshape(-1, 6),
+        tool_length,
+        motion.tip[instant],
+        motion.axis[instant],
+        motion.spin[instant],
+    )
+    tip, axis = ruler.deviation(pose.tip, pose.axis, motion.segment[instant], motion.segment[instant + 1])
+    jacobian = jacobian_of_struts(machine, pose.tip, pose.rotation, tool_length)
+    jacobian[~pose.converged] = np.eye(6)  # no pose was found there, which is refused as such
+    twist = np.linalg.solve(jacobian, speed.reshape(-1, 6, 1))[..., 0]
+    shape = len(rows), INSTANTS
+    acceleration = np.abs(np.stack(hermite_accelerations(*cubic)))
+    return np.stack([
+        pose.converged.reshape(shape).all(axis=1),
+        tip.reshape(shape).max(axis=1),
+        axis.reshape(shape).max(axis=1),
+        norm(twist[:, :3]).reshape(shape).max(axis=1),
+        np.abs(speed).max(axis=(1, 2)),
+        acceleration.max(axis=(0, 2)),
+        length.min(axis=(1, 2)),
+        length.max(axis=(1, 2)),
+    ])  # fmt: skip

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+import dataclasses
+from functools import cache
+
+import numpy as np
+import pytest
+from machines import example
+from programs import ON_PALLET, cone
+
+from pkm_post import planning
+from pkm_post.certificate import certify
+from pkm_post.model import StrutMotion
+from pkm_post.model.findings import Tolerances
+from pkm_post.placement.place import place
+
+TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+
+
+@cache
+def planned():
+    machine = example()
+    trajectory, _ = place(cone(80, turns=0.25), machine, ON_PALLET)
+    path = planning.tool_path(trajectory, TOLERANCES)
+    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    assert not faults
+    motion = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
+    return machine, trajectory, motion, planning.strut_motion(motion, machine)
+
+
+def verdict(struts=None, machine=None, tolerances=TOLERANCES):
+    made_for, trajectory, motion, planned_struts = planned()
+    return certify(struts or planned_struts, "x.pmc", trajectory, machine or made_for, motion, tolerances)
+
+
+def changed(length=None, speed=None, time_ms=None, events=None, rows=slice(None)):
+    struts = planned()[3]
+    return StrutMotion(
+        struts.time_ms[rows] if time_ms is None else time_ms,
+        (struts.length if length is None else length)[rows],
+        (struts.speed if speed is None else speed)[rows],
+        struts.events if events is None else events,
+    )
+
+
+def codes(result):
+    return {fault.code for fault in result[1]}
+
+
+def test_the_plan_holds():
+    certificate, faults = verdict()
+    assert not faults
+    assert certificate.holds
+    assert certificate.intervals == len(planned()[3]) - 1
+    assert 0 < certificate.tip_deviation.max() <= TOLERANCES.tip
+
+
+def test_a_length_that_is_off_by_two_microns_is_found_where_it_is():
+    length = planned()[3].length.copy()
+    row = len(length) // 2
+    length[row, 3] += 0.002
+    certificate, faults = verdict(changed(length=length))
+    assert codes((certificate, faults)) & {"V101", "V102"}
+    worst = certificate.time[np.argmax(certificate.tip_deviation)]
+    assert abs(worst - planned()[3].time_ms[row] / 1000) < 0.2
+
+
+def test_speeds_in_mm_per_minute_are_found():
+    assert "V101" in codes(verdict(changed(speed=planned()[3].speed / 60)))
+
+
+def test_swapped_struts_are_found():
+    length = planned()[3].length[:, [1, 0, 2, 3, 4, 5]]
+    assert "V101" in codes(verdict(changed(length=length)))
+
+
+def test_a_dropped_point_is_found():
+    keep = np.arange(len(planned()[3])) != 20
+    assert codes(verdict(changed(rows=keep))) == {"V110"}
+
+
+def test_a_dropped_event_is_found():
+    assert codes(verdict(changed(events=()))) == {"V109"}
+
+
+def test_motion_at_the_end_is_found():
+    speed = planned()[3].speed.copy()
+    speed[-1, 0] = 0.5
+    assert codes(verdict(changed(speed=speed))) == {"V105"}
+
+
+def test_lengths_without_a_pose_are_found():
+    length = planned()[3].length.copy()
+    length[30] = [1250, 250, 250, 250, 250, 250]
+    assert "V107" in codes(verdict(changed(length=length)))
+
+
+@pytest.mark.parametrize(
+    ("code", "limits"),
+    [
+        ("V103", {"strut_speed": 10.0}),
+        ("V104", {"strut_acceleration": 100.0}),
+        ("V106", {"strut_stroke": (1040.0, 1250.0)}),
+        ("V106", {"strut_stroke": (750.0, 1040.0)}),
+    ],
+)
+def test_limits_are_checked_in_what_is_played(code, limits):
+    machine = dataclasses.replace(planned()[0], **limits)
+    assert code in codes(verdict(machine=machine))
+
+
+def test_too_fast_is_found():
+    made_for, trajectory, motion, struts = planned()
+    slower = dataclasses.replace(trajectory, feed=trajectory.feed / 2)
+    _, faults = certify(struts, "x.pmc", slower, made_for, motion, TOLERANCES)
+    assert {fault.code for fault in faults} == {"V108"}
+
+
+def test_tighter_tolerances_than_planned_do_not_hold():
+    assert {"V101"} <= codes(verdict(tolerances=Tolerances(1e-5, np.radians(1e-5))))

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+import numpy as np
+from machines import example
+from programs import ON_PALLET, cone, square_with_arc
+
+from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.feed import ToolPath
+from pkm_post.geometry import norm, unit
+from pkm_post.model.findings import Tolerances
+from pkm_post.placement.place import place
+
+TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+
+
+def poses_on(made, count=3000):
+    """A trajectory with poses on it: a path whose corners are rounded by next to nothing."""
+    trajectory, _ = place(made, example(), ON_PALLET)
+    path = ToolPath.of(trajectory, 1e-12, 1e-12)
+    return trajectory, path.at(np.linspace(0, path.starts[-1], count))
+
+
+def test_poses_on_the_trajectory_do_not_deviate():
+    for made in (cone(), square_with_arc()):
+        trajectory, poses = poses_on(made)
+        tip, axis = TrajectoryRuler(trajectory, TOLERANCES).deviation(
+            poses.tip, poses.axis, poses.segment, poses.segment
+        )
+        assert tip.max() < 1e-9
+        assert axis.max() < 1e-9
+
+
+def test_a_known_offset_is_found():
+    # Shifted across the path, straight up for level moves: the distance is the shift.
+    trajectory, poses = poses_on(square_with_arc())
+    level = (poses.segment > 1) & (poses.segment < 6)
+    tip, axis = TrajectoryRuler(trajectory, TOLERANCES).deviation(
+        poses.tip[level] + [0, 0, 0.01],
+        unit(poses.axis[level] + [1e-4, 0, 0]),
+        poses.segment[level],
+        poses.segment[level],
+    )
+    np.testing.assert_allclose(tip, 0.01, atol=1e-9)
+    np.testing.assert_allclose(axis, 1e-4, rtol=1e-6)
+
+
+def test_against_dense_sampling_of_the_path():
+    # The nearest of very many points on the trajectory is an upper bound close to the distance.
+    rng = np.random.default_rng(71)
+    trajectory, dense = poses_on(square_with_arc(), 60000)
+    level = np.flatnonzero((dense.segment > 1) & (dense.segment < 6))
+    chosen = rng.choice(level, 100)
+    points = dense.tip[chosen] + rng.normal(scale=0.5, size=(100, 3))
+    ruler = TrajectoryRuler(trajectory, TOLERANCES)
+    found, _ = ruler.deviation(points, dense.axis[chosen], np.full(100, 2), np.full(100, 5))
+    nearest = np.array([norm(dense.tip[level] - point).min() for point in points])
+    assert np.all(found <= nearest + 1e-9)
+    np.testing.assert_allclose(found, nearest, atol=2e-3)
+
+
+def test_more_segments_never_make_it_worse():
+    trajectory, poses = poses_on(cone(), 500)
+    ruler = TrajectoryRuler(trajectory, TOLERANCES)
+    moved = poses.tip + 0.02
+    one, _ = ruler.deviation(moved, poses.axis, poses.segment, poses.segment)
+    more, _ = ruler.deviation(moved, poses.axis, np.maximum(poses.segment - 2, 0), poses.segment)
+    assert np.maximum(more, 0.02).sum() <= np.maximum(one, 0.02).sum() + 1e-9
