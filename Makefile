@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+#
+# Every target provides by itself what it runs with: FreeCAD by tools/freecad, the linters in .venv.
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint format clean
+
+PYTHON ?= python3
+VENV := .venv
+OUT ?= out
+ARGS ?=
+
+# FreeCAD with the add-on, as with an add-on that is installed. It starts with default settings, so that
+# neither the user's own nor those of an earlier run decide what comes out.
+define FREECAD
+settings=$$(mktemp -d); trap 'rm -rf "$$settings"' EXIT; \
+export FREECAD_USER_HOME=$$settings MPLBACKEND=Agg; \
+tools/freecad -M "$$PWD" tools/run_script.py --
+endef
+
+help: ## print this list
+	@echo "make TARGET, where TARGET is one of"
+	@sed -n 's/^\([a-z]*\):.*## /  \1\t/p' Makefile | expand -t 12
+	@echo "PKM_FREECAD=1.0 or 1.1 chooses the FreeCAD; 'tools/freecad --help' tells which one it is otherwise."
+
+demo: export PKM_MODULES = numpy matplotlib
+demo: ## post-process the tapered column; its files and pictures are in out/ then (OUT=directory)
+	@$(FREECAD) examples/tapered_column/demo.py --out "$(OUT)"
+
+test: export PKM_MODULES = numpy lark serial pytest hypothesis matplotlib
+test: ## run the tests inside FreeCAD (ARGS="-k feed -x" for pytest)
+	@$(FREECAD) tools/run_tests.py $(ARGS)
+
+lint: $(VENV)/made ## check style, layout and types
+	@failed=0; \
+	for check in "ruff check" "ruff format --check" mypy "shellcheck tools/freecad tools/freecad_root .ci/run"; do \
+		echo "$$check"; $(VENV)/bin/$$check || failed=1; \
+	done; exit $$failed
+
+format: $(VENV)/made ## lay out the Python files and sort their imports
+	@$(VENV)/bin/ruff check --quiet --select I --fix || true
+	@$(VENV)/bin/ruff format
+
+clean: ## remove what the targets left in this directory
+	rm -rf out $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +
+
+$(VENV)/made: pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "Python 3.11 or newer is needed: make PYTHON=python3.NN" >&2; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
+		{ echo "$(PYTHON) cannot make a virtual environment. Please type: sudo apt-get install python3-venv" >&2; exit 1; }
+	@echo "making $(VENV)"
+	@$(PYTHON) -m venv --clear $(VENV)
+	@$(VENV)/bin/python -c 'import tomllib; \
+		print(*tomllib.load(open("pyproject.toml", "rb"))["dependency-groups"]["dev"], sep="\n")' >$(VENV)/requirements.txt
+	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $(VENV)/requirements.txt
+	@touch $@
