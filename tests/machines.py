@@ -37,9 +37,7 @@ def example() -> Machine:
 def genhexkins() -> Machine:
     """LinuxCNC's default hexapod, converted from inches."""
     base = np.array([[-22.95, 13.25], [22.95, 13.25], [22.95, 13.25], [0, -26.5], [0, -26.5], [-22.95, 13.25]])
-    platform = np.array(
-        [[-1, 11.5], [1, 11.5], [10.459, -4.884], [9.459, -6.616], [-9.459, -6.616], [-10.459, -4.884]]
-    )
+    platform = np.array([[-1, 11.5], [1, 11.5], [10.459, -4.884], [9.459, -6.616], [-9.459, -6.616], [-10.459, -4.884]])
     flat = np.zeros((6, 1))
     return machine(np.hstack([base, flat]) * INCH, np.hstack([platform, flat]) * INCH)
 

@@ -14,10 +14,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.model.findings import Certificate, Finding, Tolerances
 from pkm_post.certificate.playback import INSTANTS, Played, play
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
+from pkm_post.model.findings import Certificate, Finding, Tolerances
 
 _FEED_SHARE = 1.01
 """How far the cubic may swing about the planned speed where the acceleration changes."""
@@ -94,9 +94,7 @@ def _findings(
     excess = played.tip_speed - _feed_ceiling(trajectory, motion)
     yield worst("V107", "instants without a pose", "", 1.0 - played.found, 0.0)
     yield worst("V101", "deviation of the tool tip", "mm", played.tip, tolerances.tip)
-    yield worst(
-        "V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), math.degrees(tolerances.axis)
-    )
+    yield worst("V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), math.degrees(tolerances.axis))
     yield worst("V108", "tip speed above the feed", "mm/s", excess, 0.0)
     yield worst("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed)
     yield worst("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration)

@@ -3,18 +3,19 @@
 
 The tip is compared with its nearest point on a segment, the tool axis with the axis that the trajectory has at that
 point; on a segment where only the axis turns, the nearest axis is sought instead. Of several segments the one counts
-that the pose fits best. On a helix the point at the same angle stands for the nearest one. Looking at some segments only can make a deviation larger, never smaller.
+that the pose fits best. On a helix the point at the same angle stands for the nearest one. Looking at some segments
+only can make a deviation larger, never smaller.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model.findings import Tolerances
 from pkm_post.geometry import along, angle_between, arc_points, dot, norm, towards
 from pkm_post.geometry.arcs import across
 from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Kind, Trajectory
+from pkm_post.model.findings import Tolerances
 
 _TIP_STANDS = 1e-6
 """mm: a segment shorter than this is a turn of the axis alone."""

@@ -37,10 +37,11 @@ def half_widths(
         tip: tolerance of the tip, mm.
         axis: tolerance of the tool axis, rad.
     """
-    by_corner = (tip / 2) / (OFFSET * np.maximum(tip_change, _NEGLIGIBLE))
-    by_bow = np.sqrt((tip / 2) / (_BOW * np.maximum(curvature_change, _NEGLIGIBLE)))
+    # The deviation corner * d + bow * d^2 shall be the tolerance; this form of the root is exact for bow = 0 as well.
+    corner, bow = OFFSET * np.maximum(tip_change, _NEGLIGIBLE), _BOW * curvature_change
+    by_tip = 2 * tip / (corner + np.sqrt(corner**2 + 4 * bow * tip))
     by_axis = axis / (OFFSET * np.maximum(axis_change, _NEGLIGIBLE))
-    return np.minimum.reduce([by_corner, by_bow, by_axis, _SHARE * neighbour])
+    return np.minimum.reduce([by_tip, by_axis, _SHARE * neighbour])
 
 
 def step(x: Array, half_width: Array) -> tuple[Array, Array, Array, Array]:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Knots: the whole milliseconds at which the controller is given a point.
 
-As few as keep the controller's cubic within tolerance: every interval that is not is cut in half, all intervals of
-one width together, until they hold or are one millisecond long.
+Few, but enough to keep the controller's cubic within tolerance: every interval that is not is cut in two, all
+intervals at once, until they hold or are one millisecond long. A cut is made where a blend begins or ends, if there is
+such a place: a cubic follows a straight or a blend for long, but not both.
 """
 
 from __future__ import annotations
@@ -17,26 +18,26 @@ LONGEST_MS = 128
 """The width to start from: short enough that a corner cannot hide between the places where the error is measured."""
 
 
-def knots(rests_ms: Array, error: Callable[[Array, Array], Array]) -> Array:
+def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array]) -> Array:
     """Times of the knots, (K,) whole ms, from the first rest to the last; every rest is one of them.
 
     Args:
         rests_ms: (R,) whole ms.
+        edges_ms: (E,) whole ms where intervals had best be cut, increasing.
         error: for starts and ends of intervals, (N,) whole ms each, the error by tolerance of each; 1 is just right.
     """
-    start, end = _cut(rests_ms)
+    start, end = _even(rests_ms)
     found = [rests_ms]
     while len(start):
         found.append(start)
         wide = (end - start > 1) & (error(start, end) > 1)
         start, end = start[wide], end[wide]
-        middle = (start + end) // 2
-        found.append(middle)
-        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+        cut = _cut(start, end, edges_ms)
+        start, end = np.concatenate([start, cut]), np.concatenate([cut, end])
     return np.unique(np.concatenate(found))
 
 
-def _cut(rests_ms: Array) -> tuple[Array, Array]:
+def _even(rests_ms: Array) -> tuple[Array, Array]:
     """Even intervals of at most ``LONGEST_MS`` between the rests."""
     span = np.diff(rests_ms)
     pieces = -(-span // LONGEST_MS)
@@ -44,3 +45,13 @@ def _cut(rests_ms: Array) -> tuple[Array, Array]:
     number = np.arange(len(run)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     start = rests_ms[run] + number * span[run] // pieces[run]
     return start, rests_ms[run] + (number + 1) * span[run] // pieces[run]
+
+
+def _cut(start: Array, end: Array, edges_ms: Array) -> Array:
+    """Where to cut intervals: at the edge nearest to the middle, without one in the middle."""
+    middle = (start + end) // 2
+    bounded = np.concatenate([[np.iinfo(np.int64).min // 2], edges_ms, [np.iinfo(np.int64).max // 2]])
+    above = np.searchsorted(bounded, middle)
+    before, after = bounded[above - 1], bounded[above]
+    nearest = np.where(middle - before < after - middle, before, after)
+    return np.where((nearest > start) & (nearest < end), nearest, middle)

@@ -13,13 +13,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry.vectors import Array, norm
 
 PLANNED_SHARE = 0.6
 """Share of each acceleration limit that is planned: the cubic a controller plays across a switch from full
 acceleration to full braking reaches 5/3 of it at its end (shown in docs/feed.md and in the tests)."""
 _FOR_CURVATURE = 0.5
 """Share of the planned acceleration that the curvature of the path may use up; the rest speeds up and brakes."""
+_NEGLIGIBLE = 1e-12
+"""Derivatives below this bound nothing; keeps the quotients finite."""
 _STEEPEST = 1e6
 """mm/s^2: stands for no limit, where nothing limited moves; keeps the sums of the profile finite."""
 
@@ -46,7 +48,7 @@ class Bounded:
         """Sizes of first and second derivative by column of its own limit, (M, C) or (M, 1)."""
         if self.each:
             return np.abs(self.first), np.abs(self.second)
-        return tuple(np.sqrt(np.sum(d**2, axis=1, keepdims=True)) for d in (self.first, self.second))  # type: ignore[return-value]
+        return norm(self.first)[:, None], norm(self.second)[:, None]
 
 
 def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
@@ -67,13 +69,12 @@ def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
         if np.isfinite(item.acceleration):
             first, second = item.sizes()
             left = PLANNED_SHARE * item.acceleration - second * square[:, None]
-            along = np.minimum(along, np.min(left / np.maximum(first, np.finfo(float).tiny), axis=1))
+            along = np.minimum(along, np.min(left / np.maximum(first, _NEGLIGIBLE), axis=1))
     return square, along
 
 
 def _least(square: Array, limit: float, size: Array, power: int) -> Array:
     if not np.isfinite(limit):
         return square
-    worst = np.maximum(np.max(size, axis=1), np.finfo(float).tiny)
-    with np.errstate(over="ignore"):
-        return np.minimum(square, (limit / worst) ** power)
+    worst = np.maximum(np.max(size, axis=1), _NEGLIGIBLE)
+    return np.minimum(square, (limit / worst) ** power)

@@ -27,6 +27,7 @@ class Schedule:
         speed: (M,) along the path, mm/s.
         rests_ms: (R,) whole milliseconds at which the motion rests, from 0 to the end.
         rest_joints: (R,) for each rest the number of segments that lie before it.
+        edges_ms: (E,) whole milliseconds nearest to where blends begin and end.
     """
 
     s: Array
@@ -34,6 +35,7 @@ class Schedule:
     speed: Array
     rests_ms: Array
     rest_joints: Array
+    edges_ms: Array
 
     @classmethod
     def of(cls, stations: Stations, square: Array) -> Schedule:
@@ -53,7 +55,8 @@ class Schedule:
         time[rest_rows] = rests_ms / 1000
         speed[:-1] /= stretch[run]
         joints = np.append(stations.segment[rest_rows[:-1] + 1], stations.segment[-1] + 1)
-        return cls(stations.s, time, speed, rests_ms, joints)
+        edges_ms = np.unique(np.rint(1000 * time[stations.edge]).astype(np.int64))
+        return cls(stations.s, time, speed, rests_ms, joints, edges_ms)
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
         """Path length, speed and acceleration along the path at the times given, (N,) each.

@@ -63,7 +63,9 @@ class Segments:
         extent = np.where(trajectory.length > _TURNING_IN_PLACE * degrees, trajectory.length, degrees)
         arc = trajectory.kind == Kind.ARC
         turn_axis = np.where(arc[:, None], trajectory.arc_axis, 0.0)
-        radius = np.where(arc[:, None], across(start - np.where(arc[:, None], trajectory.arc_centre, start), turn_axis), 0)
+        radius = np.where(
+            arc[:, None], across(start - np.where(arc[:, None], trajectory.arc_centre, start), turn_axis), 0
+        )
         end_radius = norm(across(np.where(arc[:, None], trajectory.tip - trajectory.arc_centre, 0.0), turn_axis))
         ratio = np.divide(end_radius, norm(radius), out=np.ones(len(arc)), where=arc)
         chord = trajectory.tip - start

@@ -31,12 +31,14 @@ class Stations:
         u: (M,) path length on that segment.
         s: (M,) path length since the start.
         rest: (M,) whether the motion stops there.
+        edge: (M,) whether a blend begins or ends there.
     """
 
     segment: Array
     u: Array
     s: Array
-    rest: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    rest: Array
+    edge: Array
 
 
 def stations(path: ToolPath) -> Stations:
@@ -45,11 +47,13 @@ def stations(path: ToolPath) -> Stations:
     entry, leave = path.blend[:-1], path.blend[1:]
     middle = extent - entry - leave
     turn = np.maximum(norm(path.segments.axis_rate), path.segments.turn) * middle
-    cells = np.column_stack([
-        np.where(entry > 0, _CELLS_IN_HALF_BLEND, 0),
-        np.maximum(2, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
-        np.where(leave > 0, _CELLS_IN_HALF_BLEND, 0),
-    ]).ravel()
+    cells = np.column_stack(
+        [
+            np.where(entry > 0, _CELLS_IN_HALF_BLEND, 0),
+            np.maximum(2, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
+            np.where(leave > 0, _CELLS_IN_HALF_BLEND, 0),
+        ]
+    ).ravel()
     begin = np.column_stack([0 * entry, entry, extent - leave]).ravel()
     width = np.column_stack([entry, middle, leave]).ravel()
     part = np.repeat(np.arange(len(cells)), cells)
@@ -58,9 +62,11 @@ def stations(path: ToolPath) -> Stations:
     u = begin[part] + width[part] * (number / cells[part])
     last = np.append(segment[1:] != segment[:-1], True)
     u[last] = extent
+    ends_part = np.append(part[1:] != part[:-1], True)
     return Stations(
         segment=np.concatenate([[0], segment]),
         u=np.concatenate([[0.0], u]),
         s=np.concatenate([[0.0], path.starts[segment] + u]),
         rest=np.concatenate([[True], last & path.rests[segment + 1]]),
+        edge=np.concatenate([[False], ends_part & ~last]),
     )

@@ -74,7 +74,7 @@ class ToolPath:
             rows = np.flatnonzero(np.abs(x) < self.blend[joint])
             if len(rows):
                 self._round(joint[rows], x[rows], rows, tip, axis, spin)
-        return Poses(*tip, *axis, *spin, tool_length=self.tool_length[segment], segment=segment)
+        return Poses(*tip, *axis, spin[0], spin[1], spin[2], self.tool_length[segment], segment)
 
     def _round(
         self, joint: Array, x: Array, rows: Array, tip: tuple[Array, ...], axis: tuple[Array, ...], spin: list[Array]

@@ -63,10 +63,7 @@ def along_rates(start: Array, tangent: Array, rate: Array, second_rate: Array) -
     direction = f * start + g * tangent
     first = -g / 2 * q1 * start + g1 * q1 * tangent + g * rate
     second = (
-        -(g1 * q1**2 + g * q2) / 2 * start
-        + (g2 * q1**2 + g1 * q2) * tangent
-        + 2 * g1 * q1 * rate
-        + g * second_rate
+        -(g1 * q1**2 + g * q2) / 2 * start + (g2 * q1**2 + g1 * q2) * tangent + 2 * g1 * q1 * rate + g * second_rate
     )
     return direction, first, second
 

@@ -26,8 +26,9 @@ def jacobian_of_platform(machine: Machine, tip: Array, axis: Array, spin: Array,
 
 
 def scaled_jacobian(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
-    """Platform Jacobians whose rotation columns are divided by the characteristic length: plain numbers, so that
-    determinant, singular values and condition mean something, (N, 6, 6).
+    """Platform Jacobians in plain numbers, (N, 6, 6): their rotation columns are divided by the characteristic length.
+
+    Without that, determinant, singular values and condition would depend on the unit of length.
     """
     jacobian = jacobian_of_platform(machine, tip, axis, spin, tool_length)
     return jacobian / np.repeat([1.0, machine.characteristic_length], 3)

@@ -33,9 +33,7 @@ def platform_rotation(axis: Array, spin: Array) -> Array:
     return np.stack([cosine * x + sine * y, cosine * y - sine * x, axis], axis=-1)
 
 
-def angular_rates(
-    axis: Array, axis_1: Array, axis_2: Array, spin_1: Array, spin_2: Array
-) -> tuple[Array, Array]:
+def angular_rates(axis: Array, axis_1: Array, axis_2: Array, spin_1: Array, spin_2: Array) -> tuple[Array, Array]:
     """Angular velocity and acceleration of R(k, psi) in {M}, (N, 3) each.
 
     w = k x k' + (psi' + tau) k, where tau = (ky kx' - kx ky') / (1 + kz) is the turn that the zero-torsion frame

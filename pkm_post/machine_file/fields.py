@@ -49,7 +49,7 @@ class Field:
 
 
 MOST_DECIMALS = 9
-LARGEST_COUNT = 2**31 - 1
+MOST_WORDS = 2**24
 
 FIELDS: tuple[Field, ...] = (
     Field("name", forms.NAME, attribute="name"),
@@ -81,14 +81,14 @@ FIELDS: tuple[Field, ...] = (
     Field("controller.kind", forms.choice("turbo_pmac")),
     Field("controller.letters", forms.LETTERS),
     Field("controller.coordinate_system", forms.whole_number(1, 16), default=1),
-    Field("controller.program", forms.whole_number(1, 32767), default=1),
+    Field("controller.program", forms.whole_number(1, 999), default=10),
     Field("controller.length_decimals", forms.whole_number(1, MOST_DECIMALS), default=6),
     Field("controller.speed_decimals", forms.whole_number(1, MOST_DECIMALS), default=4),
     Field("controller.counts_per_mm", forms.POSITIVE, units.COUNT_DENSITY),
     Field("controller.zero_length", forms.SIX_NUMBERS, units.LENGTH),
     Field("controller.approach_speed", forms.POSITIVE, units.SPEED),
-    Field("controller.memory_words", forms.whole_number(1, LARGEST_COUNT), default=237568),
-    Field("controller.line_limit", forms.whole_number(1, LARGEST_COUNT), default=159),
+    Field("controller.memory_words", forms.whole_number(1, MOST_WORDS), default=237568),
+    Field("controller.line_limit", forms.whole_number(40, 65536), default=159),
     Field("controller.codes.tool_change", forms.CODE),
     Field("controller.codes.spindle_clockwise", forms.CODE),
     Field("controller.codes.spindle_counterclockwise", forms.CODE),

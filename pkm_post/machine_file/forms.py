@@ -140,7 +140,7 @@ def _read_letters(value: Any, factor: float) -> tuple[str, ...]:
     return tuple(known)
 
 
-_CODE = re.compile(r"(?:[ -z|~]|\{value:(?:0?[1-9])?d\}|\{value:\.[0-9]f\})+")
+_CODE = re.compile(r"(?:[ -z|~]|\{value\}|\{value:d\}|\{value:\.[1-9]f\})+")
 """Printable ASCII, braces only around the number of the event."""
 
 NUMBER = _numbers("a number", finish=float)
@@ -167,5 +167,5 @@ SIX_DIRECTIONS = _numbers(
 POSE = Form("4 rows of 4 numbers, a rotation and a shift", _read_pose)
 NAME = _text("a text of one line", lambda text: text.strip() and text.isprintable())
 PROSE = _text("a text", lambda text: True)
-CODE = _text("a line of ASCII, the number as {value:d} or {value:.3f}", _CODE.fullmatch)
+CODE = _text("a line of ASCII, the number as {value}, {value:d} or {value:.3f}", _CODE.fullmatch)
 LETTERS = Form(f"6 different letters out of {' '.join(AXIS_LETTERS)}", _read_letters)

@@ -115,7 +115,9 @@ RULES: dict[str, Rule] = {
     "C101": _error("the program has a line that is not understood", "post the job again; do not edit the program"),
     "C102": _error("the program is larger than the controller's memory", "post fewer operations at a time"),
     "C103": _error("the line is too long for the controller", "use fewer decimals in the machine file"),
-    "C104": _error("an event has no code of the controller", "give it one under [controller.codes] in the machine file"),
+    "C104": _error(
+        "an event has no code of the controller", "give it one under [controller.codes] in the machine file"
+    ),
     # V: the certificate
     "V101": _error("the tool tip leaves the programmed path", "ask for a wider tolerance, or report this as a fault"),
     "V102": _error("the tool axis leaves the programmed axis", "ask for a wider tolerance, or report this as a fault"),
@@ -162,7 +164,7 @@ def errors(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     return tuple(item for item in diagnostics if item.severity is Severity.ERROR)
 
 
-class Refused(Exception):
+class Refused(Exception):  # noqa: N818 - it is no error of the program
     """The job cannot be done because of its input. Raised by the pipeline alone, when all that is wrong is known."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from pkm_post.model.columns import freeze
 
-Array = np.ndarray[Any, np.dtype[np.float64]]
+Array = np.ndarray[Any, np.dtype[Any]]
 
 
 @dataclass(frozen=True)

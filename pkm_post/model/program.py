@@ -18,7 +18,7 @@ from pkm_post.model.diagnostics import Place
 from pkm_post.model.event import Event
 from pkm_post.model.tool import Tool
 
-Array = np.ndarray[Any, Any]
+Array = np.ndarray[Any, np.dtype[Any]]
 
 
 class Kind(enum.IntEnum):

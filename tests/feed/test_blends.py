@@ -24,7 +24,9 @@ def test_step_goes_from_nothing_to_the_next_segment_and_is_off_by_three_sixteent
 def test_half_width_obeys_the_tightest_of_its_bounds():
     zero, one = np.zeros(1), np.ones(1)
     corner = half_widths(one, zero, zero, 100 * one, tip=1e-3, axis=1.0)
-    np.testing.assert_allclose(OFFSET * corner, 0.5e-3)
+    np.testing.assert_allclose(OFFSET * corner, 1e-3)
+    both = half_widths(one, one, zero, 100 * one, tip=1e-3, axis=1.0)
+    np.testing.assert_allclose(OFFSET * both + 0.02 * both**2, 1e-3)
     axis = half_widths(zero, zero, one, 100 * one, tip=1.0, axis=1e-5)
     np.testing.assert_allclose(OFFSET * axis, 1e-5)
     assert half_widths(zero, zero, zero, one, tip=1.0, axis=1.0)[0] < 0.5

@@ -10,6 +10,8 @@ from pkm_post.model import Event, EventKind
 from pkm_post.model.findings import Tolerances
 from pkm_post.placement.place import place
 
+NO_EDGES = np.array([], dtype=np.int64)
+
 
 def schedule_of(made):
     trajectory, _ = place(made, example(), ON_PALLET)
@@ -59,7 +61,7 @@ def test_knots_halve_until_the_error_holds():
         near = (start <= 500) & (end >= 500)
         return np.where(near, (end - start) / 4, (end - start) / 64)
 
-    found = knots(np.array([0, 1000, 1003]), error)
+    found = knots(np.array([0, 1000, 1003]), NO_EDGES, error)
     width = np.diff(found)
     assert {0, 1000, 1003} <= set(found.tolist())
     assert width.max() <= 64 < LONGEST_MS
@@ -68,5 +70,14 @@ def test_knots_halve_until_the_error_holds():
 
 
 def test_an_error_that_never_holds_ends_at_one_millisecond():
-    found = knots(np.array([0, 37]), lambda start, end: np.full(len(start), 2.0))
+    found = knots(np.array([0, 37]), NO_EDGES, lambda start, end: np.full(len(start), 2.0))
     np.testing.assert_array_equal(found, np.arange(38))
+
+
+def test_cuts_are_made_at_edges():
+    # A path of straights with short blends: an interval holds when no edge lies inside it.
+    edges = np.array([20, 23, 57, 60, 91, 94])
+    found = knots(
+        np.array([0, 120]), edges, lambda start, end: 2.0 * ((edges[:, None] > start) & (edges[:, None] < end)).any(0)
+    )
+    np.testing.assert_array_equal(found, [0, *edges, 120])

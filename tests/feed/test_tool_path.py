@@ -11,6 +11,7 @@ from pkm_post.model.findings import Tolerances
 from pkm_post.placement.place import place
 
 MICRON = 1e-3
+AXIS = np.radians(0.001)
 PATHS = {"cone": cone, "corners, arcs and a helix": square_with_arc}
 
 
@@ -23,7 +24,7 @@ def turning_in_place():
 PATHS["turn in place"] = turning_in_place
 
 
-def path_of(make, tip=MICRON, axis=np.radians(0.001)):
+def path_of(make, tip=MICRON, axis=AXIS):
     trajectory, faults = place(make(), example(), np.eye(4))
     assert not faults
     return trajectory, ToolPath.of(trajectory, tip, axis)

@@ -16,18 +16,26 @@ def wandering_poses(t):
     a1, b1 = 0.3 * np.cos(t), -0.325 * np.sin(1.3 * t)
     a2, b2 = -0.3 * np.sin(t), -0.4225 * np.cos(1.3 * t)
     axis = np.column_stack([np.sin(a), np.cos(a) * np.sin(b), np.cos(a) * np.cos(b)])
-    axis_1 = np.column_stack([
-        np.cos(a) * a1,
-        -np.sin(a) * np.sin(b) * a1 + np.cos(a) * np.cos(b) * b1,
-        -np.sin(a) * np.cos(b) * a1 - np.cos(a) * np.sin(b) * b1,
-    ])
-    axis_2 = np.column_stack([
-        np.cos(a) * a2 - np.sin(a) * a1**2,
-        -np.sin(a) * np.sin(b) * a2 - np.cos(a) * np.sin(b) * (a1**2 + b1**2) - 2 * np.sin(a) * np.cos(b) * a1 * b1
-        + np.cos(a) * np.cos(b) * b2,
-        -np.sin(a) * np.cos(b) * a2 - np.cos(a) * np.cos(b) * (a1**2 + b1**2) + 2 * np.sin(a) * np.sin(b) * a1 * b1
-        - np.cos(a) * np.sin(b) * b2,
-    ])
+    axis_1 = np.column_stack(
+        [
+            np.cos(a) * a1,
+            -np.sin(a) * np.sin(b) * a1 + np.cos(a) * np.cos(b) * b1,
+            -np.sin(a) * np.cos(b) * a1 - np.cos(a) * np.sin(b) * b1,
+        ]
+    )
+    axis_2 = np.column_stack(
+        [
+            np.cos(a) * a2 - np.sin(a) * a1**2,
+            -np.sin(a) * np.sin(b) * a2
+            - np.cos(a) * np.sin(b) * (a1**2 + b1**2)
+            - 2 * np.sin(a) * np.cos(b) * a1 * b1
+            + np.cos(a) * np.cos(b) * b2,
+            -np.sin(a) * np.cos(b) * a2
+            - np.cos(a) * np.cos(b) * (a1**2 + b1**2)
+            + 2 * np.sin(a) * np.sin(b) * a1 * b1
+            - np.cos(a) * np.sin(b) * b2,
+        ]
+    )
     zero = np.zeros_like(t)
     return Poses(
         tip=np.column_stack([50 * np.cos(t), 40 * np.sin(2 * t), 200 + 30 * np.sin(t)]),

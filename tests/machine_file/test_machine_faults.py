@@ -119,7 +119,7 @@ def test_line_of_a_fault_shows_its_key_or_its_section(path):
         ('["A", "B", "C", "U", "V", "W"]', '"ABCUVW"', "controller.letters"),
         ("coordinate_system = 1", "coordinate_system = 0", "controller.coordinate_system"),
         ("coordinate_system = 1", "coordinate_system = 17", "controller.coordinate_system"),
-        ("program = 1\n", "program = 1.0\n", "controller.program"),
+        ("program = 10\n", "program = 1.0\n", "controller.program"),
         ("line_limit = 159", "line_limit = true", "controller.line_limit"),
         ('"M8"', '"M8 \u00e9"', "controller.codes.coolant_flood"),
         ('"M8"', '"M{value:99999999999d}"', "controller.codes.coolant_flood"),

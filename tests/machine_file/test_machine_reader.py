@@ -132,7 +132,7 @@ def test_controller_is_passed_through_with_its_codes(machine):
     ("entry", "default"),
     [
         ("coordinate_system", 1),
-        ("program", 1),
+        ("program", 10),
         ("length_decimals", 6),
         ("speed_decimals", 4),
         ("memory_words", 237568),

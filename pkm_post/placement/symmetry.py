@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Symmetry: the other quarters of a symmetric part, from the cutter locations of the first one.
+
+A program and a matrix T_C enter, both in the work frame {C}; the program of the mirrored, turned or shifted part
+leaves. q' = T_C q, k' = R k [paper eq. 12, 13]. The axis of an arc is an axial vector: it becomes det(R) R axis, so
+that a mirror turns arcs the other way round while each of them stays right-handed about its axis.
+
+The order of the rows is kept, and with it what is cut first. Spindle events keep their sense, for the mirror image of
+a right-hand cutter would be a left-hand one: behind a mirror climb milling becomes conventional milling.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pkm_post.geometry import norm, unit
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Diagnostic, Place, Program
+
+_RIGID = 1e-6
+"""Largest deviation of R^T R from one, and of the last row from 0 0 0 1: matrices are typed with six decimals."""
+
+
+def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """The program as the matrix moves it, or what is wrong with the matrix.
+
+    Args:
+        program: cutter locations in {C}.
+        matrix: (4, 4) homogeneous matrix T_C: rotation or mirror, and shift in mm.
+
+    Raises:
+        ValueError: the matrix is not (4, 4).
+    """
+    matrix = _matrix(matrix)
+    fault = _fault(matrix)
+    if fault:
+        return None, (Diagnostic("K109", Place(program.source), fault),)
+    turn, shift = matrix[:3, :3], matrix[:3, 3]
+    arc_axis = program.arc_axis @ turn.T * np.sign(np.linalg.det(turn))
+    moved = dataclasses.replace(
+        program,
+        position=program.position @ turn.T + shift,
+        tool_axis=unit(program.tool_axis @ turn.T),
+        arc_centre=program.arc_centre @ turn.T + shift,
+        arc_axis=arc_axis / norm(arc_axis)[:, None],
+    )
+    return moved, ()
+
+
+def mirror(point: ArrayLike, normal: ArrayLike) -> Array:
+    """The reflection at a plane, (4, 4): q' = q - 2 n n.(q - p).
+
+    Args:
+        point: (3,) a point p of the plane, mm.
+        normal: (3,) direction of its normal n, of any length above zero.
+
+    Raises:
+        ValueError: the normal has no direction.
+    """
+    n = unit(np.asarray(normal, dtype=np.float64))
+    return _about(point, np.eye(3) - 2 * np.outer(n, n))
+
+
+def rotation(point: ArrayLike, axis: ArrayLike, angle: float) -> Array:
+    """The right-handed rotation about a line, (4, 4).
+
+    Args:
+        point: (3,) a point of the line, mm.
+        axis: (3,) direction of the line, of any length above zero.
+        angle: rad.
+
+    Raises:
+        ValueError: the axis has no direction.
+    """
+    x, y, z = unit(np.asarray(axis, dtype=np.float64))
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return _about(point, np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * (across @ across))
+
+
+def mirrors(matrix: ArrayLike) -> bool:
+    """Whether the matrix changes the hand: climb milling becomes conventional milling, and the reverse.
+
+    Args:
+        matrix: (4, 4) homogeneous matrix.
+
+    Raises:
+        ValueError: the matrix is not (4, 4).
+    """
+    return bool(np.linalg.det(_matrix(matrix)[:3, :3]) < 0)
+
+
+def _about(point: ArrayLike, turn: Array) -> Array:
+    """The (4, 4) matrix that turns by (3, 3) ``turn`` and leaves ``point`` where it is."""
+    fixed = np.asarray(point, dtype=np.float64)
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn
+    matrix[:3, 3] = fixed - turn @ fixed
+    return matrix
+
+
+def _matrix(matrix: ArrayLike) -> Array:
+    checked = np.asarray(matrix, dtype=np.float64)
+    if checked.shape != (4, 4):
+        raise ValueError(f"expected a matrix (4, 4), got {checked.shape}")
+    return checked
+
+
+def _fault(matrix: Array) -> str:
+    """What keeps the matrix from being rigid, or nothing."""
+    if not np.all(np.isfinite(matrix)):
+        return "it has elements that are no finite number"
+    if np.max(np.abs(matrix[3] - [0, 0, 0, 1])) > _RIGID:
+        return f"its last row is {' '.join(f'{value:g}' for value in matrix[3])}, not 0 0 0 1"
+    columns = matrix[:3, :3]
+    excess = columns.T @ columns - np.eye(3)
+    if np.max(np.abs(np.diag(excess))) > _RIGID:
+        return f"it scales by {' '.join(f'{length:.6g}' for length in norm(columns.T))}"
+    if np.max(np.abs(excess)) > _RIGID:
+        return "its axes are not at right angles"
+    return ""
