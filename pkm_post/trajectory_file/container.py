@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Container: a file enters, its header and its tables of plain records leave; or what is wrong with the file as such.
+
+Nothing the file says of itself is believed before it was checked: sizes against the file, tables against its bounds
+and each other, the bytes against their checksums. A table is a view into the bytes that were read, so a count that
+lies cannot ask for memory.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+import zlib
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from pkm_post.trajectory_file.layout import ALIGNMENT, HEADER, MAGIC, MAJOR, MINOR, TABLES, Records, offset_of
+
+
+class DamageError(Exception):
+    """The file cannot be read: the code of the diagnostic and what was found. It does not leave this room."""
+
+    def __init__(self, found: str, code: str = "T103") -> None:
+        self.code = code
+        super().__init__(found)
+
+
+def load(path: Path) -> tuple[np.void, dict[str, Records]]:
+    """The header record and the tables by name.
+
+    Raises:
+        DamageError: the file cannot be opened, is of another kind or version, or is damaged.
+    """
+    try:
+        content = _content(path)
+    except (OSError, ValueError) as fault:  # ValueError: no path can have this name
+        raise DamageError(getattr(fault, "strerror", None) or str(fault), "T101") from fault
+    header = _header(content)
+    _check_header(header, content)
+    _check_tables(header, len(content))
+    if zlib.crc32(memoryview(content)[int(header["header_size"]) :]) != header["body_crc"]:
+        raise DamageError("the checksum of the body is wrong")
+    return header, {name: _table(header, name, content) for name in TABLES}
+
+
+def _content(path: Path) -> bytes:
+    """All bytes of a file; what is no trajectory file is not read beyond the header."""
+    if not stat.S_ISREG(path.stat().st_mode):  # opening a pipe would wait for its writer
+        raise DamageError("it is not a regular file", "T101")
+    with path.open("rb") as file:
+        header = _header(file.read(HEADER.itemsize))
+        size = os.fstat(file.fileno()).st_size
+        if header["file_size"] != size:
+            raise DamageError(f"the file has {size} bytes, its header says {header['file_size']}")
+        file.seek(0)
+        content = file.read()
+    if len(content) != size:
+        raise DamageError(f"the file changed from {size} to {len(content)} bytes while it was read")
+    return content
+
+
+def _header(content: bytes) -> np.void:
+    """The header record of a file of our kind and version."""
+    if not content.startswith(MAGIC):
+        raise DamageError(f"it begins with {content[: len(MAGIC)]!r}" if content else "it is empty", "T101")
+    beginning = content[: HEADER.itemsize]
+    header: np.void = np.frombuffer(beginning.ljust(HEADER.itemsize, b"\0"), HEADER)[0]
+    if len(beginning) >= offset_of(HEADER, "header_size") and header["major"] != MAJOR:
+        raise DamageError(f"it has version {header['major']}.{header['minor']}, known is {MAJOR}.{MINOR}", "T102")
+    if len(beginning) < HEADER.itemsize:
+        raise DamageError(f"the header of {HEADER.itemsize} bytes ends after {len(beginning)}")
+    return header
+
+
+def _check_header(header: np.void, content: bytes) -> None:
+    size = int(header["header_size"])
+    if not _is_size(size, HEADER.itemsize, header) or size > len(content):
+        raise DamageError(f"the header size is {size}, version {MAJOR}.{MINOR} has {HEADER.itemsize}")
+    checked = bytearray(content[:size])
+    at = offset_of(HEADER, "header_crc")
+    checked[at : at + 4] = bytes(4)
+    if zlib.crc32(checked) != header["header_crc"]:
+        raise DamageError("the checksum of the header is wrong")
+
+
+def _check_tables(header: np.void, file_size: int) -> None:
+    """Refuse tables of foreign records, outside the file, or upon each other."""
+    spans = [(0, int(header["header_size"]), "header")]
+    for name, record in TABLES.items():
+        offset, count, record_size = header[name].item()
+        if not _is_size(record_size, record.itemsize, header) or record_size > file_size:
+            raise DamageError(f"a record of the table {name} has {record_size} bytes, expected {record.itemsize}")
+        if offset % ALIGNMENT or offset + count * record_size > file_size:
+            raise DamageError(
+                f"the table {name} of {count} records of {record_size} bytes at byte {offset} does not fit the file"
+            )
+        spans.append((offset, offset + count * record_size, name))
+    for (_, end, name), (begin, _, follower) in pairwise(sorted(spans)):
+        if begin < end:
+            raise DamageError(f"the tables {name} and {follower} overlap")
+
+
+def _is_size(size: int, known: int, header: np.void) -> bool:
+    """Whether a record has its size; in a newer minor version it may have grown."""
+    grown = header["minor"] > MINOR and known > 1 and size > known and size % ALIGNMENT == 0
+    return bool(size == known or grown)
+
+
+def _table(header: np.void, name: str, content: bytes) -> Records:
+    """The known fields of the records of a table, (count,)."""
+    offset, count, record_size = header[name].item()
+    return np.ndarray((count,), TABLES[name], content, offset, (record_size,))

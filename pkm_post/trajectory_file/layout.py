@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layout: the records of a trajectory file, byte by byte; docs/trajectory-format.md describes them in words.
+
+All numbers are little-endian, in mm, rad, s and mm/s. Every record is a multiple of 8 bytes and every field lies at a
+multiple of its own size, so that C reads the records as plain structs, also from a mapped file. A field that is added
+later goes to the end of its record or takes the place of reserved bytes, which are zero until then.
+[paper section 5.1]
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+Records = np.ndarray[Any, Any]
+
+MAGIC = b"PKMT\r\n\x1a\n"
+"""The first bytes. A transfer that takes the file for text changes the line ends in them."""
+MAJOR = 1
+"""Version of the layout: another one cannot be read."""
+MINOR = 0
+"""Version of what was added to the layout: a newer one can be read without the additions."""
+
+ALIGNMENT = 8
+"""Bytes; every table begins at a multiple of it."""
+
+STRING = np.dtype([("offset", "<u8"), ("length", "<u8")], align=True)
+"""A UTF-8 string: where it begins in the text table, and its bytes."""
+
+TABLE = np.dtype([("offset", "<u8"), ("count", "<u8"), ("record_size", "<u8")], align=True)
+"""A table: where it begins in the file, its records, and the bytes of one."""
+
+TOOL = np.dtype(
+    [
+        ("number", "<i4"),
+        ("reserved", "<u4"),
+        ("name", STRING),
+        ("diameter", "<f8"),
+        ("corner_radius", "<f8"),
+        ("length", "<f8"),
+    ],
+    align=True,
+)
+"""A tool of the trajectory, with the gauge length the trajectory was made for."""
+
+OPERATION = np.dtype([("name", STRING)], align=True)
+"""An operation of the CAM job."""
+
+INSTRUCTION = np.dtype([("row", "<u8"), ("kind", "<u4"), ("reserved", "<u4"), ("value", "<f8")], align=True)
+"""An auxiliary instruction: a ``model.Event``."""
+
+SEGMENT = np.dtype(
+    [
+        ("tip", "<f8", (3,)),
+        ("axis", "<f8", (3,)),
+        ("spin", "<f8"),
+        ("feed", "<f8"),
+        ("arc_centre", "<f8", (3,)),
+        ("arc_axis", "<f8", (3,)),
+        ("sweep", "<f8"),
+        ("length", "<f8"),
+        ("angle", "<f8"),
+        ("tool", "<i4"),
+        ("operation", "<i4"),
+        ("line", "<i4"),
+        ("kind", "u1"),
+        ("smooth", "u1"),
+        ("exact_stop", "u1"),
+        ("reserved", "u1"),
+    ],
+    align=True,
+)
+"""A motion instruction: one row of the columns of ``model.Trajectory``."""
+
+TABLES: dict[str, np.dtype[Any]] = {
+    "tools": np.dtype(TOOL),
+    "operations": np.dtype(OPERATION),
+    "instructions": np.dtype(INSTRUCTION),
+    "segments": np.dtype(SEGMENT),
+    "text": np.dtype("u1"),
+}
+"""Records by table, in the order of the file. The text is last, as its size is not a multiple of 8."""
+
+HEADER = np.dtype(
+    [
+        ("magic", "S8"),
+        ("major", "<u2"),
+        ("minor", "<u2"),
+        ("header_size", "<u4"),
+        ("file_size", "<u8"),
+        ("header_crc", "<u4"),
+        ("body_crc", "<u4"),
+        *((name, TABLE) for name in TABLES),
+        ("machine", STRING),
+        ("source", STRING),
+        ("machine_fingerprint", "u1", (32,)),
+        ("machine_from_work", "<f8", (4, 4)),
+        ("start_tip", "<f8", (3,)),
+        ("start_axis", "<f8", (3,)),
+        ("start_spin", "<f8"),
+    ],
+    align=True,
+)
+"""The beginning of the file. The tables follow it."""
+
+
+def offset_of(record: np.dtype[Any], field: str) -> int:
+    """Bytes from the beginning of a record to one of its fields."""
+    return int((record.fields or {})[field][1])

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reader: a trajectory file enters, the ``model.Trajectory`` that was written leaves, equal bit for bit.
+
+Or what is wrong with the file. The container is checked first, then the strings and numbers that have no place in a
+``Trajectory``, then what every trajectory promises.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pkm_post.model import Diagnostic, Event, EventKind, Place, Tool, Trajectory
+from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
+from pkm_post.trajectory_file.container import DamageError, load
+from pkm_post.trajectory_file.layout import Records
+from pkm_post.trajectory_file.promises import broken_promises
+
+
+def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+    """Read a trajectory file and check all of it.
+
+    Args:
+        path: the file, as the user named it: diagnostics show it so.
+
+    Returns:
+        The trajectory, or None when the file has a fault; and the faults found: T101 for a file of another kind,
+        T102 for an unknown version, T103 for damage.
+    """
+    place = Place(str(path))
+    try:
+        trajectory = _trajectory(*load(path))
+    except DamageError as damage:
+        return None, (Diagnostic(damage.code, place, str(damage)),)
+    broken = broken_promises(trajectory)
+    if broken:
+        return None, tuple(Diagnostic("T103", place, words) for words in broken)
+    return trajectory, ()
+
+
+def _trajectory(header: np.void, tables: dict[str, Records]) -> Trajectory:
+    operations, tools = tables["operations"], tables["tools"]
+    ends = [np.array([header["machine"], header["source"]]), operations["name"], tools["name"]]
+    machine, source, *names = _strings(np.concatenate(ends), tables["text"])
+    return Trajectory(
+        **_columns(tables["segments"]),
+        start_tip=header["start_tip"],
+        start_axis=header["start_axis"],
+        start_spin=float(header["start_spin"]),
+        events=_events(tables["instructions"]),
+        operations=tuple(names[: len(operations)]),
+        tools=_tools(tools, names[len(operations) :]),
+        machine_from_work=header["machine_from_work"],
+        machine=machine,
+        machine_fingerprint=header["machine_fingerprint"].tobytes().hex(),
+        source=source,
+    )
+
+
+def _strings(places: Records, text: Records) -> list[str]:
+    """The strings at their places in the text table.
+
+    No two may share bytes: many long ones on the same few bytes would grow far beyond the file.
+    """
+    offset, length = places["offset"], places["length"]
+    outside = (offset > len(text)) | (length > len(text) - np.minimum(offset, len(text)))
+    if np.any(outside):
+        raise DamageError(f"a string lies beyond the text of {len(text)} bytes")
+    order = np.lexsort((length, offset))
+    if np.any((offset + length)[order][:-1] > offset[order][1:]):
+        raise DamageError("two strings overlap")
+    content = text.tobytes()
+    try:
+        return [content[begin : begin + size].decode("utf-8") for begin, size in places.tolist()]
+    except UnicodeDecodeError as fault:
+        raise DamageError(f"the string {fault.object!r} is not UTF-8") from fault
+
+
+def _columns(segments: Records) -> dict[str, Any]:
+    for name, (dtype, _) in TRAJECTORY_COLUMNS.items():
+        if dtype is np.bool_ and np.any(segments[name] > 1):
+            row = int(np.argmax(segments[name] > 1))
+            raise DamageError(f"segment {row}: the flag {name} is {segments[name][row]}")
+    return {name: segments[name] for name in TRAJECTORY_COLUMNS}
+
+
+def _events(instructions: Records) -> tuple[Event, ...]:
+    unknown = np.flatnonzero(~np.isin(instructions["kind"], list(EventKind)))
+    if len(unknown):
+        raise DamageError(f"instruction {unknown[0]}: the kind {instructions['kind'][unknown[0]]} is unknown")
+    rows, kinds, values = (instructions[name].tolist() for name in ("row", "kind", "value"))
+    return tuple(Event(row, EventKind(kind), value) for row, kind, value in zip(rows, kinds, values, strict=True))
+
+
+def _tools(tools: Records, names: list[str]) -> dict[int, Tool]:
+    numbers = tools["number"]
+    if np.any(numbers[1:] <= numbers[:-1]):
+        raise DamageError("the numbers of the tools do not ascend")
+    columns = (tools[name].tolist() for name in ("number", "diameter", "corner_radius", "length"))
+    return {
+        number: Tool(number, name, diameter, corner_radius, length)
+        for name, number, diameter, corner_radius, length in zip(names, *columns, strict=True)
+    }
