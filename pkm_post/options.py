@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options: what a user may choose, the same words on the command line and in the arguments of a CAM job.
+
+An argparse parser enters and gets the arguments; what it read becomes ``pipeline.Options``. Degrees end here.
+Nothing is imported for the table itself: FreeCAD reads it for a tooltip.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pkm_post.pipeline import Options
+
+FIXTURE_OF_THE_JOB = "job"
+"""A work offset of this name is the fixture of the CAM job."""
+
+Pose = tuple[float, float, float, float]
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a number, got {text!r}")
+    return value
+
+
+def _positive(text: str) -> float:
+    value = _number(text)
+    if value <= 0:
+        raise argparse.ArgumentTypeError(f"expected a number above 0, got {text!r}")
+    return value
+
+
+def _work_offset(text: str) -> str | Pose:
+    """A name, or x, y, z in mm and the turn about z in degrees."""
+    numbers = text.split(",")
+    if len(numbers) == 1:
+        return text
+    if len(numbers) not in (3, 4):
+        raise argparse.ArgumentTypeError(f"expected X,Y,Z or X,Y,Z,DEG, got {text!r}")
+    x, y, z, turn = [*(_number(number) for number in numbers), 0.0][:4]
+    return x, y, z, turn
+
+
+def _tool_length(text: str) -> tuple[int, float]:
+    number, _, length = text.partition("=")
+    if not number.isdecimal():
+        raise argparse.ArgumentTypeError(f"expected NUMBER=MM, got {text!r}")
+    return int(number), _positive(length)
+
+
+_ARGUMENTS: dict[str, dict[str, Any]] = {
+    "--machine": {
+        "metavar": "NAME_OR_FILE",
+        "default": "example_6tps",
+        "help": "machine that comes with PKM Post, or path of a machine file (default: %(default)s)",
+    },
+    "--work-offset": {
+        "metavar": "NAME_OR_POSE",
+        "type": _work_offset,
+        "default": FIXTURE_OF_THE_JOB,
+        "help": "work offset of the machine file, or X,Y,Z[,DEG] in mm with a turn about z, as in "
+        "--work-offset=-10,0,150,90 (default: the fixture of the CAM job)",
+    },
+    "--tip-tolerance": {
+        "metavar": "MM",
+        "type": _positive,
+        "default": 0.001,
+        "help": "how far the tool tip may be from the programmed path (default: %(default)s)",
+    },
+    "--axis-tolerance": {
+        "metavar": "DEG",
+        "type": _positive,
+        "default": 0.001,
+        "help": "how far the tool axis may be from the programmed axis (default: %(default)s)",
+    },
+    "--tool-length": {
+        "metavar": "NUMBER=MM",
+        "type": _tool_length,
+        "action": "append",
+        "default": [],
+        "help": "gauge length of a tool, instead of the GaugeLength of its tool controller; may be repeated",
+    },
+}
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that every way into PKM Post has."""
+    for flag, settings in _ARGUMENTS.items():
+        parser.add_argument(flag, **settings)
+
+
+def options_from(namespace: argparse.Namespace) -> Options:
+    """The options of a parsed command line, in mm and rad."""
+    from pkm_post.pipeline import Options
+
+    offset = namespace.work_offset
+    return Options(
+        work_offset=offset if isinstance(offset, str) else _pose(*offset),
+        tip_tolerance=namespace.tip_tolerance,
+        axis_tolerance=math.radians(namespace.axis_tolerance),
+    )
+
+
+def tool_lengths_from(namespace: argparse.Namespace) -> dict[int, float]:
+    """Gauge lengths by tool number, mm; of two for one tool the last one."""
+    return dict(namespace.tool_length)
+
+
+def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
+    """The (4, 4) pose of {C} in {M}: an origin and a turn about z."""
+    from pkm_post.placement import rotation
+
+    pose = rotation((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.radians(turn_deg))
+    pose[:3, 3] = x, y, z
+    return pose

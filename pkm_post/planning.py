@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Planning: from a trajectory to tool poses by time, and from those to strut motion.
+
+What the planner needs of the machine is computed first, as arrays along the path: the planner sees no machine and
+kinematics sees no planner. This module brings the two together.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.feed import Bounded, Schedule, ToolPath, by_time, knots, limits, speed_profile, stations
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import interpolation_error, reach_faults, strut_rates
+from pkm_post.model import Diagnostic, Event, Machine, Motion, Poses, StrutMotion, Trajectory
+from pkm_post.model.findings import Tolerances
+
+_FOR_CORNERS = 0.4
+"""Share of the tolerances that rounding the corners may use."""
+_FOR_CUBICS = 0.4
+"""Share that the controller's cubics may use; the rest is for decimals and for what lies between the instants."""
+_STRUT_SPEED_SHARE = 0.95
+"""Share of the strut speed that is planned: the controller's cubics swing a little about it."""
+_SHARES_LOOKED_AT = (np.arange(16) + 0.5) / 16
+"""Even, and half a step beside the instants of the certificate, which is to find out for itself."""
+
+
+def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
+    """The path with rounded corners that the tool will follow."""
+    return ToolPath.of(trajectory, _FOR_CORNERS * tolerances.tip, _FOR_CORNERS * tolerances.axis)
+
+
+def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple[Schedule, tuple[Diagnostic, ...]]:
+    """When the tool is where on the path; and what of the path the machine cannot reach.
+
+    Args:
+        path: the path with rounded corners.
+        trajectory: names the places of faults.
+        machine: geometry and limits.
+    """
+    marks = stations(path)
+    poses = path.within(marks.segment, marks.u)
+    faults = reach_faults(machine, trajectory, poses)
+    square, along = limits(_feed_at(path, marks.segment, marks.u), _bounded(machine, poses))
+    square[marks.rest] = 0.0
+    return Schedule.of(marks, speed_profile(marks.s, square, along)), faults
+
+
+def _feed_at(path: ToolPath, segment: Array, u: Array) -> Array:
+    """Feed at stations, (M,); at a joint the lower one of its two segments."""
+    at_end = u == path.segments.extent[segment]
+    following = np.minimum(segment + at_end, len(path.feed) - 1)
+    return np.minimum(path.feed[segment], path.feed[following])
+
+
+def _bounded(machine: Machine, poses: Poses) -> tuple[Bounded, ...]:
+    _, first, second = strut_rates(machine, poses)
+    return (
+        Bounded(first, second, _STRUT_SPEED_SHARE * machine.strut_speed, machine.strut_acceleration, each=True),
+        Bounded(poses.tip_1, poses.tip_2, np.inf, machine.tip_acceleration, each=False),
+        Bounded(poses.axis_1, poses.axis_2, machine.axis_speed, np.inf, each=False),
+    )
+
+
+def interpolate(
+    path: ToolPath, schedule: Schedule, events: tuple[Event, ...], machine: Machine, tolerances: Tolerances
+) -> Motion:
+    """Tool poses at the whole milliseconds that the controller is given points for.
+
+    Args:
+        path: the path with rounded corners.
+        schedule: when the tool is where.
+        events: what happens, by trajectory row.
+        machine: decides how far the controller's cubics stray between two points.
+        tolerances: what was asked for.
+    """
+
+    def poses_at(ms: Array) -> Poses:
+        s, speed, acceleration = schedule.at(ms / 1000)
+        return by_time(path.at(s), speed, acceleration)
+
+    def error(start: Array, end: Array) -> Array:
+        inner = (start[:, None] + (end - start)[:, None] * _SHARES_LOOKED_AT).ravel()
+        duration = (end - start) / 1000
+        tip, axis = interpolation_error(
+            machine, poses_at(start), poses_at(end), poses_at(inner), duration, _SHARES_LOOKED_AT
+        )
+        return np.maximum(tip / tolerances.tip, axis / tolerances.axis) / _FOR_CUBICS
+
+    time_ms = knots(schedule.rests_ms, schedule.edges_ms, error)
+    poses = poses_at(time_ms)
+    rest_of_row = np.searchsorted(schedule.rest_joints, [event.row for event in events])
+    knot = np.searchsorted(time_ms, schedule.rests_ms[rest_of_row])
+    return Motion(
+        time_ms=time_ms,
+        tip=poses.tip,
+        axis=poses.axis,
+        spin=poses.spin,
+        tip_rate=poses.tip_1,
+        axis_rate=poses.axis_1,
+        spin_rate=poses.spin_1,
+        tool_length=poses.tool_length,
+        segment=poses.segment,
+        events=tuple(Event(int(row), event.kind, event.value) for row, event in zip(knot, events, strict=True)),
+    )
+
+
+def strut_motion(motion: Motion, machine: Machine) -> StrutMotion:
+    """Strut lengths and speeds of a motion."""
+    still = np.zeros((len(motion), 3))
+    poses = Poses(
+        tip=motion.tip,
+        tip_1=motion.tip_rate,
+        tip_2=still,
+        axis=motion.axis,
+        axis_1=motion.axis_rate,
+        axis_2=still,
+        spin=motion.spin,
+        spin_1=motion.spin_rate,
+        spin_2=still[:, 0],
+        tool_length=motion.tool_length,
+        segment=motion.segment,
+    )
+    length, speed, _ = strut_rates(machine, poses)
+    return StrutMotion(motion.time_ms, length, speed, motion.events)

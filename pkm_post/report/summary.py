@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Summary: the report as plain data, as JSON, and as the lines that head a motion program.
+
+The data holds no times of day and no paths: the same job gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import pkm_post
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Kind, Machine, StrutMotion, Trajectory
+from pkm_post.model.findings import Certificate, Finding, Tolerances
+
+_FORMAT = 1
+"""Version of the report's layout, for programs that read it."""
+
+
+def heading(trajectory: Trajectory) -> list[str]:
+    """What a motion program says of itself in its first lines."""
+    tools = ", ".join(f"T{tool.number} {tool.name} length {tool.length:g} mm" for tool in _tools(trajectory))
+    return [
+        f"PKM Post {pkm_post.__version__}: {trajectory.source}",
+        f"machine {trajectory.machine}, machine file SHA-256 {trajectory.machine_fingerprint[:16]}",
+        f"tools: {tools}",
+        "axis values are strut lengths in mm, speeds in mm/s; do not edit: the program is certified as it is",
+    ]
+
+
+def report(
+    trajectory: Trajectory, machine: Machine, certificate: Certificate, tolerances: Tolerances, struts: StrutMotion
+) -> dict[str, Any]:
+    """The report as data that JSON can hold."""
+    return {
+        "format": _FORMAT,
+        "program": {
+            "source": trajectory.source,
+            "operations": list(trajectory.operations),
+            "segments": len(trajectory),
+            "cutting_length_mm": _rounded(trajectory.length[trajectory.kind != Kind.RAPID].sum(), 3),
+            "box_mm": [_rounded(trajectory.tip.min(axis=0), 3), _rounded(trajectory.tip.max(axis=0), 3)],
+            "tools": [vars(tool) for tool in _tools(trajectory)],
+        },
+        "machine": {"name": machine.name, "sha256": machine.fingerprint},
+        "tolerances": {"tip_mm": tolerances.tip, "axis_deg": _rounded(np.degrees(tolerances.axis), 9)},
+        "motion": {
+            "duration_s": certificate.duration,
+            "points": len(struts),
+            "shortest_strut_mm": _rounded(struts.length.min(axis=0), 3),
+            "longest_strut_mm": _rounded(struts.length.max(axis=0), 3),
+        },
+        "certificate": {
+            "holds": certificate.holds,
+            "instants": certificate.instants,
+            "findings": [_finding(finding) for finding in certificate.findings],
+        },
+    }
+
+
+def write(content: dict[str, Any], path: Path) -> None:
+    """Write the report as JSON."""
+    path.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8", newline="\n")
+
+
+def verdict(certificate: Certificate) -> list[str]:
+    """What a person wants to know first."""
+    return [
+        f"{finding.name} {finding.value:.3g} of {finding.limit:.3g} {finding.unit}"
+        for finding in certificate.findings
+        if finding.code in ("V101", "V102")
+    ]
+
+
+def _finding(finding: Finding) -> dict[str, Any]:
+    return {
+        "what": finding.name,
+        "unit": finding.unit,
+        "value": _significant(finding.value),
+        "limit": _significant(finding.limit),
+        "holds": finding.holds,
+        "time_s": finding.time,
+        "operation": finding.place.operation,
+        "line": finding.place.line,
+    }
+
+
+def _tools(trajectory: Trajectory) -> list[Any]:
+    return [trajectory.tools[number] for number in sorted(trajectory.tools)]
+
+
+def _rounded(value: Array | float, decimals: int) -> Any:
+    return np.round(value, decimals).tolist()
+
+
+def _significant(value: float) -> float:
+    """Six digits: what differs behind them is rounding of the arithmetic, and of no use to anybody."""
+    return float(f"{value:.6g}")

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the documents say of files, modules, names, floors and codes is so."""
+
+import ast
+import re
+import runpy
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from programs import program
+from test_floors import FLOORS
+
+from pkm_post import planning
+from pkm_post.certificate import certify
+from pkm_post.controllers import pmac
+from pkm_post.geometry import unit
+from pkm_post.machine_file import find_machine, read_machine
+from pkm_post.model.diagnostics import RULES
+from pkm_post.model.findings import Tolerances
+from pkm_post.placement import place
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "pkm_post"
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted(DOCS.glob("*.md"))]
+
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+HEADING = re.compile(r"^#+ +(.*?) *$", re.MULTILINE)
+PYTHON_FILE = re.compile(r"`([\w./-]+\.py)`")
+DOTTED = re.compile(r"`(\w+(?:\.\w+)+)(?:\.\*|\(.*?\))?`")
+FLOOR_ROW = re.compile(r"^\| *(\d+) *\| *`(\w+)` *\|", re.MULTILINE)
+CODE = re.compile(r"\b[JMKNTV]1\d\d\b(?![.:\d])|\bC10\d\b(?![.:\d])|\bF10[12]\b(?![.:\d])")
+
+
+def text(page):
+    return page.read_text(encoding="utf-8")
+
+
+def anchors(page):
+    """The anchors a forge makes of the headings of a page."""
+    headings = HEADING.findall(FENCED.sub("", text(page)))
+    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def dead_links(page):
+    for link in LINK.findall(FENCED.sub("", text(page))):
+        if re.match(r"[a-z]+:", link):
+            continue
+        file, _, anchor = link.partition("#")
+        target = page.parent / file if file else page
+        if not target.exists() or (anchor and target.suffix == ".md" and anchor not in anchors(target)):
+            yield link
+
+
+@cache
+def bindings(file):
+    """What a module binds at its top: by name a class or function, or the module a name comes from, or None."""
+    bound = {}
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ImportFrom):
+            source = node.module.split(".")
+            bound |= {alias.asname or alias.name: source for alias in node.names}
+        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
+            bound[node.name] = node
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            bound |= dict.fromkeys(assigned(node))
+    return bound
+
+
+def assigned(node):
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+    return [target.id for target in targets if isinstance(target, ast.Name)]
+
+
+def has_name(file, names):
+    """Whether a module binds a name, and that a second one if it is a class."""
+    if not names:
+        return True
+    if not file.exists() or names[0] not in bindings(file):
+        return False
+    bound = bindings(file)[names[0]]
+    if isinstance(bound, list) and bound[0] == "pkm_post":
+        return exists([*bound[1:], *names])
+    return len(names) == 1 or (isinstance(bound, ast.ClassDef) and names[1] in members(bound))
+
+
+def members(node):
+    methods = [item.name for item in node.body if isinstance(item, ast.FunctionDef)]
+    fields = [item for item in node.body if isinstance(item, ast.Assign | ast.AnnAssign)]
+    return [*methods, *(name for item in fields for name in assigned(item))]
+
+
+def exists(parts):
+    """Whether a dotted name below the package is a room, a module, a name in one, or one in a class of one."""
+    here = PACKAGE
+    for index, part in enumerate(parts):
+        if (here / part).is_dir():
+            here /= part
+        elif (here / f"{part}.py").exists():
+            return has_name(here / f"{part}.py", parts[index + 1 :])
+        else:
+            return has_name(here / "__init__.py", parts[index:])
+    return True
+
+
+def wrong_names(page):
+    for path in PYTHON_FILE.findall(text(page)):
+        if not any((folder / path).exists() for folder in (ROOT, PACKAGE, page.parent)):
+            yield path
+    for name in DOTTED.findall(text(page)):
+        parts = name.split(".")
+        if parts[-1] != "py" and (parts[0] == "pkm_post" or parts[0] in FLOORS):
+            parts = parts[1:] if parts[0] == "pkm_post" else parts
+            if not exists(parts):
+                yield name
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    assert not list(dead_links(page))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_modules_and_names_exist(page):
+    assert not list(wrong_names(page))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_codes_exist(page):
+    assert not sorted(set(CODE.findall(text(page))) - set(RULES))
+
+
+def test_wrong_names_and_dead_links_are_found_and_right_ones_pass(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("`feed/blend.py` `pkm_post.feed.blends.STEP` `model.Machine.colour` [x](gone.md)")
+    assert list(wrong_names(page)) == ["feed/blend.py", "pkm_post.feed.blends.STEP", "model.Machine.colour"]
+    assert list(dead_links(page)) == ["gone.md"]
+    page.write_text("`feed/blends.py` `pkm_post.feed.blends.step` `feed.Schedule.of` `model.Machine.name` [x](page.md)")
+    assert not list(wrong_names(page)) and not list(dead_links(page))
+
+
+def test_every_page_is_in_the_index():
+    linked = set(LINK.findall(text(DOCS / "README.md")))
+    assert {page.name for page in DOCS.glob("*.md")} - {"README.md"} <= linked
+
+
+def test_floors_are_those_of_the_test():
+    told = {room: int(floor) for floor, room in FLOOR_ROW.findall(text(DOCS / "architecture.md"))}
+    rooms = {path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" or any(path.glob("*.py"))}
+    assert told == {room: FLOORS[room] for room in rooms - {"__init__"}}
+
+
+def test_diagnostics_page_is_up_to_date():
+    page = runpy.run_path(str(ROOT / "tools" / "make_diagnostics_doc.py"))["page"]
+    assert text(DOCS / "diagnostics.md") == page(RULES), "run tools/make_diagnostics_doc.py"
+
+
+def test_the_journey_is_one_that_was_made():
+    # The job of docs/journey.md without its events, which change nothing of the motion.
+    machine, _ = read_machine(find_machine("example_6tps"))
+    tolerances = Tolerances(1e-3, np.radians(1e-3))
+    made = program([[0, 0, 50], [4, 3, 50]], unit(np.array([[0, 0, 1], [0.173648, 0, 0.984808]])), feed=10.0, events=())
+    trajectory, _ = place(made, machine, machine.work_offsets["G54"])
+    path = planning.tool_path(trajectory, tolerances)
+    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    motion = planning.interpolate(path, schedule, (), machine, tolerances)
+    struts = planning.strut_motion(motion, machine)
+    settings = pmac.Settings.of(machine.controller)
+    written = pmac.program_text(struts, settings, [])
+    played, _ = pmac.read_program(written, settings, "journey.pmc")
+    certificate, _ = certify(played, "journey.pmc", trajectory, machine, motion, tolerances)
+
+    told = text(DOCS / "journey.md")
+    assert "\n".join(re.findall(r"^    (PVT\d+|A\d.*)$", told, re.MULTILINE)) in written
+    assert f"There are {len(motion)} knots" in told
+    for found in certificate.findings[1:]:
+        assert f"| {found.name} | {found.value:.6g} {found.unit} | {found.limit:.6g} {found.unit} |" in told

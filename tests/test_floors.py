@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The house rule: a room imports from lower floors alone, and each optional package has one door."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / "pkm_post"
+
+FLOORS = {
+    "model": 0, "geometry": 0, "files": 0,
+    "gcode": 1, "cldata": 1, "placement": 1, "compensation": 1, "kinematics": 1, "feed": 1, "trajectory_file": 1,
+    "controllers": 1, "machine_file": 1, "report": 1,
+    "certificate": 2, "planning": 3, "pipeline": 4, "options": 5,
+    "freecad_app": 6, "cli": 7, "freecad_gui": 7, "__main__": 8,
+}  # fmt: skip
+
+DOORS = {
+    "FreeCAD": ("freecad_app/", "freecad_gui/"),
+    "Part": ("freecad_app/", "freecad_gui/"),
+    "Path": ("freecad_app/", "freecad_gui/"),
+    "PathScripts": ("freecad_app/", "freecad_gui/"),
+    "FreeCADGui": ("freecad_gui/",),
+    "PySide": ("freecad_gui/",),
+    "pivy": ("freecad_gui/",),
+    "matplotlib": ("report/plots.py",),
+    "lark": ("gcode/", "cldata/"),
+    "serial": ("controllers/pmac/link",),
+}
+
+MODULES = sorted(PACKAGE.rglob("*.py"))
+
+
+def imported(path):
+    """Every module a file imports, also inside functions."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            if node.module == "pkm_post":
+                yield from (f"pkm_post.{alias.name}" for alias in node.names)
+            else:
+                yield node.module
+
+
+def room(path):
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def test_there_are_modules():
+    assert len(MODULES) > 30
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_imports_go_down(path):
+    here = room(path)
+    if here == "__init__":
+        # The front door: it may call any room, from inside its functions.
+        body = ast.parse(path.read_text(encoding="utf-8")).body
+        assert not [node for node in body if isinstance(node, ast.Import | ast.ImportFrom)]
+        return
+    for name in imported(path):
+        parts = name.split(".")
+        if parts[0] == "pkm_post" and len(parts) > 1 and parts[1] != here and not parts[1].startswith("__"):
+            assert FLOORS[parts[1]] < FLOORS[here], f"{here} (floor {FLOORS[here]}) imports {name}"
+        for package, doors in DOORS.items():
+            if parts[0] == package:
+                inside = path.relative_to(PACKAGE).as_posix()
+                assert inside.startswith(doors), f"{package} is imported by {inside}"

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The arguments of every way into PKM Post become options in mm and rad."""
+
+import argparse
+
+import numpy as np
+import pytest
+
+from pkm_post.options import FIXTURE_OF_THE_JOB, add_options, options_from, tool_lengths_from
+from pkm_post.pipeline import Options
+
+
+def parsed(*arguments):
+    parser = argparse.ArgumentParser()
+    add_options(parser)
+    return parser.parse_args(arguments)
+
+
+def test_defaults_are_those_of_the_pipeline():
+    options = options_from(parsed())
+    assert (options.tip_tolerance, options.axis_tolerance) == (Options().tip_tolerance, Options().axis_tolerance)
+    assert options.work_offset == FIXTURE_OF_THE_JOB
+    assert parsed().machine == "example_6tps"
+    assert tool_lengths_from(parsed()) == {}
+
+
+def test_degrees_become_radians():
+    assert options_from(parsed("--axis-tolerance", "0.5")).axis_tolerance == pytest.approx(np.pi / 360)
+
+
+def test_work_offset_by_name():
+    assert options_from(parsed("--work-offset", "G55")).work_offset == "G55"
+
+
+def test_work_offset_as_a_pose():
+    # x to the table's y: a quarter turn, then the shift
+    pose = options_from(parsed("--work-offset=-10,20,150.5,90")).work_offset
+    np.testing.assert_allclose(pose @ [1, 0, 0, 1], [-10, 21, 150.5, 1], atol=1e-12)
+    np.testing.assert_allclose(options_from(parsed("--work-offset", "1,2,3")).work_offset[:3, 3], [1, 2, 3])
+
+
+def test_tool_lengths():
+    namespace = parsed("--tool-length", "1=120", "--tool-length", "12=85.25", "--tool-length", "1=121")
+    assert tool_lengths_from(namespace) == {1: 121, 12: 85.25}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--tip-tolerance", "0"], "expected a number above 0, got '0'"),
+        (["--tip-tolerance", "nan"], "expected a number, got 'nan'"),
+        (["--axis-tolerance", "x"], "expected a number, got 'x'"),
+        (["--work-offset", "1,2"], "expected X,Y,Z or X,Y,Z,DEG, got '1,2'"),
+        (["--work-offset", "1,2,"], "expected a number, got ''"),
+        (["--tool-length", "120"], "expected a number, got ''"),
+        (["--tool-length", "T1=120"], "expected NUMBER=MM, got 'T1=120'"),
+        (["--tool-length", "1=-5"], "expected a number above 0, got '-5'"),
+    ],
+)
+def test_what_makes_no_sense_is_told(arguments, message, capsys):
+    with pytest.raises(SystemExit):
+        parsed(*arguments)
+    assert message in capsys.readouterr().err

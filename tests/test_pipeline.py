@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+import dataclasses
+import json
+import resource
+import signal
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from programs import ON_PALLET, cone, program
+
+from pkm_post.controllers import pmac
+from pkm_post.machine_file import find_machine, read_machine
+from pkm_post.model import Refused
+from pkm_post.pipeline import Options, post
+
+
+@pytest.fixture(scope="module")
+def machine():
+    machine, faults = read_machine(find_machine("example_6tps"))
+    assert not faults
+    return machine
+
+
+def test_everything_is_written_and_certified(machine, tmp_path):
+    told = []
+    posted = post(cone(), machine, tmp_path / "cone.pmc", log=told.append)
+    names = ["cone-report.json", "cone-report.png", "cone-setup.pmc", "cone.pkmt", "cone.pmc"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    assert sorted(path.name for path in posted.files) == names
+    assert posted.report == json.loads((tmp_path / "cone-report.json").read_text())
+    assert posted.report["certificate"]["holds"]
+    assert (tmp_path / "cone-report.png").read_bytes().startswith(b"\x89PNG")
+    assert [line.split("  ")[0] for line in told] == [
+        "trajectory", "reach and feed plan", "interpolation", "motion program", "certificate", "report",
+    ]  # fmt: skip
+    settings = pmac.Settings.of(machine.controller)
+    played, faults = pmac.read_program((tmp_path / "cone.pmc").read_text(), settings, "cone.pmc")
+    assert not faults
+    assert played.time_ms[-1] == pytest.approx(1000 * posted.report["motion"]["duration_s"])
+
+
+def test_same_input_same_bytes(machine, tmp_path):
+    for folder in ("one", "two"):
+        post(cone(60, turns=0.3), machine, tmp_path / folder / "cone.pmc")
+    for path in (tmp_path / "one").iterdir():
+        assert path.read_bytes() == (tmp_path / "two" / path.name).read_bytes(), path.name
+
+
+def test_work_offset_by_name_and_by_matrix(machine, tmp_path):
+    by_name = post(cone(60, turns=0.3), machine, tmp_path / "a.pmc")
+    by_matrix = post(cone(60, turns=0.3), machine, tmp_path / "b.pmc", Options(work_offset=ON_PALLET))
+    assert by_name.program.read_bytes() == by_matrix.program.read_bytes()
+
+
+@contextmanager
+def full_disk(size):
+    """Files may not grow beyond a size: writing fails in the middle, as on a full disk."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # as Python has it; FreeCAD would be ended by it
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.parametrize("size", [0, 5000, 40000])
+def test_a_full_disk_leaves_nothing(machine, tmp_path, size):
+    with full_disk(size), pytest.raises(Refused) as refused:
+        post(cone(), machine, tmp_path / "cone.pmc")
+    assert [fault.code for fault in refused.value.diagnostics] == ["F101"]
+    assert "cone.pmc" in str(refused.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_written_to(machine, tmp_path):
+    (tmp_path / "taken").write_text("a file where the folder should be")
+    with pytest.raises(Refused) as refused:
+        post(cone(), machine, tmp_path / "taken" / "cone.pmc")
+    assert [fault.code for fault in refused.value.diagnostics] == ["F101"]
+
+
+def unreachable():
+    return program([[0, 0, 60], [10, 0, 60], [600, 0, 60]])
+
+
+@pytest.mark.parametrize(
+    ("code", "made", "options"),
+    [
+        ("K102", unreachable(), Options()),
+        ("K108", cone(), Options(work_offset="G55")),
+        ("K106", program([[0, 0, 60], [9, 0, 60]], np.array([[0, 0, 1.0], [0, 0, -1.0]])), Options()),
+        ("V101", cone(60, turns=0.3), Options(tip_tolerance=1e-7, axis_tolerance=1e-7)),
+    ],
+)
+def test_a_refused_job_leaves_nothing_and_keeps_what_was_there(machine, tmp_path, code, made, options):
+    (tmp_path / "job.pmc").write_text("older program")
+    with pytest.raises(Refused) as refused:
+        post(made, machine, tmp_path / "job.pmc", options)
+    assert code in [fault.code for fault in refused.value.diagnostics]
+    assert [path.name for path in tmp_path.iterdir()] == ["job.pmc"]
+    assert (tmp_path / "job.pmc").read_text() == "older program"
+
+
+def test_a_machine_whose_codes_cannot_be_told_apart(machine, tmp_path):
+    codes = machine.controller["codes"] | {"coolant_flood": "M9"}
+    same = dataclasses.replace(machine, controller=machine.controller | {"codes": codes})
+    with pytest.raises(Refused) as refused:
+        post(cone(), same, tmp_path / "job.pmc")
+    assert [fault.code for fault in refused.value.diagnostics] == ["M104"]
+
+
+def test_a_program_too_large_for_the_controller(machine, tmp_path):
+    small = dataclasses.replace(machine, controller=machine.controller | {"memory_words": 1000})
+    with pytest.raises(Refused) as refused:
+        post(cone(), small, tmp_path / "job.pmc")
+    assert [fault.code for fault in refused.value.diagnostics] == ["C102"]
+
+
+def test_warnings_do_not_stop_the_job(machine, tmp_path):
+    fast = np.array([np.nan, 30.0, 900.0])
+    posted = post(program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], feed=fast), machine, tmp_path / "job.pmc")
+    assert [fault.code for fault in posted.diagnostics] == ["K110"]
