@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A picture of machine and part in FreeCAD's 3D view; run by FreeCAD with its window, on a display or under Xvfb.
+
+    freecad picture.py -- DOCUMENT.FCStd MACHINE PICTURE.png
+
+The machine stands where the middle of the first operation has it, around the part as the work offset places it.
+"""
+
+import os
+import sys
+import traceback
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from PySide import QtCore
+
+from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.machine_shape import machine_bodies
+from pkm_post.freecad_app.post_job import find_job
+from pkm_post.machine_file import find_machine, read_machine
+from pkm_post.placement import place
+
+SIZE = 1200, 1000
+STANDING_UP = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), 20) * FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 70)
+"""Orientation of the camera: from the front, a little from the right and from above."""
+
+
+def show_machine(document, machine):
+    """Add the machine's bodies to the document, at the middle of the job's first operation."""
+    job = find_job(document)
+    for item in (job.Stock, *(controller.Tool for controller in job.Tools.Group)):
+        item.ViewObject.Visibility = False  # they would hide the part
+    program, _ = read_job(job)
+    trajectory, _ = place(program, machine, machine.work_offsets["G54"])
+    rows = np.flatnonzero(trajectory.operation == 0)
+    row = int(rows[len(rows) // 2])
+    tool = trajectory.tools[int(trajectory.tool[row])]
+    work_from_machine = np.linalg.inv(trajectory.machine_from_work)
+    placement = FreeCAD.Placement(FreeCAD.Matrix(*work_from_machine.ravel()))
+    for body in machine_bodies(machine, tool, trajectory.tip[row], trajectory.axis[row]):
+        item = document.addObject("Part::Feature", body.name)
+        item.Shape = body.shape
+        item.Placement = placement
+        item.ViewObject.ShapeColor = body.colour
+        item.ViewObject.DisplayMode = "Shaded"
+
+
+def draw(document_path, machine_name, picture_path):
+    """Open, show, and save the picture."""
+    FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View").SetBool("ShowNaviCube", False)
+    document = FreeCAD.openDocument(document_path)
+    document.recompute()
+    machine, faults = read_machine(find_machine(machine_name))
+    if machine is None:
+        raise ValueError("\n".join(str(fault) for fault in faults))
+    show_machine(document, machine)
+    document.recompute()
+    view = FreeCADGui.getDocument(document.Name).ActiveView
+    view.setAnimationEnabled(False)
+    view.setCameraType("Perspective")
+    view.setCameraOrientation(STANDING_UP)
+    view.fitAll(0.9)
+    view.saveImage(picture_path, *SIZE, "White")
+
+
+def main():
+    """Draw, and end FreeCAD with an exit code that tells how it went."""
+    code = 0
+    try:
+        draw(*sys.argv[sys.argv.index("--") + 1 :])
+    except Exception:
+        traceback.print_exc()
+        code = 1
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
+
+
+QtCore.QTimer.singleShot(1000, main)

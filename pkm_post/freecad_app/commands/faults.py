@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faults of commands: what is wrong with the words of one operation, each kind told once with its first place.
+
+Columns of words enter, diagnostics leave. An operation may have a hundred thousand commands with the same fault, so a
+diagnostic names the first of them and counts the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pkm_post.freecad_app.commands.words import COMMENT, LETTERS, Array, Words
+from pkm_post.model import Diagnostic, Place
+from pkm_post.model.diagnostics import errors
+
+_ROTARY = "ABC"
+_NEEDED = {"G4": "P", "M3": "S", "M4": "S", "M6": "T"}
+"""The word without which a command has no meaning."""
+
+
+@dataclass
+class Faults:
+    """The diagnostics of one operation, in the making."""
+
+    source: str
+    operation: str
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+    def tell(self, code: str, wrong: Array, found: str | Callable[[int], str], line: Array | None = None) -> None:
+        """Add a diagnostic if something is wrong.
+
+        Args:
+            code: of the diagnostic.
+            wrong: (n,) which rows are.
+            found: what was found, or what tells it for a row.
+            line: (n,) command numbers of the rows; from 1 upwards if none are given.
+        """
+        rows = np.flatnonzero(wrong)
+        if not len(rows):
+            return
+        row = int(rows[0])
+        text = found if isinstance(found, str) else found(row)
+        more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
+        place = Place(self.source, self.operation, row + 1 if line is None else int(line[row]))
+        self.diagnostics.append(Diagnostic(code, place, text + more))
+
+    def stop(self) -> bool:
+        """Whether there are errors."""
+        return bool(errors(self.diagnostics))
+
+    def in_order(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics in the order of the commands."""
+        return tuple(sorted(self.diagnostics, key=lambda fault: (fault.place.line, fault.code, fault.found)))
+
+
+def check_words(words: Words, faults: Faults) -> None:
+    """Tell commands and words that have no meaning here."""
+    for code in words.codes:
+        if code not in LETTERS and code != COMMENT:
+            faults.tell("J104", words.among(code), code)
+    known = words.among(*LETTERS)
+    for letter, given in words.given.items():
+        owners = [code for code, letters in LETTERS.items() if letter in letters]
+        fault = "J115" if letter in _ROTARY else "J104"
+        faults.tell(fault, given & known & ~words.among(*owners), _shown(words, letter))
+        faults.tell("J119", given & ~np.isfinite(words.value(letter)), _shown(words, letter))
+    for code, letter in _NEEDED.items():
+        faults.tell("J104", words.among(code) & ~words.has(letter), f"{code} without {letter}")
+        faults.tell("J104", words.among(code) & (words.value(letter) < 0), _shown(words, letter))
+    number = words.value("T")
+    faults.tell("J104", words.among("M6") & np.isfinite(number) & (number != np.round(number)), _shown(words, "T"))
+    faults.tell("J106", words.among("G2", "G3") & ~_in_xy_plane(words), "an arc after G18 or G19")
+    faults.tell("J106", words.among("G2", "G3") & (np.nan_to_num(words.value("K")) != 0), _shown(words, "K"))
+
+
+def _in_xy_plane(words: Words) -> Array:
+    """Whether G17 is in force, (n,); it is where an operation begins."""
+    selects = words.among("G17", "G18", "G19")
+    latest = np.maximum.accumulate(np.where(selects, np.arange(len(words)), -1))
+    plane: Array = (latest < 0) | words.among("G17")[latest]
+    return plane
+
+
+def _shown(words: Words, letter: str) -> Callable[[int], str]:
+    """Tells a command with one of its words, as in ``G1 A30``."""
+    return lambda row: f"{words.codes[words.code[row]]} {letter}{words.value(letter)[row]:g}"

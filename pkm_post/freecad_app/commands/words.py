@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Words: the letters and numbers of CAM commands as columns.
+
+A list of ``Path.Command`` enters; for each command a code, and for each letter its numbers, NaN where a command does
+not have it, leave. Names and parameters are copied out of FreeCAD once: each access makes a new dictionary.
+Which letters go with which code is a table, ``LETTERS``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray[Any, Any]
+
+LETTERS: dict[str, str] = {
+    "G0": "XYZIJKF",
+    "G1": "XYZIJKF",
+    "G2": "XYZIJKF",
+    "G3": "XYZIJKF",
+    "G4": "P",
+    "M0": "",
+    "M1": "",
+    "M3": "S",
+    "M4": "S",
+    "M5": "",
+    "M6": "T",
+    "M7": "",
+    "M8": "",
+    "M9": "",
+    "G17": "",
+    "G18": "",
+    "G19": "",
+} | dict.fromkeys(("G21", "G40", "G49", "G54", "G80", "G90", "G94", "G98", "G99"), "")
+"""Every code that has a meaning here, with the letters it may have. What is not in it, is refused."""
+
+COMMENT = "()"
+"""The code of comments and of empty lines."""
+
+_LEADING_ZEROS = re.compile(r"(?<=^[GM])0+(?=\d)")
+
+
+@dataclass(frozen=True)
+class Words:
+    """Columns of n commands.
+
+    Attributes:
+        codes: the different codes of the list, without leading zeros, in alphabetical order.
+        code: (n,) index into ``codes``.
+        values: for each letter that occurs, (n,) its numbers; NaN where a command does not have it.
+        given: for each letter that occurs, (n,) whether a command has it.
+    """
+
+    codes: tuple[str, ...]
+    code: Array
+    values: dict[str, Array]
+    given: dict[str, Array]
+
+    @classmethod
+    def of(cls, commands: Iterable[Any]) -> Words:
+        """The columns of a list of ``Path.Command``."""
+        commands = list(commands)
+        names = [command.Name for command in commands]
+        parameters = [command.Parameters for command in commands]
+        code_of = {name: _code(name) for name in set(names)}
+        codes = tuple(sorted(set(code_of.values())))
+        number_of = {name: codes.index(code) for name, code in code_of.items()}
+        letters = sorted(set().union(*parameters))
+        return cls(
+            codes,
+            np.array([number_of[name] for name in names], dtype=np.int64),
+            {a: np.array([words.get(a, np.nan) for words in parameters], dtype=np.float64) for a in letters},
+            {a: np.array([a in words for words in parameters], dtype=bool) for a in letters},
+        )
+
+    def __len__(self) -> int:
+        return len(self.code)
+
+    def among(self, *codes: str) -> Array:
+        """Which commands have one of these codes, (n,)."""
+        wanted: Array = np.isin(self.code, [number for number, code in enumerate(self.codes) if code in codes])
+        return wanted
+
+    def value(self, letter: str) -> Array:
+        """The numbers of a letter, (n,), NaN where a command does not have it."""
+        return self.values.get(letter, np.full(len(self), np.nan))
+
+    def has(self, letter: str) -> Array:
+        """Which commands have a letter, (n,)."""
+        return self.given.get(letter, np.zeros(len(self), dtype=bool))
+
+    def count(self, letters: str) -> Array:
+        """How many of these letters a command has, (n,)."""
+        return np.sum([self.has(letter) for letter in letters], axis=0)
+
+    def axis_words(self) -> Array:
+        """Which moves have words of the tool axis, (n,); those of arcs are the centre."""
+        return self.among("G0", "G1") & (self.count("IJK") > 0)
+
+
+def _code(name: str) -> str:
+    """G1 for g01; the code of comments for a comment."""
+    return COMMENT if not name or name.startswith("(") else _LEADING_ZEROS.sub("", name.upper())

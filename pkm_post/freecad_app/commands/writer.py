@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Writing commands: a program becomes the ``Path.Command`` list of a CAM operation.
+
+A program in mm and mm/s enters; commands with the same units leave, as they are inside FreeCAD. They are made from
+numbers, not from text, and keep all digits until the document is saved. Every move has X, Y and Z. Tool axes are
+written only where some are not upright, so that what stock CAM could do with an operation it can do with its copy.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import Path
+
+from pkm_post.freecad_app.commands.straight import straightened
+from pkm_post.freecad_app.commands.words import Array
+from pkm_post.geometry import norm
+from pkm_post.model import Event, EventKind, Kind, Program
+
+_EXACT = 1e-12
+"""By how much a unit vector may differ from another that counts as the same."""
+_UP = np.array([0.0, 0.0, 1.0])
+
+_STRAIGHT = np.array(["G0", "G1", ""])
+"""The code by ``Kind``; an arc has two."""
+_LETTERS = {"G0": "XYZIJK", "G1": "XYZIJKF", "G2": "XYZIJKF", "G3": "XYZIJKF"}
+_LETTERS_UPRIGHT = {"G0": "XYZ", "G1": "XYZF"}
+_CODES: dict[tuple[EventKind, float], str] = {
+    (EventKind.COOLANT, 0.0): "M9",
+    (EventKind.COOLANT, 1.0): "M8",
+    (EventKind.COOLANT, 2.0): "M7",
+    (EventKind.STOP, 0.0): "M0",
+    (EventKind.STOP, 1.0): "M1",
+    (EventKind.SPINDLE, 0.0): "M5",
+}
+"""Events that are told by their code alone."""
+
+
+def commands_of(program: Program) -> list[Any]:
+    """The commands that say what a program does, events included.
+
+    Arcs about +z and -z with a steady tool axis are G3 and G2; others become chords, 0.001 mm off at most.
+
+    Raises:
+        ValueError: the first row is an arc, which has no start.
+    """
+    if len(program) and program.kind[0] == Kind.ARC:
+        raise ValueError("commands_of: expected a first row that is no arc, got one")
+    program = straightened(program, _unspeakable(program))
+    commands: list[Any] = []
+    events = sorted(program.events, key=lambda event: event.row)
+    done = 0
+    for event in events:
+        commands += _moves(program, done, event.row)
+        commands.append(_event_command(event))
+        done = event.row
+    return commands + _moves(program, done, len(program))
+
+
+def _unspeakable(program: Program) -> Array:
+    """Which arcs G2 and G3 cannot say, (N,)."""
+    axis_before = np.vstack([program.tool_axis[:1], program.tool_axis[:-1]])
+    turns = norm(program.tool_axis - axis_before) > _EXACT
+    upright = np.abs(np.abs(program.arc_axis[:, 2]) - 1) <= _EXACT
+    chosen: Array = (program.kind == Kind.ARC) & (turns | ~upright)
+    return chosen
+
+
+def _moves(program: Program, first: int, last: int) -> list[Any]:
+    """The commands of rows first to last - 1."""
+    rows = slice(first, last)
+    arc = program.kind[rows] == Kind.ARC
+    before = program.position[np.maximum(np.arange(first, last) - 1, 0)]
+    to_centre = (program.arc_centre[rows] - before) * [1.0, 1.0, 0.0]
+    vectors = np.where(arc[:, None], to_centre, program.tool_axis[rows])
+    numbers = np.hstack([program.position[rows], vectors, program.feed[rows, None]]) + 0.0  # no -0
+    name = np.where(arc, np.where(program.arc_axis[rows, 2] < 0, "G2", "G3"), _STRAIGHT[program.kind[rows]])
+    letters = _LETTERS if np.any(norm(program.tool_axis - _UP) > _EXACT) else _LETTERS | _LETTERS_UPRIGHT
+    commands = []
+    for code, row in zip(name.tolist(), numbers.tolist(), strict=True):
+        words = dict(zip("XYZIJKF", row, strict=True))
+        commands.append(Path.Command(code, {letter: words[letter] for letter in letters[code]}))
+    return commands
+
+
+def _event_command(event: Event) -> Any:
+    code = _CODES.get((event.kind, event.value))
+    if code:
+        return Path.Command(code)
+    if event.kind is EventKind.SPINDLE:
+        return Path.Command("M3" if event.value > 0 else "M4", {"S": abs(event.value)})
+    name, letter = {EventKind.DWELL: ("G4", "P"), EventKind.TOOL_CHANGE: ("M6", "T")}[event.kind]
+    return Path.Command(name, {letter: event.value})

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Job: the active operations of a CAM job, in the order of its tree, become one program.
+
+A job of FreeCAD's CAM workbench enters; a program in mm, rad and mm/s leaves, or everything that is wrong with the
+job. The list of operations is made here: the one FreeCAD 1.0 makes may lose operations. What CAM keeps outside of the
+paths is added as events: tool, spindle and coolant, each where it changes and off at the end and at tool changes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from pathlib import Path as FilePath
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from Path.Base.Util import opProperty, toolControllerForOp
+
+from pkm_post.freecad_app.commands import read_commands
+from pkm_post.freecad_app.layers import is_ours, spoilers
+from pkm_post.freecad_app.tools import read_tools, set_gauge_length
+from pkm_post.model import Diagnostic, Event, EventKind, Place, Program, Tool
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.program import MOTION_COLUMNS
+from pkm_post.placement import transform
+
+__all__ = ["document_name", "read_job", "set_gauge_length"]
+
+NO_LENGTHS: Mapping[int, float] = MappingProxyType({})
+
+_COOLANT = {"None": 0.0, "Flood": 1.0, "Mist": 2.0}
+_SPINDLE_SENSE = {"Forward": 1.0, "Reverse": -1.0, "None": 0.0}
+_OFF = {EventKind.SPINDLE: 0.0, EventKind.COOLANT: 0.0}
+
+
+def read_job(job: Any, tool_lengths: Mapping[int, float] = NO_LENGTHS) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """The program of a CAM job.
+
+    Args:
+        job: the job, a document object, recomputed.
+        tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
+
+    Returns:
+        The program, or None if there are errors; and all that was found.
+    """
+    way = _Way(job)
+    faults: list[Diagnostic] = []
+    if len(job.Fixtures) > 1:
+        faults.append(Diagnostic("J111", Place(way.source, job.Label), ", ".join(job.Fixtures)))
+    for operation in job.Operations.Group:
+        if opProperty(operation, "Active") is not False:
+            faults += _state_faults(operation, way.source) or way.add(operation)
+    way.switch(_OFF)
+    tools, tool_faults = read_tools(way.controllers.values(), tool_lengths, way.source)
+    faults += tool_faults
+    if not way.rows and not errors(faults):
+        faults.append(Diagnostic("J103", Place(way.source, job.Label), "nothing to post"))
+    return (None if errors(faults) else way.program(tools)), tuple(faults)
+
+
+def document_name(document: Any) -> str:
+    """The file name of a document, or its label before it has one."""
+    return FilePath(document.FileName).name or document.Label
+
+
+def _state_faults(operation: Any, source: str) -> list[Diagnostic]:
+    """What keeps the path of an operation from being what it should be."""
+    place = Place(source, operation.Label)
+    if not operation.isValid():
+        return [Diagnostic("J116", place, operation.getStatusString())]
+    if is_ours(operation) and operation.Base is None:
+        return [Diagnostic("J116", place, "the operation it copies is gone")]
+    return [Diagnostic("J108", place, layer.Label) for layer in spoilers(operation)]
+
+
+class _Way:
+    """The program in the making, with the state that the machine is in at its end so far.
+
+    Attributes:
+        source: name of the document.
+        rows: how many there are.
+        controllers: the tool controllers in use, by the name of the object.
+    """
+
+    def __init__(self, job: Any) -> None:
+        self.source = document_name(job.Document)
+        self.rows = 0
+        self.controllers: dict[str, Any] = {}
+        self._in_job = job.Tools.Group
+        self._programs: list[Program] = []
+        self._events: list[Event] = []
+        self._state: dict[EventKind, float] = dict(_OFF)
+        self._tip = np.full(3, np.nan)
+
+    def add(self, operation: Any) -> list[Diagnostic]:
+        """Append an operation, its placement applied to points and tool axes."""
+        work_from_operation = np.array(operation.Placement.Matrix.A).reshape(4, 4)
+        start = np.linalg.solve(work_from_operation, [*self._tip, 1.0])[:3]
+        program, read_faults = read_commands(operation.Path.Commands, self.source, operation.Label, start)
+        faults = list(read_faults)
+        if program is None:
+            return faults
+        program, placement_faults = transform(program, work_from_operation)
+        if program is None:
+            return [*faults, *placement_faults]
+        if len(program):
+            controller = toolControllerForOp(operation)
+            if controller is None:
+                return [*faults, Diagnostic("J112", Place(self.source, operation.Label), "none is set")]
+            self._prepare(controller, _COOLANT[opProperty(operation, "CoolantMode") or "None"])
+            self._tip = program.position[-1]
+        return faults + self._append(program)
+
+    def _prepare(self, controller: Any, coolant: float) -> None:
+        self.controllers[controller.Name] = controller
+        if self._state.get(EventKind.TOOL_CHANGE) != controller.ToolNumber:
+            self.switch(_OFF)
+            self.switch({EventKind.TOOL_CHANGE: float(controller.ToolNumber)})
+        speed = _SPINDLE_SENSE[controller.SpindleDir] * controller.SpindleSpeed
+        self.switch({EventKind.SPINDLE: speed, EventKind.COOLANT: coolant})
+
+    def switch(self, wanted: Mapping[EventKind, float]) -> None:
+        """Append events that bring the machine to the state that is wanted."""
+        for kind, value in wanted.items():
+            if self._state.get(kind) != value:
+                self._happens(Event(self.rows, kind, value))
+
+    def _happens(self, event: Event) -> None:
+        self._events.append(event)
+        self._state[event.kind] = event.value
+
+    def _append(self, program: Program) -> list[Diagnostic]:
+        """Append rows and events; an M6 among these may call a tool that the job does not have."""
+        faults = []
+        for event in program.events:
+            self._happens(dataclasses.replace(event, row=self.rows + event.row))
+            if event.kind is EventKind.TOOL_CHANGE:
+                called = [controller for controller in self._in_job if controller.ToolNumber == event.value]
+                self.controllers |= {controller.Name: controller for controller in called}
+                if not called:
+                    place = Place(self.source, program.operations[0])
+                    faults.append(Diagnostic("J113", place, f"T{event.value:g}, no tool controller has this number"))
+        self._programs.append(program)
+        self.rows += len(program)
+        return faults
+
+    def program(self, tools: Mapping[int, Tool]) -> Program:
+        """All operations, one after the other."""
+        names = {*MOTION_COLUMNS, "position", "tool_axis"} - {"operation"}
+        columns = {name: np.concatenate([getattr(program, name) for program in self._programs]) for name in names}
+        return Program(
+            **columns,
+            operation=np.repeat(np.arange(len(self._programs)), [len(program) for program in self._programs]),
+            events=tuple(self._events),
+            operations=tuple(program.operations[0] for program in self._programs),
+            tools=dict(tools),
+            source=self.source,
+        )

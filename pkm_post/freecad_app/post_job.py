@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Post job: from a CAM job, or a document with jobs, to certified motion programs.
+
+A job, the name of a machine and a folder enter; the files of the pipeline leave. All faults of the job and of the
+machine file are collected before anything is refused.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import re
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path as FilePath
+from typing import Any
+
+import FreeCAD as App
+
+from pkm_post import pipeline
+from pkm_post.freecad_app.arguments import POST_PROCESSOR, job_arguments
+from pkm_post.freecad_app.job import NO_LENGTHS, document_name, read_job
+from pkm_post.machine_file import find_machine, read_machine
+from pkm_post.model import Diagnostic, Machine, Place, Refused
+from pkm_post.options import FIXTURE_OF_THE_JOB, options_from, tool_lengths_from
+
+SUFFIX = ".pmc"
+
+Log = Callable[[str], None]
+
+
+def quiet(line: str) -> None:
+    """Log nothing."""
+
+
+def post_job(
+    job: Any,
+    machine: str | FilePath,
+    out: str | FilePath,
+    options: pipeline.Options | None = None,
+    tool_lengths: Mapping[int, float] = NO_LENGTHS,
+    log: Log = quiet,
+) -> pipeline.Posted:
+    """Post a CAM job.
+
+    Args:
+        job: the job, a document object; its document is recomputed.
+        machine: name of a machine that comes with PKM Post, or path of a machine file.
+        out: folder for the results; their stem is the name of the document.
+        options: what the user chose; if nothing, the work offset is the fixture of the job.
+        tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
+        log: takes a line for each step.
+
+    Raises:
+        Refused: something in the job, the machine file or the folder does not allow it; nothing was written.
+    """
+    return post_to(FilePath(out) / _file_name(job), job, machine, options, tool_lengths, log)
+
+
+def post_as_the_job_says(job: Any, out: str | FilePath, log: Log = quiet) -> pipeline.Posted:
+    """Post a CAM job with the arguments it has for its post-processor; those for another one are left alone.
+
+    Raises:
+        Refused: as ``post_job``, and J117 for the arguments.
+    """
+    chosen = job_arguments(job, job.PostProcessorArgs if job.PostProcessor == POST_PROCESSOR else "")
+    return post_job(job, chosen.machine, out, options_from(chosen), tool_lengths_from(chosen), log)
+
+
+def post_document(
+    file: str | FilePath,
+    machine: str | FilePath,
+    out: str | FilePath,
+    options: pipeline.Options | None = None,
+    tool_lengths: Mapping[int, float] = NO_LENGTHS,
+    job_name: str | None = None,
+    log: Log = quiet,
+) -> tuple[pipeline.Posted, ...]:
+    """Post one job of a saved document, or all of them.
+
+    Args:
+        file: path of the document; it is not changed.
+        machine: as in ``post_job``, and so are the arguments below.
+        out: folder for the results.
+        options: what the user chose.
+        tool_lengths: gauge lengths by tool number, mm.
+        job_name: name or label of the job; all jobs if there is none.
+        log: takes a line for each step.
+
+    Raises:
+        Refused: as ``post_job``, and J101 and J102 for the document. Jobs posted before stay posted.
+    """
+    with _opened(FilePath(file)) as document:
+        jobs = [find_job(document, job_name)] if job_name else find_jobs(document)
+        return tuple(post_job(job, machine, out, options, tool_lengths, log) for job in jobs)
+
+
+def find_jobs(document: Any) -> list[Any]:
+    """The CAM jobs of a document.
+
+    Raises:
+        Refused: there is none, J102.
+    """
+    jobs = [item for item in document.Objects if hasattr(item, "PostProcessor") and hasattr(item, "Operations")]
+    if not jobs:
+        raise Refused([Diagnostic("J102", Place(document_name(document)), "no job in the document")])
+    return jobs
+
+
+def find_job(document: Any, name: str | None = None) -> Any:
+    """The CAM job with a name or label; without a name the only one.
+
+    Raises:
+        Refused: there is none, or there are several, J102.
+    """
+    jobs = find_jobs(document)
+    meant = [job for job in jobs if name in (None, job.Name, job.Label)]
+    if len(meant) != 1:
+        known = ", ".join(job.Label for job in jobs)
+        found = f"{name or 'no name'} given, the document has {known}"
+        raise Refused([Diagnostic("J102", Place(document_name(document)), found)])
+    return meant[0]
+
+
+def post_to(
+    program_path: FilePath,
+    job: Any,
+    machine: str | FilePath,
+    options: pipeline.Options | None,
+    tool_lengths: Mapping[int, float],
+    log: Log,
+) -> pipeline.Posted:
+    """Post a CAM job to a motion program of this name; the other files take its stem.
+
+    Raises:
+        Refused: as ``post_job``.
+    """
+    job.Document.recompute()
+    model, machine_faults = _machine(machine)
+    program, job_faults = read_job(job, tool_lengths)
+    found = (*machine_faults, *job_faults)
+    if model is None or program is None:
+        raise Refused(found)
+    try:
+        posted = pipeline.post(program, model, program_path, _at_fixture(options, job), log)
+    except Refused as refused:
+        raise Refused((*found, *refused.diagnostics)) from refused
+    return dataclasses.replace(posted, diagnostics=(*found, *posted.diagnostics))
+
+
+def _machine(name_or_path: str | FilePath) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+    path = find_machine(str(name_or_path))
+    if path is None:
+        return None, (Diagnostic("M101", Place(str(name_or_path)), "no machine of this name comes with PKM Post"),)
+    return read_machine(path)
+
+
+def _at_fixture(options: pipeline.Options | None, job: Any) -> pipeline.Options:
+    """The options, with the fixture of the job for the work offset if none was chosen."""
+    options = options or pipeline.Options(work_offset=FIXTURE_OF_THE_JOB)
+    if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
+        return dataclasses.replace(options, work_offset=job.Fixtures[0] if job.Fixtures else "G54")
+    return options
+
+
+def _file_name(job: Any) -> str:
+    """The document's name, and the job's where there are several."""
+    document = job.Document
+    stem = FilePath(document.FileName).stem or document.Label
+    if len(find_jobs(document)) > 1:
+        stem += f"-{job.Label}"
+    return re.sub(r"[^\w.-]+", "_", stem) + SUFFIX
+
+
+@contextlib.contextmanager
+def _opened(file: FilePath) -> Iterator[Any]:
+    """The document of a file; it is closed again unless it was open before."""
+    open_before = set(App.listDocuments())
+    try:
+        document = App.openDocument(str(file))
+    except OSError as fault:
+        raise Refused([Diagnostic("J101", Place(str(file)), str(fault))]) from fault
+    try:
+        yield document
+    finally:
+        if document.Name not in open_before:
+            App.closeDocument(document.Name)

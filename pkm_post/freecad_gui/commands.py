@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Commands: one row for each; a row names the call into ``freecad_app`` that does the work.
+
+Every command runs in one transaction, so that one undo takes it back, and is written into macros as that call.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtWidgets
+
+from pkm_post.freecad_gui.workbench import ICONS
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+translate = FreeCAD.Qt.translate
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command as FreeCAD wants it.
+
+    Attributes:
+        name: its name in FreeCAD.
+        icon: file name in resources/icons.
+        text: menu text.
+        tip: what it does, in a sentence.
+        selectable: whether an object can be its subject.
+        action: does it to the object selected.
+    """
+
+    name: str
+    icon: str
+    text: str
+    tip: str
+    selectable: Callable[[FreeCAD.DocumentObject], bool]
+    action: Callable[[FreeCAD.DocumentObject], None]
+
+    def GetResources(self) -> dict[str, str]:
+        """Texts and icon."""
+        return {
+            "Pixmap": str(ICONS / self.icon),
+            "MenuText": translate(self.name, self.text),
+            "ToolTip": translate(self.name, self.tip),
+        }
+
+    def IsActive(self) -> bool:
+        """Whether exactly one object is selected that the command is for."""
+        selected = FreeCADGui.Selection.getSelection()
+        return len(selected) == 1 and self.selectable(selected[0])
+
+    def Activated(self) -> None:
+        """Run the command; on a fault everything is as before."""
+        subject = FreeCADGui.Selection.getSelection()[0]
+        document = subject.Document
+        document.openTransaction(self.text)
+        try:
+            self.action(subject)
+        except Exception:
+            document.abortTransaction()
+            raise
+        document.commitTransaction()
+        document.recompute()
+
+
+def is_job(item: FreeCAD.DocumentObject) -> bool:
+    """Whether an object is a CAM job."""
+    return hasattr(item, "Operations") and hasattr(item, "PostProcessor")
+
+
+def is_operation(item: FreeCAD.DocumentObject) -> bool:
+    """Whether an object is an operation of a CAM job; tool controllers have paths, too."""
+    return item.isDerivedFrom("Path::Feature") and not is_job(item) and not hasattr(item, "ToolNumber")
+
+
+def _do(module: str, call: str, operation: FreeCAD.DocumentObject) -> None:
+    FreeCADGui.addModule(module)
+    subject = f"FreeCAD.getDocument({operation.Document.Name!r}).getObject({operation.Name!r})"
+    FreeCADGui.doCommand(f"{module}.{call.format(subject)}")
+
+
+def _mirror(operation: FreeCAD.DocumentObject) -> None:
+    _do("pkm_post.freecad_app.symmetry", "create_mirror({}, normal=(0, 1, 0))", operation)
+
+
+def _rotate(operation: FreeCAD.DocumentObject) -> None:
+    _do("pkm_post.freecad_app.symmetry", "create_rotation({}, axis=(0, 0, 1), angle=3.141592653589793)", operation)
+
+
+def _post(job: FreeCAD.DocumentObject) -> None:
+    """Post beside the document and show what was made, or why nothing was."""
+    from pkm_post.freecad_app.post_job import post_as_the_job_says
+    from pkm_post.model import Refused
+
+    window, title = FreeCADGui.getMainWindow(), translate("PKM_Post", "Post to a hexapod")
+    try:
+        posted = post_as_the_job_says(job, Path(job.Document.FileName or "job.FCStd").parent)
+    except Refused as refused:
+        QtWidgets.QMessageBox.warning(window, title, str(refused))
+        return
+    written = "\n".join(str(path) for path in posted.files)
+    QtWidgets.QMessageBox.information(window, title, translate("PKM_Post", "Certified and written:") + "\n" + written)
+
+
+COMMANDS = (
+    Command(
+        "PKM_Mirror",
+        "mirror.svg",
+        QT_TRANSLATE_NOOP("PKM_Mirror", "Mirror operation"),
+        QT_TRANSLATE_NOOP("PKM_Mirror", "Add the mirror image of the selected operation, in the x-z plane at first"),
+        is_operation,
+        _mirror,
+    ),
+    Command(
+        "PKM_Rotate",
+        "rotate.svg",
+        QT_TRANSLATE_NOOP("PKM_Rotate", "Rotate operation"),
+        QT_TRANSLATE_NOOP("PKM_Rotate", "Add the selected operation turned, by half a turn about z at first"),
+        is_operation,
+        _rotate,
+    ),
+    Command(
+        "PKM_Post",
+        "pkm_post.svg",
+        QT_TRANSLATE_NOOP("PKM_Post", "Post to a hexapod"),
+        QT_TRANSLATE_NOOP("PKM_Post", "Write the certified motion program of the selected job beside its document"),
+        is_job,
+        _post,
+    ),
+)
+
+
+def register() -> None:
+    """Make the commands known to FreeCAD."""
+    for command in COMMANDS:
+        FreeCADGui.addCommand(command.name, command)

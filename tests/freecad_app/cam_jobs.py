@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""CAM jobs for the tests: a box, a job, and operations made from lines of G-code (F in mm/s, as inside FreeCAD)."""
+
+import FreeCAD as App
+import Part
+import Path
+import Path.Main.Job
+import Path.Op.Custom
+
+from pkm_post.freecad_app.job import set_gauge_length
+
+ARC = ["G0 Z10", "G0 X0 Y0", "G1 Z0 F5", "G2 X10 Y0 I5 J0", "G3 X10 Y0 Z-2 I-3 J0", "G0 Z10"]
+FIVE_AXIS = [
+    "G0 X0 Y0 Z30 I0 J0 K1",
+    "G1 X0 Y0 Z5 I0 J0.6 K0.8 F20",
+    "G1 X10 Y4 Z5 I0.6 J0 K0.8 F25",
+    "G0 X10 Y4 Z30 I0 J0 K1",
+]
+
+
+def new_job(document):
+    """A box and a job with one tool controller that lacks nothing."""
+    box = document.addObject("Part::Feature", "Stock")
+    box.Shape = Part.makeBox(20, 20, 20)
+    document.recompute()
+    job = Path.Main.Job.Create("Job", [box], None)
+    controller = job.Tools.Group[0]
+    controller.SpindleSpeed, controller.SpindleDir = 9000, "Forward"
+    set_gauge_length(controller, 120)
+    return job
+
+
+def add_operation(job, lines=FIVE_AXIS, label="Cut"):
+    """An operation with these lines of G-code, computed."""
+    operation = Path.Op.Custom.Create("Custom", parentJob=job)
+    operation.Label = label
+    operation.ToolController = job.Tools.Group[0]
+    operation.Gcode = lines
+    job.Document.recompute()
+    return operation
+
+
+def add_tool_controller(job, number):
+    """One more tool controller, its gauge length known."""
+    import Path.Tool.Controller
+
+    controller = Path.Tool.Controller.Create(f"TC{number}", toolNumber=number)
+    job.Proxy.addToolController(controller)
+    controller.SpindleSpeed, controller.SpindleDir = 5000, "Forward"
+    set_gauge_length(controller, 100 + number)
+    return controller
+
+
+def moves(operation):
+    """The commands of an operation without comments, as (name, words)."""
+    commands = operation.Path.Commands
+    return [(command.Name, command.Parameters) for command in commands if not command.Name.startswith("(")]
+
+
+def reopened(document, path):
+    """The document, saved and opened again."""
+    document.saveAs(str(path))
+    App.closeDocument(document.Name)
+    return App.openDocument(str(path))

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""package.xml says what the add-on manager of FreeCAD needs, and names files that are there."""
+
+import ast
+from pathlib import Path as FilePath
+
+import FreeCAD as App
+import pytest
+
+import pkm_post
+
+ROOT = FilePath(__file__).resolve().parents[2]
+PACKAGE = App.Metadata(str(ROOT / "package.xml"))
+
+
+def test_version_is_that_of_the_package():
+    assert PACKAGE.Version == pkm_post.__version__
+
+
+def test_freecad_may_run_it():
+    assert PACKAGE.supportsCurrentFreeCAD()
+    (workbench,) = PACKAGE.Content["workbench"]
+    assert (workbench.Classname, workbench.Subdirectory) == ("PkmPostWorkbench", "./")
+
+
+def test_class_of_the_workbench_exists():
+    source = (ROOT / "pkm_post" / "freecad_gui" / "workbench.py").read_text(encoding="utf-8")
+    classes = [node.name for node in ast.parse(source).body if isinstance(node, ast.ClassDef)]
+    assert PACKAGE.Content["workbench"][0].Classname in classes
+
+
+def test_post_processors_are_where_newer_versions_of_freecad_look():
+    (post_processor,) = PACKAGE.Content["Postprocessor"]
+    assert (ROOT / post_processor.Subdirectory / f"{post_processor.Name}_post.py").is_file()
+
+
+def test_dependencies():
+    depends = {depend["package"]: depend["optional"] for depend in PACKAGE.Depend}
+    assert depends == {"CAM": False, "numpy": False, "lark": True, "pyserial": True, "matplotlib": True}
+
+
+def test_licence_and_icons_are_there():
+    assert PACKAGE.License == [{"name": "LGPL-2.1-or-later", "file": "LICENSE"}]
+    for path in ("LICENSE", PACKAGE.Icon, PACKAGE.Content["workbench"][0].Icon):
+        assert (ROOT / path).is_file()
+
+
+@pytest.mark.parametrize("name", ["pkm_post.svg", "mirror.svg", "rotate.svg"])
+def test_icon_is_svg(name):
+    assert "<svg" in (ROOT / "resources" / "icons" / name).read_text(encoding="utf-8")

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""CAM finds the post-processor in the add-on's own folder, whatever that is called, and makes it without a job."""
+
+import shutil
+from pathlib import Path as FilePath
+
+import Path
+import Path.Preferences
+import pytest
+from another_freecad import ROOT, printed_by
+from Path.Post.Processor import PostProcessor, PostProcessorFactory
+
+from pkm_post.freecad_app import post_hook
+
+NAME = "hexapod_pmac"
+
+
+def test_cam_lists_the_post_processor_once():
+    assert Path.Preferences.allAvailablePostProcessors().count(NAME) == 1
+    assert NAME in Path.Preferences.allEnabledPostProcessors()
+    assert PostProcessor.exists(NAME)
+
+
+def test_installing_again_changes_nothing():
+    search = Path.Preferences.searchPathsPost
+    post_hook.install()
+    post_hook.install()
+    assert Path.Preferences.searchPathsPost is search
+    assert search().count(post_hook.FOLDER) == 1
+
+
+def test_folder_of_the_add_on_comes_first():
+    assert FilePath(Path.Preferences.searchPathsPost()[0]) == ROOT / "postprocessors"
+
+
+def test_stock_post_processors_are_still_there():
+    assert {"linuxcnc", "grbl"} <= set(Path.Preferences.allAvailablePostProcessors())
+
+
+def test_no_file_in_the_folder_hides_the_package():
+    names = [path.name for path in (ROOT / "postprocessors").glob("*.py")]
+    assert names == [f"{NAME}_post.py"]
+
+
+def test_factory_makes_it_without_a_job():
+    post = PostProcessorFactory.get_post_processor(None, NAME)
+    assert "hexapod" in post.tooltip
+    for flag in ("--machine", "--work-offset", "--tip-tolerance", "--axis-tolerance", "--tool-length"):
+        assert flag in post.tooltipArgs
+    assert "\x1b" not in post.tooltipArgs
+    assert post.units == "G21"
+
+
+def test_job_can_be_set_to_it(job):
+    job.PostProcessor = NAME
+    assert job.PostProcessor == NAME
+
+
+_LIST = """
+import sys
+before = "Path" in sys.modules
+import Path.Preferences
+finders = [finder for finder in sys.meta_path if type(finder).__module__.startswith("pkm_post")]
+print("posts:", before, Path.Preferences.allAvailablePostProcessors().count("hexapod_pmac"), len(finders))
+import Path.Post.Processor
+post = Path.Post.Processor.PostProcessorFactory.get_post_processor(None, "hexapod_pmac")
+print("made:", type(post).__name__, sys.modules["pkm_post"].__file__)
+"""
+
+
+@pytest.mark.parametrize("folder", ["PKM Post (1)", "pkm_post"])
+def test_installed_in_a_folder_of_any_name(tmp_path, folder):
+    # In a FreeCAD of its own, which shows as well that CAM is not loaded when FreeCAD starts.
+    addon = tmp_path / folder
+    addon.mkdir()
+    for name in ("pkm_post", "postprocessors"):
+        shutil.copytree(ROOT / name, addon / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("Init.py", "package.xml"):
+        shutil.copy(ROOT / name, addon / name)
+    script = tmp_path / "list.py"
+    script.write_text(_LIST)
+    printed = printed_by(script, addon=addon)
+    assert "posts: False 1 0" in printed
+    assert f"made: HexapodPmac {addon}" in printed

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Commands of operations become columns: modal words, tool axes, arcs, events, and every fault with its place."""
+
+import numpy as np
+import Path
+import pytest
+
+from pkm_post.freecad_app.commands import read_commands
+from pkm_post.model import EventKind, Kind
+
+FIRST = "G0 X0 Y0 Z10"
+SIX_DECIMALS = 1e-6
+
+
+def commands(*lines):
+    return [Path.Command(line) for line in lines]
+
+
+def read(*lines, **start):
+    return read_commands(commands(*lines), "part.FCStd", "Cut", **start)
+
+
+def program_of(*lines, **start):
+    program, faults = read(*lines, **start)
+    assert faults == ()
+    return program
+
+
+def faults_of(*lines):
+    _, faults = read(*lines)
+    return [(fault.code, fault.place.line) for fault in faults]
+
+
+def test_words_stay_in_force():
+    program = program_of(FIRST, "G1 X5 F2", "G1 Z-1", "G0 Y7", "G1 X6")
+    np.testing.assert_array_equal(program.position, [[0, 0, 10], [5, 0, 10], [5, 0, -1], [5, 7, -1], [6, 7, -1]])
+    np.testing.assert_array_equal(program.feed, [np.nan, 2, 2, np.nan, 2])
+    np.testing.assert_array_equal(program.kind, [Kind.RAPID, Kind.LINE, Kind.LINE, Kind.RAPID, Kind.LINE])
+    np.testing.assert_array_equal(program.tool_axis, [[0, 0, 1]] * 5)
+
+
+def test_names_with_leading_zeros_and_small_letters():
+    program = program_of("g00 x0 y0 z10", "g01 x5 f2", "G02 X7 I1 J0", "G03 X9 I1 J0")
+    np.testing.assert_array_equal(program.kind, [Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC])
+
+
+def test_moves_before_the_first_known_place_are_folded_into_it():
+    program = program_of("(Cut)", "G0 Z10", "M3 S100", "G0 X1 Y2", "G1 Z0 F1")
+    np.testing.assert_array_equal(program.position, [[1, 2, 10], [1, 2, 0]])
+    np.testing.assert_array_equal(program.line, [4, 5])
+    assert [(event.row, event.kind) for event in program.events] == [(0, EventKind.SPINDLE)]
+
+
+def test_known_start_makes_every_move_complete():
+    program = program_of("G0 Z10", "G0 X1 Y2", start=(7.0, 8.0, 9.0))
+    np.testing.assert_array_equal(program.position, [[7, 8, 10], [1, 2, 10]])
+
+
+def test_tool_axis_is_modal_and_reaches_back_to_the_beginning():
+    program = program_of("G0 X0 Y0 Z9", "G1 X1 I0 J0.6 K0.8 F1", "G0 X2", "G1 X3 I1 J0 K0")
+    expected = [[0, 0.6, 0.8], [0, 0.6, 0.8], [0, 0.6, 0.8], [1, 0, 0]]
+    np.testing.assert_allclose(program.tool_axis, expected, atol=1e-15)
+
+
+def test_tool_axis_stays_during_an_arc():
+    program = program_of(FIRST, "G1 X0 I0 J0.6 K0.8 F1", "G2 X10 I5 J0")
+    np.testing.assert_allclose(program.tool_axis[2], [0, 0.6, 0.8], atol=1e-15)
+
+
+def test_rounded_tool_axes_are_made_unit_again_without_a_word():
+    program = program_of(FIRST, "G1 X1 I0.577350 J0.577350 K0.577350 F1")
+    np.testing.assert_allclose(np.linalg.norm(program.tool_axis, axis=1), 1.0, atol=1e-15)
+
+
+def test_long_tool_axis_is_made_unit_and_told_once():
+    program, faults = read(FIRST, "G1 X1 I0 J3 K4 F1", "G1 X2 I0 J6 K8")
+    np.testing.assert_allclose(program.tool_axis[1:], [[0, 0.6, 0.8]] * 2, atol=1e-15)
+    assert [(fault.code, fault.place.line) for fault in faults] == [("J118", 2)]
+    assert "length 5, and 1 more" in faults[0].found
+
+
+def test_clockwise_and_counterclockwise_arcs():
+    program = program_of(FIRST, "G2 X10 Y0 I5 J0 K0 F1", "G3 X10 Y0 Z4 I-2", "G3 X10 Y6 J3")
+    np.testing.assert_array_equal(program.arc_axis[1:], [[0, 0, -1], [0, 0, 1], [0, 0, 1]])
+    np.testing.assert_array_equal(program.arc_centre[1:], [[5, 0, 10], [8, 0, 10], [10, 3, 4]])
+    assert np.all(np.isnan(program.arc_axis[0]))
+    np.testing.assert_array_equal(program.position[2], [10, 0, 4])
+
+
+def test_arc_that_fits_to_a_few_microns_is_taken():
+    assert len(program_of(FIRST, "G2 X10.004 Y0 I5 J0 F1")) == 2
+
+
+def test_what_happens_between_moves():
+    lines = ["M6 T3", "M4 S800", FIRST, "G4 P0.5", "M8", "G1 X1 F1", "M7", "M9", "M0", "M1", "M5"]
+    events = [(event.row, event.kind, event.value) for event in program_of(*lines).events]
+    assert events == [
+        (0, EventKind.TOOL_CHANGE, 3),
+        (0, EventKind.SPINDLE, -800),
+        (1, EventKind.DWELL, 0.5),
+        (1, EventKind.COOLANT, 1),
+        (2, EventKind.COOLANT, 2),
+        (2, EventKind.COOLANT, 0),
+        (2, EventKind.STOP, 0),
+        (2, EventKind.STOP, 1),
+        (2, EventKind.SPINDLE, 0),
+    ]
+
+
+def test_harmless_codes_and_comments_pass():
+    codes = ["G17", "G21", "G40", "G49", "G54", "G80", "G90", "G94", "G98", "G99", "(a comment)", ""]
+    assert len(program_of(*codes, FIRST, "G1 X1 F1")) == 2
+
+
+def test_no_commands_give_no_rows():
+    assert len(program_of()) == 0
+    assert len(program_of("(inactive operation)")) == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("G20", "J104"),
+        ("G91", "J104"),
+        ("G43 H1", "J104"),
+        ("G55", "J104"),
+        ("G81 X1 Y1 Z1 R1 F1", "J104"),
+        ("G73 Z1 R1 Q1 F1", "J104"),
+        ("M30", "J104"),
+        ("M3", "J104"),
+        ("M6", "J104"),
+        ("M6 T1.5", "J104"),
+        ("G4", "J104"),
+        ("G4 P-1", "J104"),
+        ("G17 G21", "J104"),
+        ("X5 Y5", "J104"),
+        ("F5", "J104"),
+        ("G1 X1e-3 F1", "J104"),  # FreeCAD reads X1 and E-3
+        ("G2 X10 R5 I5 F1", "J104"),
+        ("G1 X1", "J105"),
+        ("G1 X1 F0", "J105"),
+        ("G1 X1 F-2", "J105"),
+        ("G2 X10 I5 J0 K1 F1", "J106"),
+        ("G2 X10 F1", "J107"),
+        ("G2 X10.02 I5 J0 F1", "J107"),
+        ("G2 X0 Y0 I0 J0 F1", "J107"),
+        ("G1 X1 I1 J0 F1", "J109"),
+        ("G0 X1 K1", "J109"),
+        ("G1 X1 I0 J0 K0 F1", "J110"),
+        ("G1 X1 A30 F1", "J115"),
+        ("G0 C90", "J115"),
+    ],
+)
+def test_faults_are_told_with_their_place(line, code):
+    program, faults = read("(Cut)", FIRST, line)
+    assert program is None
+    assert [(fault.code, fault.place.line) for fault in faults] == [(code, 3)]
+    assert str(faults[0]).startswith(f"part.FCStd: Cut: line 3: error {code}")
+
+
+def test_feed_of_a_rapid_move_is_no_feed_for_cutting():
+    assert faults_of("G0 X0 Y0 Z10 F50", "G1 X1") == [("J105", 2)]
+
+
+def test_arcs_in_other_planes():
+    assert faults_of("G18", FIRST, "G1 X2 F1", "G17", "G2 X12 I5 J0") == []
+    assert faults_of("G18", FIRST, "G2 X10 I5 J0 F1") == [("J106", 3)]
+    assert faults_of("G19", FIRST, "G3 X10 I5 J0 F1") == [("J106", 3)]
+
+
+def test_arc_from_nowhere():
+    assert faults_of("G2 X10 Y0 Z0 I5 J0 F1") == [("J107", 1)]
+
+
+def test_cutting_move_without_the_tool_axis_that_others_have():
+    lines = [FIRST, "G1 X1 I0 J0 K1 F1", "G1 X2", "G0 X3", "G1 X4"]
+    _, faults = read(*lines)
+    assert [(fault.code, fault.place.line) for fault in faults] == [("J109", 3)]
+    assert "and 1 more" in faults[0].found
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("letter", ["X", "F", "I"])
+def test_numbers_that_are_none(letter, number):
+    words = {"X": 1.0, "Y": 1.0, "Z": 1.0, "I": 0.0, "J": 0.0, "K": 1.0, "F": 1.0} | {letter: number}
+    program, faults = read_commands([Path.Command("G1", words)], "part.FCStd", "Cut")
+    assert program is None
+    assert [(fault.code, fault.place.line) for fault in faults] == [("J119", 1)]
+
+
+def test_all_faults_are_told_in_one_run_in_order():
+    assert faults_of(FIRST, "G1 X1", "G81 Z1", "G2 X9", "G1 B1", "G81 Z2", "G1 X1 I0 J0 K0") == [
+        ("J105", 2),
+        ("J109", 2),
+        ("J104", 3),
+        ("J107", 4),
+        ("J115", 5),
+        ("J110", 7),
+    ]

@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A CAM job becomes one program: order, placements, tools, events, and everything that can be wrong with a job."""
+
+import FreeCAD as App
+import numpy as np
+import Path
+import pytest
+from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, moves
+
+from pkm_post.freecad_app.job import read_job, set_gauge_length
+from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.model import EventKind
+
+SIX_DECIMALS = 1e-6
+TOOL, SPINDLE, COOLANT, DWELL, STOP = (
+    EventKind.TOOL_CHANGE,
+    EventKind.SPINDLE,
+    EventKind.COOLANT,
+    EventKind.DWELL,
+    EventKind.STOP,
+)
+
+
+def program_of(job, **lengths):
+    program, faults = read_job(job, **lengths)
+    assert faults == ()
+    return program
+
+
+def events(program):
+    return [(event.row, event.kind, event.value) for event in program.events]
+
+
+def faults_of(job):
+    program, faults = read_job(job)
+    assert (program is None) == any(fault.severity.value == "error" for fault in faults)
+    return [(fault.code, fault.place.operation, fault.place.line) for fault in faults]
+
+
+def test_operations_follow_each_other_in_the_order_of_the_tree(job):
+    add_operation(job, FIVE_AXIS, "First")
+    add_operation(job, ARC, "Second")
+    program = program_of(job)
+    assert program.operations == ("First", "Second")
+    np.testing.assert_array_equal(program.operation, [0] * 4 + [1] * 6)
+    np.testing.assert_array_equal(program.line[:4], [3, 4, 5, 6])  # after (First) and (Begin Custom)
+    assert str(program.place(1)) == "part: First: line 4"
+    np.testing.assert_array_equal(program.feed[1:3], [20, 25])
+
+
+def test_next_operation_retracts_from_where_the_last_one_ended(job):
+    # G0 Z10 first, as CAM writes it: straight up, not aslant through the part.
+    add_operation(job, ["G0 X5 Y6 Z7", "G1 Z0 F1"], "First")
+    add_operation(job, ["G0 Z10", "G0 X20 Y20", "G1 Z0 F1"], "Second")
+    np.testing.assert_array_equal(program_of(job).position[1:4], [[5, 6, 0], [5, 6, 10], [20, 20, 10]])
+
+
+def test_inactive_operations_are_left_out(job):
+    add_operation(job, FIVE_AXIS, "First")
+    last = add_operation(job, ARC, "Second")
+    last.Active = False
+    job.OrderOutputBy = "Tool"  # with which FreeCAD 1.0 would lose the first one, too
+    job.Document.recompute()
+    assert program_of(job).operations == ("First",)
+
+
+def test_placement_moves_points_and_turns_tool_axes(job):
+    operation = add_operation(job)
+    before = program_of(job)
+    operation.Placement = App.Placement(App.Vector(100, 0, 5), App.Rotation(App.Vector(0, 0, 1), 90))
+    after = program_of(job)
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    np.testing.assert_allclose(after.position, before.position @ turn.T + [100, 0, 5], atol=1e-12)
+    np.testing.assert_allclose(after.tool_axis, before.tool_axis @ turn.T, atol=1e-12)
+
+
+def test_retract_with_a_placement(job):
+    add_operation(job, ["G0 X5 Y6 Z7", "G1 Z0 F1"], "First")
+    second = add_operation(job, ["G0 Z10", "G0 X20 Y20", "G1 Z0 F1"], "Second")
+    second.Placement.Base = App.Vector(0, 0, 3)
+    np.testing.assert_allclose(program_of(job).position[2:4], [[5, 6, 13], [20, 20, 13]])
+
+
+def test_tool_spindle_and_coolant_start_with_the_program_and_end_with_it(job):
+    add_operation(job, FIVE_AXIS).CoolantMode = "Mist"
+    assert events(program_of(job)) == [
+        (0, TOOL, 1),
+        (0, SPINDLE, 9000),
+        (0, COOLANT, 2),
+        (4, SPINDLE, 0),
+        (4, COOLANT, 0),
+    ]
+
+
+def test_operations_with_the_same_tool_change_nothing(job):
+    for label in ("First", "Second"):
+        add_operation(job, label=label)
+    assert [event[0] for event in events(program_of(job))] == [0, 0, 8]
+
+
+def test_spindle_and_coolant_stop_for_a_tool_change(job):
+    first, second = add_operation(job, label="First"), add_operation(job, label="Second")
+    second.ToolController = add_tool_controller(job, 7)
+    second.ToolController.SpindleDir = "Reverse"
+    first.CoolantMode = second.CoolantMode = "Flood"
+    program = program_of(job)
+    assert events(program)[3:8] == [
+        (4, SPINDLE, 0),
+        (4, COOLANT, 0),
+        (4, TOOL, 7),
+        (4, SPINDLE, -5000),
+        (4, COOLANT, 1),
+    ]
+    assert {number: tool.length for number, tool in program.tools.items()} == {1: 120, 7: 107}
+
+
+def test_same_tool_with_another_speed_is_not_changed(job):
+    add_operation(job, label="First")
+    slow = add_tool_controller(job, 1)
+    slow.Tool = job.Tools.Group[0].Tool
+    set_gauge_length(slow, 120)
+    add_operation(job, label="Second").ToolController = slow
+    assert events(program_of(job))[1:] == [(0, SPINDLE, 9000), (4, SPINDLE, 5000), (8, SPINDLE, 0)]
+
+
+def test_events_of_an_operation_come_in_between(job):
+    add_operation(job, [*FIVE_AXIS[:2], "G4 P0.5", "M5", *FIVE_AXIS[2:]], "First")
+    add_operation(job, FIVE_AXIS, "Second")
+    assert events(program_of(job))[2:] == [
+        (2, DWELL, 0.5),
+        (2, SPINDLE, 0),
+        (4, SPINDLE, 9000),
+        (8, SPINDLE, 0),
+    ]
+
+
+def test_stop_between_operations(job):
+    add_operation(job, label="First")
+    second = add_operation(job, label="Second")
+    stop = job.Document.addObject("Path::Feature", "Stop")
+    stop.Path = Path.Path([Path.Command("M0")])
+    job.Proxy.addOperation(stop, second)
+    assert (4, STOP, 0) in events(program_of(job))
+
+
+def test_tool_called_by_an_m6_is_known_to_the_program(job):
+    add_operation(job, [*FIVE_AXIS[:1], "M6 T7", *FIVE_AXIS[1:]])
+    add_tool_controller(job, 7)
+    program = program_of(job)
+    assert sorted(program.tools) == [1, 7]
+    assert (1, TOOL, 7) in events(program)
+
+
+def test_gauge_length_given_goes_before_that_of_the_controller(job):
+    add_operation(job)
+    assert program_of(job, tool_lengths={1: 95.5}).tools[1].length == 95.5
+
+
+def test_saved_jobs_carry_the_file_name(job, tmp_path):
+    add_operation(job)
+    job.Document.saveAs(str(tmp_path / "a part.FCStd"))
+    assert program_of(job).source == "a part.FCStd"
+
+
+# What can be wrong
+
+
+def test_job_without_operations(job):
+    assert faults_of(job) == [("J103", "Job", 0)]
+
+
+def test_job_with_nothing_but_inactive_operations(job):
+    add_operation(job).Active = False
+    job.Document.recompute()
+    assert faults_of(job) == [("J103", "Job", 0)]
+
+
+def test_faults_of_all_operations_are_told_together(job):
+    add_operation(job, [*FIVE_AXIS, "G81 X1"], "First")
+    add_operation(job, ["G0 X0 Y0 Z0", "G1 X1"], "Second")
+    assert faults_of(job) == [("J104", "First", 7), ("J105", "Second", 4)]
+
+
+def test_several_fixtures(job):
+    add_operation(job)
+    job.Fixtures = ["G54", "G55"]
+    assert faults_of(job) == [("J111", "Job", 0)]
+
+
+def test_operation_without_tool_controller(job):
+    add_operation(job).ToolController = None
+    assert faults_of(job) == [("J112", "Cut", 0)]
+
+
+def test_tool_of_unknown_gauge_length(job):
+    add_operation(job)
+    job.Tools.Group[0].GaugeLength = 0
+    assert faults_of(job) == [("J113", job.Tools.Group[0].Label, 0)]
+
+
+def test_tool_controller_without_the_property(job):
+    job.Tools.Group[0].removeProperty("GaugeLength")
+    add_operation(job)
+    assert faults_of(job) == [("J113", job.Tools.Group[0].Label, 0)]
+
+
+def test_m6_for_a_tool_the_job_does_not_have(job):
+    add_operation(job, [*FIVE_AXIS, "M6 T9"])
+    assert faults_of(job) == [("J113", "Cut", 0)]
+
+
+def test_two_tools_of_one_number(job):
+    add_operation(job, label="First")
+    other = add_tool_controller(job, 1)
+    other.Tool.Diameter = 3
+    add_operation(job, label="Second").ToolController = other
+    assert faults_of(job) == [("J114", other.Label, 0)]
+
+
+class _Fails:
+    """A proxy that cannot compute its object."""
+
+    def execute(self, obj):
+        raise RuntimeError("cannot")
+
+
+def test_operation_that_cannot_be_computed(job):
+    add_operation(job)
+    broken = job.Document.addObject("Path::FeaturePython", "Broken")
+    broken.Proxy = _Fails()
+    job.Proxy.addOperation(broken)
+    job.Document.recompute()
+    assert faults_of(job) == [("J116", "Broken", 0)]
+
+
+def test_long_tool_axis_is_a_warning(job):
+    add_operation(job, ["G0 X0 Y0 Z9", "G1 X1 I0 J0 K2 F1"])
+    assert faults_of(job) == [("J118", "Cut", 4)]
+
+
+class _DressUp:
+    """Stands for a dress-up of CAM: it copies the path of its base and does not know of tool axes."""
+
+    def execute(self, obj):
+        obj.Path = obj.Base.Path
+
+
+def dress_up(base):
+    layer = base.Document.addObject("Path::FeaturePython", "DressupOfOthers")
+    layer.addProperty("App::PropertyLink", "Base")
+    layer.Proxy, layer.Base = _DressUp(), base
+    return layer
+
+
+def put_in_place_of(base, layer, job):
+    job.Proxy.addOperation(layer, base, True)
+    job.Document.recompute()
+
+
+def test_foreign_dress_up_above_tool_axes(job):
+    base = add_operation(job)
+    put_in_place_of(base, dress_up(base), job)
+    program, faults = read_job(job)
+    assert program is None
+    assert [(fault.code, fault.found) for fault in faults] == [("J108", "DressupOfOthers")]
+
+
+def test_foreign_dress_up_below_a_mirror_of_ours(job):
+    base = add_operation(job)
+    layer = dress_up(base)
+    put_in_place_of(base, layer, job)
+    layer.Label = "Ramp"
+    create_mirror(layer, (0, 1, 0), label="Mirror")
+    job.Document.recompute()
+    assert faults_of(job) == [("J108", "Ramp", 0), ("J108", "Mirror", 0)]
+
+
+def test_foreign_dress_up_without_tool_axes_is_welcome(job):
+    base = add_operation(job, ARC)
+    put_in_place_of(base, dress_up(base), job)
+    program = program_of(job)
+    assert program.operations == ("DressupOfOthers",)
+    assert events(program)[0] == (0, TOOL, 1)  # inherited from the base
+
+
+def test_array_of_others_with_a_list_of_bases(job):
+    base = add_operation(job)
+    array = job.Document.addObject("Path::FeaturePython", "Array")
+    array.addProperty("App::PropertyLinkList", "Base")
+    array.addProperty("App::PropertyLink", "ToolController")
+    array.Proxy, array.Base, array.ToolController = _ArrayOfOne(), [base], base.ToolController
+    put_in_place_of(base, array, job)
+    assert faults_of(job) == [("J108", "Array", 0)]
+
+
+class _ArrayOfOne:
+    def execute(self, obj):
+        obj.Path = obj.Base[0].Path
+
+
+def test_stock_profile_is_read(job):
+    import Path.Op.Profile
+
+    box = job.Model.Group[0]
+    profile = Path.Op.Profile.Create("Profile", parentJob=job)
+    profile.ToolController = job.Tools.Group[0]
+    profile.ToolController.HorizFeed = profile.ToolController.VertFeed = "10 mm/s"
+    profile.Base = [(box, ["Face6"])]
+    job.Document.recompute()
+    program = program_of(job)
+    assert np.all(program.feed[program.kind > 0] == 10)
+    assert {name for name, _ in moves(profile)} & {"G2", "G3"}
+    low, high = program.position.min(axis=0), program.position.max(axis=0)
+    np.testing.assert_allclose(high[:2] - low[:2], 20 + profile.ToolController.Tool.Diameter.Value, atol=1e-4)
+
+
+@pytest.mark.parametrize("order", ["Fixture", "Tool", "Operation"])
+def test_order_of_output_does_not_matter(job, order):
+    add_operation(job, label="First")
+    job.OrderOutputBy = order
+    assert program_of(job).operations == ("First",)
