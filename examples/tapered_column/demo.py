@@ -78,10 +78,10 @@ def picture(saved: FilePath, target: FilePath) -> None:
     here = FilePath(__file__).resolve()
     command = [*display, window, "-M", str(here.parents[2]), str(here.with_name("picture.py"))]
     target.unlink(missing_ok=True)
+    subject = {"PKM_DOCUMENT": str(saved), "PKM_MACHINE": MACHINE, "PKM_PICTURE": str(target)}
     drawn = subprocess.run(
-        [*command, "--", str(saved), MACHINE, str(target)],
-        capture_output=True, text=True, timeout=PICTURE_SECONDS, check=False,
-    )  # fmt: skip
+        command, env=os.environ | subject, capture_output=True, text=True, timeout=PICTURE_SECONDS, check=False
+    )
     if drawn.returncode or not target.exists():
         raise RuntimeError(f"the picture was not made, exit code {drawn.returncode}:\n{drawn.stdout}{drawn.stderr}")
     print(f"{'picture':<22}{time.perf_counter() - begin:7.2f} s   {target.name}")

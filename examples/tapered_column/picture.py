@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A picture of machine and part in FreeCAD's 3D view; run by FreeCAD with its window, on a display or under Xvfb.
 
-    freecad picture.py -- DOCUMENT.FCStd MACHINE PICTURE.png
-
-The machine stands where the middle of the first operation has it, around the part as the work offset places it.
+The environment says what to draw, since FreeCAD would open the files that its command line names: PKM_DOCUMENT,
+PKM_MACHINE and PKM_PICTURE. The machine stands where the middle of the first operation has it, around the part as the work offset places it.
 """
 
 import os
@@ -68,7 +67,7 @@ def main():
     """Draw, and end FreeCAD with an exit code that tells how it went."""
     code = 0
     try:
-        draw(*sys.argv[sys.argv.index("--") + 1 :])
+        draw(*(os.environ[name] for name in ("PKM_DOCUMENT", "PKM_MACHINE", "PKM_PICTURE")))
     except Exception:
         traceback.print_exc()
         code = 1

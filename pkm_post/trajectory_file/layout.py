@@ -107,4 +107,6 @@ HEADER = np.dtype(
 
 def offset_of(record: np.dtype[Any], field: str) -> int:
     """Bytes from the beginning of a record to one of its fields."""
-    return int((record.fields or {})[field][1])
+    if record.fields is None:
+        raise ValueError(f"expected a record with fields, got {record}")
+    return int(record.fields[field][1])

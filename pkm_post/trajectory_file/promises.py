@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
@@ -38,10 +38,17 @@ def broken_promises(trajectory: Trajectory) -> list[str]:
     with np.errstate(all="ignore"):  # the numbers may be anything
         return [
             *_of_start(trajectory),
-            *_of_tools(trajectory.tools),
+            *_first(_of_tools(trajectory.tools)),
             *_of_segments(trajectory),
-            *_of_events(trajectory.events, len(trajectory)),
+            *_first(_of_events(trajectory.events, len(trajectory))),
         ]
+
+
+def _first(broken: Iterable[str]) -> Iterator[str]:
+    """The first of many, with their number: a damaged table can have a million."""
+    first, *others = [*broken] or [""]
+    if first:
+        yield f"{first}, and {len(others)} more" if others else first
 
 
 def _of_start(trajectory: Trajectory) -> Iterator[str]:

@@ -12,8 +12,8 @@ from pkm_post.freecad_app.job import set_gauge_length
 ARC = ["G0 Z10", "G0 X0 Y0", "G1 Z0 F5", "G2 X10 Y0 I5 J0", "G3 X10 Y0 Z-2 I-3 J0", "G0 Z10"]
 FIVE_AXIS = [
     "G0 X0 Y0 Z30 I0 J0 K1",
-    "G1 X0 Y0 Z5 I0 J0.6 K0.8 F20",
-    "G1 X10 Y4 Z5 I0.6 J0 K0.8 F25",
+    "G1 X0 Y0 Z5 I0 J0.28 K0.96 F20",
+    "G1 X10 Y4 Z5 I0.28 J0 K0.96 F25",
     "G0 X10 Y4 Z30 I0 J0 K1",
 ]
 

@@ -1,24 +1,31 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool bits of FreeCAD 1.0 and newer: both name the same cutter in their own way."""
 
+import math
+
+import FreeCAD as App
 import pytest
 from cam_jobs import add_operation
 
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
 
-MICRON = 1e-3
 
-
-def stock_bit(document, shape):
-    """A tool bit of a stock shape, as this FreeCAD makes them."""
+def stock_bit(document, shape, **sizes):
+    """A tool bit of a stock shape with some sizes in mm, as this FreeCAD makes them."""
     try:
         from Path.Tool.toolbit import ToolBit
     except ImportError:
         from Path.Tool.Bit import Factory
 
-        return Factory.CreateFromAttrs({"name": shape, "shape": shape, "parameter": {}, "attribute": {}}, shape)
-    return ToolBit.from_shape_id(shape, label=shape).attach_to_doc(doc=document)
+        parameters = {name: f"{size} mm" for name, size in sizes.items()}
+        declared = {"name": shape, "shape": shape, "parameter": parameters, "attribute": {}}
+        return Factory.CreateFromAttrs(declared, shape)
+    bit = ToolBit.from_shape_id(shape, label=shape).attach_to_doc(doc=document)
+    for name, size in sizes.items():
+        setattr(bit, name, size)
+    document.recompute()
+    return bit
 
 
 def tool_of(job, bit):
@@ -29,36 +36,31 @@ def tool_of(job, bit):
     return tools[1]
 
 
-def radius_of_flat_bottom(bit):
-    """From the solid itself: the largest radius of an edge in the plane of the tip."""
-    job_edges = [edge for edge in bit.Shape.Edges if edge.BoundBox.ZMax - bit.Shape.BoundBox.ZMin < MICRON]
-    return max((edge.Curve.Radius for edge in job_edges if hasattr(edge.Curve, "Radius")), default=0.0)
+def assert_shape(bit, diameter, corner_radius):
+    """The solid of the bit ends where a cutter of these sizes does, looked at in the middle of the corner."""
+    assert bit.Shape.Volume > 0
+    z = max(0.3 * corner_radius, 0.5)
+    below_middle = max(corner_radius - z, 0)
+    end = diameter / 2 - corner_radius + math.sqrt(corner_radius**2 - below_middle**2)
+    inside = [bit.Shape.isInside(App.Vector(radius, 0.01, z), 1e-7, False) for radius in (end - 0.01, end + 0.01)]
+    assert inside == [True, False]
 
 
-@pytest.mark.parametrize("shape", ["endmill.fcstd", "ballend.fcstd", "bullnose.fcstd"])
-def test_corner_radius_is_that_of_the_solid(job, shape):
-    bit = stock_bit(job.Document, shape)
-    bit.Diameter = 12
-    job.Document.recompute()
+@pytest.mark.parametrize(("shape", "corner_radius"), [("endmill.fcstd", 0), ("ballend.fcstd", 6), ("drill.fcstd", 0)])
+def test_corner_radius_by_shape(job, shape, corner_radius):
+    bit = stock_bit(job.Document, shape, Diameter=12)
     tool = tool_of(job, bit)
-    assert tool.diameter == pytest.approx(12)
-    assert tool.corner_radius == pytest.approx(6 - radius_of_flat_bottom(bit), abs=MICRON)
+    assert (tool.diameter, tool.corner_radius) == (12, corner_radius)
+    if shape != "drill.fcstd":  # the point of a drill is a cone
+        assert_shape(bit, tool.diameter, tool.corner_radius)
 
 
-def test_corner_radius_follows_the_bit(job):
-    bit = stock_bit(job.Document, "bullnose.fcstd")
-    bit.Diameter = 16
-    if hasattr(bit, "FlatRadius"):
-        bit.FlatRadius = 5
-    else:
-        bit.CornerRadius = 3
-    job.Document.recompute()
-    assert tool_of(job, bit).corner_radius == pytest.approx(3)
-    assert radius_of_flat_bottom(bit) == pytest.approx(5, abs=MICRON)
-
-
-def test_drill_has_no_corner_radius(job):
-    assert tool_of(job, stock_bit(job.Document, "drill.fcstd")).corner_radius == 0
+def test_bull_nose_says_its_flat_or_its_corner(job):
+    size = {"FlatRadius": 5} if int(App.Version()[1]) == 0 else {"CornerRadius": 3}
+    bit = stock_bit(job.Document, "bullnose.fcstd", Diameter=16, **size)
+    tool = tool_of(job, bit)
+    assert (tool.diameter, tool.corner_radius) == (16, 3)
+    assert_shape(bit, 16, 3)
 
 
 def test_tool_has_the_name_of_the_bit_and_the_length_of_the_controller(job):

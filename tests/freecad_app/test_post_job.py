@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jobs and documents are posted or refused as a whole, from Python and by CAM's own post command."""
+
+import dataclasses
+
+import FreeCAD as App
+import Path.Main.Job
+import pytest
+from cam_jobs import FIVE_AXIS, add_operation, new_job
+from Path.Post.Processor import PostProcessorFactory
+from Path.Post.Utils import FilenameGenerator
+
+from pkm_post.freecad_app.arguments import job_arguments
+from pkm_post.freecad_app.post_job import find_job, post_as_the_job_says, post_document, post_job
+from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.model import Refused
+from pkm_post.pipeline import Options
+
+MACHINE = "example_6tps"
+COARSE = Options(work_offset="job", tip_tolerance=0.01, axis_tolerance=1e-3)
+
+
+@pytest.fixture
+def ready(job):
+    add_operation(job)
+    return job
+
+
+def refusal(call, *arguments, **more):
+    with pytest.raises(Refused) as refused:
+        call(*arguments, **more)
+    return [fault.code for fault in refused.value.diagnostics]
+
+
+def test_posted_files_are_named_after_the_document(ready, tmp_path):
+    ready.Document.saveAs(str(tmp_path / "my part.FCStd"))
+    posted = post_job(ready, MACHINE, tmp_path / "out", COARSE)
+    assert posted.program == tmp_path / "out" / "my_part.pmc"
+    assert posted.program in posted.files
+    assert all(path.stem.startswith("my_part") and path.stat().st_size for path in posted.files)
+
+
+def test_posting_twice_gives_the_same_bytes(ready, tmp_path):
+    first = {path.name: path.read_bytes() for path in post_job(ready, MACHINE, tmp_path, COARSE).files}
+    second = {path.name: path.read_bytes() for path in post_job(ready, MACHINE, tmp_path, COARSE).files}
+    assert first == second
+
+
+def test_document_is_brought_up_to_date_first(ready, tmp_path):
+    operation = ready.Operations.Group[0]
+    copy = create_mirror(operation, (0, 1, 0))
+    operation.Gcode = [*FIVE_AXIS, "G0 Z40"]
+    posted = post_job(ready, MACHINE, tmp_path, COARSE)
+    assert len(copy.Path.Commands) == 5
+    assert posted.diagnostics == ()
+
+
+def test_log_tells_the_steps(ready, tmp_path):
+    lines = []
+    post_job(ready, MACHINE, tmp_path, COARSE, log=lines.append)
+    assert any(line.startswith("certificate") for line in lines)
+
+
+def test_work_offset_is_the_fixture_of_the_job(ready, tmp_path):
+    ready.Fixtures = ["G59"]
+    assert refusal(post_job, ready, MACHINE, tmp_path) == ["K108"]
+    assert refusal(post_job, ready, MACHINE, tmp_path, COARSE) == ["K108"]
+    assert list(tmp_path.iterdir()) == []
+    assert post_job(ready, MACHINE, tmp_path, dataclasses.replace(COARSE, work_offset="G54")).files
+
+
+def test_faults_of_job_and_machine_are_told_together_and_nothing_is_written(ready, tmp_path):
+    ready.Tools.Group[0].GaugeLength = 0
+    assert refusal(post_job, ready, "no_such_machine", tmp_path / "out") == ["M101", "J113"]
+    assert not (tmp_path / "out").exists()
+
+
+def test_warnings_of_the_job_are_handed_on(job, tmp_path):
+    add_operation(job, ["G0 X0 Y0 Z30", "G1 X1 I0 J0 K2 F10"])
+    assert [fault.code for fault in post_job(job, MACHINE, tmp_path, COARSE).diagnostics] == ["J118"]
+
+
+def test_warnings_of_the_job_are_told_when_it_is_refused(job, tmp_path):
+    add_operation(job, ["G0 X0 Y0 Z30", "G1 X1000 I0 J0 K2 F10"])
+    codes = refusal(post_job, job, MACHINE, tmp_path, COARSE)
+    assert codes[0] == "J118"
+    assert codes[1].startswith("K")
+
+
+def test_gauge_length_by_tool_number(ready, tmp_path):
+    ready.Tools.Group[0].GaugeLength = 0
+    assert post_job(ready, MACHINE, tmp_path, COARSE, tool_lengths={1: 120.0}).files
+
+
+# Documents
+
+
+def saved(document, folder):
+    path = folder / "part.FCStd"
+    document.saveAs(str(path))
+    App.closeDocument(document.Name)
+    return path
+
+
+def test_document_is_opened_posted_and_closed(ready, tmp_path):
+    path = saved(ready.Document, tmp_path)
+    before = path.read_bytes()
+    (posted,) = post_document(path, MACHINE, tmp_path / "out", COARSE)
+    assert posted.program.name == "part.pmc"
+    assert App.listDocuments() == {}
+    assert path.read_bytes() == before
+
+
+def test_open_document_stays_open(ready, tmp_path):
+    ready.Document.saveAs(str(tmp_path / "part.FCStd"))
+    post_document(tmp_path / "part.FCStd", MACHINE, tmp_path, COARSE)
+    assert ready.Document.Name in App.listDocuments()
+
+
+def test_all_jobs_of_a_document_or_one_of_them(ready, tmp_path):
+    second = Path.Main.Job.Create("Second", [ready.Model.Group[0]], None)
+    second.Label = "Other side"
+    second.Operations.Group = []
+    path = saved(ready.Document, tmp_path)
+    assert refusal(post_document, path, MACHINE, tmp_path, COARSE)[-1] == "J103"  # the second has no operations
+    (posted,) = post_document(path, MACHINE, tmp_path, COARSE, job_name="Job")
+    assert posted.program.name == "part-Job.pmc"
+    assert refusal(post_document, path, MACHINE, tmp_path, COARSE, job_name="Other side") == ["J103"]
+    assert refusal(post_document, path, MACHINE, tmp_path, COARSE, job_name="Third") == ["J102"]
+
+
+def test_file_that_is_no_document(tmp_path):
+    (tmp_path / "text.FCStd").write_text("no document")
+    assert refusal(post_document, tmp_path / "text.FCStd", MACHINE, tmp_path) == ["J101"]
+    assert refusal(post_document, tmp_path / "missing.FCStd", MACHINE, tmp_path) == ["J101"]
+
+
+def test_document_without_a_job(document):
+    assert refusal(find_job, document) == ["J102"]
+
+
+def test_job_by_name_or_label(ready):
+    other = new_job(ready.Document)
+    other.Label = "Other"
+    assert [find_job(ready.Document, name) for name in (ready.Name, "Other", other.Name)] == [ready, other, other]
+    assert refusal(find_job, ready.Document) == ["J102"]
+
+
+# CAM's post command
+
+
+@pytest.fixture
+def cam_post(ready, tmp_path):
+    """What CAM makes to post the job, which has a place for its output."""
+    ready.PostProcessor = "hexapod_pmac"
+    ready.PostProcessorOutputFile = str(tmp_path / "made by cam.ngc")
+    ready.PostProcessorArgs = "--tip-tolerance 0.01 --axis-tolerance 0.05"
+    return PostProcessorFactory.get_post_processor(ready, "hexapod_pmac")
+
+
+def name_by_cam(job):
+    generator = FilenameGenerator(job=job)
+    generator.set_subpartname("")
+    return next(generator.generate_filenames())
+
+
+def test_cam_gets_the_text_and_finds_the_other_files_beside(ready, cam_post, tmp_path):
+    ((part, text),) = cam_post.export()
+    assert part == "allitems"
+    assert name_by_cam(ready) == str(tmp_path / "made by cam.ngc")
+    assert (tmp_path / "made by cam.ngc").read_text(encoding="ascii") == text
+    assert (tmp_path / "made by cam.pkmt").is_file()
+    assert "OPEN PROG" in text
+
+
+def test_cam_writes_nothing_when_the_job_is_refused(ready, cam_post, tmp_path):
+    ready.Tools.Group[0].GaugeLength = 0
+    assert refusal(cam_post.export) == ["J113"]
+    assert list(tmp_path.iterdir()) == []
+    ready.PostProcessorArgs += " --tool-length 1=120"
+    assert cam_post.export()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        "--no-such-thing",
+        "--tip-tolerance",
+        "--tip-tolerance -1",
+        "'--machine",
+        "-h",
+        "--tip 1",
+        "extra",
+        "--tool-length 1",
+    ],
+)
+def test_arguments_that_make_no_sense_are_a_fault_of_the_job(ready, cam_post, arguments):
+    ready.PostProcessorArgs = arguments
+    assert refusal(cam_post.export) == ["J117"]
+
+
+def test_arguments_may_be_quoted(ready):
+    assert job_arguments(ready, "--machine 'my machines/a.toml'").machine == "my machines/a.toml"
+
+
+def test_arguments_for_another_post_processor_are_left_alone(ready, tmp_path):
+    ready.PostProcessor = "linuxcnc"
+    ready.PostProcessorArgs = "--no-show-editor"
+    assert post_as_the_job_says(ready, tmp_path).files
+    ready.PostProcessor = "hexapod_pmac"
+    assert refusal(post_as_the_job_says, ready, tmp_path) == ["J117"]
