@@ -177,4 +177,4 @@ def test_the_journey_is_one_that_was_made():
     assert "\n".join(re.findall(r"^    (PVT\d+|A\d.*)$", told, re.MULTILINE)) in written
     assert f"There are {len(motion)} knots" in told
     for found in certificate.findings[1:]:
-        assert f"| {found.name} | {found.value:.6g} {found.unit} | {found.limit:.6g} {found.unit} |" in told
+        assert f"| {found.name} | {found.value:.4g} {found.unit} | {found.limit:.4g} {found.unit} |" in told

@@ -17,7 +17,7 @@ from pkm_post.model import Refused
 from pkm_post.pipeline import Options
 
 MACHINE = "example_6tps"
-COARSE = Options(work_offset="job", tip_tolerance=0.01, axis_tolerance=1e-3)
+AT_FIXTURE = Options(work_offset="job")
 
 
 @pytest.fixture
@@ -34,15 +34,15 @@ def refusal(call, *arguments, **more):
 
 def test_posted_files_are_named_after_the_document(ready, tmp_path):
     ready.Document.saveAs(str(tmp_path / "my part.FCStd"))
-    posted = post_job(ready, MACHINE, tmp_path / "out", COARSE)
+    posted = post_job(ready, MACHINE, tmp_path / "out", AT_FIXTURE)
     assert posted.program == tmp_path / "out" / "my_part.pmc"
     assert posted.program in posted.files
     assert all(path.stem.startswith("my_part") and path.stat().st_size for path in posted.files)
 
 
 def test_posting_twice_gives_the_same_bytes(ready, tmp_path):
-    first = {path.name: path.read_bytes() for path in post_job(ready, MACHINE, tmp_path, COARSE).files}
-    second = {path.name: path.read_bytes() for path in post_job(ready, MACHINE, tmp_path, COARSE).files}
+    first = {path.name: path.read_bytes() for path in post_job(ready, MACHINE, tmp_path, AT_FIXTURE).files}
+    second = {path.name: path.read_bytes() for path in post_job(ready, MACHINE, tmp_path, AT_FIXTURE).files}
     assert first == second
 
 
@@ -50,23 +50,23 @@ def test_document_is_brought_up_to_date_first(ready, tmp_path):
     operation = ready.Operations.Group[0]
     copy = create_mirror(operation, (0, 1, 0))
     operation.Gcode = [*FIVE_AXIS, "G0 Z40"]
-    posted = post_job(ready, MACHINE, tmp_path, COARSE)
+    posted = post_job(ready, MACHINE, tmp_path, AT_FIXTURE)
     assert len(copy.Path.Commands) == 5
     assert posted.diagnostics == ()
 
 
 def test_log_tells_the_steps(ready, tmp_path):
     lines = []
-    post_job(ready, MACHINE, tmp_path, COARSE, log=lines.append)
+    post_job(ready, MACHINE, tmp_path, AT_FIXTURE, log=lines.append)
     assert any(line.startswith("certificate") for line in lines)
 
 
 def test_work_offset_is_the_fixture_of_the_job(ready, tmp_path):
     ready.Fixtures = ["G59"]
     assert refusal(post_job, ready, MACHINE, tmp_path) == ["K108"]
-    assert refusal(post_job, ready, MACHINE, tmp_path, COARSE) == ["K108"]
+    assert refusal(post_job, ready, MACHINE, tmp_path, AT_FIXTURE) == ["K108"]
     assert list(tmp_path.iterdir()) == []
-    assert post_job(ready, MACHINE, tmp_path, dataclasses.replace(COARSE, work_offset="G54")).files
+    assert post_job(ready, MACHINE, tmp_path, dataclasses.replace(AT_FIXTURE, work_offset="G54")).files
 
 
 def test_faults_of_job_and_machine_are_told_together_and_nothing_is_written(ready, tmp_path):
@@ -77,19 +77,19 @@ def test_faults_of_job_and_machine_are_told_together_and_nothing_is_written(read
 
 def test_warnings_of_the_job_are_handed_on(job, tmp_path):
     add_operation(job, ["G0 X0 Y0 Z30", "G1 X1 I0 J0 K2 F10"])
-    assert [fault.code for fault in post_job(job, MACHINE, tmp_path, COARSE).diagnostics] == ["J118"]
+    assert [fault.code for fault in post_job(job, MACHINE, tmp_path, AT_FIXTURE).diagnostics] == ["J118"]
 
 
 def test_warnings_of_the_job_are_told_when_it_is_refused(job, tmp_path):
     add_operation(job, ["G0 X0 Y0 Z30", "G1 X1000 I0 J0 K2 F10"])
-    codes = refusal(post_job, job, MACHINE, tmp_path, COARSE)
+    codes = refusal(post_job, job, MACHINE, tmp_path, AT_FIXTURE)
     assert codes[0] == "J118"
     assert codes[1].startswith("K")
 
 
 def test_gauge_length_by_tool_number(ready, tmp_path):
     ready.Tools.Group[0].GaugeLength = 0
-    assert post_job(ready, MACHINE, tmp_path, COARSE, tool_lengths={1: 120.0}).files
+    assert post_job(ready, MACHINE, tmp_path, AT_FIXTURE, tool_lengths={1: 120.0}).files
 
 
 # Documents
@@ -105,7 +105,7 @@ def saved(document, folder):
 def test_document_is_opened_posted_and_closed(ready, tmp_path):
     path = saved(ready.Document, tmp_path)
     before = path.read_bytes()
-    (posted,) = post_document(path, MACHINE, tmp_path / "out", COARSE)
+    (posted,) = post_document(path, MACHINE, tmp_path / "out", AT_FIXTURE)
     assert posted.program.name == "part.pmc"
     assert App.listDocuments() == {}
     assert path.read_bytes() == before
@@ -113,7 +113,7 @@ def test_document_is_opened_posted_and_closed(ready, tmp_path):
 
 def test_open_document_stays_open(ready, tmp_path):
     ready.Document.saveAs(str(tmp_path / "part.FCStd"))
-    post_document(tmp_path / "part.FCStd", MACHINE, tmp_path, COARSE)
+    post_document(tmp_path / "part.FCStd", MACHINE, tmp_path, AT_FIXTURE)
     assert ready.Document.Name in App.listDocuments()
 
 
@@ -122,11 +122,11 @@ def test_all_jobs_of_a_document_or_one_of_them(ready, tmp_path):
     second.Label = "Other side"
     second.Operations.Group = []
     path = saved(ready.Document, tmp_path)
-    assert refusal(post_document, path, MACHINE, tmp_path, COARSE)[-1] == "J103"  # the second has no operations
-    (posted,) = post_document(path, MACHINE, tmp_path, COARSE, job_name="Job")
+    assert refusal(post_document, path, MACHINE, tmp_path, AT_FIXTURE)[-1] == "J103"  # the second has no operations
+    (posted,) = post_document(path, MACHINE, tmp_path, AT_FIXTURE, job_name="Job")
     assert posted.program.name == "part-Job.pmc"
-    assert refusal(post_document, path, MACHINE, tmp_path, COARSE, job_name="Other side") == ["J103"]
-    assert refusal(post_document, path, MACHINE, tmp_path, COARSE, job_name="Third") == ["J102"]
+    assert refusal(post_document, path, MACHINE, tmp_path, AT_FIXTURE, job_name="Other side") == ["J103"]
+    assert refusal(post_document, path, MACHINE, tmp_path, AT_FIXTURE, job_name="Third") == ["J102"]
 
 
 def test_file_that_is_no_document(tmp_path):
@@ -154,7 +154,7 @@ def cam_post(ready, tmp_path):
     """What CAM makes to post the job, which has a place for its output."""
     ready.PostProcessor = "hexapod_pmac"
     ready.PostProcessorOutputFile = str(tmp_path / "made by cam.ngc")
-    ready.PostProcessorArgs = "--tip-tolerance 0.01 --axis-tolerance 0.05"
+    ready.PostProcessorArgs = "--tip-tolerance 0.001 --axis-tolerance 0.001"
     return PostProcessorFactory.get_post_processor(ready, "hexapod_pmac")
 
 

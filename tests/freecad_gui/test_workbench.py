@@ -21,9 +21,7 @@ def session(tmp_path_factory):
     script = Path(__file__).with_name("session.py")
     command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", window, "-M", str(ADDON), str(script)]
     files = {"PKM_RESULT": str(result), "PKM_SCREENSHOT": str(picture)}
-    ran = subprocess.run(
-        command, env=os.environ | files, capture_output=True, text=True, timeout=180, check=False
-    )
+    ran = subprocess.run(command, env=os.environ | files, capture_output=True, text=True, timeout=180, check=False)
     assert result.exists(), ran.stdout + ran.stderr
     return {"found": json.loads(result.read_text()), "log": ran.stdout + ran.stderr, "picture": picture}
 
