@@ -11,7 +11,7 @@ import numpy as np
 
 from pkm_post.feed import Bounded, Schedule, ToolPath, by_time, knots, limits, speed_profile, stations
 from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import interpolation_error, reach_faults, strut_rates
+from pkm_post.kinematics import reach_faults, stray, strut_rates
 from pkm_post.model import Diagnostic, Event, Machine, Motion, Poses, StrutMotion, Trajectory
 from pkm_post.model.findings import Tolerances
 
@@ -19,10 +19,12 @@ _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
 _FOR_CUBICS = 0.4
 """Share that the controller's cubics may use; the rest is for decimals and for what lies between the instants."""
+_SPEED_SWING = 0.005
+"""Part of the feed by which the controller's cubics may be faster than planned."""
 _STRUT_SPEED_SHARE = 0.95
 """Share of the strut speed that is planned: the controller's cubics swing a little about it."""
-_SHARES_LOOKED_AT = (np.arange(16) + 0.5) / 16
-"""Even, and half a step beside the instants of the certificate, which is to find out for itself."""
+_SHARES_LOOKED_AT = np.sort(np.arange(1, 21) * (np.sqrt(5) - 1) / 2 % 1)
+"""Spread by the golden ratio: even shares could keep step with the joints of the path and miss every one of them."""
 
 
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
@@ -80,12 +82,13 @@ def interpolate(
         return by_time(path.at(s), speed, acceleration)
 
     def error(start: Array, end: Array) -> Array:
-        inner = (start[:, None] + (end - start)[:, None] * _SHARES_LOOKED_AT).ravel()
+        inner = poses_at((start[:, None] + (end - start)[:, None] * _SHARES_LOOKED_AT).ravel())
         duration = (end - start) / 1000
-        tip, axis = interpolation_error(
-            machine, poses_at(start), poses_at(end), poses_at(inner), duration, _SHARES_LOOKED_AT
-        )
-        return np.maximum(tip / tolerances.tip, axis / tolerances.axis) / _FOR_CUBICS
+        found = stray(machine, poses_at(start), poses_at(end), inner, duration, _SHARES_LOOKED_AT)
+        swing = _SPEED_SWING * path.feed[inner.segment].reshape(found.faster.shape)
+        off = np.maximum(found.tip / tolerances.tip, found.axis / tolerances.axis) / _FOR_CUBICS
+        worst = np.maximum(off, found.faster / swing).max(axis=1)
+        return np.maximum(worst, found.acceleration / machine.strut_acceleration)
 
     time_ms = knots(schedule.rests_ms, schedule.edges_ms, error)
     poses = poses_at(time_ms)
@@ -101,6 +104,7 @@ def interpolate(
         spin_rate=poses.spin_1,
         tool_length=poses.tool_length,
         segment=poses.segment,
+        joint_time=schedule.joint_time,
         events=tuple(Event(int(row), event.kind, event.value) for row, event in zip(knot, events, strict=True)),
     )
 

@@ -52,3 +52,20 @@ def square_with_arc() -> Program:
     centre[3], turn[3] = [30, 10, 40], [0, 0, 1]
     centre[6], turn[6] = [5, 0, 40], [0, 0, -1]
     return program(position, kind=kind, centre=centre, turn=turn)
+
+
+def random_job(rng) -> Program:
+    """A job of random corners, step lengths, tilts, feeds, rapids, dwells, and sometimes a point visited twice."""
+    count = int(rng.integers(2, 60))
+    walk = np.cumsum(rng.normal(size=(count, 3)) * 10 ** rng.uniform(-1, 1.3), axis=0)
+    position = np.clip(walk, -60, 60) + [0, 0, 60]
+    if rng.random() < 0.3:
+        position[rng.integers(1, count)] = position[rng.integers(0, count)]
+    tilt = np.radians(np.clip(np.abs(np.cumsum(rng.normal(size=count) * 10 ** rng.uniform(-1, 0.6))), 0, 18))
+    azimuth = np.cumsum(rng.normal(size=count) * 10 ** rng.uniform(-1.5, 0.5))
+    axis = np.column_stack([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
+    kind = np.where(rng.random(count) < 0.2, Kind.RAPID, Kind.LINE)
+    kind[0] = Kind.RAPID
+    dwells = (Event(int(row), EventKind.DWELL, 0.1) for row in sorted(rng.integers(1, count, 2)))
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), *dwells)
+    return program(position, axis, kind=kind, feed=10 ** rng.uniform(0.3, 2.2), events=events)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from programs import ON_PALLET, cone, program
+from programs import ON_PALLET, cone, program, random_job
 
 from pkm_post.controllers import pmac
 from pkm_post.machine_file import find_machine, read_machine
@@ -38,6 +38,15 @@ def test_everything_is_written_and_certified(machine, tmp_path):
     played, faults = pmac.read_program((tmp_path / "cone.pmc").read_text(), settings, "cone.pmc")
     assert not faults
     assert played.time_ms[-1] == pytest.approx(1000 * posted.report["motion"]["duration_s"])
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_whatever_the_job_and_the_tolerances_the_certificate_holds(machine, tmp_path, seed):
+    # Planner and certificate know nothing of each other's thresholds but the tolerances: none may be refused.
+    rng = np.random.default_rng(seed)
+    options = Options(tip_tolerance=10 ** rng.uniform(-3.5, -1), axis_tolerance=np.radians(10 ** rng.uniform(-3.5, -1)))
+    posted = post(random_job(rng), machine, tmp_path / "job.pmc", options)
+    assert posted.report["certificate"]["holds"]
 
 
 def test_same_input_same_bytes(machine, tmp_path):

@@ -34,7 +34,7 @@ def test_motion_starts_at_home_at_rest_and_ends_at_rest():
     trajectory, motion, struts = planned(cone())
     np.testing.assert_allclose(motion.tip[0], example().home_tip)
     np.testing.assert_allclose(motion.tip[-1], trajectory.tip[-1], atol=1e-9)
-    np.testing.assert_allclose(struts.speed[[0, -1]], 0, atol=1e-9)
+    assert not struts.speed[[0, -1]].any()
 
 
 def test_speeds_are_the_derivatives_of_the_lengths():

@@ -2,7 +2,8 @@
 """A picture of machine and part in FreeCAD's 3D view; run by FreeCAD with its window, on a display or under Xvfb.
 
 The environment says what to draw, since FreeCAD would open the files that its command line names: PKM_DOCUMENT,
-PKM_MACHINE and PKM_PICTURE. The machine stands where the middle of the first operation has it, around the part as the work offset places it.
+PKM_MACHINE and PKM_PICTURE. The machine stands where the middle of the first operation has it, around the part as the
+work offset places it.
 """
 
 import os

@@ -9,12 +9,12 @@ diagnostic for everything that does not hold.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.playback import INSTANTS, Played, play
+from pkm_post.certificate.playback import INSTANTS, at_joints, play
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.findings import Certificate, Finding, Tolerances
@@ -43,27 +43,66 @@ def certify(
         motion: the plan; program and plan must have the same knots.
         tolerances: what was asked for.
     """
-    faults = _structure_faults(struts, program_name, motion)
+    faults = _structure_faults(struts, program_name, trajectory, machine, motion)
     if faults:
         return None, faults
     played = play(struts, machine, TrajectoryRuler(trajectory, tolerances), motion)
-    findings = tuple(_findings(played, struts, trajectory, machine, motion, tolerances))
+    intervals = _Series(struts.time_ms[:-1] / 1000, motion.segment[1:])
+    joints = _Series(motion.joint_time, np.arange(len(trajectory)))
+    excess = played.tip_speed - _feed_ceiling(trajectory, motion)
+    passed = at_joints(struts, machine, trajectory, motion)
+    axis_limit = math.degrees(tolerances.axis)
+    rows = (
+        ("V107", "instants without a pose", "", 1.0 - played.found, 0.0, intervals),
+        ("V101", "deviation of the tool tip", "mm", played.tip, tolerances.tip, intervals),
+        ("V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), axis_limit, intervals),
+        ("V110", "tool tip off a programmed point", "mm", passed[0], tolerances.tip, joints),
+        ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed[1]), axis_limit, joints),
+        ("V108", "tip speed above the feed", "mm/s", excess, 0.0, intervals),
+        ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, intervals),
+        ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, intervals),
+        ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, intervals),
+        ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, intervals),
+    )
+    findings = tuple(_worst(trajectory, *row) for row in rows)
     certificate = Certificate(
         findings=findings,
         duration=float(struts.time_ms[-1]) / 1000,
         intervals=len(struts) - 1,
-        instants=INSTANTS * (len(struts) - 1),
-        time=struts.time_ms[:-1] / 1000,
+        instants=INSTANTS * (len(struts) - 1) + len(trajectory),
+        time=intervals.time,
         tip_deviation=played.tip,
         axis_deviation=played.axis,
     )
     return certificate, tuple(finding.diagnostic() for finding in findings if not finding.holds)
 
 
-def _structure_faults(struts: StrutMotion, program_name: str, motion: Motion) -> tuple[Diagnostic, ...]:
-    """What makes a comparison pointless: other knots, other events, or motion at the ends."""
+@dataclass(frozen=True)
+class _Series:
+    """When and on which trajectory segment the values of a quantity were taken."""
+
+    time: Array
+    segment: Array
+
+
+def _worst(
+    trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: float, series: _Series
+) -> Finding:
+    """The finding at the largest value; a value that is no number counts as beyond every limit."""
+    values = np.where(np.isnan(values), np.inf, values)
+    row = int(np.argmax(values))
+    value, place = float(values[row]), trajectory.place(int(series.segment[row]))
+    return Finding(code, name, unit, value, limit, value <= limit, float(series.time[row]), place)
+
+
+def _structure_faults(
+    struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, motion: Motion
+) -> tuple[Diagnostic, ...]:
+    """What makes a comparison pointless: another machine, other knots, other events, or motion at the ends."""
     place = Place(program_name)
     faults = []
+    if trajectory.machine_fingerprint != machine.fingerprint:
+        faults.append(Diagnostic("T104", place, f"made for {trajectory.machine}, checked on {machine.name}"))
     if not np.array_equal(struts.time_ms, motion.time_ms):
         found = f"{len(struts)} points in {struts.time_ms[-1]} ms, planned {len(motion)} in {motion.time_ms[-1]} ms"
         faults.append(Diagnostic("V110", place, found))
@@ -72,34 +111,6 @@ def _structure_faults(struts: StrutMotion, program_name: str, motion: Motion) ->
     if struts.speed[[0, -1]].any():
         faults.append(Diagnostic("V105", place, f"last speeds {struts.speed[-1].tolist()} mm/s"))
     return tuple(faults)
-
-
-def _findings(
-    played: Played,
-    struts: StrutMotion,
-    trajectory: Trajectory,
-    machine: Machine,
-    motion: Motion,
-    tolerances: Tolerances,
-) -> Iterator[Finding]:
-    def worst(code: str, name: str, unit: str, values: Array, limit: float, sign: float = 1.0) -> Finding:
-        """The finding where sign * (value - limit) is largest; sign -1 for what must not fall below its limit."""
-        row = int(np.argmax(sign * np.where(np.isnan(values), sign * np.inf, values)))
-        value = float(values[row])
-        holds = sign * value <= sign * limit
-        place = trajectory.place(int(motion.segment[row + 1]))
-        return Finding(code, name, unit, value, limit, holds, float(struts.time_ms[row]) / 1000, place)
-
-    shortest, longest = machine.strut_stroke
-    excess = played.tip_speed - _feed_ceiling(trajectory, motion)
-    yield worst("V107", "instants without a pose", "", 1.0 - played.found, 0.0)
-    yield worst("V101", "deviation of the tool tip", "mm", played.tip, tolerances.tip)
-    yield worst("V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), math.degrees(tolerances.axis))
-    yield worst("V108", "tip speed above the feed", "mm/s", excess, 0.0)
-    yield worst("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed)
-    yield worst("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration)
-    yield worst("V106", "shortest strut", "mm", played.shortest, shortest, -1.0)
-    yield worst("V106", "longest strut", "mm", played.longest, longest)
 
 
 def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:

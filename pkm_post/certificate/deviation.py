@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Deviation: how far tool poses are from the programmed trajectory, found without any time or plan.
 
-The tip is compared with its nearest point on a segment, the tool axis with the axis that the trajectory has at that
-point; on a segment where only the axis turns, the nearest axis is sought instead. Of several segments the one counts
-that the pose fits best. On a helix the point at the same angle stands for the nearest one. Looking at some segments
-only can make a deviation larger, never smaller.
+A pose is compared with the programmed pose of a segment that fits it best: the one with the least sum of squares of
+tip and axis deviation, each by its tolerance. Of several segments the one counts that the pose fits best. On a helix
+the point at the same angle stands for the nearest one. Looking at some segments only can make a deviation larger,
+never smaller.
 """
 
 from __future__ import annotations
@@ -16,9 +16,6 @@ from pkm_post.geometry.arcs import across
 from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Kind, Trajectory
 from pkm_post.model.findings import Tolerances
-
-_TIP_STANDS = 1e-6
-"""mm: a segment shorter than this is a turn of the axis alone."""
 
 
 class TrajectoryRuler:
@@ -62,15 +59,20 @@ class TrajectoryRuler:
         return norm(tip - nearest), angle_between(axis, expected)
 
     def _nearest_share(self, tip: Array, axis: Array, segment: Array) -> Array:
-        """How much of each segment has gone at the point nearest to the pose, from 0 to 1."""
-        trajectory = self._trajectory
-        share = _projected(tip - self._tip_before[segment], trajectory.tip[segment] - self._tip_before[segment])
-        stands = trajectory.length[segment] < _TIP_STANDS
-        turned = towards(self._axis_before[segment], axis)
-        share = np.where(stands, _projected(turned, self._axis_turn[segment]), share)
+        """How much of each segment has gone at the programmed pose nearest to the pose, from 0 to 1.
+
+        Along a segment tip and axis move evenly, so the least sum of squares is at the weighted mean of the shares
+        that are nearest for tip and axis alone.
+        """
+        trajectory, before = self._trajectory, self._tip_before[segment]
+        by_tip = _projected(tip - before, trajectory.tip[segment] - before)
         rows = np.flatnonzero(trajectory.kind[segment] == Kind.ARC)
         if len(rows):
-            share[rows] = self._share_of_arc(tip[rows], segment[rows])
+            by_tip[rows] = self._share_of_arc(tip[rows], segment[rows])
+        by_axis = _projected(towards(self._axis_before[segment], axis), self._axis_turn[segment])
+        tip_weight = (trajectory.length[segment] / self._tolerances.tip) ** 2
+        axis_weight = (trajectory.angle[segment] / self._tolerances.axis) ** 2
+        share = (tip_weight * by_tip + axis_weight * by_axis) / (tip_weight + axis_weight)
         return np.clip(share, 0.0, 1.0)
 
     def _share_of_arc(self, tip: Array, segment: Array) -> Array:

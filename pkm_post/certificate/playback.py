@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds, norm
+from pkm_post.geometry import angle_between, hermite_accelerations, hermite_lengths, hermite_speeds, norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import forward
 from pkm_post.kinematics.jacobian import jacobian_of_struts
-from pkm_post.model import Machine, Motion, StrutMotion
+from pkm_post.model import Machine, Motion, StrutMotion, Trajectory
 
-INSTANTS = 8
-"""Instants of each interval that are looked at; the first is the knot itself."""
+INSTANTS = 9
+"""Instants of each interval that are looked at, its two knots among them."""
 _CHUNK = 4096
 
 
@@ -70,7 +70,7 @@ def _play(struts: StrutMotion, machine: Machine, ruler: TrajectoryRuler, motion:
     after = rows + 1
     duration = (struts.time_ms[after] - struts.time_ms[rows]) / 1000
     cubic = struts.length[rows], struts.speed[rows], struts.length[after], struts.speed[after], duration
-    share = np.arange(INSTANTS) / INSTANTS
+    share = np.linspace(0, 1, INSTANTS)
     length, speed = hermite_lengths(*cubic, share), hermite_speeds(*cubic, share)
     instant = np.repeat(rows, INSTANTS)
     tool_length = motion.tool_length[instant + 1]
@@ -98,3 +98,18 @@ def _play(struts: StrutMotion, machine: Machine, ruler: TrajectoryRuler, motion:
         length.min(axis=(1, 2)),
         length.max(axis=(1, 2)),
     ])  # fmt: skip
+
+
+def at_joints(struts: StrutMotion, machine: Machine, trajectory: Trajectory, motion: Motion) -> tuple[Array, Array]:
+    """How far tip (mm) and axis (rad) are from the end of each segment when it ought to be passed, (N,) each.
+
+    Deviation from the trajectory alone would not notice a motion that turns back too early.
+    """
+    knot = np.clip(np.searchsorted(struts.time_ms, 1000 * motion.joint_time) - 1, 0, len(struts) - 2)
+    start, end = struts.time_ms[knot] / 1000, struts.time_ms[knot + 1] / 1000
+    share = (motion.joint_time - start) / (end - start)
+    cubic = struts.length[knot], struts.speed[knot], struts.length[knot + 1], struts.speed[knot + 1], end - start
+    length = hermite_lengths(*cubic, share[:, None])[:, 0]
+    pose = forward(machine, length, trajectory.tool_length(), trajectory.tip, trajectory.axis, trajectory.spin)
+    nowhere = np.where(pose.converged, 0.0, np.inf)
+    return norm(pose.tip - trajectory.tip) + nowhere, angle_between(pose.axis, trajectory.axis) + nowhere

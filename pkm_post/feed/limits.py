@@ -45,10 +45,14 @@ class Bounded:
     each: bool
 
     def sizes(self) -> tuple[Array, Array]:
-        """Sizes of first and second derivative by column of its own limit, (M, C) or (M, 1)."""
+        """Sizes of first and second derivative by column of its own limit, (M, C) or (M, 1).
+
+        The second derivative is the largest of a station and its two neighbours: between two stations both it and v^2
+        change, and their product may be larger there than at either.
+        """
         if self.each:
-            return np.abs(self.first), np.abs(self.second)
-        return norm(self.first)[:, None], norm(self.second)[:, None]
+            return np.abs(self.first), _of_neighbours(np.abs(self.second))
+        return norm(self.first)[:, None], _of_neighbours(norm(self.second)[:, None])
 
 
 def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
@@ -71,6 +75,12 @@ def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
             left = PLANNED_SHARE * item.acceleration - second * square[:, None]
             along = np.minimum(along, np.min(left / np.maximum(first, _NEGLIGIBLE), axis=1))
     return square, along
+
+
+def _of_neighbours(size: Array) -> Array:
+    """The largest of each row and the rows before and after it."""
+    padded = np.concatenate([size[:1], size, size[-1:]])
+    return np.maximum(np.maximum(padded[:-2], padded[2:]), size)
 
 
 def _least(square: Array, limit: float, size: Array, power: int) -> Array:

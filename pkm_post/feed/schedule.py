@@ -28,6 +28,7 @@ class Schedule:
         rests_ms: (R,) whole milliseconds at which the motion rests, from 0 to the end.
         rest_joints: (R,) for each rest the number of segments that lie before it.
         edges_ms: (E,) whole milliseconds nearest to where blends begin and end.
+        joint_time: (N,) s, when the end of each segment is passed.
     """
 
     s: Array
@@ -36,6 +37,7 @@ class Schedule:
     rests_ms: Array
     rest_joints: Array
     edges_ms: Array
+    joint_time: Array
 
     @classmethod
     def of(cls, stations: Stations, square: Array) -> Schedule:
@@ -56,7 +58,8 @@ class Schedule:
         speed[:-1] /= stretch[run]
         joints = np.append(stations.segment[rest_rows[:-1] + 1], stations.segment[-1] + 1)
         edges_ms = np.unique(np.rint(1000 * time[stations.edge]).astype(np.int64))
-        return cls(stations.s, time, speed, rests_ms, joints, edges_ms)
+        joint_time = time[np.append(np.diff(stations.segment) > 0, True)]
+        return cls(stations.s, time, speed, rests_ms, joints, edges_ms, joint_time)
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
         """Path length, speed and acceleration along the path at the times given, (N,) each.
@@ -70,7 +73,8 @@ class Schedule:
         acceleration = (v1**2 - v0**2) / (2 * (s1 - s0))
         since = time - self.time[cell]
         s = s0 + since * (v0 + since * acceleration / 2)
-        speed = np.maximum(v0 + since * acceleration, 0.0)
+        arrived = time >= self.time[cell + 1]  # exactly at rest in the end
+        speed = np.where(arrived, v1, np.maximum(v0 + since * acceleration, 0.0))
         return np.clip(s, s0, s1), speed, acceleration
 
 

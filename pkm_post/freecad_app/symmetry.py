@@ -8,6 +8,7 @@ base, which CAM finds by itself. The copies may stand on each other. Saved docum
 
 from __future__ import annotations
 
+import abc
 import importlib
 import math
 from collections.abc import Sequence
@@ -44,7 +45,7 @@ _ROTATION: tuple[Row, ...] = (
 )
 
 
-class _SymmetricOperation:
+class _SymmetricOperation(abc.ABC):
     """What the copies have in common. CAM needs no more of an operation than its properties and its path."""
 
     properties: tuple[Row, ...] = ()
@@ -59,9 +60,9 @@ class _SymmetricOperation:
                 obj.addProperty(kind, name, group, text)
                 setattr(obj, name, value)
 
+    @abc.abstractmethod
     def matrix(self, obj: Any) -> Array:
         """The (4, 4) matrix that takes the base to the copy."""
-        raise NotImplementedError
 
     def execute(self, obj: Any) -> None:
         """Compute the path anew: FreeCAD calls this when the base or a property has changed."""
@@ -81,10 +82,10 @@ class _SymmetricOperation:
         """Give documents of older versions the properties they do not have yet."""
         self._add_missing_properties(obj)
 
-    def dumps(self) -> None:
+    def dumps(self) -> None:  # noqa: B027 - FreeCAD calls it
         """Nothing is saved beside the properties."""
 
-    def loads(self, state: object) -> None:
+    def loads(self, state: object) -> None:  # noqa: B027
         """Nothing was saved."""
 
 

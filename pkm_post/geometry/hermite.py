@@ -3,7 +3,7 @@
 
 p(t) = p0 + v0 t + c2 t^2 + c3 t^3 with c2 = (3 d - (2 v0 + v1) T) / T^2, c3 = (-2 d + (v0 + v1) T) / T^3, d = p1 - p0:
 the one cubic with these ends. Positions and speeds are (N, 6), durations T (N,); the share of the duration that has
-gone is a number or (M,), which gives (N, M, 6).
+gone is (M,), the same for all, or (N, M), which gives (N, M, 6).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def _coefficients(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -
 def hermite_lengths(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, share: Array) -> Array:
     """Positions at shares of the duration, (N, M, 6)."""
     square, cube = _coefficients(p0, v0, p1, v1, duration)
-    x = share[None, :, None]
+    x = np.atleast_2d(share)[..., None]
     linear = v0 * duration[:, None]
     return p0[:, None] + x * (linear[:, None] + x * (square[:, None] + x * cube[:, None]))
 
@@ -31,7 +31,7 @@ def hermite_lengths(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array,
 def hermite_speeds(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, share: Array) -> Array:
     """Speeds at shares of the duration, (N, M, 6)."""
     square, cube = _coefficients(p0, v0, p1, v1, duration)
-    x = share[None, :, None]
+    x = np.atleast_2d(share)[..., None]
     return v0[:, None] + x * (2 * square[:, None] + 3 * x * cube[:, None]) / duration[:, None, None]
 
 

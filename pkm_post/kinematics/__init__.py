@@ -2,7 +2,7 @@
 """The 6-TPS machine: inverse and forward kinematics, Jacobian, rates, and what the machine can reach."""
 
 from pkm_post.kinematics.forward import Solution, forward
-from pkm_post.kinematics.interpolation import interpolation_error
+from pkm_post.kinematics.interpolation import Stray, stray
 from pkm_post.kinematics.inverse import platform_joints, strut_lengths, strut_vectors
 from pkm_post.kinematics.jacobian import jacobian_of_platform, jacobian_of_tip, scaled_jacobian
 from pkm_post.kinematics.orientation import platform_rotation
@@ -12,8 +12,8 @@ from pkm_post.kinematics.workspace import Margins, reach_faults, reach_margins
 __all__ = [
     "Margins",
     "Solution",
+    "Stray",
     "forward",
-    "interpolation_error",
     "jacobian_of_platform",
     "jacobian_of_tip",
     "platform_joints",
@@ -21,6 +21,7 @@ __all__ = [
     "reach_faults",
     "reach_margins",
     "scaled_jacobian",
+    "stray",
     "strut_lengths",
     "strut_rates",
     "strut_vectors",

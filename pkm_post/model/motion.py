@@ -38,6 +38,7 @@ class Motion:
         spin_rate: (M,) rate of the spin, rad/s.
         tool_length: (M,) gauge length of the tool in use.
         segment: (M,) the trajectory segment the knot lies on; at a joint the earlier one.
+        joint_time: (N,) s, when the end of each of the N trajectory segments is passed.
         events: what happens, by knot: the motion rests at knot r, the event takes place, the motion goes on.
     """
 
@@ -50,10 +51,12 @@ class Motion:
     spin_rate: Array
     tool_length: Array
     segment: Array
+    joint_time: Array
     events: tuple[Event, ...]
 
     def __post_init__(self) -> None:
         freeze(self, len(self.time_ms), MOTION_BY_TIME)
+        freeze(self, len(self.joint_time), {"joint_time": (np.float64, ())})
 
     def __len__(self) -> int:
         return len(self.time_ms)

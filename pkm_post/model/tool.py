@@ -3,7 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray[Any, np.dtype[Any]]
 
 
 @dataclass(frozen=True)
@@ -23,3 +29,15 @@ class Tool:
     diameter: float
     corner_radius: float
     length: float
+
+
+def lengths_of(tools: Mapping[int, Tool], numbers: Array) -> Array:
+    """Gauge lengths of a column of tool numbers, (N,) in mm.
+
+    Args:
+        tools: the tools by number.
+        numbers: (N,) numbers, all of them among the tools.
+    """
+    known = np.array(sorted(tools), dtype=np.int64)
+    lengths: Array = np.array([tools[number].length for number in known])[np.searchsorted(known, numbers)]
+    return lengths

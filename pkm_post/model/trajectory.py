@@ -16,7 +16,7 @@ from pkm_post.model.columns import RowType, freeze
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.event import Event
 from pkm_post.model.program import MOTION_COLUMNS, Array
-from pkm_post.model.tool import Tool
+from pkm_post.model.tool import Tool, lengths_of
 
 TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
     "tip": (np.float64, (3,)),
@@ -103,10 +103,7 @@ class Trajectory:
 
     def tool_length(self) -> Array:
         """Gauge length of the tool in use, (N,) in mm."""
-        numbers = np.array(sorted(self.tools), dtype=np.int32)
-        lengths = np.array([self.tools[number].length for number in sorted(self.tools)])
-        length: Array = lengths[np.searchsorted(numbers, self.tool)]
-        return length
+        return lengths_of(self.tools, self.tool)
 
     def tip_before(self) -> Array:
         """Tool tip at the start of each segment, (N, 3).

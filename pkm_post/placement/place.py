@@ -8,19 +8,23 @@ takes the zero-torsion pose of every tool axis.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import angle_between, arc_sweep, norm, towards
+from pkm_post.geometry import angle_between, arc_sweep, norm
 from pkm_post.geometry.arcs import arc_length
-from pkm_post.geometry.vectors import Array, cross, unit
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Program, Trajectory
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Trajectory
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.tool import lengths_of
+from pkm_post.placement.smoothness import smooth
+from pkm_post.placement.symmetry import mirrors, transform
 
+UPRIGHT = np.array([0.0, 0.0, 1.0])
 _NO_MOVE = 1e-9
 """mm and rad: a row that moves less is left out."""
-_NO_CORNER = 1e-6
-"""rad: a change of direction below this is called smooth."""
 _HALF_TURN = np.pi - 1e-6
 
 
@@ -31,52 +35,28 @@ def place(
 
     Args:
         program: cutter locations in {C}.
-        machine: gives the home pose and the feed limits.
-        machine_from_work: (4, 4) work offset D, a rigid transform.
+        machine: gives the home pose and the limits of feed and spindle.
+        machine_from_work: (4, 4) work offset D, a rotation with a shift.
     """
-    rotation, shift = machine_from_work[:3, :3], machine_from_work[:3, 3]
-    tip, axis = program.position @ rotation.T + shift, program.tool_axis @ rotation.T
-    centre, turn = program.arc_centre @ rotation.T + shift, program.arc_axis @ rotation.T
-    tool = _tool_by_row(program)
-    axis_before = np.vstack([[0.0, 0.0, 1.0], axis[:-1]])
-    tip_before = np.vstack([machine.home_tip, tip[:-1]]) - _growth(program, tool)[:, None] * axis_before
-    angle = angle_between(axis_before, axis)
-    faults = _faults(program, machine, angle)
-    if any(fault.severity.value == "error" for fault in faults):
+    placed, faults = transform(program, machine_from_work)
+    if placed is None:
         return None, faults
-
-    arc = program.kind == Kind.ARC
-    sweep, length = np.zeros(len(program)), norm(tip - tip_before)
-    sweep[arc] = arc_sweep(tip_before[arc], tip[arc], centre[arc], turn[arc])
-    length[arc] = arc_length(tip_before[arc], tip[arc], centre[arc], turn[arc])
-    limit = np.where(program.kind == Kind.RAPID, machine.rapid_speed, machine.feed_speed)
-    keep = (length > _NO_MOVE) | (angle > _NO_MOVE)
+    if mirrors(machine_from_work):
+        return None, (Diagnostic("K109", Place(machine.name), "the work offset is a mirror"),)
+    way = _way(placed, machine)
+    keep = (way["length"] > _NO_MOVE) | (way["angle"] > _NO_MOVE)
+    faults = tuple(_faults(placed, machine, way["angle"], keep))
+    if errors(faults):
+        return None, faults
+    columns = {name: column[keep] for name, column in way.items()}
+    tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
     events = _events_on_kept_rows(program.events, keep)
-    columns: dict[str, Any] = {
-        "kind": program.kind,
-        "tip": tip,
-        "axis": axis,
-        "spin": np.zeros(len(program)),
-        "feed": np.fmin(program.feed, limit),
-        "arc_centre": centre,
-        "arc_axis": turn,
-        "sweep": sweep,
-        "length": length,
-        "angle": angle,
-        "tool": tool,
-        "operation": program.operation,
-        "line": program.line,
-    }
-    columns = {name: column[keep] for name, column in columns.items()}
-    stops = np.zeros(int(keep.sum()), dtype=bool)
-    stops[[event.row - 1 for event in events if event.row > 0]] = True
-    stops[-1:] = True
-    columns["exact_stop"] = stops
-    columns["smooth"] = ~stops & _smooth(columns, tip_before[keep], axis_before[keep])
+    columns["exact_stop"] = stops = _stops(events, int(keep.sum()))
+    columns["smooth"] = ~stops & smooth(columns, tip_before, axis_before)
     trajectory = Trajectory(
         **columns,
         start_tip=machine.home_tip,
-        start_axis=np.array([0.0, 0.0, 1.0]),
+        start_axis=UPRIGHT,
         start_spin=0.0,
         events=events,
         operations=program.operations,
@@ -89,21 +69,35 @@ def place(
     return trajectory, faults
 
 
-def _faults(program: Program, machine: Machine, angle: Array) -> tuple[Diagnostic, ...]:
-    faults = [
-        Diagnostic("K106", program.place(int(row)), f"{np.degrees(angle[row]):.3f} degrees")
-        for row in np.flatnonzero(angle > _HALF_TURN)
-    ]
-    for event in program.events:
-        if event.kind is EventKind.SPINDLE and abs(event.value) > machine.spindle_speed:
-            found = f"{abs(event.value):g} rpm, the machine allows {machine.spindle_speed:g}"
-            faults.append(Diagnostic("K107", program.place(min(event.row, len(program) - 1)), found))
-    fast = program.feed > machine.feed_speed
-    for operation in np.unique(program.operation[fast]):
-        row = int(np.flatnonzero(fast & (program.operation == operation))[0])
-        found = f"F{60 * program.feed[row]:g} mm/min, limited to {60 * machine.feed_speed:g}"
-        faults.append(Diagnostic("K110", program.place(row), found))
-    return tuple(faults)
+def _way(placed: Program, machine: Machine) -> dict[str, Any]:
+    """Columns of the way by row of the program: where each row begins and ends, and how far that is."""
+    tip, axis, centre, turn = placed.position, placed.tool_axis, placed.arc_centre, placed.arc_axis
+    tool = _tool_by_row(placed)
+    axis_before = np.vstack([UPRIGHT, axis[:-1]])
+    # At a tool change the platform stands still: the tip of a longer tool begins further down.
+    longer = np.diff(lengths_of(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
+    tip_before = np.vstack([machine.home_tip, tip[:-1]]) - longer[:, None] * axis_before
+    arc = placed.kind == Kind.ARC
+    sweep, length = np.zeros(len(placed)), norm(tip - tip_before)
+    sweep[arc] = arc_sweep(tip_before[arc], tip[arc], centre[arc], turn[arc])
+    length[arc] = arc_length(tip_before[arc], tip[arc], centre[arc], turn[arc])
+    return {
+        "kind": placed.kind,
+        "tip_before": tip_before,
+        "tip": tip,
+        "axis_before": axis_before,
+        "axis": axis,
+        "spin": np.zeros(len(placed)),
+        "feed": np.fmin(placed.feed, np.where(placed.kind == Kind.RAPID, machine.rapid_speed, machine.feed_speed)),
+        "arc_centre": centre,
+        "arc_axis": turn,
+        "sweep": sweep,
+        "length": length,
+        "angle": angle_between(axis_before, axis),
+        "tool": tool,
+        "operation": placed.operation,
+        "line": placed.line,
+    }
 
 
 def _tool_by_row(program: Program) -> Array:
@@ -116,10 +110,20 @@ def _tool_by_row(program: Program) -> Array:
     return tool
 
 
-def _growth(program: Program, tool: Array) -> Array:
-    """By how much the tool is longer than that of the row before, (N,): at a change the platform stands still."""
-    length = np.array([program.tools[int(number)].length for number in tool])
-    return np.diff(length, prepend=length[:1])
+def _faults(program: Program, machine: Machine, angle: Array, keep: Array) -> Iterator[Diagnostic]:
+    if not keep.any():
+        yield Diagnostic("J103", Place(program.source), "no move at all")
+    for turned in np.flatnonzero(angle > _HALF_TURN):
+        yield Diagnostic("K106", program.place(int(turned)), f"{np.degrees(angle[turned]):.3f} degrees")
+    for event in program.events:
+        if event.kind is EventKind.SPINDLE and abs(event.value) > machine.spindle_speed:
+            found = f"{abs(event.value):g} rpm, the machine allows {machine.spindle_speed:g}"
+            yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), found)
+    fast = program.feed > machine.feed_speed
+    for operation in np.unique(program.operation[fast]):
+        row = int(np.flatnonzero(fast & (program.operation == operation))[0])
+        found = f"F{60 * program.feed[row]:g} mm/min, limited to {60 * machine.feed_speed:g}"
+        yield Diagnostic("K110", program.place(row), found)
 
 
 def _events_on_kept_rows(events: tuple[Event, ...], keep: Array) -> tuple[Event, ...]:
@@ -127,34 +131,9 @@ def _events_on_kept_rows(events: tuple[Event, ...], keep: Array) -> tuple[Event,
     return tuple(Event(int(kept_before[event.row]), event.kind, event.value) for event in events)
 
 
-def _smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
-    """Whether the tip keeps its direction, and the axis its rate by path length, into the next segment, (N,)."""
-    ends = _end_directions(columns, tip_before)
-    starts = _start_directions(columns, tip_before)
-    axis, length = columns["axis"], np.maximum(columns["length"], _NO_MOVE)[:, None]
-    rate_end = -towards(axis, axis_before) / length
-    rate_start = towards(axis_before, axis) / length
-    corner = norm(starts[1:] - ends[:-1]) + norm(rate_start[1:] - rate_end[:-1])
-    moves = columns["length"] > _NO_MOVE
-    return np.append((corner < _NO_CORNER) & moves[1:] & moves[:-1], False)
-
-
-def _start_directions(columns: dict[str, Any], tip_before: Array) -> Array:
-    return _directions(columns, tip_before, tip_before)
-
-
-def _end_directions(columns: dict[str, Any], tip_before: Array) -> Array:
-    return _directions(columns, tip_before, columns["tip"])
-
-
-def _directions(columns: dict[str, Any], tip_before: Array, at: Array) -> Array:
-    """Unit tangents of the tip's way at points ``at`` of the segments, (N, 3); zero where the tip stands."""
-    direction = columns["tip"] - tip_before
-    arc = columns["kind"] == Kind.ARC
-    turn, radius = columns["arc_axis"][arc], (at - columns["arc_centre"])[arc]
-    rise = np.einsum("nj,nj->n", direction[arc], turn) / columns["sweep"][arc]
-    direction[arc] = cross(turn, radius) + rise[:, None] * turn
-    moves = norm(direction) > _NO_MOVE
-    direction[moves] = unit(direction[moves])
-    direction[~moves] = 0.0
-    return direction
+def _stops(events: tuple[Event, ...], segments: int) -> Array:
+    """Whether the motion rests at the end of each segment, (N,): before an event, and at the end of all."""
+    stops = np.zeros(segments, dtype=bool)
+    stops[[event.row - 1 for event in events if event.row > 0]] = True
+    stops[-1:] = True
+    return stops

@@ -7,6 +7,7 @@ The data holds no times of day and no paths: the same job gives the same bytes.
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +81,7 @@ def _finding(finding: Finding) -> dict[str, Any]:
     return {
         "what": finding.name,
         "unit": finding.unit,
-        "value": _significant(finding.value),
+        "value": _significant(finding.value) if math.isfinite(finding.value) else None,
         "limit": _significant(finding.limit),
         "holds": finding.holds,
         "time_s": finding.time,

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from machines import example
-from programs import ON_PALLET, cone
+from programs import ON_PALLET, cone, program
 
 from pkm_post import planning
 from pkm_post.certificate import certify
@@ -80,6 +80,29 @@ def test_a_dropped_point_is_found():
 
 def test_a_dropped_event_is_found():
     assert codes(verdict(changed(events=()))) == {"V109"}
+
+
+def test_turning_back_too_early_is_found():
+    # To and fro on one straight line: a motion that turns round early never leaves the line.
+    machine = example()
+    there_and_back = program([[0, 0, 60], [0, 0, 50], [20, 0, 50], [0, 0, 50]])
+    trajectory, _ = place(there_and_back, machine, ON_PALLET)
+    path = planning.tool_path(trajectory, TOLERANCES)
+    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    motion = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
+    short = dataclasses.replace(motion, tip=np.minimum(motion.tip, [19.9, np.inf, np.inf]))
+    turned = motion.tip[:, 0] > 19.9
+    short = dataclasses.replace(short, tip_rate=np.where(turned[:, None], 0.0, motion.tip_rate))
+    assert turned.any()
+    _, faults = certify(
+        planning.strut_motion(short, machine), "x.pmc", trajectory, machine, motion, Tolerances(0.01, 1e-3)
+    )
+    assert "V110" in {fault.code for fault in faults}
+
+
+def test_another_machine_is_found():
+    other = dataclasses.replace(planned()[0], fingerprint="1" * 64)
+    assert codes(verdict(machine=other)) == {"T104"}
 
 
 def test_motion_at_the_end_is_found():

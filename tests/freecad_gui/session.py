@@ -2,7 +2,8 @@
 """What happens in a FreeCAD with a window: run by FreeCAD, writes what it found as JSON and ends.
 
 The environment names the files, since FreeCAD would open those that its command line names: PKM_RESULT for the JSON,
-PKM_SCREENSHOT for a picture of the window. Each step is a function; an exception in one is its result, and the others still run.
+PKM_SCREENSHOT for a picture of the window. Each step is a function; an exception in one is its result, and the others
+still run.
 """
 
 import json

@@ -61,6 +61,7 @@ def test_feeds_are_limited_with_a_warning():
     ("code", "made"),
     [
         ("K106", program([[0, 0, 60], [10, 0, 60]], np.array([[0, 0, 1.0], [0, 0, -1.0]]))),
+        ("J103", program([[0, 0, 150]])),
         ("K107", program([[0, 0, 60], [1, 0, 60]], events=(Event(1, EventKind.SPINDLE, -24001),))),
     ],
 )
@@ -82,3 +83,10 @@ def test_at_a_tool_change_the_platform_stands_still():
     platform_before = trajectory.tip_before()[2] + reach[2] * trajectory.axis_before()[2]
     np.testing.assert_allclose(platform_before, platform_after, atol=1e-12)
     np.testing.assert_allclose(trajectory.length, norm(trajectory.tip - trajectory.tip_before()), atol=1e-12)
+
+
+@pytest.mark.parametrize("offset", [np.diag([1.0, -1, 1, 1]), np.diag([2.0, 1, 1, 1]), np.full((4, 4), np.nan)])
+def test_a_work_offset_that_is_no_rotation_with_a_shift(offset):
+    trajectory, faults = place(cone(20), example(), offset)
+    assert trajectory is None
+    assert [fault.code for fault in faults] == ["K109"]
