@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from pkm_post.model.columns import RowType, freeze
 from pkm_post.model.diagnostics import Place
@@ -39,6 +40,14 @@ MOTION_COLUMNS: dict[str, RowType] = {
     "line": (np.int32, ()),
 }
 
+OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
+    "exact_stop": (np.bool_, (), False),
+    "side_offset": (np.float64, (), 0.0),
+    "plane": (np.uint8, (), 2),
+    "normal": (np.float64, (3,), np.nan),
+}
+"""Columns that few sources have, each with the value it has without."""
+
 
 @dataclass(frozen=True)
 class Program:
@@ -57,6 +66,13 @@ class Program:
         operations: names of the operations the rows come from.
         tools: the tools used, by number.
         source: name of the file the program comes from.
+        exact_stop: (N,) whether the motion comes to rest at the end of the row (G61); none does by default.
+        side_offset: (N,) radius of the 2D cutter compensation that the row is programmed with and that is not applied
+            yet, mm: positive to the left of the path (G41), negative to the right (G42), 0 for none, the default.
+        plane: (N,) the coordinate the compensation's plane is normal to: 2 for XY (G17), the default, 1 for ZX (G18),
+            0 for YZ (G19).
+        normal: (N, 3) unit surface normal at the contact point, towards the tool, in {C}; NaN, the default, where the
+            source gives none.
     """
 
     kind: Array
@@ -71,10 +87,19 @@ class Program:
     operations: tuple[str, ...]
     tools: dict[int, Tool]
     source: str
+    exact_stop: Array = None  # type: ignore[assignment] # filled in below
+    side_offset: Array = None  # type: ignore[assignment] # filled in below
+    plane: Array = None  # type: ignore[assignment] # filled in below
+    normal: Array = None  # type: ignore[assignment] # filled in below
 
     def __post_init__(self) -> None:
         vectors: dict[str, RowType] = {"position": (np.float64, (3,)), "tool_axis": (np.float64, (3,))}
-        freeze(self, len(self.kind), MOTION_COLUMNS | vectors)
+        rows = len(self.kind)
+        for name, (row_type, row_shape, default) in OPTIONAL_COLUMNS.items():
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, np.full((rows, *row_shape), default, row_type))
+        optional = {name: (row_type, row_shape) for name, (row_type, row_shape, _) in OPTIONAL_COLUMNS.items()}
+        freeze(self, rows, MOTION_COLUMNS | vectors | optional)
 
     def __len__(self) -> int:
         return len(self.kind)
