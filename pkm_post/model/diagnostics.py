@@ -106,6 +106,8 @@ RULES: dict[str, Rule] = {
     "N102": _error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),
     "N103": _error("the normal is parallel to the tool axis and no direction of travel is known", "lean the tool"),
     "K110": _warning("the feed is beyond the machine and is limited", "program a feed that the machine can run"),
+    "K111": _error("2D cutter compensation (G41, G42) is not applied yet", "let the CAM system offset the path"),
+    "K112": _error("cutter compensation would leave its plane", "compensate before the path is turned or mirrored"),
     # T: the binary trajectory
     "T101": _error("the file is not a trajectory file", "give a .pkmt file"),
     "T102": _error("the trajectory file has a version that this program does not know", "use a newer PKM Post"),

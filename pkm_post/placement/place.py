@@ -51,7 +51,7 @@ def place(
     columns = {name: column[keep] for name, column in way.items()}
     tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
     events = _events_on_kept_rows(program.events, keep)
-    columns["exact_stop"] = stops = _stops(events, int(keep.sum()))
+    columns["exact_stop"] = stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
     columns["smooth"] = ~stops & smooth(columns, tip_before, axis_before)
     trajectory = Trajectory(
         **columns,
@@ -119,6 +119,9 @@ def _faults(program: Program, machine: Machine, angle: Array, keep: Array) -> It
         if event.kind is EventKind.SPINDLE and abs(event.value) > machine.spindle_speed:
             found = f"{abs(event.value):g} rpm, the machine allows {machine.spindle_speed:g}"
             yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), found)
+    for row in np.flatnonzero(program.side_offset)[:1]:
+        found = f"radius {abs(program.side_offset[row]):g} mm"
+        yield Diagnostic("K111", program.place(int(row)), found)
     fast = program.feed > machine.feed_speed
     for operation in np.unique(program.operation[fast]):
         row = int(np.flatnonzero(fast & (program.operation == operation))[0])

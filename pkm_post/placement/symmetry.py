@@ -39,6 +39,9 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
     if fault:
         return None, (Diagnostic("K109", Place(program.source), fault),)
     turn, shift = matrix[:3, :3], matrix[:3, 3]
+    plane, side_offset = _compensation(program, turn)
+    if plane is None:
+        return None, (Diagnostic("K112", Place(program.source), "the plane is not parallel to two axes any more"),)
     arc_axis = program.arc_axis @ turn.T * np.sign(np.linalg.det(turn))
     moved = dataclasses.replace(
         program,
@@ -46,8 +49,25 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
         tool_axis=unit(program.tool_axis @ turn.T),
         arc_centre=program.arc_centre @ turn.T + shift,
         arc_axis=arc_axis / norm(arc_axis)[:, None],
+        side_offset=side_offset,
+        plane=plane,
+        normal=program.normal @ turn.T,
     )
     return moved, ()
+
+
+def _compensation(program: Program, turn: Array) -> tuple[Array | None, Array]:
+    """Plane and side offset of the moved rows, (N,) each; no plane where a compensated one is oblique.
+
+    Left of a path with tangent t is n x t, n the normal of the plane in the sense of its coordinate. R (n x t) =
+    det(R) Rn x Rt, so the side changes with the sign of det(R) times that of Rn along its new coordinate.
+    """
+    normals = turn[:, program.plane].T
+    plane = np.argmax(np.abs(normals), axis=1)
+    along = normals[np.arange(len(normals)), plane]
+    if np.any((np.abs(along) < 1 - _RIGID) & (program.side_offset != 0)):
+        return None, program.side_offset
+    return plane, program.side_offset * np.sign(along) * np.sign(np.linalg.det(turn))
 
 
 def mirror(point: ArrayLike, normal: ArrayLike) -> Array:

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+import dataclasses
+
 import numpy as np
 import pytest
 from machines import example, rotation_about
@@ -90,3 +92,17 @@ def test_a_work_offset_that_is_no_rotation_with_a_shift(offset):
     trajectory, faults = place(cone(20), example(), offset)
     assert trajectory is None
     assert [fault.code for fault in faults] == ["K109"]
+
+
+def test_exact_stops_of_the_program_are_kept():
+    made = dataclasses.replace(program([[0, 0, 60], [10, 0, 60], [20, 0, 60]]), exact_stop=[False, True, False])
+    trajectory, _ = place(made, example(), ON_PALLET)
+    assert trajectory.exact_stop.tolist() == [False, True, True]
+    assert not trajectory.smooth[1]
+
+
+def test_compensation_that_is_not_applied_is_refused():
+    made = dataclasses.replace(program([[0, 0, 60], [10, 0, 60]]), side_offset=[0.0, 4.0])
+    trajectory, faults = place(made, example(), ON_PALLET)
+    assert trajectory is None
+    assert [(fault.code, fault.place.line) for fault in faults] == [("K111", 2)]

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Laws of mirrors and rotations, and the rules for what a mirror does to arcs and spindles."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from machines import rotation_about
@@ -171,3 +173,35 @@ def test_wrong_arguments_are_the_callers_fault():
         mirror([0, 0, 0], [0, 0, 0])
     with pytest.raises(ValueError, match="direction"):
         rotation([0, 0, 0], [0, 0, 0], 1.0)
+
+
+# The signs by which x, y and z are mirrored, the plane, and what becomes of a tool on the left: domain rule "G41 and
+# G42 swap when exactly one of the two axes of the plane is mirrored".
+@pytest.mark.parametrize(
+    ("signs", "plane", "side"),
+    [
+        ((1, -1, 1), 2, -1), ((-1, 1, 1), 2, -1), ((1, 1, -1), 2, 1), ((-1, -1, 1), 2, 1),
+        ((-1, 1, 1), 1, -1), ((1, -1, 1), 1, 1), ((1, 1, -1), 0, -1), ((-1, 1, 1), 0, 1),
+    ],
+)  # fmt: skip
+def test_side_of_the_compensation(signs, plane, side):
+    made = dataclasses.replace(program([[0, 0, 0], [9, 5, 2]]), side_offset=[0.0, 4.0], plane=[plane, plane])
+    moved, faults = transform(made, np.diag([*signs, 1.0]))
+    assert not faults
+    assert moved.side_offset.tolist() == [0.0, 4.0 * side]
+    assert moved.plane.tolist() == [plane, plane]
+
+
+def test_compensation_may_not_leave_its_plane_but_may_change_it():
+    made = dataclasses.replace(program([[0, 0, 0], [9, 5, 2]]), side_offset=[0.0, 4.0])
+    moved, _ = transform(made, rotation((0, 0, 0), (1, 0, 0), np.pi / 2))
+    assert moved.plane.tolist() == [1, 1]
+    oblique, faults = transform(made, rotation((0, 0, 0), (1, 0, 0), 0.3))
+    assert oblique is None
+    assert [fault.code for fault in faults] == ["K112"]
+
+
+def test_normals_turn_with_the_part():
+    made = dataclasses.replace(program([[0, 0, 0], [9, 5, 2]]), normal=[[np.nan] * 3, [0, 0.6, 0.8]])
+    moved, _ = transform(made, mirror((0, 0, 0), (0, 1, 0)))
+    np.testing.assert_allclose(moved.normal[1], [0, -0.6, 0.8], atol=1e-15)
