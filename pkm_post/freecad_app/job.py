@@ -22,7 +22,7 @@ from pkm_post.freecad_app.layers import is_ours, spoilers
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
 from pkm_post.model import Diagnostic, Event, EventKind, Place, Program, Tool
 from pkm_post.model.diagnostics import errors
-from pkm_post.model.program import MOTION_COLUMNS
+from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS
 from pkm_post.placement import transform
 
 __all__ = ["document_name", "read_job", "set_gauge_length"]
@@ -147,7 +147,7 @@ class _Way:
 
     def program(self, tools: Mapping[int, Tool]) -> Program:
         """All operations, one after the other."""
-        names = {*MOTION_COLUMNS, "position", "tool_axis"} - {"operation"}
+        names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS, "position", "tool_axis"} - {"operation"}
         columns = {name: np.concatenate([getattr(program, name) for program in self._programs]) for name in names}
         return Program(
             **columns,
