@@ -16,7 +16,7 @@ from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import angle_between, hermite_accelerations, hermite_lengths, hermite_speeds, norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import forward
-from pkm_post.kinematics.jacobian import jacobian_of_struts
+from pkm_post.kinematics.jacobian import linearise
 from pkm_post.model import Machine, Motion, StrutMotion, Trajectory
 
 INSTANTS = 9
@@ -83,7 +83,7 @@ def _play(struts: StrutMotion, machine: Machine, ruler: TrajectoryRuler, motion:
         motion.spin[instant],
     )
     tip, axis = ruler.deviation(pose.tip, pose.axis, motion.segment[instant], motion.segment[instant + 1])
-    jacobian = jacobian_of_struts(machine, pose.tip, pose.rotation, tool_length)
+    jacobian, _ = linearise(machine, pose.tip, pose.rotation, tool_length)
     jacobian[~pose.converged] = np.eye(6)  # no pose was found there, which is refused as such
     twist = np.linalg.solve(jacobian, speed.reshape(-1, 6, 1))[..., 0]
     shape = len(rows), INSTANTS

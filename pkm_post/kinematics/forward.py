@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array, cross, norm
+from pkm_post.geometry.vectors import Array, norm
+from pkm_post.kinematics.jacobian import linearise
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.model import Machine
 
@@ -65,8 +66,8 @@ def forward(
     converged = np.zeros(len(tip), dtype=bool)
     open_rows = np.arange(len(tip))
     for _ in range(iterations):
-        jacobian, residual = _linearise(machine, tip[open_rows], rotation[open_rows], tool_length[open_rows])
-        residual = lengths[open_rows] - residual
+        jacobian, found = linearise(machine, tip[open_rows], rotation[open_rows], tool_length[open_rows])
+        residual = lengths[open_rows] - found
         done = np.max(np.abs(residual), axis=1) < _LENGTH_TOLERANCE
         converged[open_rows[done]] = True
         regular = np.abs(np.linalg.det(jacobian)) > 0
@@ -78,16 +79,6 @@ def forward(
         tip[open_rows] += step[:, :3]
         rotation[open_rows] = _rotation_of(step[:, 3:]) @ rotation[open_rows]
     return Solution(tip, rotation, converged)
-
-
-def _linearise(machine: Machine, tip: Array, rotation: Array, tool_length: Array) -> tuple[Array, Array]:
-    """Tip Jacobians (N, 6, 6) and strut lengths (N, 6) at poses given by rotation matrices."""
-    reach = (machine.spindle_nose + tool_length)[:, None]
-    arm = (reach * rotation[:, :, 2])[:, None, :] + machine.platform_joints @ rotation.transpose(0, 2, 1)
-    strut = tip[:, None, :] + arm - machine.base_joints
-    length = norm(strut)
-    direction = strut / length[..., None]
-    return np.concatenate([direction, cross(arm, direction)], axis=-1), length
 
 
 def _rotation_of(vector: Array) -> Array:

@@ -34,14 +34,20 @@ def scaled_jacobian(machine: Machine, tip: Array, axis: Array, spin: Array, tool
     return jacobian / np.repeat([1.0, machine.characteristic_length], 3)
 
 
-def jacobian_of_struts(machine: Machine, tip: Array, rotation: Array, tool_length: Array) -> Array:
-    """Tip Jacobians at poses given by rotation matrices (N, 3, 3), (N, 6, 6)."""
+def linearise(machine: Machine, tip: Array, rotation: Array, tool_length: Array) -> tuple[Array, Array]:
+    """Tip Jacobians (N, 6, 6) and strut lengths (N, 6) at poses given by rotation matrices (N, 3, 3)."""
     reach = (machine.spindle_nose + tool_length)[:, None]
     arm = (reach * rotation[:, :, 2])[:, None, :] + machine.platform_joints @ rotation.transpose(0, 2, 1)
-    return _jacobian(machine, tip[:, None, :] + arm, tip)
+    strut = tip[:, None, :] + arm - machine.base_joints
+    length = norm(strut)
+    return _rows(strut / length[..., None], arm), length
 
 
 def _jacobian(machine: Machine, joints: Array, point: Array) -> Array:
-    struts = joints - machine.base_joints
-    direction = struts / norm(struts)[..., None]
-    return np.concatenate([direction, cross(joints - point[:, None, :], direction)], axis=-1)
+    strut = joints - machine.base_joints
+    return _rows(strut / norm(strut)[..., None], joints - point[:, None, :])
+
+
+def _rows(direction: Array, arm: Array) -> Array:
+    """The rows [u, r x u], (N, 6, 6)."""
+    return np.concatenate([direction, cross(arm, direction)], axis=-1)

@@ -19,6 +19,9 @@ from pkm_post.kinematics.jacobian import scaled_jacobian
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.model import Diagnostic, Machine, Poses, Trajectory
 
+_CHUNK = 16384
+"""Poses per pass: the working arrays of one pass stay in the processor's cache."""
+
 
 @dataclass(frozen=True)
 class Margins:
@@ -29,8 +32,9 @@ class Margins:
         longest: (N, 6) the longest strut length minus this one, mm.
         base: (N, 6) base cone minus swing of the base joint, rad.
         platform: (N, 6) platform cone minus swing of the platform joint, rad.
-        singular: (N,) smallest singular value of the scaled Jacobian minus the least allowed; negative as well
-            where the determinant has another sign than at the start of the path, since a singular pose lies between.
+        singular: (N,) smallest singular value of the scaled Jacobian minus the least allowed, or less where it is
+            positive anyway; negative as well where the determinant has another sign than at the start of the path,
+            since a singular pose lies between.
     """
 
     shortest: Array
@@ -42,21 +46,46 @@ class Margins:
 
 def reach_margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Margins:
     """Margins of poses in order along a path; arguments as in ``inverse``."""
+    poses = tip, axis, spin, tool_length
+    parts = [
+        _margins(machine, *(column[first : first + _CHUNK] for column in poses)) for first in range(0, len(tip), _CHUNK)
+    ]
+    shortest, longest, base, platform, smallest, sign = (
+        np.concatenate(columns) for columns in zip(*parts, strict=True)
+    )
+    smallest = np.where(sign == sign[:1], smallest, -smallest)
+    return Margins(shortest, longest, base, platform, singular=smallest - machine.least_singular_value)
+
+
+def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> tuple[Array, ...]:
+    """Margins of a chunk; instead of that to singular poses, smallest singular value and sign of the determinant."""
     struts = strut_vectors(machine, tip, axis, spin, tool_length)
     length = norm(struts)
     direction = struts / length[..., None]
     in_platform = -direction @ platform_rotation(axis, spin)
     jacobian = scaled_jacobian(machine, tip, axis, spin, tool_length)
-    smallest = np.linalg.svd(jacobian, compute_uv=False)[:, -1]
-    sign = np.sign(np.linalg.det(jacobian))
-    smallest = np.where(sign == sign[:1], smallest, -smallest)
-    return Margins(
-        shortest=length - machine.strut_stroke[0],
-        longest=machine.strut_stroke[1] - length,
-        base=machine.base_cone - angle_between(direction, machine.base_rest),
-        platform=machine.platform_cone - angle_between(in_platform, machine.platform_rest),
-        singular=smallest - machine.least_singular_value,
+    determinant = np.linalg.det(jacobian)
+    return (
+        length - machine.strut_stroke[0],
+        machine.strut_stroke[1] - length,
+        machine.base_cone - angle_between(direction, machine.base_rest),
+        machine.platform_cone - angle_between(in_platform, machine.platform_rest),
+        _smallest_singular_value(jacobian, determinant, machine.least_singular_value),
+        np.sign(determinant),
     )
+
+
+def _smallest_singular_value(jacobian: Array, determinant: Array, limit: float) -> Array:
+    """Smallest singular values, (N,); where that cannot be below the limit, a lower bound of it that is cheap.
+
+    |det J| is the product of the singular values and |J|^2 the sum of their squares. The product of five of them is
+    largest when they are equal, so the sixth is at least |det J| / (|J|^2 / 5)^(5/2).
+    """
+    square = np.einsum("nij,nij->n", jacobian, jacobian)
+    bound = np.abs(determinant) / (square / 5) ** 2.5
+    near = np.flatnonzero(bound < limit)
+    bound[near] = np.linalg.svd(jacobian[near], compute_uv=False)[:, -1]
+    return bound
 
 
 def reach_faults(machine: Machine, trajectory: Trajectory, poses: Poses) -> tuple[Diagnostic, ...]:
