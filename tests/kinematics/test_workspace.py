@@ -40,8 +40,8 @@ def test_a_path_through_a_singular_pose_is_negative_behind_it():
     assert (margins.singular[3:] < 0).all()
 
 
-# Rest axes along the struts of the upright platform at tip z = 200: a tilt swings the joints by at most these angles, over
-# azimuths in steps of 15 degrees; computed by the same independent script as the golden lengths.
+# Rest axes along the struts of the upright platform at tip z = 200: a tilt swings the joints by at most these angles,
+# over azimuths in steps of 15 degrees; computed by the same independent script as the golden lengths.
 @pytest.mark.parametrize(("tilt", "base", "platform"), [(0, 0.0, 0.0), (25, 6.3, 30.7)])
 def test_swing_is_measured_from_the_rest_axes(tilt, base, platform):
     machine = example()
