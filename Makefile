@@ -5,10 +5,12 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format clean
+.PHONY: help demo test lint format fuzz clean
 
 PYTHON ?= python3
 VENV := .venv
+FUZZ_VENV := .venv-fuzz
+FUZZ_SECONDS ?= 120
 OUT ?= out
 ARGS ?=
 
@@ -43,18 +45,25 @@ format: $(VENV)/made ## lay out the Python files and sort their imports
 	@$(VENV)/bin/ruff check --quiet --select I --fix || true
 	@$(VENV)/bin/ruff format
 
+fuzz: $(FUZZ_VENV)/made ## feed the readers of part programs with bytes (FUZZ_SECONDS=120)
+	@PYTHONPATH=. $(FUZZ_VENV)/bin/python fuzz/part_programs.py -max_total_time=$(FUZZ_SECONDS) \
+		-timeout=20 -rss_limit_mb=2048 -print_final_stats=1
+
 clean: ## remove what the targets left in this directory
-	rm -rf out $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf out $(VENV) $(FUZZ_VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +
 
-$(VENV)/made: pyproject.toml
+# A virtual environment with the packages of one dependency group of pyproject.toml.
+$(VENV)/made: GROUP = dev
+$(FUZZ_VENV)/made: GROUP = fuzz
+$(VENV)/made $(FUZZ_VENV)/made: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed: make PYTHON=python3.NN" >&2; exit 1; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
 		{ echo "$(PYTHON) cannot make a virtual environment. Please type: sudo apt-get install python3-venv" >&2; exit 1; }
-	@echo "making $(VENV)"
-	@$(PYTHON) -m venv --clear $(VENV)
-	@$(VENV)/bin/python -c 'import tomllib; \
-		print(*tomllib.load(open("pyproject.toml", "rb"))["dependency-groups"]["dev"], sep="\n")' >$(VENV)/requirements.txt
-	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $(VENV)/requirements.txt
+	@echo "making $(@D)"
+	@$(PYTHON) -m venv --clear $(@D)
+	@$(@D)/bin/python -c 'import tomllib; \
+		print(*tomllib.load(open("pyproject.toml", "rb"))["dependency-groups"]["$(GROUP)"], sep="\n")' >$(@D)/requirements.txt
+	@$(@D)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $(@D)/requirements.txt
 	@touch $@

@@ -2,17 +2,19 @@
 """The command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and its like.
 
 Exit code 0 when all was done, 1 when the input was refused, 2 when the arguments make no sense. A FreeCAD document
-can be read by FreeCAD alone: outside of it the command starts FreeCADCmd and runs itself inside.
+can be read by FreeCAD alone: outside of it the command starts FreeCADCmd and runs itself inside. Part programs of other
+sources are checked and converted without it.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import pkm_post
@@ -40,14 +42,89 @@ def _parser() -> argparse.ArgumentParser:
     add_options(post)
     post.set_defaults(run=_post)
 
+    checking = commands.add_parser("check", help="say what is wrong with part programs, and what they hold")
+    checking.add_argument("files", nargs="+", type=_part_program, metavar="FILE")
+    checking.add_argument("--json", action="store_true", help="write JSON instead of text")
+    _add_reading(checking)
+    checking.set_defaults(run=_check)
+
+    converting = commands.add_parser("convert", help="write a part program in another form of G-code")
+    converting.add_argument("file", type=_part_program, metavar="FILE")
+    forms = "gcode:vector, gcode:AC, gcode:BC, gcode:linuxcnc or gcode:3axis"
+    converting.add_argument("--to", required=True, type=_target, metavar="FORM", help=forms)
+    converting.add_argument("--out", required=True, type=Path, metavar="FILE", help="the file to write")
+    converting.add_argument("--inch", action="store_true", help="write inches (G20)")
+    _add_reading(converting)
+    converting.set_defaults(run=_convert)
+
     machine = commands.add_parser("machine", help="list and check machine files")
     actions = machine.add_subparsers(required=True, metavar="ACTION")
     listing = actions.add_parser("list", help="name the machines that come with PKM Post")
     listing.set_defaults(run=_machine_list)
-    check = actions.add_parser("check", help="say whether a machine file is complete and makes sense")
-    check.add_argument("file", metavar="NAME_OR_FILE")
-    check.set_defaults(run=_machine_check)
+    machine_check = actions.add_parser("check", help="say whether a machine file is complete and makes sense")
+    machine_check.add_argument("file", metavar="NAME_OR_FILE")
+    machine_check.set_defaults(run=_machine_check)
     return parser
+
+
+def _add_reading(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--axis-words",
+        type=_axis_words,
+        default="none",
+        metavar="WORDS",
+        help="how the G-code says the tool axis: vector (I J K after G43.5), AC, BC or AB (rotary words after G43.4),"
+        " RPY (A B C of LinuxCNC's hexapod), or none, the default",
+    )
+    parser.add_argument(
+        "--tool",
+        dest="tools",
+        action="append",
+        type=_tool_diameter,
+        default=[],
+        metavar="NUMBER=MM",
+        help="diameter of a tool, for G41 and G42; may be repeated",
+    )
+
+
+def _axis_words(text: str) -> str:
+    from pkm_post.sources import AXIS_WORDS
+
+    return _one_of(AXIS_WORDS, text)
+
+
+def _target(text: str) -> str:
+    from pkm_post.convert import TARGETS
+
+    return _one_of(TARGETS, text)
+
+
+def _one_of(allowed: Collection[str], text: str) -> str:
+    if text not in allowed:
+        raise argparse.ArgumentTypeError(f"expected one of {', '.join(allowed)}, got {text!r}")
+    return text
+
+
+def _part_program(text: str) -> Path:
+    from pkm_post.sources import SUFFIXES, is_part_program
+
+    file = Path(text)
+    if not file.is_file():
+        raise argparse.ArgumentTypeError(f"there is no file {text}")
+    if not is_part_program(file):
+        raise argparse.ArgumentTypeError(f"expected a file ending in {', '.join(SUFFIXES)}, got {text}")
+    return file
+
+
+def _tool_diameter(text: str) -> tuple[int, float]:
+    number, _, diameter = text.partition("=")
+    try:
+        value = int(number), float(diameter)
+    except ValueError:
+        value = 0, math.nan
+    if not 0 < value[1] < math.inf:
+        raise argparse.ArgumentTypeError(f"expected NUMBER=MM, got {text!r}")
+    return value
 
 
 def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
@@ -75,6 +152,31 @@ def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
                 print(diagnostic, file=sys.stderr)
             for path in result.files:
                 print(path)
+    return 0
+
+
+def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post import check
+    from pkm_post.sources import Reading
+
+    reading = Reading(namespace.axis_words, dict(namespace.tools))
+    results = [check.check(file, reading) for file in namespace.files]
+    print(check.as_json(results) if namespace.json else check.as_text(results))
+    return 0 if all(result.is_clean for result in results) else 1
+
+
+def _convert(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.convert import convert
+    from pkm_post.model.diagnostics import errors
+    from pkm_post.sources import Reading
+
+    reading = Reading(namespace.axis_words, dict(namespace.tools))
+    diagnostics = convert(namespace.file, namespace.to, namespace.out, reading, inch=namespace.inch)
+    for diagnostic in diagnostics:
+        print(diagnostic, file=sys.stderr)
+    if errors(diagnostics):
+        return 1
+    print(namespace.out)
     return 0
 
 

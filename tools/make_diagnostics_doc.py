@@ -14,6 +14,8 @@ TARGET = ROOT / "docs" / "diagnostics.md"
 
 FAMILIES = {
     "J": "The CAM job",
+    "G": "G-code",
+    "L": "CL data",
     "M": "The machine file",
     "K": "What the machine can reach",
     "N": "Normals of the surface, and compensation with them",

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Check: what is wrong with part programs, and what they hold.
+
+Files enter; for each its diagnostics and its size leave, as text for people or as JSON for programs. Lengths in mm.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pkm_post.geometry import arc_points, arc_sweep, dot, norm
+from pkm_post.geometry.arcs import across, arc_length
+from pkm_post.geometry.vectors import cross
+from pkm_post.model import Diagnostic, Kind, Program
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.program import Array
+from pkm_post.sources import AS_WRITTEN, Reading, read_part_program
+
+_LONGEST_LINE = 200
+"""Characters of a line that is shown."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """What a program holds.
+
+    Attributes:
+        blocks: moves.
+        arcs: how many of them are arcs.
+        length: way of the tool tip from the first place on, mm.
+        lowest: (3,) the corner of the box of all places the tip comes to, mm.
+        highest: (3,) the opposite corner.
+    """
+
+    blocks: int
+    arcs: int
+    length: float
+    lowest: tuple[float, ...]
+    highest: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What was found in a file; ``size`` is None when it could not be read."""
+
+    file: Path
+    size: Size | None
+    diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def is_clean(self) -> bool:
+        """Whether nothing is wrong with the file."""
+        return not errors(self.diagnostics)
+
+
+def check(file: Path, reading: Reading = AS_WRITTEN) -> Checked:
+    """Read a part program and measure it.
+
+    Args:
+        file: the part program.
+        reading: what it does not say itself.
+
+    Raises:
+        ValueError: the suffix of the file is not known.
+    """
+    program, diagnostics = read_part_program(file, reading)
+    return Checked(file, None if program is None else size_of(program), diagnostics)
+
+
+def size_of(program: Program) -> Size:
+    """Measure a program of at least one row."""
+    start, end = program.position[:-1], program.position[1:]
+    length = norm(end - start)
+    row = np.flatnonzero(program.kind[1:] == Kind.ARC)
+    centre, axis = program.arc_centre[1:][row], program.arc_axis[1:][row]
+    length[row] = arc_length(start[row], end[row], centre, axis)
+    places = np.concatenate([program.position, _summits(start[row], end[row], centre, axis)])
+    return Size(
+        blocks=len(program),
+        arcs=len(row),
+        length=float(length.sum()),
+        lowest=tuple(places.min(axis=0).tolist()),
+        highest=tuple(places.max(axis=0).tolist()),
+    )
+
+
+def _summits(start: Array, end: Array, centre: Array, axis: Array) -> Array:
+    """Where arcs go farthest along X, Y and Z, between their ends, (m, 3).
+
+    A coordinate of the point at the angle t is a cos t + b sin t + const: extreme at atan2(b, a) and half a turn on.
+    """
+    radius = across(start - centre, axis)
+    angle = np.arctan2(cross(axis, radius), radius)
+    angle = np.mod(np.concatenate([angle, angle + np.pi], axis=1), 2 * np.pi)
+    sweep = arc_sweep(start, end, centre, axis)[:, None]
+    arc, _ = np.nonzero(angle < sweep)
+    turned = angle[angle < sweep]
+    rise = dot(end - start, axis)[arc] * turned / sweep[arc, 0]
+    return arc_points(start[arc], centre[arc], axis[arc], turned, rise)
+
+
+def as_text(results: Iterable[Checked]) -> str:
+    """Diagnostics with the lines they are about, then a row for each file."""
+    results = tuple(results)
+    told = [text for result in results for text in _told(result)]
+    return "\n".join([*told, *_rows(results)])
+
+
+def _told(result: Checked) -> list[str]:
+    lines = result.file.read_bytes().splitlines() if any(one.place.line for one in result.diagnostics) else []
+    return [text for one in result.diagnostics for text in (str(one), *_with_caret(one, lines))]
+
+
+def _with_caret(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
+    """The line of a diagnostic, and a caret below its column."""
+    line, column = diagnostic.place.line, diagnostic.place.column
+    if not (column and line <= len(lines)):
+        return []
+    shown = lines[line - 1].decode("utf-8", "replace").replace("\t", " ")
+    if len(shown) > _LONGEST_LINE or not shown.isprintable():
+        return []
+    return ["    " + shown, "    " + " " * (column - 1) + "^"]
+
+
+_HEAD = ("file", "blocks", "arcs", "length mm", "lowest X Y Z", "highest X Y Z")
+
+
+def _rows(results: tuple[Checked, ...]) -> list[str]:
+    """A table with columns as wide as they need."""
+    cells = [_HEAD, *(_cells(result) for result in results)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+
+
+def _cells(result: Checked) -> tuple[str, ...]:
+    size = result.size
+    if size is None:
+        return (str(result.file), "-", "-", "-", "-", "-")
+    corners = (" ".join(f"{value:.3f}" for value in corner) for corner in (size.lowest, size.highest))
+    return (str(result.file), str(size.blocks), str(size.arcs), f"{size.length:.3f}", *corners)
+
+
+def as_json(results: Iterable[Checked]) -> str:
+    """The same for programs: a list with an object for each file."""
+    return json.dumps([_entry(result) for result in results], indent=1)
+
+
+def _entry(result: Checked) -> dict[str, Any]:
+    size = result.size
+    return {
+        "file": str(result.file),
+        "diagnostics": [
+            {
+                "code": one.code,
+                "severity": one.severity.value,
+                "line": one.place.line,
+                "column": one.place.column,
+                "found": one.found,
+                "text": str(one),
+            }
+            for one in result.diagnostics
+        ],
+        "size": None
+        if size is None
+        else {
+            "blocks": size.blocks,
+            "arcs": size.arcs,
+            "length_mm": size.length,
+            "lowest_mm": size.lowest,
+            "highest_mm": size.highest,
+        },
+    }

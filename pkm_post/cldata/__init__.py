@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""CL data: APT cutter locations, in the dialects of CAM systems, become a ``Program``."""
+
+from pkm_post.cldata.dialects import DIALECTS, Dialect, detect
+from pkm_post.cldata.options import ReadOptions
+from pkm_post.cldata.reader import read
+
+__all__ = ["DIALECTS", "Dialect", "ReadOptions", "detect", "read"]

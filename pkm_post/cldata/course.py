@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Course: what the statements of a file set, in the order of the file, while they are read one after the other.
+
+What a statement changes is noted with the row of the statement; which motions it concerns is found afterwards
+for all at once. Lengths are in mm and times in s from here on; points stay as written until then.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pkm_post.cldata.cycles import Cycle
+from pkm_post.cldata.dialects import Dialect
+from pkm_post.cldata.faults import Faults
+from pkm_post.cldata.options import UNITS, ReadOptions
+from pkm_post.cldata.statements import Statements
+from pkm_post.model import EventKind, Tool
+from pkm_post.model.program import Array
+
+Vector = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Feed:
+    """A feed: mm/s, or one over seconds if it is inverse time."""
+
+    value: float
+    inverse: bool = False
+
+
+@dataclass(frozen=True)
+class Arc:
+    """An arc that ends at the next point.
+
+    Attributes:
+        centre: as written.
+        axis: as written.
+        radius: as written, NaN if it is not given.
+        angle: rad that it turns, NaN if that is not given.
+        tangent: direction in which it starts, None if that is not given.
+        turns: full turns that it makes before the rest.
+    """
+
+    centre: Vector
+    axis: Vector
+    radius: float = float("nan")
+    angle: float = float("nan")
+    tangent: Vector | None = None
+    turns: int = 0
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point that no plain GOTO gives.
+
+    Attributes:
+        position: as written.
+        axis: as written, None if the point has none.
+        incremental: it is given from the point before.
+        start: it is where the tool is, not where it goes (FROM).
+    """
+
+    position: Vector
+    axis: Vector | None = None
+    incremental: bool = False
+    start: bool = False
+
+
+@dataclass
+class Course:
+    """State while reading, and what was noted, each with the row of its statement.
+
+    ``gotos_before`` is, for each row, the number of plain GOTO statements before it.
+    """
+
+    statements: Statements
+    dialect: Dialect
+    options: ReadOptions
+    faults: Faults
+    gotos_before: Array
+
+    scale: float = 1.0
+    unit: str = ""
+    feed_word: str = "PERMIN"
+    feed_per_turn: float = 0.0
+    feed: Feed | None = None
+    speed: float = 0.0
+    turning: float = 0.0
+    tool: int = 0
+    insert: str = ""
+    tool_name: str = ""
+    tool_changed: int = -1
+    motions_settled: int = 0
+    motions_at_change: int = 0
+    diameter: float = 0.0
+    corner: float = 0.0
+    length: float = 0.0
+    on_centre: bool = False
+    cycle_return: bool = True
+    cycle: Cycle | None = None
+    local: Array | None = None
+    shift: Array | None = None
+    work_from_given: Array | None = None
+    tangent: Vector | None = None
+    ended: bool = False
+
+    tools: dict[int, Tool] = field(default_factory=dict)
+    operations: list[str] = field(default_factory=lambda: [""])
+    points: list[tuple[int, Point]] = field(default_factory=list)
+    rapids: list[int] = field(default_factory=list)
+    feeds: list[tuple[int, Feed]] = field(default_factory=list)
+    axes: list[tuple[int, Vector]] = field(default_factory=list)
+    scales: list[tuple[int, float]] = field(default_factory=list)
+    frames: list[tuple[int, Array]] = field(default_factory=list)
+    arcs: list[tuple[int, Arc]] = field(default_factory=list)
+    cycles: list[tuple[int, Cycle | None]] = field(default_factory=list)
+    sides: list[tuple[int, float, int]] = field(default_factory=list)
+    starts: list[tuple[int, int]] = field(default_factory=list)
+    events: list[tuple[int, EventKind, float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.unit = self.options.units or "mm"
+        self.scale = UNITS[self.unit]
+        self.scales.append((-1, self.scale))
+
+    def tell(self, code: str, row: int, found: str) -> None:
+        """Note a fault of a statement."""
+        self.faults.add(code, self.statements.place(row), found)
+
+    def set_feed(self, row: int, feed: Feed) -> None:
+        """From here on this feed."""
+        self.feed = feed
+        self.feeds.append((row, feed))

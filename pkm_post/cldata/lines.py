@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Logical lines: bytes become statements as text, one for each line of the file that is not joined to the one before.
+
+Enters: the bytes of a file. Leaves: the texts of the statements, comments gone, continued lines joined, data taken out
+of comments, and for each the number of its first line. Columns are kept: nothing is moved within a physical line.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.model.program import Array
+
+JOINT = "\x1f"
+"""Stands where two lines were joined."""
+MARK = "\x02"
+"""Stands for a number in the shape of a statement."""
+
+_RESERVED = {ord(JOINT): "\x00", ord(MARK): "\x00", ord("\v"): "\x00", ord("\f"): "\x00"}
+_DATA_COMMENT = re.compile(
+    r"^([ \t]*)(?:\$\$[ \t]*->|REMARK[ \t]*->|\$\$)(?=[ \t]*(?:CUTTER|CSYS|CUTCOM_GEOMETRY_TYPE|FEATNO)[ \t]*/)"
+    r"|^([ \t]*)\$\$(?=[ \t]*OPERATION[ \t]+NAME[ \t]*:)",
+    re.MULTILINE | re.IGNORECASE,
+)
+_CATIA_FRAME = re.compile(
+    r"^\$\$\*CATIA0[^\n]*\n(?:\$\$[^\n]*\n){0,1}?((?:\$\$(?:[ \t]+[-+.\dEe]+){4}[ \t]*\n){3})", re.M
+)
+_CONTINUED = re.compile(r"^([^$\n]*)\$[ \t]*(?:\$\$[^\n]*)?\n", re.MULTILINE)
+_COMMENT = re.compile(rf"\$\$[^\n{JOINT}]*")
+_PERCENT = re.compile(r"^[ \t]*%[ \t]*$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The statements of a file as text.
+
+    Attributes:
+        text: (N) the statements; empty where a line holds none.
+        number: (N,) number of the first line of each, from 1.
+    """
+
+    text: list[str]
+    number: Array
+
+    def place(self, index: int, offset: int) -> tuple[int, int]:
+        """Line and column, from 1, of a character of a statement."""
+        before = self.text[index][:offset]
+        return int(self.number[index]) + before.count(JOINT), offset - (before.rfind(JOINT) + 1) + 1
+
+
+def decoded(text: bytes | str) -> str:
+    """Text with one kind of line end, without byte order mark; Latin-1 where it is not UTF-8."""
+    if isinstance(text, str):
+        whole = text
+    else:
+        try:
+            whole = text.decode("utf-8")
+        except UnicodeDecodeError:
+            whole = text.decode("latin-1")
+    return whole.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").translate(_RESERVED)
+
+
+def logical_lines(text: str) -> Lines:
+    """The statements of a decoded text."""
+    text = _CATIA_FRAME.sub(_frame_statement, text)
+    text = _DATA_COMMENT.sub(lambda found: " " * len(found[0]), text)
+    text = _CONTINUED.sub(rf"\1{JOINT}", text)
+    text = _PERCENT.sub("", _COMMENT.sub("", text))
+    lines = text.split("\n")
+    heights = np.array([line.count(JOINT) for line in lines], dtype=np.int64) + 1
+    return Lines(lines, np.cumsum(heights) - heights + 1)
+
+
+def _frame_statement(found: re.Match[str]) -> str:
+    """CATIA's frame in comments as a statement that spans the same lines."""
+    values = ",".join(re.findall(r"[-+.\dEe]+", found[1]))
+    return f"CATIA0/{values}" + JOINT * (found[0].count("\n") - 1) + "\n"

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Motion: points, arcs, cycles and feeds become the rows of a program.
+
+Points in the work frame and the notes of the course enter; a ``Program`` leaves. A point is one row, but for holes,
+which are the moves of their cycle, and arcs of more than one turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.cldata.course import Course
+from pkm_post.cldata.cycles import Hole, hole
+from pkm_post.cldata.fit import Fitted
+from pkm_post.cldata.points import Points, in_force
+from pkm_post.geometry.arcs import arc_length, arc_sweep
+from pkm_post.geometry.vectors import dot, norm
+from pkm_post.model import Event, EventKind, Kind, Program
+from pkm_post.model.program import Array
+
+
+@dataclass
+class Rows:
+    """Columns of R rows in the making, and where the points begin among them."""
+
+    start: Array
+    point: Array
+    kind: Array
+    position: Array
+    feed: Array
+    inverse: Array
+    centre: Array
+    axis: Array
+
+
+def program_of(course: Course, points: Points, arcs: Fitted, source: str) -> Program:
+    """The program of a course.
+
+    Args:
+        course: what the statements set.
+        points: resolved.
+        arcs: with their ends.
+        source: name of the file.
+    """
+    holes = _holes(course, points)
+    rows = _rows(course, points, arcs, holes)
+    _inverse_time(course, points, rows)
+    point = rows.point
+    lines = course.statements.lines.number[course.statements.index[points.row]]
+    return Program(
+        kind=rows.kind,
+        position=rows.position,
+        tool_axis=points.axis[point],
+        feed=rows.feed,
+        arc_centre=rows.centre,
+        arc_axis=rows.axis,
+        operation=_column(course.starts, points.row, 1, 0)[point].astype(np.int32),
+        line=lines[point],
+        events=_events(course, points, rows.start, holes),
+        operations=tuple(course.operations),
+        tools=dict(sorted(course.tools.items())),
+        source=source,
+        side_offset=_column(course.sides, points.row, 1, 0.0)[point],
+        plane=_column(course.sides, points.row, 2, 2)[point].astype(np.uint8),
+        normal=points.normal[point],
+    )
+
+
+def _column(changes: Sequence[tuple[float, ...]], row: Array, item: int, first: float) -> Array:
+    """What is in force at each of (P,) rows."""
+    values: Array = np.array([first, *(change[item] for change in changes)])
+    column: Array = values[in_force(row, [int(change[0]) for change in changes]) + 1]
+    return column
+
+
+def _holes(course: Course, points: Points) -> dict[int, Hole]:
+    """The points at which a cycle is in force, with its moves."""
+    cycles = [None, *(cycle for _, cycle in course.cycles)]
+    active = in_force(points.row, [row for row, _ in course.cycles]) + 1
+    drilling = np.array([cycle is not None for cycle in cycles], dtype=np.bool_)[active]
+    holes: dict[int, Hole] = {}
+    for point in np.flatnonzero(drilling & ~points.start).tolist():
+        cycle = cycles[active[point]]
+        before = holes[point - 1].position[-1] if point - 1 in holes else points.position[point - 1]
+        if cycle is not None:
+            holes[point] = hole(cycle, before if point else None, points.position[point], points.axis[point])
+    return holes
+
+
+def _rows(course: Course, points: Points, arcs: Fitted, holes: dict[int, Hole]) -> Rows:
+    """The rows: of one point one, but for holes and arcs of several turns."""
+    count = np.ones(len(points.row), dtype=np.int64)
+    count[arcs.point] += arcs.turns
+    count[list(holes)] = [len(moves.feed) for moves in holes.values()]
+    point = np.repeat(np.arange(len(count)), count)
+    start = np.concatenate([[0], np.cumsum(count)])
+    arc_of = np.full(len(count), -1)
+    arc_of[arcs.point] = np.arange(len(arcs.point))
+    is_arc = (arc_of >= 0)[point]
+    nothing = np.full((len(point), 3), np.nan)
+    centre, axis = nothing.copy(), nothing
+    centre[is_arc], axis[is_arc] = arcs.centre[arc_of[point[is_arc]]], arcs.axis[arc_of[point[is_arc]]]
+    feeds = np.array([np.nan, *(feed.value for _, feed in course.feeds)])
+    inverse = np.array([False, *(feed.inverse for _, feed in course.feeds)])
+    feed = in_force(points.row, [row for row, _ in course.feeds]) + 1
+    kind = np.where(_rapid(course, points), Kind.RAPID, Kind.LINE)[point]
+    kind[is_arc] = Kind.ARC
+    rows = Rows(start, point, kind, points.position[point], feeds[feed][point], inverse[feed][point], centre, axis)
+    _fill_turns(points, arcs, rows)
+    for index, moves in holes.items():
+        _fill_hole(rows, start[index], moves)
+    rows.feed[rows.kind == Kind.RAPID] = np.nan
+    return rows
+
+
+def _rapid(course: Course, points: Points) -> Array:
+    """Which points are reached by rapid moves, (P,)."""
+    rapid = points.start.copy()
+    nexts = np.searchsorted(points.row, np.array(course.rapids, dtype=np.int64), "left")
+    rapid[nexts[nexts < len(rapid)]] = True
+    rapid[0] = True
+    return rapid
+
+
+def _fill_turns(points: Points, arcs: Fitted, rows: Rows) -> None:
+    """Spread the rise of arcs of several turns over their rows."""
+    for index in np.flatnonzero(arcs.turns > 0).tolist():
+        end = int(arcs.point[index])
+        first, last = points.position[end - 1], points.position[end]
+        axis, turns = arcs.axis[index], int(arcs.turns[index])
+        rest = float(arc_sweep(first, last, arcs.centre[index], axis)) / (2 * np.pi)
+        rise = float(dot(last - first, axis)) / (turns + rest)
+        rows.position[rows.start[end] : rows.start[end] + turns] = (
+            first + (np.arange(1, turns + 1) * rise)[:, None] * axis
+        )
+
+
+def _fill_hole(rows: Rows, first: int, moves: Hole) -> None:
+    """Write the moves of a hole."""
+    mine = slice(first, first + len(moves.feed))
+    rows.position[mine], rows.feed[mine], rows.inverse[mine] = moves.position, moves.feed, False
+    rows.kind[mine] = np.where(np.isnan(moves.feed), Kind.RAPID, Kind.LINE)
+    rows.centre[mine] = rows.axis[mine] = np.nan
+
+
+def _inverse_time(course: Course, points: Points, rows: Rows) -> None:
+    """Make inverse time feeds to mm/s; check that every cutting move has a feed."""
+    cutting = rows.kind != Kind.RAPID
+    if rows.inverse.any():
+        before = np.vstack([rows.position[:1], rows.position[:-1]])
+        length = norm(rows.position - before)
+        arc = np.flatnonzero(rows.kind == Kind.ARC)
+        length[arc] = arc_length(before[arc], rows.position[arc], rows.centre[arc], rows.axis[arc])
+        inverse = rows.inverse & cutting
+        for row in np.flatnonzero(inverse & (length == 0)).tolist():
+            course.tell("L416", int(points.row[rows.point[row]]), "a move without way")
+        rows.feed[inverse] *= length[inverse]
+    bare = np.flatnonzero(cutting & np.isnan(rows.feed))
+    if len(bare):
+        more = f", and {len(bare) - 1} more" if len(bare) > 1 else ""
+        course.tell("L407", int(points.row[rows.point[bare[0]]]), f"the move{more}")
+
+
+def _events(course: Course, points: Points, start: Array, holes: dict[int, Hole]) -> tuple[Event, ...]:
+    """What happens, by row."""
+    at = np.searchsorted(points.row, np.array([row for row, _, _ in course.events], dtype=np.int64), "left")
+    found = [
+        Event(int(start[point]), kind, value)
+        for point, (_, kind, value) in zip(at.tolist(), course.events, strict=True)
+    ]
+    active = in_force(points.row, [row for row, _ in course.cycles])
+    for point, moves in holes.items():
+        cycle = course.cycles[int(active[point])][1]
+        if cycle is not None and cycle.dwell > 0:
+            found.append(Event(int(start[point]) + moves.dwell_at, EventKind.DWELL, cycle.dwell))
+    return tuple(sorted(found, key=lambda event: event.row))

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options of reading CL data: what files leave open, or say wrongly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pkm_post.cldata.dialects import DIALECTS
+from pkm_post.model import Tool
+
+UNITS: dict[str, float] = {"mm": 1.0, "inch": 25.4}
+"""mm in one unit of length."""
+
+POINT = ("x", "y", "z")
+AXIS = ("i", "j", "k")
+NORMAL = ("nx", "ny", "nz")
+CONTACT = ("px", "py", "pz")
+_VALUES = {*POINT, *AXIS, *NORMAL, *CONTACT}
+_HANDS = ("right", "left", "vote")
+_FRAMES = ("first", "absolute")
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """How CL data is to be read.
+
+    Attributes:
+        dialect: name in ``DIALECTS``; detected from the file if None.
+        units: key of ``UNITS``; overrides what the file says.
+        hand: "right", "left" or "vote": how arcs turn about their axis; overrides the dialect. "vote" takes for the
+            whole file the hand under which most arcs are shorter than half a turn.
+        goto_values: for GOTO with other than 3 or 6 values what each value is: "x y z", "i j k" the tool axis,
+            "nx ny nz" the surface normal, "px py pz" the contact point, which is not used.
+        frame: "first": the work frame is the first machining frame of the file; "absolute": the frame that those
+            are given in.
+        tools: by number; they take precedence over what the file says of them.
+        default_tool: gives the gauge length of tools for which neither the file nor ``tools`` has one.
+    """
+
+    dialect: str | None = None
+    units: str | None = None
+    hand: str | None = None
+    goto_values: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    frame: str = "first"
+    tools: Mapping[int, Tool] = field(default_factory=dict)
+    default_tool: Tool | None = None
+
+    def __post_init__(self) -> None:
+        tables = {"dialect": (None, *DIALECTS), "units": (None, *UNITS), "hand": (None, *_HANDS), "frame": _FRAMES}
+        for name, allowed in tables.items():
+            if getattr(self, name) not in allowed:
+                raise ValueError(f"{name}: expected one of {allowed}, got {getattr(self, name)!r}")
+        for count, names in self.goto_values.items():
+            if len(names) != count or len(set(names)) != count or not {*POINT} <= {*names} <= _VALUES:
+                raise ValueError(f"goto_values: expected {count} different names with x, y, z, got {names!r}")
+
+    def value_names(self, count: int) -> tuple[str, ...] | None:
+        """What the values of a GOTO are, None if that is not known."""
+        return self.goto_values.get(count, {3: POINT, 6: POINT + AXIS}.get(count))

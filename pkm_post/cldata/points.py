@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Points: GOTO, all at once, with FROM, GODLTA and the ends of arcs that bring their own, in the order of the file.
+
+The table of statements and the notes of the course enter; columns of points leave, in mm and in the work frame,
+with unit tool axes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.cldata.course import Course, Point
+from pkm_post.cldata.feeds import shown
+from pkm_post.cldata.options import AXIS, NORMAL, POINT, ReadOptions
+from pkm_post.cldata.statements import Statement, Statements
+from pkm_post.geometry.vectors import norm
+from pkm_post.model.program import Array
+
+ValueNames = dict[int, tuple[str, ...]]
+"""For each form of a GOTO what its values are."""
+NO_DIRECTION = 1e-9
+"""Length below which a vector has none."""
+NOT_UNIT = 1e-3
+"""Deviation from unit length that is told."""
+
+
+@dataclass
+class Points:
+    """Columns of P points.
+
+    Attributes:
+        row: (P,) their statements.
+        position: (P, 3).
+        axis: (P, 3) unit tool axis.
+        normal: (P, 3) unit surface normal, NaN where there is none.
+        incremental: (P,) given from the point before.
+        start: (P,) where the tool is, not where it goes.
+    """
+
+    row: Array
+    position: Array
+    axis: Array
+    normal: Array
+    incremental: Array
+    start: Array
+
+
+def goto(course: Course, row: int, statement: Statement) -> None:
+    """A GOTO that is not taken with all others: its values are not understood."""
+    course.tell("L402", row, f"GOTO/{shown(statement)}, expected x,y,z or x,y,z,i,j,k")
+
+
+def single(course: Course, row: int, statement: Statement) -> None:
+    """FROM/x,y,z[,i,j,k] and GODLTA/dx,dy,dz[,i,j,k]."""
+    values = statement.numbers
+    if len(values) not in (3, 6) or len(statement.items) != len(values):
+        course.tell("L402", row, f"{statement.word}/{shown(statement)}, expected 3 or 6 values")
+        return
+    axis = tuple(values[3:]) or None
+    from_word = statement.word == "FROM"
+    course.points.append((row, Point(tuple(values[:3]), axis, incremental=not from_word, start=from_word)))
+
+
+def tlaxis(course: Course, row: int, statement: Statement) -> None:
+    """TLAXIS/i,j,k: the axis of points that have none."""
+    if len(statement.numbers) != 3 or statement.words:
+        course.tell("L402", row, f"TLAXIS/{shown(statement)}, expected 3 values")
+    else:
+        course.axes.append((row, tuple(statement.numbers)))
+
+
+def multax(course: Course, row: int, statement: Statement) -> None:
+    """MULTAX: says nothing that GOTO does not; MULTAX/OFF sets the tool upright."""
+    if "OFF" in statement.words:
+        course.axes.append((row, (0.0, 0.0, 1.0)))
+
+
+def bulk_rows(statements: Statements, options: ReadOptions) -> tuple[Array, ValueNames]:
+    """Which rows are GOTO statements that are taken all at once, and what the values of their forms are."""
+    names = {
+        index: found
+        for index, form in enumerate(statements.forms)
+        if form.word == "GOTO" and form.plain and (found := options.value_names(len(form.items)))
+    }
+    return np.isin(statements.form, list(names)), names
+
+
+def all_points(course: Course, bulk: Array, names: ValueNames) -> Points:
+    """All points of the file as written, in its order."""
+    rows, values = _bulk_values(course, bulk, names)
+    special = [point for _, point in course.points]
+    row = np.concatenate([rows, np.array([at for at, _ in course.points], dtype=np.int64)])
+    order = np.argsort(row, kind="stable")
+    nothing = (np.nan,) * 3
+    more = np.array([(*one.position, *(one.axis or nothing), *nothing) for one in special]).reshape(-1, 9)
+    columns = np.concatenate([values, more])[order]
+    flags = np.zeros((len(row), 2), dtype=np.bool_)
+    flags[len(rows) :] = np.array([(one.incremental, one.start) for one in special], np.bool_).reshape(-1, 2)
+    flags = flags[order]
+    return Points(row[order], columns[:, :3], columns[:, 3:6], columns[:, 6:], flags[:, 0], flags[:, 1])
+
+
+def _bulk_values(course: Course, bulk: Array, names: ValueNames) -> tuple[Array, Array]:
+    """Rows of GOTO statements, and their values as (P, 9): position, axis, normal."""
+    statements = course.statements
+    rows = np.flatnonzero(bulk)
+    values = np.full((len(rows), 9), np.nan)
+    column = {name: index for index, name in enumerate((*POINT, *AXIS, *NORMAL))}
+    for form, value_names in names.items():
+        mine = statements.form[rows] == form
+        first = statements.number_start[rows[mine]]
+        for offset, name in enumerate(value_names):
+            if name in column:
+                values[mine, column[name]] = statements.numbers[first + offset]
+    return rows, values
+
+
+def in_force(row: Array, changes: list[int]) -> Array:
+    """For each of (P,) rows the index of the last change at a row before it, -1 if there is none."""
+    index: Array = np.searchsorted(np.array(changes, dtype=np.int64), row, "left") - 1
+    return index
+
+
+def resolve(course: Course, points: Points) -> Array:
+    """Take points to mm, the work frame and unit axes, in place; their frames, (P, 4, 4) or (1, 4, 4)."""
+    scales = np.array([scale for _, scale in course.scales])
+    points.position = points.position * scales[in_force(points.row, [row for row, _ in course.scales])][:, None]
+    _resolve_increments(course, points)
+    points.axis = _modal_axes(course, points)
+    _unit(course, points.row, points.axis, "axis")
+    given = np.flatnonzero(~np.isnan(points.normal[:, 0]))
+    normal = points.normal[given]
+    _unit(course, points.row[given], normal, "normal")
+    points.normal[given] = normal
+    frames = np.array([np.eye(4), *(matrix for _, matrix in course.frames)])
+    if len(frames) == 1:
+        return frames
+    frame: Array = frames[in_force(points.row, [row for row, _ in course.frames]) + 1]
+    points.position = np.einsum("nij,nj->ni", frame[:, :3, :3], points.position) + frame[:, :3, 3]
+    points.axis = np.einsum("nij,nj->ni", frame[:, :3, :3], points.axis)
+    points.normal = np.einsum("nij,nj->ni", frame[:, :3, :3], points.normal)
+    return frame
+
+
+def _resolve_increments(course: Course, points: Points) -> None:
+    """Add increments to the last point before them that is given in full."""
+    if not points.incremental.any():
+        return
+    if points.incremental[0]:
+        course.tell("L417", int(points.row[0]), "GODLTA")
+        return
+    base = np.maximum.accumulate(np.where(points.incremental, 0, np.arange(len(points.row))))
+    total = np.cumsum(np.where(points.incremental[:, None], points.position, 0.0), axis=0)
+    points.position = np.where(
+        points.incremental[:, None], points.position[base] + total - total[base], points.position
+    )
+
+
+def _modal_axes(course: Course, points: Points) -> Array:
+    """The axis of every point: its own, or the last one that was said."""
+    own = np.flatnonzero(~np.isnan(points.axis[:, 0]))
+    row = np.concatenate([[-1], points.row[own], np.array([at for at, _ in course.axes], dtype=np.int64)])
+    said = np.concatenate([[[0.0, 0.0, 1.0]], points.axis[own], np.array([v for _, v in course.axes]).reshape(-1, 3)])
+    order = np.argsort(row, kind="stable")
+    axes: Array = said[order][np.searchsorted(row[order], points.row, "right") - 1]
+    return axes
+
+
+def _unit(course: Course, row: Array, vectors: Array, name: str) -> None:
+    """Normalise vectors in place; tell those without direction and those far from unit length."""
+    length = norm(vectors)
+    for index in np.flatnonzero(length < NO_DIRECTION).tolist():
+        course.tell("L405", int(row[index]), f"{name} {_vector(vectors[index])}")
+    odd = np.flatnonzero((np.abs(length - 1) > NOT_UNIT) & (length >= NO_DIRECTION)).tolist()
+    if odd:
+        more = f", and {len(odd) - 1} more" if len(odd) > 1 else ""
+        course.tell("L406", int(row[odd[0]]), f"{name} {_vector(vectors[odd[0]])} of length {length[odd[0]]:.6g}{more}")
+    vectors /= np.where(length < NO_DIRECTION, 1.0, length)[:, None]
+
+
+def _vector(vector: Array) -> str:
+    return ",".join(f"{value:.7g}" for value in vector)

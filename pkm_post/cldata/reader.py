@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reader: the order in which CL data becomes a program.
+
+The text of a file enters; a ``Program`` in mm, mm/s and the work frame leaves, and all faults that were found. With
+an error there is no program.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.cldata.course import Course
+from pkm_post.cldata.dialects import DIALECTS, detect
+from pkm_post.cldata.faults import Faults
+from pkm_post.cldata.fit import fit_arcs
+from pkm_post.cldata.lines import decoded, logical_lines
+from pkm_post.cldata.motion import program_of
+from pkm_post.cldata.options import ReadOptions
+from pkm_post.cldata.points import Points, ValueNames, all_points, bulk_rows, resolve
+from pkm_post.cldata.scan import scan
+from pkm_post.cldata.tools import keep
+from pkm_post.cldata.walk import walk
+from pkm_post.model import Diagnostic, Program
+from pkm_post.model.program import Array
+
+LARGE_INCHES = 2000.0
+"""mm; a part in inches that is larger is more likely one in mm."""
+
+
+def read(
+    text: bytes | str, file: str, options: ReadOptions | None = None
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """Read CL data.
+
+    Args:
+        text: content of the file.
+        file: its name, for people.
+        options: what the file leaves open or says wrongly.
+
+    Returns:
+        The program, None if there are errors, and the diagnostics in the order of the file.
+
+    Raises:
+        ImportError: lark is not installed.
+    """
+    options = options or ReadOptions()
+    whole = decoded(text)
+    dialect = DIALECTS[options.dialect] if options.dialect else detect(whole)
+    faults = Faults(file)
+    statements = scan(logical_lines(whole), faults)
+    bulk, names = bulk_rows(statements, options)
+    course = Course(statements, dialect, options, faults, np.cumsum(bulk))
+    program = _program(course, bulk, names, file)
+    return (None if faults.any_errors() else program), faults.diagnostics()
+
+
+def _program(course: Course, bulk: Array, names: ValueNames, file: str) -> Program | None:
+    """The program of the statements; None where errors leave none."""
+    counted = walk(course, bulk)
+    points = all_points(course, counted, names)
+    if not course.faults.any_errors() and not len(points.row):
+        course.faults.add("L413", (0, 0), "no GOTO")
+    if course.faults.any_errors():
+        return None
+    frames = resolve(course, points)
+    if course.faults.any_errors():
+        return None
+    arcs = fit_arcs(course, points, frames)
+    if course.faults.any_errors():
+        return None
+    _doubts(course, points)
+    return program_of(course, points, arcs, file)
+
+
+def _doubts(course: Course, points: Points) -> None:
+    """Tell a doubtful unit and tools of unknown length."""
+    keep(course)
+    size = float(np.ptp(points.position, axis=0).max())
+    if course.options.units is None and course.unit == "inch" and size > LARGE_INCHES:
+        course.faults.add("L410", (0, 0), f"INCHES, and the path is {size / 25.4:.6g} inches = {size:.6g} mm wide")
+    elif course.options.units is None and len(course.scales) == 1:
+        course.faults.add("L410", (0, 0), "the file has no UNITS, mm is taken")
+    for number, tool in sorted(course.tools.items()):
+        if not tool.length > 0:
+            course.faults.add("L411", (0, 0), f"tool {number}")

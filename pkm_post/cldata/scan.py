@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Scan: text becomes statements, fast where a file repeats itself.
+
+Enters: logical lines. Leaves: the table of statements, and the lexical and syntax faults. Every number is replaced by
+a mark; what is left of a line is its shape. Of each shape one real line is parsed by the grammar of record, the
+numbers of all are converted at once. So nothing is taken whose shape the grammar has not accepted, and a statement
+costs no parsing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pkm_post.cldata.faults import Fault, Faults, fault_of
+from pkm_post.cldata.grammar import parse
+from pkm_post.cldata.lines import JOINT, MARK, Lines
+from pkm_post.cldata.statements import Form, Statements, form_of
+from pkm_post.model.program import Array
+
+if TYPE_CHECKING:
+    from lark import UnexpectedInput
+
+LONGEST = 20000
+"""Characters of a statement, numbers not counted."""
+DEEPEST = 20
+"""Parentheses in a statement."""
+
+_NUMBER = re.compile(r"(?<![\w.+-])[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[Ee][+-]?[0-9]++)?+(?![\w.+-])")
+_STRING = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"")
+_HIDDEN_DIGITS = str.maketrans({str(digit): chr(0xE000 + digit) for digit in range(10)})
+_BLANKS = f" \t{JOINT}"
+
+
+def scan(lines: Lines, faults: Faults) -> Statements:
+    """The statements of logical lines.
+
+    Args:
+        lines: the text.
+        faults: takes what is wrong with it.
+    """
+    body = _without_quoted_numbers("\n".join(lines.text))
+    shapes = _NUMBER.sub(MARK, body).split("\n")
+    known: dict[str, int] = {}
+    shape = np.array([known.setdefault(one, len(known)) for one in shapes], dtype=np.int64)
+    first = np.unique(shape, return_index=True)[1].tolist()
+    parsed = [parsed_line(text, lines.text[line]) for text, line in zip(known, first, strict=True)]
+    marks = np.array([text.count(MARK) for text in known], dtype=np.int64)[shape]
+    good = np.array([isinstance(one, Form) for one in parsed], dtype=np.bool_)
+    filled = np.array([bool(text.strip(_BLANKS)) for text in known], dtype=np.bool_)
+    for line in np.flatnonzero((~good & filled)[shape]).tolist():
+        faults.add_line(lines, line, lambda text: _fault_again(text))
+    return _table(lines, _values(body), shape, marks, parsed, good)
+
+
+def parsed_line(shape: str, text: str) -> Form | Fault | UnexpectedInput | None:
+    """The form of a line, what is wrong with it, or None if it holds nothing."""
+    if not shape.strip(_BLANKS):
+        return None
+    if len(shape) > LONGEST:
+        return Fault("L104", 0, f"{len(text)} characters")
+    if shape.count("(") > DEEPEST:
+        return Fault("L205", text.index("("), f"{shape.count('(')} parentheses, at most {DEEPEST}")
+    tree = parse(text)
+    return tree if isinstance(tree, Exception) else form_of(tree)
+
+
+def _fault_again(text: str) -> Fault:
+    """What is wrong with one line of a shape that is wrong."""
+    result = parsed_line(_NUMBER.sub(MARK, _without_quoted_numbers(text)), text)
+    if isinstance(result, Fault):
+        return result
+    if result is None or isinstance(result, Form):
+        raise ValueError(f"expected a faulty statement, got {text!r}")
+    return fault_of(text, result)
+
+
+def _without_quoted_numbers(text: str) -> str:
+    """The text with digits in quotes put out of sight: what is quoted is no number."""
+    return _STRING.sub(lambda found: found[0].translate(_HIDDEN_DIGITS), text)
+
+
+def _values(body: str) -> Array:
+    """All numbers of a text, (K,)."""
+    numbers = _NUMBER.findall(body)
+    return np.fromstring(" ".join(numbers), sep=" ") if numbers else np.empty(0)
+
+
+def _table(
+    lines: Lines, values: Array, shape: Array, marks: Array, parsed: Sequence[object], good: Array
+) -> Statements:
+    """The table of the lines that are statements."""
+    rows = np.flatnonzero(good[shape])
+    used = np.repeat(good[shape], marks)
+    forms = tuple(one for one in parsed if isinstance(one, Form))
+    return Statements(
+        forms=forms,
+        form=(np.cumsum(good) - 1)[shape[rows]],
+        index=rows,
+        number_start=np.concatenate([[0], np.cumsum(marks[rows])]).astype(np.int64),
+        numbers=values[used],
+        lines=lines,
+    )

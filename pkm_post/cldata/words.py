@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The vocabulary: for each major word what is done with it.
+
+A word has a meaning here, or says nothing of the motion and is passed over, or is refused by name, because the
+motion would be another one without it. All other words are told once with their count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from pkm_post.cldata import arcs, feeds, frames, holes, points, tools
+from pkm_post.cldata.course import Course
+from pkm_post.cldata.statements import Statement
+
+Handler = Callable[[Course, int, Statement], None]
+
+
+def _operation(course: Course, row: int, statement: Statement) -> None:
+    """TOOL PATH/name,TOOL,tool of NX, OPERATION NAME of CATIA, FEATNO of Creo: an operation begins."""
+    name, _, tool = statement.text.partition(",TOOL,")
+    course.insert = tool or course.insert
+    number = statement.numbers
+    course.starts.append((row, len(course.operations)))
+    course.operations.append(f"{statement.word} {number[0]:g}" if number else name.strip())
+
+
+def _fini(course: Course, row: int, statement: Statement) -> None:
+    course.ended = True
+
+
+HANDLERS: dict[str, Handler] = {
+    "GOTO": points.goto, "FROM": points.single, "GODLTA": points.single, "TLAXIS": points.tlaxis,
+    "MULTAX": points.multax,
+    "CIRCLE": arcs.circle, "MOVARC": arcs.movarc, "INDIRV": arcs.indirv, "TLON,GOFWD": arcs.tlon,
+    "HELICAL": arcs.helical,
+    "CYCLE": holes.cycle,
+    "FEDRAT": feeds.fedrat, "RAPID": feeds.rapid, "SPINDL": feeds.spindl, "COOLNT": feeds.coolnt,
+    "DELAY": feeds.delay, "DWELL": feeds.delay, "STOP": feeds.stop, "OPSTOP": feeds.stop,
+    "CUTTER": tools.cutter, "TLDATA": tools.tldata, "LOADTL": tools.load, "LOAD": tools.load, "TOOLNO": tools.load,
+    "INSERT": tools.insert, "CUTCOM": tools.cutcom, "CUTCOM_GEOMETRY_TYPE": tools.cutcom_geometry,
+    "UNITS": frames.units, "UNIT": frames.units, "MSYS": frames.frame, "CSYS": frames.frame, "CATIA0": frames.frame,
+    "ORIGIN": frames.origin, "TRANS": frames.trans, "TRACUT": frames.trans, "TRNTYP": frames.trntyp,
+    "TOOL PATH": _operation, "OPERATION NAME": _operation, "FEATNO": _operation, "FINI": _fini,
+}  # fmt: skip
+"""Words with a meaning."""
+
+PASSED_OVER = frozenset({
+    "PARTNO", "PPRINT", "TPRINT", "LETTER", "DISPLY", "REMARK", "MACHIN", "PPWORD", "PAINT", "END-OF-PATH", "SETUP",
+    "SELECT", "SWITCH", "END", "REWIND", "LINTOL", "INTOL", "OUTTOL", "TOLER", "AUTOPS", "PSIS", "SET",
+    "CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH", "CLPRNT", "NOPOST", "LEADER", "CLEARP",
+    "MODE", "PRINT", "SEQNO",
+})  # fmt: skip
+"""Words that say nothing of the motion."""
+
+REFUSED = frozenset({
+    "ARCDAT", "ARCMOV", "ARCSLP", "GOCLW", "GOCCLW", "CW", "CCW", "CYLNDR", "INDIRP", "SPLINE", "BSPLINE", "NURBS",
+    "POLYGON", "ROTABL", "ROTHED", "ROTATE", "PIVOT", "TURRET", "MIRROR", "COPY", "INDEX", "LOOPST", "LOOPND", "JUMPTO",
+    "MACRO", "CALL", "IF", "DO", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "OFFSET", "GOHOME",
+    "TLLFT", "TLRGT", "TLON", "TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GORGT", "THREAD", "PITCH", "REFSYS",
+})  # fmt: skip
+"""Words that change the motion and are not carried out."""

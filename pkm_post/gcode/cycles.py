@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cycles: a drilling cycle becomes the moves and dwells it stands for.
+
+Where the tool is and the words of one block enter, in mm and in coordinates of the program; rapid and straight moves
+leave, with what happens between them. G73, G81 to G86 and G89, in any plane, as RS274NGC has them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pkm_post.gcode.modal import name_of
+from pkm_post.model import EventKind, Kind
+from pkm_post.model.program import Array
+
+PECK_CLEARANCE = 0.254
+"""mm above the depth reached where a peck begins to feed again, and which G73 retracts by."""
+MOST_STROKES = 10_000
+"""A block with more pecks or holes than this is a slip."""
+
+_DWELLS = (820, 840, 860, 890)
+_PECKS = (730, 830)
+_NEEDS_SPINDLE = (840, 860)
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """The words of a cycle, those that stay in force included; NaN where nothing was said.
+
+    Attributes:
+        code: 810 for G81.
+        retract: R, the height the tool feeds from.
+        bottom: word of the coordinate across the plane.
+        peck: Q.
+        dwell: P, s.
+    """
+
+    code: int
+    retract: float = math.nan
+    bottom: float = math.nan
+    peck: float = math.nan
+    dwell: float = math.nan
+
+    def with_words(self, retract: float, bottom: float, peck: float, dwell: float) -> Cycle:
+        """The cycle with new words where there are any."""
+        new, old = (retract, bottom, peck, dwell), (self.retract, self.bottom, self.peck, self.dwell)
+        return Cycle(self.code, *(before if math.isnan(word) else word for word, before in zip(new, old, strict=True)))
+
+
+@dataclass
+class Strokes:
+    """The moves of a cycle in the making: by row its kind and end, and (row, kind, value) of what happens before it."""
+
+    here: Array
+    kinds: list[int] = field(default_factory=list)
+    ends: list[Array] = field(default_factory=list)
+    events: list[tuple[int, EventKind, float]] = field(default_factory=list)
+
+    def go(self, kind: Kind, axis: int | tuple[int, int], to: float | Array) -> None:
+        """Move some coordinates, unless the tool is there."""
+        end = self.here.copy()
+        end[[axis] if isinstance(axis, int) else list(axis)] = to
+        if not np.array_equal(end, self.here):
+            self.kinds.append(kind)
+            self.ends.append(end)
+            self.here = end
+
+    def happen(self, kind: EventKind, value: float) -> None:
+        """Something happens here."""
+        self.events.append((len(self.ends), kind, value))
+
+
+@dataclass(frozen=True)
+class Hole:
+    """Heights of a cycle: where it feeds from, its bottom, where it ends, and the height the tool comes at."""
+
+    top: float
+    bottom: float
+    clear: float
+
+
+def fault_of(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[str, str] | None:
+    """What keeps a cycle from being carried out: code and what was found."""
+    name = name_of(cycle.code)
+    for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, _DWELLS)):
+        if cycle.code in codes and math.isnan(value) and cycle.code != 840:
+            return "G405", f"{name} without {letter}"
+    if math.isnan(hole.top):
+        return "G405", f"{name} without R"
+    if math.isnan(hole.bottom):
+        return "G405", f"{name} without a depth"
+    if hole.top < hole.bottom:
+        return "G418", f"{name}: R {hole.top:g} is below the bottom {hole.bottom:g}"
+    if cycle.code in _PECKS and not cycle.peck > 0:
+        return "G418", f"{name} Q{cycle.peck:g}"
+    if not 1 <= repeats <= MOST_STROKES:
+        return "G418", f"{name} L{repeats:g}"
+    if cycle.code in _PECKS and repeats * (hole.top - hole.bottom) / cycle.peck > MOST_STROKES:
+        return "G418", f"{name}: more than {MOST_STROKES} pecks"
+    if cycle.code in _NEEDS_SPINDLE and not spindle:
+        return "G418", f"{name} while the spindle stands still"
+    if not cycle.dwell >= 0 and not math.isnan(cycle.dwell):
+        return "G418", f"{name} P{cycle.dwell:g}"
+    return None
+
+
+def strokes(
+    cycle: Cycle, hole: Hole, centres: Array, axes: tuple[int, int, int], here: Array, spindle: float
+) -> Strokes:
+    """The moves of a cycle.
+
+    Args:
+        cycle: what to do.
+        hole: its heights.
+        centres: (n, 2) places of the holes, by first and second coordinate of the plane.
+        axes: first, second and normal coordinate of the plane.
+        here: (3,) where the tool is.
+        spindle: signed speed of the spindle, 1/min.
+    """
+    made = Strokes(here)
+    normal = axes[2]
+    if here[normal] < hole.top:
+        made.go(Kind.RAPID, normal, hole.top)
+    for centre in centres:
+        made.go(Kind.RAPID, axes[:2], centre)
+        made.go(Kind.RAPID, normal, hole.top)
+        _down(cycle, hole, normal, made)
+        _up(cycle, hole, normal, made, spindle)
+    return made
+
+
+def _pecks(cycle: Cycle, hole: Hole) -> Iterator[float]:
+    depth = hole.top - cycle.peck
+    while depth > hole.bottom:
+        yield depth
+        depth -= cycle.peck
+
+
+def _down(cycle: Cycle, hole: Hole, normal: int, made: Strokes) -> None:
+    for depth in _pecks(cycle, hole) if cycle.code in _PECKS else ():
+        made.go(Kind.LINE, normal, depth)
+        if cycle.code == 830:
+            made.go(Kind.RAPID, normal, hole.top)
+        made.go(Kind.RAPID, normal, depth + PECK_CLEARANCE)
+    made.go(Kind.LINE, normal, hole.bottom)
+
+
+def _up(cycle: Cycle, hole: Hole, normal: int, made: Strokes, spindle: float) -> None:
+    if cycle.code == 840:
+        made.happen(EventKind.SPINDLE, 0.0)
+        made.happen(EventKind.SPINDLE, -spindle)
+    if cycle.code in _DWELLS and cycle.dwell > 0:
+        made.happen(EventKind.DWELL, cycle.dwell)
+    if cycle.code == 860:
+        made.happen(EventKind.SPINDLE, 0.0)
+    if cycle.code in (840, 850, 890):
+        made.go(Kind.LINE, normal, hole.top if cycle.code == 850 else hole.clear)
+    made.go(Kind.RAPID, normal, hole.clear)
+    if cycle.code == 840:
+        made.happen(EventKind.SPINDLE, 0.0)
+    if cycle.code in _NEEDS_SPINDLE:
+        made.happen(EventKind.SPINDLE, spindle)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Execution: from the blocks as written to the blocks as executed.
+
+Enters: scanned blocks, some of them with parameters, expressions, O words or calls. Leaves: plain blocks in the order
+in which a control executes them, every value computed, every loop and call unrolled; lines and units as in the source.
+A program without any of this is handed on as it is. The meaning is that of RS274NGC as LinuxCNC reads it, and for M98
+and M99 that of Fanuc.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.executed import ExecutedBlocks
+from pkm_post.gcode.flow import link
+from pkm_post.gcode.limits import ExecutionLimits
+from pkm_post.gcode.modal import ARCS, Group, modal_state, owners
+from pkm_post.gcode.parameters import ExecutionFault
+from pkm_post.gcode.run import PROGRAM_END, SUBPROGRAM_CODES, Run
+from pkm_post.gcode.statements import OWord, Statement, statement_of
+from pkm_post.model.diagnostics import Diagnostic, Place
+from pkm_post.model.program import Array
+
+__all__ = ["DEFAULT_LIMITS", "ExecutionLimits", "execute"]
+
+DEFAULT_LIMITS = ExecutionLimits()
+
+
+def execute(
+    blocks: Blocks, limits: ExecutionLimits = DEFAULT_LIMITS, block_delete: bool = False
+) -> tuple[Blocks | None, tuple[Diagnostic, ...]]:
+    """Execute a program.
+
+    Args:
+        blocks: the scanned blocks; returned themselves when there is nothing to execute in them.
+        limits: bounds of the execution.
+        block_delete: whether blocks that begin with ``/`` are left out.
+
+    Returns:
+        Plain blocks, or None when there are faults; and the faults: all that can be found before the program runs, or
+        else the one that stopped it.
+    """
+    if not blocks.special and not np.isin(blocks.m, SUBPROGRAM_CODES).any():
+        return blocks, ()
+    left_out = blocks.deleted if block_delete else np.zeros(len(blocks), dtype=np.bool_)
+    statements, faults = _statements(blocks, left_out)
+    flow, unlinked = link({row: word for row, word in statements.items() if isinstance(word, OWord)})
+    faults.extend(unlinked)
+    if faults:
+        return None, _diagnostics(blocks, faults)
+    ruled = left_out.copy()
+    ruled[owners(blocks.m_start)[np.isin(blocks.m, (*SUBPROGRAM_CODES, *PROGRAM_END))]] = True
+    ruled[list(statements)] = True
+    executed = ExecutedBlocks(blocks)
+    run = Run(blocks, statements, flow, left_out, limits, executed)
+    try:
+        run.to_the_end(np.flatnonzero(ruled).tolist())
+    except ExecutionFault as fault:
+        return None, _diagnostics(blocks, [(run.row, fault)])
+    return _finished(executed)
+
+
+def _statements(blocks: Blocks, left_out: Array) -> tuple[dict[int, Statement], list[tuple[int, ExecutionFault]]]:
+    """The special blocks made ready, by row in the order of the program, and what has no meaning."""
+    statements: dict[int, Statement] = {}
+    faults: list[tuple[int, ExecutionFault]] = []
+    for row, tree in sorted(blocks.special.items()):
+        if left_out[row]:
+            continue
+        try:
+            statements[row] = statement_of(tree)
+        except ExecutionFault as fault:
+            faults.append((row, fault))
+    return statements, faults
+
+
+def _finished(executed: ExecutedBlocks) -> tuple[Blocks | None, tuple[Diagnostic, ...]]:
+    """The plain blocks, if none of them would take a tool axis for the centre of an arc."""
+    blocks, axis_rows = executed.table()
+    if len(axis_rows):
+        motion = modal_state(blocks, 1.0, "IJK").in_force[Group.MOTION]
+        on_arc = axis_rows[np.isin(motion[axis_rows], ARCS)]
+        if len(on_arc):
+            fault = ExecutionFault("G317", "words for the tool axis on an arc")
+            return None, _diagnostics(blocks, [(row, fault) for row in on_arc.tolist()])
+    return blocks, ()
+
+
+def _diagnostics(blocks: Blocks, faults: list[tuple[int, ExecutionFault]]) -> tuple[Diagnostic, ...]:
+    """Faults by row as diagnostics by line, each once, in the order of the lines."""
+    told = [
+        Diagnostic(fault.code, Place(blocks.source, line=int(blocks.line[row]), column=fault.column), fault.found)
+        for row, fault in faults
+    ]
+    return tuple(sorted(dict.fromkeys(told), key=lambda item: (item.place.line, item.place.column)))

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faults of meaning: what is wrong with blocks that are well written, told by row and in the order of the file.
+
+Rows of blocks enter, diagnostics leave. Every faulty block is told, but only the first ones of each kind one by one:
+a program of a million blocks may have the same fault in each.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.model import Diagnostic, Place
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.program import Array
+
+_TOLD = 50
+"""How many faults of one code are told with their own place."""
+
+
+@dataclass
+class Findings:
+    """The diagnostics of a program, in the making."""
+
+    blocks: Blocks
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    _count: Counter[str] = field(default_factory=Counter)
+
+    def tell(self, code: str, row: int, found: str) -> None:
+        """Add a diagnostic of one block; of the whole file if it has none."""
+        self._count[code] += 1
+        if self._count[code] <= _TOLD:
+            place = self.blocks.place(row) if len(self.blocks) else Place(self.blocks.source)
+            self.diagnostics.append(Diagnostic(code, place, found))
+
+    def tell_all(self, code: str, wrong: Array, found: Callable[[int], str]) -> None:
+        """Add a diagnostic of every block that is wrong.
+
+        Args:
+            code: of the diagnostics.
+            wrong: (N,) which blocks are.
+            found: tells what was found in a row.
+        """
+        rows = np.flatnonzero(wrong)
+        for row in rows[:_TOLD].tolist():
+            self.tell(code, row, found(row))
+        self._count[code] += max(len(rows) - _TOLD, 0)
+
+    def stop(self) -> bool:
+        """Whether there are errors."""
+        return bool(errors(self.diagnostics))
+
+    def in_order(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics in the order of the lines; the last of a code says how many more there are."""
+        diagnostics = sorted(self.diagnostics, key=lambda fault: (fault.place.line, fault.code))
+        last = {fault.code: index for index, fault in enumerate(diagnostics)}
+        for code, index in last.items():
+            more = self._count[code] - sum(fault.code == code for fault in diagnostics)
+            if more:
+                fault = diagnostics[index]
+                diagnostics[index] = Diagnostic(code, fault.place, f"{fault.found}, and {more} more like it")
+        return tuple(diagnostics)

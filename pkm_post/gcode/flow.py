@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Flow: which O words belong together, found before anything is executed.
+
+Enters: the O words of a program by row. Leaves: for each of them the rows it can lead to, and the rows of the
+subprograms; or every O word that belongs to nothing, with its row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from pkm_post.gcode.parameters import ExecutionFault
+from pkm_post.gcode.statements import OWord
+
+CLOSES: dict[str, str] = {
+    "endsub": "sub",
+    "endif": "if",
+    "else": "if",
+    "elseif": "if",
+    "endwhile": "while",
+    "endrepeat": "repeat",
+}
+"""O words that close or divide, and what has to be open before them. ``while`` closes a ``do``."""
+
+LOOPS = ("while", "do", "repeat")
+
+
+@dataclass
+class Flow:
+    """Where O words lead.
+
+    Attributes:
+        subs: by label, the row of ``sub``.
+        programs: by label, the row of an O number alone.
+        other_end: of ``sub``, ``while``, ``repeat``, and of ``endwhile``, ``endrepeat`` and a ``while`` that closes a
+            ``do``, the row at the other end; of ``else`` and ``elseif`` the row of ``endif``.
+        next_branch: of ``if`` and ``elseif`` the next ``elseif``, ``else`` or ``endif``.
+        last_row: of ``break`` and ``continue`` the last row of their loop.
+        closing: the rows of ``while`` that close a ``do``.
+    """
+
+    subs: dict[str, int] = field(default_factory=dict)
+    programs: dict[str, int] = field(default_factory=dict)
+    other_end: dict[int, int] = field(default_factory=dict)
+    next_branch: dict[int, int] = field(default_factory=dict)
+    last_row: dict[int, int] = field(default_factory=dict)
+    closing: set[int] = field(default_factory=set)
+
+
+@dataclass
+class _Open:
+    """Something that has begun: its keyword, label, row, the branches of an ``if``, the jumps out of a loop."""
+
+    keyword: str
+    label: str
+    row: int
+    branches: list[int] = field(default_factory=list)
+    jumps: list[int] = field(default_factory=list)
+    has_else: bool = False
+
+
+class _Linker:
+    """Goes through the O words once and keeps what is open, outermost first."""
+
+    def __init__(self) -> None:
+        self.flow = Flow()
+        self.open: list[_Open] = []
+
+    def take(self, row: int, word: OWord) -> None:
+        """Link one O word.
+
+        Raises:
+            ExecutionFault: it belongs to nothing.
+        """
+        keyword = word.keyword
+        if keyword == "call":
+            return
+        if not isinstance(word.label, str):
+            raise ExecutionFault("G311", f"the label of {keyword} is computed", word.label.column)
+        if keyword == "program":
+            self._begin_program(row, word.label)
+        elif keyword == "while" and self._closes_do(word.label):
+            self.flow.closing.add(row)
+            self._close(self.open.pop(), row)
+        elif keyword in CLOSES:
+            self._close_or_divide(row, keyword, word.label)
+        else:
+            _BEGIN.get(keyword, _Linker._begin)(self, row, keyword, word.label)
+
+    def _begin_program(self, row: int, label: str) -> None:
+        if self.open:
+            raise ExecutionFault(
+                "G312", f"O{_shown(label)} within O{_shown(self.open[-1].label)} {self.open[-1].keyword}"
+            )
+        if not label.isdigit():
+            raise ExecutionFault("G311", f"O<{label}> without a keyword")
+        _define(self.flow.programs, label, row)
+
+    def _closes_do(self, label: str) -> bool:
+        return bool(self.open) and (self.open[-1].keyword, self.open[-1].label) == ("do", label)
+
+    def _begin(self, row: int, keyword: str, label: str) -> None:
+        twice = any(outer.label == label for outer in self._within())
+        self.open.append(_Open(keyword, label, row))
+        if twice:
+            raise ExecutionFault("G310", f"O{_shown(label)} {keyword} within another O{_shown(label)}")
+
+    def _begin_sub(self, row: int, keyword: str, label: str) -> None:
+        self.open.append(_Open(keyword, label, row))
+        if any(outer.keyword == "sub" for outer in self.open[:-1]):
+            raise ExecutionFault("G312", f"O{_shown(label)} sub within another sub")
+        _define(self.flow.subs, label, row)
+
+    def _jump(self, row: int, keyword: str, label: str) -> None:
+        for loop in self._within():
+            if loop.label == label and loop.keyword in LOOPS:
+                loop.jumps.append(row)
+                return
+        raise ExecutionFault("G307", f"O{_shown(label)} {keyword}, outside of a loop of this label")
+
+    def _return(self, row: int, keyword: str, label: str) -> None:
+        if not any(outer.keyword == "sub" and outer.label == label for outer in self.open):
+            raise ExecutionFault("G312", f"O{_shown(label)} {keyword} outside of its sub")
+
+    def _within(self) -> list[_Open]:
+        """What is open here, without what is outside of the subprogram."""
+        subs = [index for index, outer in enumerate(self.open) if outer.keyword == "sub"]
+        return self.open[subs[-1] + 1 if subs else 0 :]
+
+    def _close_or_divide(self, row: int, keyword: str, label: str) -> None:
+        wanted = (CLOSES[keyword], label)
+        depth = next((i for i in reversed(range(len(self.open))) if self._is(i) == wanted), None)
+        if depth is None:
+            raise ExecutionFault("G307", f"O{_shown(label)} {keyword} without {CLOSES[keyword]}")
+        within, self.open = self.open[depth + 1 :], self.open[: depth + 1]
+        if keyword.startswith("else"):
+            self._divide(row, keyword, self.open[-1])
+        else:
+            self._close(self.open.pop(), row)
+        if within:
+            inner = within[0]
+            raise ExecutionFault("G308", f"O{_shown(inner.label)} {inner.keyword} before O{_shown(label)} {keyword}")
+
+    def _is(self, index: int) -> tuple[str, str]:
+        return self.open[index].keyword, self.open[index].label
+
+    def _divide(self, row: int, keyword: str, opened: _Open) -> None:
+        if opened.has_else:
+            raise ExecutionFault("G307", f"O{_shown(opened.label)} {keyword} behind else")
+        opened.has_else = keyword == "else"
+        opened.branches.append(row)
+
+    def _close(self, opened: _Open, row: int) -> None:
+        branches = [opened.row, *opened.branches, row]
+        if opened.keyword == "if":
+            self.flow.next_branch.update(zip(branches, branches[1:], strict=False))
+            self.flow.other_end.update(dict.fromkeys(opened.branches, row))
+        else:
+            self.flow.other_end.update({opened.row: row, row: opened.row})
+            self.flow.last_row.update(dict.fromkeys(opened.jumps, row))
+
+
+_BEGIN: dict[str, Callable[[_Linker, int, str, str], None]] = {
+    "sub": _Linker._begin_sub,
+    "break": _Linker._jump,
+    "continue": _Linker._jump,
+    "return": _Linker._return,
+}
+
+
+def link(words: Mapping[int, OWord]) -> tuple[Flow, tuple[tuple[int, ExecutionFault], ...]]:
+    """Find what belongs together.
+
+    Args:
+        words: the O words of a program by row, in the order of the program.
+
+    Returns:
+        Where they lead, and what is wrong, by row.
+    """
+    linker = _Linker()
+    faults: list[tuple[int, ExecutionFault]] = []
+    for row, word in words.items():
+        try:
+            linker.take(row, word)
+        except ExecutionFault as fault:
+            faults.append((row, fault))
+    for opened in linker.open:
+        faults.append((opened.row, ExecutionFault("G308", f"O{_shown(opened.label)} {opened.keyword}")))
+    return linker.flow, tuple(faults)
+
+
+def _define(rows: dict[str, int], label: str, row: int) -> None:
+    if label in rows:
+        raise ExecutionFault("G310", f"O{_shown(label)}")
+    rows[label] = row
+
+
+def _shown(label: str) -> str:
+    return label if label.isdigit() else f"<{label}>"

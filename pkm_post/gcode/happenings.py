@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Happenings: M codes, S and dwells become events between motions.
+
+Columns of codes enter, events leave. In a block the tool changes first, then spindle and coolant are switched, then the
+tool waits, then it moves, then the program stops [LinuxCNC, order of execution].
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.modal import NONE, Group, Modal, owners
+from pkm_post.model import Event, EventKind
+from pkm_post.model.program import Array
+
+_COOLANT = {7: 2.0, 8: 1.0, 9: 0.0}
+_STOPS = {0: 0.0, 1: 1.0, 60: 0.0}
+ENDS = (2, 30)
+
+Happening = tuple[int, int, EventKind, float]
+"""Block, rank in it (negative before its motion, positive after), kind and value."""
+
+InCycle = tuple[int, int, EventKind, float]
+"""Row of the motion it precedes, block, kind and value."""
+
+
+def happenings(blocks: Blocks, modal: Modal, tools: Array, spindle: Array) -> list[Happening]:
+    """What happens beside the motions, by block and rank."""
+    found: list[Happening] = []
+    changes, stops = modal.explicit[Group.CHANGE], modal.explicit[Group.STOP]
+    for row in np.flatnonzero(changes == 6).tolist():
+        found.append((row, -4, EventKind.TOOL_CHANGE, float(tools[row])))
+    before = np.append(0.0, spindle[:-1])[: len(spindle)]
+    switched = (modal.explicit[Group.SPINDLE] != NONE) | (spindle != before)
+    for row in np.flatnonzero(switched).tolist():
+        found.append((row, -3, EventKind.SPINDLE, float(spindle[row])))
+    on_coolant = np.isin(blocks.m, list(_COOLANT))
+    for row, code in zip(owners(blocks.m_start)[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
+        found.append((row, -2, EventKind.COOLANT, _COOLANT[code]))
+    for row in owners(blocks.g_start)[blocks.g == 40].tolist():
+        found.append((row, -1, EventKind.DWELL, float(blocks.words[row, column_of("P")])))
+    for row in np.flatnonzero(np.isin(stops, list(_STOPS))).tolist():
+        found.append((row, 1, EventKind.STOP, _STOPS[int(stops[row])]))
+    for row in np.flatnonzero(np.isin(stops, ENDS)).tolist():
+        found.extend(_at_the_end(row, spindle, found))
+    return sorted(found, key=lambda one: one[:2])
+
+
+def _at_the_end(row: int, spindle: Array, found: list[Happening]) -> list[Happening]:
+    """M2 and M30 switch off what is on."""
+    coolant = [value for _, _, kind, value in sorted(found, key=lambda one: one[:2]) if kind is EventKind.COOLANT]
+    off: list[Happening] = []
+    if spindle[row]:
+        off.append((row, 2, EventKind.SPINDLE, 0.0))
+    if coolant and coolant[-1]:
+        off.append((row, 2, EventKind.COOLANT, 0.0))
+    return off
+
+
+def events(happening: list[Happening], of_cycles: list[InCycle], block: Array) -> tuple[Event, ...]:
+    """All events in order.
+
+    Args:
+        happening: what happens beside the motions.
+        of_cycles: what cycles do between their motions.
+        block: (n,) the block of each motion, never falling.
+    """
+    blocks = np.array([one[0] for one in happening], dtype=np.int64)
+    after = np.array([one[1] > 0 for one in happening], dtype=np.bool_)
+    rows = np.where(after, np.searchsorted(block, blocks, "right"), np.searchsorted(block, blocks, "left"))
+    between = [(row, *one) for row, one in zip(rows.tolist(), happening, strict=True)]
+    inside = [(row, here, 0, kind, value) for row, here, kind, value in of_cycles]
+    ordered = sorted(between + inside, key=lambda one: one[:3])
+    return tuple(Event(row, kind, value) for row, _, _, kind, value in ordered)

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Limits: what the execution of a program may take, so that every execution ends in bounded time and memory.
+
+Enters: the choice of the user. Leaves: the same, checked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ExecutionLimits:
+    """Bounds of an execution.
+
+    Attributes:
+        blocks: executed blocks, those included that leave no plain block.
+        operations: values and operators computed in expressions, and G and M codes handed on.
+        depth: levels of subprograms, the main program included.
+    """
+
+    blocks: int = 10_000_000
+    operations: int = 100_000_000
+    depth: int = 10
+
+    def __post_init__(self) -> None:
+        for name in ("blocks", "operations", "depth"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name}: expected at least 1, got {getattr(self, name)}")

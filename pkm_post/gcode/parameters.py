@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters: the memory of a program that runs, as RS274NGC has it.
+
+Enters: numbers or names of parameters and the values assigned to them. Leaves: their values, in whatever unit the
+program keeps them. ``#1`` to ``#30`` belong to the subprogram that was called, ``#31`` and on to the whole program, and
+all of them start at 0; ``#<name>`` belongs to the subprogram and ``#<_name>`` to the whole program, and they have no
+value before they are assigned. What a control would have to be asked for is refused: it is not known here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+HIGHEST = 5601
+"""The last numbered parameter."""
+
+ARGUMENTS = 30
+"""How many numbered parameters belong to a subprogram; they begin as the arguments of its call."""
+
+_WHOLE = 1e-4
+"""How far from a whole number a value may be that stands for one."""
+
+_OF_THE_MACHINE: tuple[tuple[int, int, str], ...] = (
+    (5061, 5070, "what was probed"),
+    (5161, 5169, "the reference point of G28"),
+    (5181, 5189, "the reference point of G30"),
+    (5210, 5219, "the shift of G92"),
+    (5220, 5220, "the number of the work offset in force"),
+    (5221, 5390, "a work offset"),
+    (5399, 5399, "the input read by M66"),
+    (5400, 5413, "the tool in the spindle"),
+    (5420, 5428, "the current position"),
+    (5599, 5601, "a setting of the control"),
+)
+"""First and last number, and what the control keeps there."""
+
+# fmt: off
+_NAMES_OF_THE_MACHINE = frozenset((
+    "_vmajor", "_vminor", "_line", "_motion_mode", "_plane", "_ccomp", "_metric", "_imperial", "_absolute",
+    "_incremental", "_inverse_time", "_units_per_minute", "_units_per_rev", "_coord_system", "_tool_offset",
+    "_retract_r_plane", "_retract_old_z", "_spindle_rpm_mode", "_spindle_css_mode", "_ijk_absolute_mode",
+    "_lathe_diameter_mode", "_lathe_radius_mode", "_spindle_on", "_spindle_cw", "_mist", "_flood",
+    "_speed_override", "_feed_override", "_adaptive_feed", "_feed_hold", "_feed", "_rpm", "_x", "_y", "_z", "_a",
+    "_b", "_c", "_u", "_v", "_w", "_abs_x", "_abs_y", "_abs_z", "_abs_a", "_abs_b", "_abs_c", "_current_tool",
+    "_current_pocket", "_selected_tool", "_selected_pocket", "_task", "_remap_level",
+))
+# fmt: on
+"""Names that the control gives to its own state."""
+
+_OF_A_CALL = ("_value", "_value_returned", "_call_level")
+"""Names that calls of subprograms set, and no assignment."""
+
+Name = int | str
+"""What stands behind ``#``: a number, or a name in lower case without blanks."""
+
+
+class ExecutionFault(Exception):  # noqa: N818 - it is no error of the program
+    """The program cannot go on. Raised while it runs, and told as a diagnostic of the block that it runs.
+
+    Attributes:
+        code: key into the table of diagnostics.
+        found: what was found.
+        column: where in the block, from 1; 0 when it concerns the whole block.
+    """
+
+    def __init__(self, code: str, found: str, column: int = 0) -> None:
+        super().__init__(code, found, column)
+        self.code, self.found, self.column = code, found, column
+
+
+@dataclass
+class _Level:
+    """What belongs to one run of a subprogram: its names, and what the caller had in #1 to #30."""
+
+    named: dict[str, float]
+    saved: list[float] | None
+
+
+class Parameters:
+    """All parameters of a program that runs."""
+
+    def __init__(self) -> None:
+        self._numbered = [0.0] * (HIGHEST + 1)
+        self._global: dict[str, float] = dict.fromkeys(_OF_A_CALL, 0.0)
+        self._levels = [_Level({}, None)]
+
+    @property
+    def depth(self) -> int:
+        """How many calls deep the program is; 0 in the main program."""
+        return len(self._levels) - 1
+
+    def value(self, name: Name) -> float:
+        """The value of a parameter.
+
+        Raises:
+            ExecutionFault: it has none, or the control keeps it for itself.
+        """
+        if isinstance(name, int):
+            return self._numbered[_numbered(name)]
+        _refuse_names_of_the_machine(name)
+        value = self._named(name).get(name)
+        if value is None:
+            raise ExecutionFault("G301", f"#<{name}>")
+        return value
+
+    def assign(self, name: Name, value: float) -> None:
+        """Give a parameter its value.
+
+        Raises:
+            ExecutionFault: the control keeps it for itself.
+        """
+        if isinstance(name, int):
+            self._numbered[_numbered(name)] = value
+            return
+        _refuse_names_of_the_machine(name)
+        if name in _OF_A_CALL:
+            raise ExecutionFault("G303", f"#<{name}>: set by calls alone")
+        self._named(name)[name] = value
+
+    def exists(self, name: Name) -> bool:
+        """Whether a parameter can be read."""
+        return isinstance(name, int) or name in _NAMES_OF_THE_MACHINE or name in self._named(name)
+
+    def enter(self, arguments: Sequence[float] | None) -> None:
+        """Begin a subprogram.
+
+        Args:
+            arguments: values of #1 and on; None when the subprogram shares #1 to #30 with its caller, as after M98.
+        """
+        saved = None
+        if arguments is not None:
+            saved = self._numbered[1 : ARGUMENTS + 1]
+            self._numbered[1 : ARGUMENTS + 1] = [*arguments, *[0.0] * (ARGUMENTS - len(arguments))]
+        self._levels.append(_Level({}, saved))
+        self._global.update(_value=0.0, _value_returned=0.0, _call_level=float(self.depth))
+
+    def leave(self, returned: float | None) -> None:
+        """End a subprogram.
+
+        Args:
+            returned: the value it gives back, None if it gives none.
+        """
+        saved = self._levels.pop().saved
+        if saved is not None:
+            self._numbered[1 : ARGUMENTS + 1] = saved
+        self._global.update(
+            _value=0.0 if returned is None else returned,
+            _value_returned=float(returned is not None),
+            _call_level=float(self.depth),
+        )
+
+    def _named(self, name: str) -> dict[str, float]:
+        return self._global if name.startswith("_") else self._levels[-1].named
+
+
+def whole(value: float) -> int | None:
+    """The whole number that a value stands for, None if it stands for none."""
+    number = round(value)
+    return number if abs(value - number) < _WHOLE else None
+
+
+def in_range(value: float) -> int:
+    """The number of a parameter.
+
+    Raises:
+        ExecutionFault: there is no parameter of that number.
+    """
+    number = whole(value)
+    if number is None or not 1 <= number <= HIGHEST:
+        raise ExecutionFault("G302", f"#{value:.10g}")
+    return number
+
+
+def _numbered(number: int) -> int:
+    if number > _OF_THE_MACHINE[0][0] - 1:
+        for first, last, what in _OF_THE_MACHINE:
+            if first <= number <= last:
+                raise ExecutionFault("G303", f"#{number}: {what}")
+    return number
+
+
+def _refuse_names_of_the_machine(name: str) -> None:
+    if name in _NAMES_OF_THE_MACHINE:
+        raise ExecutionFault("G303", f"#<{name}>")

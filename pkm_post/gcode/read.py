@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Read: from the text of a G-code program to the motions it means, in three steps that know nothing of each other.
+
+Enters: the content of a file, in the units it is written in. Leaves: a ``Program`` in mm, rad and mm/s, or all
+that is wrong in the first step that cannot be finished: a block that is not understood has no meaning to go on with.
+"""
+
+from __future__ import annotations
+
+from pkm_post.gcode.execute import DEFAULT_LIMITS, ExecutionLimits, execute
+from pkm_post.gcode.located import located
+from pkm_post.gcode.options import ReadOptions
+from pkm_post.gcode.resolve import resolve
+from pkm_post.gcode.scan import scan
+from pkm_post.model import Diagnostic, Program
+
+DEFAULT_OPTIONS = ReadOptions()
+
+
+def read(
+    text: bytes | str,
+    file: str,
+    options: ReadOptions = DEFAULT_OPTIONS,
+    limits: ExecutionLimits = DEFAULT_LIMITS,
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """The program that a G-code file describes.
+
+    Args:
+        text: content of the file; any bytes.
+        file: its name, for the diagnostics.
+        options: what the program does not say itself.
+        limits: bounds of its loops and calls.
+
+    Returns:
+        The program, None if there are errors; and the diagnostics.
+
+    Raises:
+        ImportError: lark is not installed.
+    """
+    scanned, told = scan(text, file)
+    if scanned is None:
+        return None, told
+    executed, told_of_execution = execute(scanned, limits, options.block_delete)
+    if executed is None:
+        return None, told + told_of_execution
+    program, told_of_meaning = resolve(executed, options)
+    return program, told + told_of_execution + (located(told_of_meaning, text) if told_of_meaning else ())

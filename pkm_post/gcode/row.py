@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One block: the tree that lark makes of a line, read as a row.
+
+Enters: the bytes of one line. Leaves: what a row of ``Blocks`` holds, nothing for a line that says nothing, or a fault.
+This is the slow way and the reference: the fast way takes it once for every shape of a block that it meets, and for
+the lines that have no plain shape.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from pkm_post.gcode.blocks import column_of
+from pkm_post.gcode.grammar import parse
+
+if TYPE_CHECKING:
+    from lark import Token, Tree, UnexpectedInput
+
+LONGEST_LINE = 10_000
+"""Bytes. Longer lines are no blocks, whatever is in them."""
+
+DEEPEST_TREE = 100
+"""Levels of an expression, so that whoever walks the tree may do it by recursion."""
+
+LARGEST_CODE = 9999.0
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What is wrong with a line.
+
+    Attributes:
+        code: key into the table of diagnostics.
+        offset: bytes of the line before it.
+        found: what was found, in the words of the line.
+    """
+
+    code: str
+    offset: int
+    found: str
+
+
+@dataclass
+class Row:
+    """What a block holds.
+
+    Attributes:
+        columns: columns of ``Blocks.words`` in the order of the block.
+        values: their values.
+        g: G codes in tenths.
+        m: M codes.
+        deleted: whether it begins with the block delete character.
+        tree: the block itself, if it holds more than plain words; the other fields are empty then.
+    """
+
+    columns: list[int] = field(default_factory=list)
+    values: list[float] = field(default_factory=list)
+    g: list[int] = field(default_factory=list)
+    m: list[int] = field(default_factory=list)
+    deleted: bool = False
+    tree: Tree[Token] | None = None
+
+    def __bool__(self) -> bool:
+        return bool(self.columns or self.g or self.m or self.tree)
+
+
+class _Bad(Exception):  # noqa: N818 - it stays within this file
+    """A fault that the grammar does not see."""
+
+    def __init__(self, code: str, token: Token, found: str = "") -> None:
+        self.fault = Fault(code, token.start_pos or 0, found or f"'{token}'"[:40])
+
+
+def read_row(line: bytes) -> Row | UnexpectedInput | Fault:
+    """What one line holds; a false row when it holds nothing.
+
+    Args:
+        line: the line without its end.
+
+    Raises:
+        ImportError: lark is not installed.
+    """
+    if len(line) > LONGEST_LINE:
+        return Fault("G104", 0, f"{len(line)} characters")
+    tree = parse(line.decode("latin-1"))
+    if isinstance(tree, Exception):
+        return tree
+    try:
+        return _row_of(tree)
+    except _Bad as bad:
+        return bad.fault
+
+
+def _row_of(tree: Tree[Token]) -> Row:
+    row = Row()
+    seen: set[str] = set()
+    special = False
+    for child in tree.children:
+        if isinstance(child, str):
+            row.deleted |= child.type == "DELETE"
+            special |= child.type not in ("DELETE", "PERCENT")
+        elif child.data in ("word", "named_word", "surface_word"):
+            special |= not _add_word(row, child, seen)
+        else:
+            special |= child.data != "line_number"
+    if special:
+        return Row(deleted=row.deleted, tree=_checked(tree))
+    return row
+
+
+def _add_word(row: Row, word: Tree[Token], seen: set[str]) -> bool:
+    """Put a word into the row; whether it is a plain one, of a letter and a number."""
+    name, value = word.children
+    assert isinstance(name, str)  # the grammar begins every word with a terminal
+    letter = "".join(name.split()).upper()
+    if letter in seen and letter not in "GM":
+        raise _Bad("G202", name)
+    seen.add(letter)
+    if not isinstance(value, str) or len(letter) > 1:
+        return False
+    if letter == "G":
+        row.g.append(_code(name, value, 10))
+    elif letter == "M":
+        row.m.append(_code(name, value, 1))
+    else:
+        row.columns.append(column_of(letter))
+        row.values.append(_finite(value))
+    return True
+
+
+def _code(name: Token, value: Token, parts: int) -> int:
+    """A G or M code in parts of 1."""
+    number = _finite(value) * parts
+    code = round(number)
+    if value[0] in "+-" or number > LARGEST_CODE or abs(number - code) > 1e-6:
+        raise _Bad("G105", name, f"'{name}{value}'"[:40])
+    return code
+
+
+def _finite(token: Token) -> float:
+    number = float(token)
+    if not math.isfinite(number):
+        raise _Bad("G103", token, f"a number of {len(token)} characters")
+    return number
+
+
+def _checked(tree: Tree[Token]) -> Tree[Token]:
+    """The tree, if it is not too deep and all its numbers are finite."""
+    for token, depth in _leaves(tree):
+        if depth > DEEPEST_TREE:
+            raise _Bad("G211", token)
+        if token.type == "NUMBER":
+            _finite(token)
+    return tree
+
+
+def _leaves(tree: Tree[Token]) -> Iterator[tuple[Token, int]]:
+    """The terminals of a tree, from left to right, each with its depth."""
+    waiting: list[tuple[Token | Tree[Token], int]] = [(tree, 0)]
+    while waiting:
+        branch, depth = waiting.pop()
+        if isinstance(branch, str):
+            yield branch, depth
+        else:
+            waiting.extend((child, depth + 1) for child in reversed(branch.children))

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A run: the program as it is executed, block after block, with its calls and loops.
+
+Enters: scanned blocks, the special ones made ready, and where O words lead. Leaves: the executed blocks, in order. Runs
+of plain blocks are one step each. Calls are kept on a list, not on Python's stack, and every block counts against the
+limit.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.executed import ExecutedBlocks
+from pkm_post.gcode.flow import Flow
+from pkm_post.gcode.limits import ExecutionLimits
+from pkm_post.gcode.parameters import ExecutionFault, Parameters, whole
+from pkm_post.gcode.statements import OWord, Row, Statement, label_of_number
+from pkm_post.model.program import Array
+
+PROGRAM_END = (2, 30)
+CALL, RETURN = 98, 99
+SUBPROGRAM_CODES = (CALL, RETURN)
+_P, _L = column_of("P"), column_of("L")
+
+
+@dataclass
+class _Level:
+    """A subprogram that runs.
+
+    Attributes:
+        back: the row to go on with after it.
+        begin: its first row, for the next pass.
+        passes: how often it still runs after this time; only M98 has more than one.
+        by_m98: whether M98 called it, so that M99 ends it and not ``endsub``.
+        turns: of every ``repeat`` that runs, how often it still runs.
+    """
+
+    back: int
+    begin: int
+    passes: int = 0
+    by_m98: bool = False
+    turns: dict[int, int] = field(default_factory=dict)
+
+
+class Run:
+    """One execution of a program.
+
+    Args:
+        blocks: the scanned blocks.
+        statements: the special ones by row, made ready.
+        flow: where O words lead.
+        left_out: (N,) the blocks that are not executed.
+        limits: bounds of the execution.
+        executed: takes what is executed.
+    """
+
+    def __init__(
+        self,
+        blocks: Blocks,
+        statements: dict[int, Statement],
+        flow: Flow,
+        left_out: Array,
+        limits: ExecutionLimits,
+        executed: ExecutedBlocks,
+    ) -> None:
+        self.row = 0
+        self._blocks, self._statements, self._flow, self._left_out = blocks, statements, flow, left_out
+        self._limits, self._executed = limits, executed
+        self._blocks_left, self._operations_left = limits.blocks, limits.operations
+        self._cost = {row: statement.cost for row, statement in statements.items()}
+        self._code_start = blocks.g_start + blocks.m_start
+        self._parameters = Parameters()
+        self._levels = [_Level(back=len(blocks), begin=0)]
+
+    def to_the_end(self, ruled: list[int]) -> None:
+        """Execute until the program ends.
+
+        Args:
+            ruled: the rows that are not just moved, in order; ``row`` is always the row that is executed.
+
+        Raises:
+            ExecutionFault: the program cannot go on at ``row``.
+        """
+        end = len(self._blocks)
+        ruled = [*ruled, end]
+        while self.row < end:
+            stop = ruled[bisect_left(ruled, self.row)]
+            if stop > self.row:
+                self._move(stop)
+            else:
+                self._spend(1, self._cost.get(self.row, 1))
+                self.row = self._step(self.row)
+        self._refuse_open_subprogram()
+
+    def _move(self, stop: int) -> None:
+        self._spend(stop - self.row, int(self._code_start[stop] - self._code_start[self.row]))
+        self._executed.move(self.row, stop)
+        self.row = stop
+
+    def _spend(self, blocks: int, operations: int) -> None:
+        self._blocks_left -= blocks
+        self._operations_left -= operations
+        if self._blocks_left < 0:
+            raise ExecutionFault("G313", f"more than {self._limits.blocks} executed blocks")
+        if self._operations_left < 0:
+            raise ExecutionFault("G313", f"more than {self._limits.operations} operations in executed blocks")
+
+    def _refuse_open_subprogram(self) -> None:
+        if len(self._levels) > 1 and self.row == len(self._blocks):
+            self.row = max(self._levels[-1].begin - 1, 0)
+            raise ExecutionFault("G308", "subprogram without M99")
+
+    def _step(self, row: int) -> int:
+        """Execute a row that is not just moved; which row is next."""
+        statement = self._statements.get(row)
+        if isinstance(statement, OWord):
+            return _STEPS[statement.keyword](self, row, statement)
+        if statement is not None:
+            return self._finish(row, statement.executed(self._parameters))
+        return row + 1 if self._left_out[row] else self._finish(row, self._plain(row))
+
+    def _plain(self, row: int) -> Row:
+        self._spend(0, int(self._code_start[row + 1] - self._code_start[row]))
+        given = np.flatnonzero(~np.isnan(self._blocks.words[row])).tolist()
+        values = {column: float(self._blocks.words[row, column]) for column in given}
+        return Row(values, tuple(self._blocks.g_of(row).tolist()), tuple(self._blocks.m_of(row).tolist()))
+
+    def _finish(self, row: int, done: Row) -> int:
+        """Hand on a computed row, then do what its M codes say about the next one."""
+        if not done.m:
+            self._executed.add(row, done)
+            return row + 1
+        ruling = [code for code in done.m if code in SUBPROGRAM_CODES]
+        ends = [code for code in done.m if code in PROGRAM_END]
+        if ruling and len(ruling) + len(ends) > 1:
+            raise ExecutionFault("G316", " ".join(f"M{code}" for code in (*ruling, *ends)))
+        if ruling:
+            rest = {column: value for column, value in done.values.items() if column not in (_P, _L)}
+            codes = tuple(code for code in done.m if code not in SUBPROGRAM_CODES)
+            self._executed.add(row, replace(done, values=rest, m=codes))
+            return self._call_program(row, done) if ruling == [CALL] else self._leave_program(done)
+        self._executed.add(row, done)
+        return len(self._blocks) + 1 if ends else row + 1
+
+    def _call_program(self, row: int, done: Row) -> int:
+        number, passes = (whole(done.values.get(column, default)) for column, default in ((_P, -1.0), (_L, 1.0)))
+        if number is None or passes is None or number < 0 or passes < 0:
+            words = "".join(
+                f" {letter}{done.values[c]:.10g}" for letter, c in (("P", _P), ("L", _L)) if c in done.values
+            )
+            raise ExecutionFault("G316", f"M98{words}")
+        label = str(number)
+        # A subprogram with sub and endsub cannot be run by M98: it would not know its arguments.
+        if label not in self._flow.programs:
+            raise ExecutionFault("G309", f"M98 P{label}")
+        if passes == 0:
+            return row + 1
+        begin = self._flow.programs[label] + 1
+        self._enter(_Level(row + 1, begin, passes - 1, by_m98=True), None)
+        return begin
+
+    def _leave_program(self, done: Row) -> int:
+        level = self._levels[-1]
+        if not level.by_m98 or _P in done.values:
+            raise ExecutionFault("G312", "M99 P" if _P in done.values else "M99 outside of a subprogram called by M98")
+        self._parameters.leave(None)
+        if level.passes:
+            level.passes -= 1
+            level.turns.clear()
+            self._parameters.enter(None)
+            return level.begin
+        self._levels.pop()
+        return level.back
+
+    def _enter(self, level: _Level, arguments: list[float] | None) -> None:
+        if len(self._levels) >= self._limits.depth:
+            raise ExecutionFault("G314", f"more than {self._limits.depth} levels, the main program included")
+        self._levels.append(level)
+        self._parameters.enter(arguments)
+
+    def _value(self, word: OWord) -> float:
+        return word.values[0].value(self._parameters)
+
+    def _on(self, row: int, _: OWord) -> int:
+        return row + 1
+
+    def _call(self, row: int, word: OWord) -> int:
+        label = word.label
+        if not isinstance(label, str):
+            label = label_of_number(label.value(self._parameters), label.column)
+        if label not in self._flow.subs:
+            raise ExecutionFault("G309", f"O{label if label.isdigit() else f'<{label}>'} call")
+        begin = self._flow.subs[label] + 1
+        self._enter(_Level(row + 1, begin), [value.value(self._parameters) for value in word.values])
+        return begin
+
+    def _return(self, row: int, word: OWord) -> int:
+        if self._levels[-1].by_m98:
+            raise ExecutionFault("G312", f"{word.keyword} in a subprogram called by M98")
+        returned = self._value(word) if word.values else None
+        self._parameters.leave(returned)
+        return self._levels.pop().back
+
+    def _behind_other_end(self, row: int, _: OWord) -> int:
+        return self._flow.other_end[row] + 1
+
+    def _to_other_end(self, row: int, _: OWord) -> int:
+        return self._flow.other_end[row]
+
+    def _if(self, row: int, word: OWord) -> int:
+        """The first branch whose condition holds."""
+        while word.values and self._value(word) == 0:
+            self.row = row = self._flow.next_branch[row]
+            self._spend(1, self._cost[row])
+            branch = self._statements[row]
+            assert isinstance(branch, OWord)
+            word = branch
+        return row + 1
+
+    def _while(self, row: int, word: OWord) -> int:
+        goes_on = self._value(word) != 0
+        if goes_on == (row in self._flow.closing):
+            return self._flow.other_end[row] + 1
+        return row + 1
+
+    def _repeat(self, row: int, word: OWord) -> int:
+        turns = round(self._value(word))
+        if turns <= 0:
+            return self._flow.other_end[row] + 1
+        self._levels[-1].turns[row] = turns
+        return row + 1
+
+    def _endrepeat(self, row: int, _: OWord) -> int:
+        begin = self._flow.other_end[row]
+        self._levels[-1].turns[begin] -= 1
+        return begin + 1 if self._levels[-1].turns[begin] else row + 1
+
+    def _break(self, row: int, _: OWord) -> int:
+        return self._flow.last_row[row] + 1
+
+    def _continue(self, row: int, _: OWord) -> int:
+        return self._flow.last_row[row]
+
+
+_STEPS: dict[str, Callable[[Run, int, OWord], int]] = {
+    "program": Run._on,
+    "sub": Run._behind_other_end,
+    "endsub": Run._return,
+    "return": Run._return,
+    "call": Run._call,
+    "if": Run._if,
+    "elseif": Run._behind_other_end,
+    "else": Run._behind_other_end,
+    "endif": Run._on,
+    "while": Run._while,
+    "endwhile": Run._to_other_end,
+    "do": Run._on,
+    "repeat": Run._repeat,
+    "endrepeat": Run._endrepeat,
+    "break": Run._break,
+    "continue": Run._continue,
+}

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Scan: from the text of a G-code program to its blocks as columns; the first step of reading.
+
+Enters: the content of a file, whatever its bytes. Leaves: ``Blocks``, or all that is wrong with its characters and its
+grammar. There are two ways with one result. ``scan_by_block`` gives every line to lark: that is the reference.
+``scan`` lets lark judge one block of every shape, and reads the numbers of all the lines of that shape together; lines
+that lark does not accept, and blocks with more than plain words, go the way of the reference.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.faults import Faults
+from pkm_post.gcode.lexer import BLANK, Lexed, lex, malformed_lines, read_numbers
+from pkm_post.gcode.lines import clean, pieces, without_comments, without_lines
+from pkm_post.gcode.row import LONGEST_LINE, Row, read_row
+from pkm_post.gcode.shapes import BY_ITSELF, NOTHING, Layouts, Shapes
+from pkm_post.gcode.table import Table
+from pkm_post.model.diagnostics import Diagnostic
+from pkm_post.model.program import Array
+
+Scanned = tuple[Blocks | None, tuple[Diagnostic, ...]]
+
+
+def scan(text: bytes | str, file: str) -> Scanned:
+    """The blocks of a G-code program, or the faults of its text.
+
+    Args:
+        text: content of the file.
+        file: its name, for the diagnostics.
+
+    Raises:
+        ImportError: lark is not installed.
+    """
+    source = clean(text)
+    faults, shapes, table = Faults(file), Shapes(), Table(source.count(b"\n"))
+    for piece in pieces(source):
+        _scan_piece(piece, shapes, table, faults)
+    told = faults.diagnostics()
+    return (None if told else table.blocks(file)), told
+
+
+def scan_by_block(text: bytes | str, file: str) -> Scanned:
+    """The same as ``scan``, line by line through lark.
+
+    Args:
+        text: content of the file.
+        file: its name, for the diagnostics.
+
+    Raises:
+        ImportError: lark is not installed.
+    """
+    source = clean(text)
+    faults, table = Faults(file), Table(source.count(b"\n"))
+    for line in source.split(b"\n")[:-1]:
+        row = read_row(line)
+        spoken: list[tuple[int, str]] = []
+        if isinstance(row, Row):
+            without_comments(line, spoken)
+            table.comments.extend((table.next_line, comment) for _, comment in spoken)
+            table.add_row(row)
+        else:
+            faults.add(table.next_line, line, row)
+            table.add_row(Row())
+    told = faults.diagnostics()
+    return (None if told else table.blocks(file)), told
+
+
+def _scan_piece(piece: bytes, shapes: Shapes, table: Table, faults: Faults) -> None:
+    """Append the blocks of some lines to the table, and their faults to the others."""
+    line_start = np.concatenate([[0], np.flatnonzero(np.frombuffer(piece, np.uint8) == ord("\n")) + 1])
+    too_long = np.flatnonzero(np.diff(line_start) - 1 > LONGEST_LINE)
+    spoken: list[tuple[int, str]] = []
+    text = without_comments(without_lines(piece, line_start, too_long) if len(too_long) else piece, spoken)
+    lexed = lex(text)
+    shape = np.fromiter(map(shapes.__getitem__, lexed.shapes), np.intp, len(lexed.shapes))
+    shape[too_long] = BY_ITSELF
+    values = _values(text, lexed, line_start, shape, shapes.layouts())
+    alone, faulty = _read_alone(piece, line_start, shape, table.next_line, faults)
+    shape[sorted(faulty)] = NOTHING
+    lines = np.searchsorted(line_start, [offset for offset, _ in spoken], side="right") - 1
+    said = zip(lines.tolist(), (comment for _, comment in spoken), strict=True)
+    table.comments.extend((table.next_line + index, comment) for index, comment in said if index not in faulty)
+    table.add_lines(shape, shapes.layouts(), values, alone)
+
+
+def _read_alone(
+    piece: bytes, line_start: Array, shape: Array, first: int, faults: Faults
+) -> tuple[dict[int, Row], set[int]]:
+    """Read the lines that have no plain shape one by one: their rows, and which of them are faulty."""
+    rows: dict[int, Row] = {}
+    faulty: set[int] = set()
+    for index in np.flatnonzero(shape == BY_ITSELF).tolist():
+        line = piece[line_start[index] : line_start[index + 1] - 1]
+        row = read_row(line)
+        if isinstance(row, Row):
+            rows[index] = row
+        else:
+            faulty.add(index)
+            faults.add(first + index, line, row)
+    return rows, faulty
+
+
+def _values(text: bytes, lexed: Lexed, line_start: Array, shape: Array, layouts: Layouts) -> Array:
+    """The numbers of all the lines that have a shape. Lines with a number that is none lose theirs."""
+    if lexed.suspicious:
+        shape[malformed_lines(text)] = BY_ITSELF
+    values = _read_numbers(lexed, line_start, shape, layouts)
+    if values is None:
+        shape[malformed_lines(text)] = BY_ITSELF
+        values = _read_numbers(lexed, line_start, shape, layouts)
+    if values is not None and not np.isfinite(values).all():
+        line_of_number = np.repeat(np.arange(len(shape)), layouts.columns.count[shape])
+        shape[line_of_number[~np.isfinite(values)]] = BY_ITSELF
+        values = _read_numbers(lexed, line_start, shape, layouts)
+    assert values is not None  # no malformed number is left
+    return values
+
+
+def _read_numbers(lexed: Lexed, line_start: Array, shape: Array, layouts: Layouts) -> Array | None:
+    for index in np.flatnonzero(shape == BY_ITSELF).tolist():
+        lexed.numbers[line_start[index] : line_start[index + 1]] = BLANK
+    return read_numbers(lexed.numbers, int(layouts.columns.count[shape].sum()))

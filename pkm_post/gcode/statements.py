@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Statements: special blocks, made ready once to be executed as often as the program comes to them.
+
+Enters: the trees of the blocks. Leaves: for an O word its keyword, label and values; for every other block its words,
+codes and assignments as expressions. Words that name the components of the tool axis in other dialects become I J K
+here, and the words that switch such a dialect on and off become the G codes that mean the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from pkm_post.gcode.blocks import column_of
+from pkm_post.gcode.expressions import Expression, Target, column_of_node, expression_of, plain_name, target_of
+from pkm_post.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole
+from pkm_post.gcode.row import LARGEST_CODE
+
+if TYPE_CHECKING:
+    from lark import Token, Tree
+
+    Node = Tree[Token] | Token
+
+AXIS_COMPONENTS: dict[str, str] = {"A3": "I", "B3": "J", "C3": "K", "TX": "I", "TY": "J", "TZ": "K"}
+"""Words for the components of the tool axis, and the letter of the same meaning after G43.5."""
+
+DIALECT_CODES: dict[str, tuple[int, ...]] = {"LN": (435, 10), "TRAORI": (435,), "TRAFOOF": (430,)}
+"""Words of other dialects and the G codes, in tenths, that mean the same: G43.5 G1, G43.5 and G43."""
+
+_NEAR_A_CODE = 1e-3
+"""How far from a code, in its own parts, a value may be that stands for it."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """The plain words of a block as executed.
+
+    Attributes:
+        values: by column of ``Blocks.words``.
+        g: G codes in tenths.
+        m: M codes.
+        turns_axis: whether I J K were written as words that mean nothing but the tool axis.
+    """
+
+    values: dict[int, float] = field(default_factory=dict)
+    g: tuple[int, ...] = ()
+    m: tuple[int, ...] = ()
+    turns_axis: bool = False
+
+
+@dataclass
+class Words:
+    """A block of words, codes and assignments.
+
+    Attributes:
+        values: column of ``Blocks.words`` and value.
+        g: G codes, as numbers and not in tenths.
+        m: M codes.
+        codes: G codes in tenths that stand for words of other dialects.
+        assignments: what is assigned after all values of the block are computed.
+        turns_axis: as of ``Row``.
+    """
+
+    values: list[tuple[int, Expression]] = field(default_factory=list)
+    g: list[Expression] = field(default_factory=list)
+    m: list[Expression] = field(default_factory=list)
+    codes: tuple[int, ...] = ()
+    assignments: list[tuple[Target, Expression]] = field(default_factory=list)
+    turns_axis: bool = False
+
+    @property
+    def cost(self) -> int:
+        """How many operations it takes to execute the block."""
+        values = [*(value for _, value in self.values), *self.g, *self.m, *(value for _, value in self.assignments)]
+        targets = [target.number for target, _ in self.assignments if target.number is not None]
+        return sum(len(value.steps) for value in (*values, *targets))
+
+    def executed(self, parameters: Parameters) -> Row:
+        """Compute the block, then assign.
+
+        Args:
+            parameters: of the program that runs.
+
+        Raises:
+            ExecutionFault: a value cannot be computed or is no value of its word.
+        """
+        values = {column: value.value(parameters) for column, value in self.values}
+        g = tuple([*self.codes, *[_code("G", code, 10, parameters) for code in self.g]])
+        m = tuple([_code("M", code, 1, parameters) for code in self.m])
+        computed = [(target.resolved(parameters), value.value(parameters)) for target, value in self.assignments]
+        for (name, value), (target, _) in zip(computed, self.assignments, strict=True):
+            try:
+                parameters.assign(name, value)
+            except ExecutionFault as fault:
+                raise ExecutionFault(fault.code, fault.found, target.column) from None
+        return Row(values, g, m, self.turns_axis)
+
+
+@dataclass(frozen=True)
+class OWord:
+    """A block that rules which block is next.
+
+    Attributes:
+        keyword: in lower case; ``program`` for a label alone.
+        label: number or name, or what gives the number when the block is executed.
+        values: what stands behind the keyword.
+    """
+
+    keyword: str
+    label: str | Expression
+    values: tuple[Expression, ...]
+
+    @property
+    def cost(self) -> int:
+        """How many operations it takes to execute the block."""
+        label = () if isinstance(self.label, str) else (self.label,)
+        return sum(len(value.steps) for value in (*label, *self.values))
+
+
+Statement = Words | OWord
+
+
+def statement_of(tree: Tree[Token]) -> Statement:
+    """Make a block ready to be executed.
+
+    Args:
+        tree: of the block.
+
+    Raises:
+        ExecutionFault: it has no meaning.
+    """
+    words = Words()
+    for child in tree.children:
+        if isinstance(child, str):
+            words.codes += DIALECT_CODES.get(child.split("(")[0].strip().upper(), ())
+        elif child.data == "o_word":
+            return _o_word_of(child)
+        elif child.data in _ADD:
+            _ADD[child.data](words, child)
+    return words
+
+
+def _add_word(words: Words, word: Tree[Token]) -> None:
+    letter = str(word.children[0]).upper()
+    value = expression_of(word.children[1])
+    if letter == "G":
+        words.g.append(value)
+    elif letter == "M":
+        words.m.append(value)
+    else:
+        _add_value(words, letter, value, word)
+
+
+def _add_axis_component(words: Words, word: Tree[Token]) -> None:
+    name = "".join(str(word.children[0]).split()).upper()
+    if name not in AXIS_COMPONENTS:
+        raise ExecutionFault("G317", f"{name}, of the normal of the surface", column_of_node(word))
+    words.turns_axis = True
+    _add_value(words, AXIS_COMPONENTS[name], expression_of(word.children[1]), word)
+
+
+def _add_value(words: Words, letter: str, value: Expression, word: Tree[Token]) -> None:
+    column = column_of(letter)
+    if any(column == given for given, _ in words.values):
+        raise ExecutionFault("G317", f"{word.children[0]} and another word for {letter}", column_of_node(word))
+    words.values.append((column, value))
+
+
+def _add_assignment(words: Words, assignment: Tree[Token]) -> None:
+    parameter, value = assignment.children
+    words.assignments.append((target_of(parameter), expression_of(value)))
+
+
+_ADD: dict[str, Callable[[Words, Tree[Token]], None]] = {
+    "word": _add_word,
+    "named_word": _add_axis_component,
+    "surface_word": _add_axis_component,
+    "assignment": _add_assignment,
+}
+
+
+def _o_word_of(tree: Tree[Token]) -> OWord:
+    label, *rest = tree.children
+    keyword = str(rest.pop(0)).lower() if rest else "program"
+    if len(rest) > ARGUMENTS:
+        raise ExecutionFault("G315", f"{len(rest)} arguments", column_of_node(rest[ARGUMENTS]))
+    return OWord(keyword, _label_of(label), tuple(expression_of(node) for node in rest))
+
+
+def _label_of(node: Node) -> str | Expression:
+    if isinstance(node, str) and node.type == "NAME":
+        return plain_name(node)
+    if isinstance(node, str):
+        return label_of_number(float(node), column_of_node(node))
+    return expression_of(node)
+
+
+def label_of_number(number: float, column: int = 0) -> str:
+    """The label that a number is.
+
+    Args:
+        number: what is written or was computed.
+        column: where, from 1.
+
+    Raises:
+        ExecutionFault: it is none.
+    """
+    label = whole(number)
+    if label is None or label < 0:
+        raise ExecutionFault("G311", f"O{number:.10g}", column)
+    return str(label)
+
+
+def _code(letter: str, code: Expression, parts: int, parameters: Parameters) -> int:
+    """A G or M code in parts of 1."""
+    number = code.value(parameters)
+    rounded = round(number * parts)
+    if abs(number * parts - rounded) > _NEAR_A_CODE or not 0 <= number <= LARGEST_CODE:
+        raise ExecutionFault("G306", f"{letter}{number:.10g}", code.column)
+    return rounded

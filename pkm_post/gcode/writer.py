@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Writer: a program becomes G-code that says the same, one block for each row.
+
+A ``Program`` (mm, rad, mm/s) enters, text leaves: mm or inch, degrees, feed a minute. It is modal: a word is written
+where its value, as rounded, is new, and again after a tool change. Reading the text gives the program back within the
+decimals. What a form of G-code cannot say is refused, or replaced and told; nothing is dropped in silence.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.gcode.writer_arcs import CHORD_ERROR, WrittenArcs, with_chords, written_arcs
+from pkm_post.gcode.writer_axes import FORMS, Form, impossible_axis
+from pkm_post.gcode.writer_blocks import block_texts
+from pkm_post.gcode.writer_events import between_blocks, heading
+from pkm_post.gcode.writer_words import Numbers, codes_of, words_of
+from pkm_post.model import Diagnostic, Kind, Place, Program
+
+__all__ = ["Form", "write"]
+
+_INCH = 25.4
+
+
+def write(
+    program: Program, form: Form, decimals: int = 4, axis_decimals: int = 6, inch: bool = False
+) -> tuple[str | None, tuple[Diagnostic, ...]]:
+    """Write a program as G-code.
+
+    Args:
+        program: any; row 0 is written as a rapid move.
+        form: how the tool axis is said.
+        decimals: of coordinates, centres and diameters.
+        axis_decimals: of vectors, and of angles in degrees.
+        inch: whether lengths are in inches (G20).
+
+    Returns:
+        The text, or None when the form cannot say the program, and what was found.
+
+    Raises:
+        ValueError: a place, tool axis, feed or radius is not a finite number.
+    """
+    _require_numbers(program)
+    fault = impossible_axis(program.tool_axis, form)
+    if fault is not None:
+        row, code, found = fault
+        return None, (Diagnostic(code, program.place(row), found),)
+    numbers = Numbers(decimals, axis_decimals, _INCH if inch else 1.0)
+    may_turn = not FORMS[form].as_vector
+    arcs = written_arcs(program, numbers.unit, may_turn)
+    diagnostics = (*_chords_told(program, arcs), *_normals_told(program))
+    if not arcs.sayable.all():
+        program = with_chords(program, arcs.row[~arcs.sayable])
+        arcs = written_arcs(program, numbers.unit, may_turn)
+    between = between_blocks(program, form)
+    blocks = block_texts(words_of(program, FORMS[form], arcs, numbers), codes_of(program, arcs, numbers), between)
+    end = between.get(len(program), "")
+    return "".join([heading(program, form, inch), *blocks, end, "M2\n"]), diagnostics
+
+
+def _require_numbers(program: Program) -> None:
+    cutting = program.kind != Kind.RAPID
+    cutting[:1] = False
+    columns = {
+        "position": program.position,
+        "tool_axis": program.tool_axis,
+        "feed of cutting moves": program.feed[cutting],
+        "side_offset": program.side_offset,
+    }
+    for name, values in columns.items():
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name}: expected finite numbers, got {int((~np.isfinite(values)).sum())} that are not")
+
+
+def _chords_told(program: Program, arcs: WrittenArcs) -> tuple[Diagnostic, ...]:
+    rows = arcs.row[~arcs.sayable]
+    if not len(rows):
+        return ()
+    found = f"{len(rows)} of {len(arcs.row)} arcs, this is the first; the lines stay within {CHORD_ERROR} mm"
+    return (Diagnostic("G503", program.place(int(rows[0])), found),)
+
+
+def _normals_told(program: Program) -> tuple[Diagnostic, ...]:
+    count = int(np.isfinite(program.normal).all(axis=1).sum())
+    return (Diagnostic("G504", Place(program.source), f"{count} moves have one"),) if count else ()

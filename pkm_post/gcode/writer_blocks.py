@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Blocks as text: columns of words and codes become lines.
+
+Rows with the same words and codes share one template. The templates of some thousand rows are joined and filled with
+all their numbers at once, so that no Python runs for a single block. Every number has all its decimals, and so a point:
+some controls take a number without one for thousandths.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from pkm_post.gcode.writer_words import TEXTS, Codes, Word
+from pkm_post.model.program import Array
+
+_CHUNK = 1 << 13
+"""Rows formatted at a time."""
+
+
+def block_texts(words: list[Word], codes: Codes, between: Mapping[int, str]) -> Iterator[str]:
+    """The text of all blocks, in pieces.
+
+    Args:
+        words: in the order of the text.
+        codes: before the words, with D after that of the compensation.
+        between: whole lines before some rows.
+    """
+    columns = [codes.diameter, *words]
+    templates, of_row = _templates(columns, codes)
+    rows = sorted(between)
+    for begin in range(0, len(of_row), _CHUNK):
+        chunk = slice(begin, begin + _CHUNK)
+        lines = templates[of_row[chunk]].tolist()
+        for row in rows[bisect_left(rows, begin) : bisect_left(rows, begin + len(lines))]:
+            lines[row - begin] = between[row].replace("%", "%%") + lines[row - begin]
+        values = np.column_stack([word.values[chunk] for word in columns])
+        said = np.column_stack([word.said[chunk] for word in columns])
+        yield "".join(lines) % tuple(values[said].tolist())
+
+
+def _templates(columns: list[Word], codes: Codes) -> tuple[Array, Array]:
+    """The distinct templates, and for each row (N,) which one is its own."""
+    radices = [len(TEXTS[group]) for group in Codes.ORDER] + [2] * len(columns)
+    digits = [getattr(codes, group) for group in Codes.ORDER] + [word.said for word in columns]
+    key = np.zeros(len(codes.motion), dtype=np.int64)
+    for radix, digit in zip(reversed(radices), reversed(digits), strict=True):
+        key = key * radix + digit
+    used, of_row = np.unique(key, return_inverse=True)
+    return np.array([_template(int(one), radices, columns) for one in used], dtype=object), of_row
+
+
+def _template(key: int, radices: list[int], columns: list[Word]) -> str:
+    digits = []
+    for radix in radices:
+        key, digit = divmod(key, radix)
+        digits.append(digit)
+    code = {group: TEXTS[group][digit] for group, digit in zip(Codes.ORDER, digits, strict=False)}
+    diameter, *words = [
+        f"{word.letter}%.{word.decimals}f" if said else ""
+        for word, said in zip(columns, digits[len(Codes.ORDER) :], strict=True)
+    ]
+    parts = [code["path"], code["plane"], code["side"], diameter, code["motion"], *words]
+    return " ".join(part for part in parts if part) + "\n"

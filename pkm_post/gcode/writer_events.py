@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What stands between the blocks of a written program: heading, comments, and a line for each event.
+
+A ``Program`` enters, lines leave, by the row that they stand before. Dwells in s, spindle in revolutions a minute.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pkm_post.gcode.writer_axes import FORMS, Form
+from pkm_post.model import EventKind, Program
+
+_MODES = "{unit} G17 G90 G94 G40 G49 G80 G64\n"
+_COOLANT = {0: "M9", 1: "M8", 2: "M7"}
+_STOP = {0: "M0", 1: "M1"}
+_AT_TIP = ("G43.4", "G43.5")
+"""Codes that must be cancelled before a tool change."""
+_LONGEST_COMMENT = 200
+"""Characters; LinuxCNC reads lines of 255."""
+
+
+def heading(program: Program, form: Form, inch: bool) -> str:
+    """The lines before the first block: where it comes from, the tools, the modes."""
+    tools = [program.tools[number] for number in sorted(program.tools)]
+    lines = [
+        _comment(f"from {program.source}"),
+        *(
+            _comment(
+                f"tool {tool.number}: {tool.name}, diameter {_short(tool.diameter)}, "
+                f"corner radius {_short(tool.corner_radius)}, length {_short(tool.length)} mm"
+            )
+            for tool in tools
+        ),
+    ]
+    follows = FORMS[form].follows
+    starts_with_tool = any(event.row == 0 and event.kind is EventKind.TOOL_CHANGE for event in program.events)
+    if not starts_with_tool and follows in _AT_TIP:
+        return "".join(lines) + _MODES.format(unit="G20" if inch else "G21") + follows + "\n"
+    return "".join(lines) + _MODES.format(unit="G20" if inch else "G21")
+
+
+def between_blocks(program: Program, form: Form) -> dict[int, str]:
+    """Whole lines by the row they stand before; those by the number of rows stand after the last one."""
+    lines: dict[int, str] = {}
+    for row in _first_rows(program):
+        lines[row] = _comment(f"operation: {program.operations[program.operation[row]]}")
+    say = _EVENTS | {EventKind.TOOL_CHANGE: _tool_change(form)}
+    for event in program.events:
+        lines[event.row] = lines.get(event.row, "") + say[event.kind](event.value)
+    return lines
+
+
+def _first_rows(program: Program) -> list[int]:
+    """Rows where another operation begins."""
+    changes = np.append(True, np.diff(program.operation) != 0)[: len(program)]
+    rows: list[int] = np.flatnonzero(changes).tolist()
+    return rows
+
+
+def _tool_change(form: Form) -> Callable[[float], str]:
+    follows = FORMS[form].follows
+    cancel = "G49\n" if follows in _AT_TIP else ""
+
+    def say(number: float) -> str:
+        return f"{cancel}T{number:.0f} M6\n{follows} H{number:.0f}\n"
+
+    return say
+
+
+def _spindle(speed: float) -> str:
+    return f"S{_short(abs(speed))} M{3 if speed > 0 else 4}\n" if speed else "M5\n"
+
+
+_EVENTS: dict[EventKind, Callable[[float], str]] = {
+    EventKind.SPINDLE: _spindle,
+    EventKind.COOLANT: lambda value: _COOLANT[int(value)] + "\n",
+    EventKind.DWELL: lambda seconds: f"G4 P{_short(seconds)}\n",
+    EventKind.STOP: lambda value: _STOP[int(value)] + "\n",
+}
+
+
+def _short(value: float) -> str:
+    """A number with up to four decimals, without zeros at the end."""
+    return f"{value:.4f}".rstrip("0").rstrip(".")
+
+
+def _comment(text: str) -> str:
+    """A comment that every control reads: ASCII, one line, not too long, no parentheses within."""
+    plain = text[:_LONGEST_COMMENT].translate({ord("("): "[", ord(")"): "]"}).encode("ascii", "replace").decode("ascii")
+    return "(" + "".join(character if character.isprintable() else " " for character in plain) + ")\n"

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Sources: a file with a part program becomes a program, read by what its name ends with.
+
+A path and what the user says of the tools enter; a ``Program`` or what is wrong with the file leaves. G-code seldom
+says what its tools measure. That is no fault until cutter compensation asks for a diameter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from pkm_post import cldata, gcode
+from pkm_post.gcode.options import AXIS_WORDS
+from pkm_post.model import Diagnostic, Place, Program, Tool
+
+__all__ = ["AS_WRITTEN", "AXIS_WORDS", "SUFFIXES", "Reading", "is_part_program", "read_part_program"]
+
+Result = tuple[Program | None, tuple[Diagnostic, ...]]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the user says of a file.
+
+    Attributes:
+        axis_words: how G-code says the tool axis, a key of ``AXIS_WORDS``.
+        diameters: of tools by number, mm.
+    """
+
+    axis_words: str = "none"
+    diameters: Mapping[int, float] = field(default_factory=dict)
+
+
+AS_WRITTEN = Reading()
+
+
+def is_part_program(file: Path) -> bool:
+    """Whether the name of a file ends like that of a part program."""
+    return file.suffix.lower() in SUFFIXES
+
+
+def read_part_program(file: Path, reading: Reading) -> Result:
+    """Read a file.
+
+    Args:
+        file: its name ends with a known suffix.
+        reading: what the file does not say itself.
+
+    Raises:
+        ValueError: the suffix is not known.
+    """
+    if not is_part_program(file):
+        raise ValueError(f"suffix of {file}: expected one of {', '.join(SUFFIXES)}")
+    try:
+        content = file.read_bytes()
+    except OSError as fault:
+        return None, (Diagnostic("F103", Place(str(file)), str(fault)),)
+    return SUFFIXES[file.suffix.lower()](content, str(file), reading)
+
+
+def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
+    # A diameter that is no number shows where it was used.
+    unknown = Tool(0, "", math.nan, 0.0, 0.0)
+    options = gcode.ReadOptions(tools=_described(reading), default_tool=unknown, axis_words=reading.axis_words)
+    program, diagnostics = gcode.read(content, file, options)
+    if program is None:
+        return None, diagnostics
+    missing = np.flatnonzero(np.isnan(program.side_offset))
+    if len(missing):
+        place = program.place(int(missing[0]))
+        return None, (*diagnostics, Diagnostic("G411", place, "cutter compensation with a tool of unknown diameter"))
+    tools = {
+        number: replace(tool, diameter=0.0) if math.isnan(tool.diameter) else tool
+        for number, tool in program.tools.items()
+    }
+    return replace(program, tools=tools), diagnostics
+
+
+def _read_cldata(content: bytes, file: str, reading: Reading) -> Result:
+    return cldata.read(content, file, cldata.ReadOptions(tools=_described(reading)))
+
+
+def _described(reading: Reading) -> dict[int, Tool]:
+    return {number: Tool(number, "", diameter, 0.0, 0.0) for number, diameter in reading.diameters.items()}
+
+
+SUFFIXES: dict[str, Callable[[bytes, str, Reading], Result]] = {
+    **dict.fromkeys((".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".eia", ".iso"), _read_gcode),
+    **dict.fromkeys((".cls", ".clsf", ".ncl", ".cl", ".apt", ".aptsource", ".cldata"), _read_cldata),
+}
+"""By the end of a file's name, in small letters, what reads it."""

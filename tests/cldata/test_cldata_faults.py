@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faults of CL data: bad programs state in their first line exactly what they must give."""
+
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pkm_post.cldata import grammar, read
+from pkm_post.cldata.faults import EXPECTED, MOST_TOLD
+from pkm_post.model.diagnostics import errors
+
+BAD_PROGRAMS = sorted((Path(__file__).parents[1] / "data" / "bad_cldata").glob("*.cl"))
+EXPECTATION = re.compile(rb"\$\$ expects (.+)")
+
+
+def test_there_are_bad_programs():
+    assert len(BAD_PROGRAMS) >= 40
+
+
+@pytest.mark.parametrize("path", BAD_PROGRAMS, ids=lambda path: path.stem)
+def test_bad_programs_give_the_stated_diagnostics(path):
+    text = path.read_bytes()
+    stated = EXPECTATION.match(text)
+    assert stated, "the first line states what is expected, such as: $$ expects L202 2:4, L411 0:0"
+    program, diagnostics = read(text, path.name)
+    given = [f"{fault.code} {fault.place.line}:{fault.place.column}" for fault in diagnostics]
+    assert ", ".join(given) == stated[1].decode()
+    assert (program is None) == bool(errors(diagnostics))
+    assert {fault.place.file for fault in diagnostics} == {path.name}
+
+
+@pytest.mark.parametrize(
+    "line, found",
+    [
+        ("GOTO/1,2.5mm,0", "'2.5mm'"),
+        ("GOTO/1,\0,0", "character 0x00"),
+        ("GOTO 1,2,3", "'1', expected '/', ',', '=' or the end of the statement"),
+        ("TLON,GOFWD/(CIRCLE/1,2", "the end of the statement, expected ')'"),
+        ("GOTO/1,2,3)", "')'"),
+    ],
+)
+def test_diagnostics_tell_what_was_found_and_expected(line, found):
+    (fault,) = read(line, "part.cl")[1]
+    assert fault.found == found
+
+
+def test_every_terminal_has_words():
+    terminals = {terminal.name for terminal in grammar.statement_parser().terminals}
+    assert terminals - {"BLANK", "TEXT"} <= set(EXPECTED)
+
+
+def test_a_hundred_errors_are_told_and_the_others_counted():
+    diagnostics = read("GOTO/;\n" * 250, "part.cl")[1]
+    assert len(diagnostics) == MOST_TOLD + 1
+    assert (diagnostics[-1].code, diagnostics[-1].found) == ("L199", "and 150 more")
+
+
+def test_a_missing_lark_is_named(monkeypatch):
+    grammar.statement_parser.cache_clear()
+    monkeypatch.setitem(sys.modules, "lark", None)
+    with pytest.raises(ImportError, match="needs lark: install python3-lark"):
+        read("GOTO/1,2,3", "part.cl")
+    monkeypatch.undo()
+    grammar.statement_parser.cache_clear()
+
+
+def test_any_bytes_give_a_program_or_diagnostics():
+    random = np.random.default_rng(20)
+    seed = b"UNITS/MM\nRAPID\nGOTO/1,2,3,0,0,1\nFEDRAT/5,MMPM\nCIRCLE/1,2,3,0,0,1\n$$-> CSYS/1 $\nCYCLE/DRILL,(TLON=')"
+    for _ in range(300):
+        text = bytearray(seed * 2)
+        for place in random.integers(0, len(text), random.integers(1, 30)):
+            text[place] = random.integers(0, 256)
+        cut = random.integers(0, len(text))
+        program, diagnostics = read(bytes(text[cut:] + text[:cut]), "fuzz.cl")
+        assert (program is None) == bool(errors(diagnostics))
+        noise = random.integers(0, 256, 200, dtype=np.uint8).tobytes()
+        program, diagnostics = read(noise, "fuzz.cl")
+        assert (program is None) == bool(errors(diagnostics))
+
+
+@pytest.mark.parametrize("piece", ["GOTO/1,", "1", "(", "A,", "$$", "'", "1.", "$ ", "A/(", " ", "-"])
+def test_ten_megabytes_in_one_line(piece):
+    program, diagnostics = read(piece * (10_000_000 // len(piece)), "long.cl")
+    assert program is None
+    assert errors(diagnostics)

@@ -1,0 +1,3 @@
+$$ expects L403 3:1
+UNITS/MM
+SPINDL/100,SMM,CLW

@@ -1,0 +1,4 @@
+$$ expects L411 0:0
+UNITS/MM
+LOADTL/1
+GOTO/0,0,0

@@ -1,0 +1,2 @@
+$$ expects L402 2:1
+UNITS/FURLONG
