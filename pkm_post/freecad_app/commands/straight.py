@@ -15,6 +15,7 @@ from pkm_post.freecad_app.commands.words import Array
 from pkm_post.geometry import along, arc_points, arc_sweep, dot, norm, towards
 from pkm_post.geometry.arcs import across
 from pkm_post.model import Event, Kind, Program
+from pkm_post.model.program import OPTIONAL_COLUMNS
 
 CHORD_ERROR = 1e-3
 """mm that the middle of a chord may be off its arc."""
@@ -53,8 +54,11 @@ def straightened(program: Program, chosen: Array) -> Program:
 
     cut = chosen[source]
     first = np.append(last - chords + 1, len(source))
+    optional = {name: getattr(program, name)[source] for name in OPTIONAL_COLUMNS}
+    optional["exact_stop"][inner] = False
     return dataclasses.replace(
         program,
+        **optional,
         kind=np.where(cut, Kind.LINE, program.kind[source]),
         position=position,
         tool_axis=tool_axis,
