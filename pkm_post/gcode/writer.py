@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.gcode.writer_arcs import CHORD_ERROR, WrittenArcs, with_chords, written_arcs
+from pkm_post.gcode.chords import CHORD_ERROR, with_chords
+from pkm_post.gcode.writer_arcs import WrittenArcs, written_arcs
 from pkm_post.gcode.writer_axes import FORMS, Form, impossible_axis
 from pkm_post.gcode.writer_blocks import block_texts
 from pkm_post.gcode.writer_events import between_blocks, heading

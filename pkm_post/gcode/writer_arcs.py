@@ -1,22 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arcs that text can say, and lines for the others.
+"""Arcs that text can say.
 
 A program and the decimals of its text enter. Centres leave that still fit both ends of their arcs when all three are
-rounded; arcs that G2 and G3 cannot say are replaced by chords. mm throughout.
+rounded, and which arcs G2 and G3 cannot say. mm throughout.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import along, arc_points, arc_sweep, dot, norm, towards
-from pkm_post.model import Event, Kind, Program
+from pkm_post.geometry import arc_sweep, dot, norm
+from pkm_post.model import Kind, Program
 from pkm_post.model.program import Array
 
-CHORD_ERROR = 1e-3
-"""mm that chords may leave the arc they replace."""
 RADIUS_ERROR = 2e-3
 """mm that the radii at both ends of a written arc may differ: below what readers allow (LinuxCNC 0.0028 mm)."""
 AXIS_ERROR = 1e-9
@@ -86,53 +84,3 @@ def _fitting(start: Array, end: Array, centre: Array, across: Array, unit: float
     first, last = (norm(np.where(across, points - centre, 0.0)) for points in (start, end))
     near = norm(moved - centre) <= RADIUS_ERROR + 2 * unit
     return np.where(((np.abs(first - last) > unit) & near)[:, None], moved, centre)
-
-
-def with_chords(program: Program, rows: Array) -> Program:
-    """The program with the arcs of some rows replaced by lines that meet them at their ends, within ``CHORD_ERROR``."""
-    if not len(rows):
-        return program
-    count = np.ones(len(program), dtype=np.int64)
-    count[rows] = _chords(program, rows)
-    source = np.repeat(np.arange(len(program)), count)
-    begin = np.cumsum(count) - count
-    cut = np.isin(source, rows)
-    part = (np.arange(len(source)) - begin[source] + 1) / count[source]
-    position, axis = program.position[source].copy(), program.tool_axis[source].copy()
-    inner = cut & (part < 1)
-    position[inner], axis[inner] = _on_arcs(program, source[inner], part[inner])
-    columns = {name: getattr(program, name)[source] for name in ("feed", "operation", "line", "side_offset", "plane")}
-    blank = np.where(cut[:, None], np.nan, 1.0)
-    return replace(
-        program,
-        **columns,
-        kind=np.where(cut, Kind.LINE, program.kind[source]),
-        position=position,
-        tool_axis=axis,
-        arc_centre=program.arc_centre[source] * blank,
-        arc_axis=program.arc_axis[source] * blank,
-        normal=program.normal[source],
-        exact_stop=program.exact_stop[source] & ~inner,
-        events=tuple(
-            Event(int(np.append(begin, len(source))[event.row]), event.kind, event.value) for event in program.events
-        ),
-    )
-
-
-def _chords(program: Program, rows: Array) -> Array:
-    """How many chords stay within the error: each spans at most 2 acos(1 - e / r)."""
-    start, end = program.position[rows - 1], program.position[rows]
-    centre, axis = program.arc_centre[rows], program.arc_axis[rows]
-    radius = norm(np.cross(start - centre, axis))
-    span = 2 * np.arccos(np.clip(1 - CHORD_ERROR / np.maximum(radius, CHORD_ERROR), 0.0, 1.0))
-    return np.ceil(arc_sweep(start, end, centre, axis) / span).astype(np.int64)
-
-
-def _on_arcs(program: Program, rows: Array, part: Array) -> tuple[Array, Array]:
-    """Tip and tool axis where arcs have turned by a part of their sweep, (n, 3) each."""
-    start, end = program.position[rows - 1], program.position[rows]
-    centre, axis = program.arc_centre[rows], program.arc_axis[rows]
-    sweep = arc_sweep(start, end, centre, axis)
-    points = arc_points(start, centre, axis, part * sweep, part * dot(end - start, axis))
-    before, after = program.tool_axis[rows - 1], program.tool_axis[rows]
-    return points, along(before, part[:, None] * towards(before, after))

@@ -8,7 +8,7 @@ import pytest
 from programs import BALL, cone, program, random_job, square_with_arc
 
 from pkm_post.gcode import Form, ReadOptions, read, write
-from pkm_post.gcode.writer_arcs import CHORD_ERROR
+from pkm_post.gcode.chords import CHORD_ERROR
 from pkm_post.gcode.writer_axes import FORMS, POLE
 from pkm_post.geometry import angle_between, norm
 from pkm_post.kinematics.orientation import platform_rotation

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import Path
 
-from pkm_post.freecad_app.commands.straight import straightened
 from pkm_post.freecad_app.commands.words import Array
+from pkm_post.gcode.chords import with_chords
 from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind, Kind, Program
 
@@ -47,7 +47,7 @@ def commands_of(program: Program) -> list[Any]:
     """
     if len(program) and program.kind[0] == Kind.ARC:
         raise ValueError("commands_of: expected a first row that is no arc, got one")
-    program = straightened(program, _unspeakable(program))
+    program = with_chords(program, np.flatnonzero(_unspeakable(program)))
     commands: list[Any] = []
     events = sorted(program.events, key=lambda event: event.row)
     done = 0
