@@ -21,12 +21,20 @@ import pkm_post
 from pkm_post.options import add_options, options_from, tool_lengths_from
 
 _ADDON = Path(__file__).resolve().parents[1]
+_OPTIONAL = ("lark",)
+"""Packages that not every installation has; their doors say what to install."""
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
     namespace = _parser().parse_args(arguments)
-    code: int = namespace.run(namespace, arguments)
+    try:
+        code: int = namespace.run(namespace, arguments)
+    except ImportError as missing:
+        if missing.name not in _OPTIONAL:
+            raise
+        print(missing, file=sys.stderr)
+        return 1
     return code
 
 

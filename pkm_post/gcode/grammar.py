@@ -26,7 +26,9 @@ def block_parser() -> Lark:
     try:
         from lark import Lark
     except ImportError as missing:
-        raise ImportError("reading G-code needs lark: install python3-lark, or type: pip install lark") from missing
+        raise ImportError(
+            "reading G-code needs lark: install python3-lark, or type: pip install lark", name="lark"
+        ) from missing
     return Lark(
         GRAMMAR.read_text(encoding="utf-8"),
         start="block",

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is optional may be missing: nothing else fails, and what needs it says what to install."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ADDON = Path(__file__).parents[1]
+WITHOUT = "import sys; sys.modules['lark'] = sys.modules['serial'] = None; "
+
+
+def python(code, *arguments):
+    return subprocess.run(
+        ["python3", "-c", WITHOUT + code, *map(str, arguments)],
+        env=os.environ | {"PYTHONPATH": str(ADDON)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+def test_a_job_is_posted_without_lark_and_pyserial():
+    told = python("import pkm_post.pipeline, pkm_post.options, pkm_post.gcode.chords; print('imported')")
+    assert told.stdout == "imported\n", told.stderr
+
+
+def test_a_part_program_needs_lark_and_says_so(tmp_path):
+    part = tmp_path / "part.ngc"
+    part.write_text("G0 X1\n")
+    told = python("from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))", "check", part)
+    assert told.returncode == 1
+    assert "Traceback" not in told.stderr
+    assert "lark" in told.stderr and "install" in told.stderr
+
+
+def test_this_python_has_them():
+    assert {"lark", "serial"} <= {name for name in ("lark", "serial") if __import__(name)}
+    assert sys.version_info >= (3, 11)
