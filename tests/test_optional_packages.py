@@ -3,7 +3,6 @@
 
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 ADDON = Path(__file__).parents[1]
@@ -33,8 +32,3 @@ def test_a_part_program_needs_lark_and_says_so(tmp_path):
     assert told.returncode == 1
     assert "Traceback" not in told.stderr
     assert "lark" in told.stderr and "install" in told.stderr
-
-
-def test_this_python_has_them():
-    assert {"lark", "serial"} <= {name for name in ("lark", "serial") if __import__(name)}
-    assert sys.version_info >= (3, 11)

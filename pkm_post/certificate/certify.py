@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.playback import INSTANTS, at_joints, play
+from pkm_post.certificate.playback import INSTANTS, Played, at_joints, play
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.findings import Certificate, Finding, Tolerances
@@ -47,6 +47,28 @@ def certify(
     if faults:
         return None, faults
     played = play(struts, machine, TrajectoryRuler(trajectory, tolerances), motion)
+    findings = _findings(played, struts, trajectory, machine, motion, tolerances)
+    certificate = Certificate(
+        findings=findings,
+        duration=float(struts.time_ms[-1]) / 1000,
+        intervals=len(struts) - 1,
+        instants=INSTANTS * (len(struts) - 1) + len(trajectory),
+        time=struts.time_ms[:-1] / 1000,
+        tip_deviation=played.tip,
+        axis_deviation=played.axis,
+    )
+    return certificate, tuple(finding.diagnostic() for finding in findings if not finding.holds)
+
+
+def _findings(
+    played: Played,
+    struts: StrutMotion,
+    trajectory: Trajectory,
+    machine: Machine,
+    motion: Motion,
+    tolerances: Tolerances,
+) -> tuple[Finding, ...]:
+    """One row for each quantity: code, name, unit, values, limit, and when and where they were taken."""
     intervals = _Series(struts.time_ms[:-1] / 1000, motion.segment[1:])
     joints = _Series(motion.joint_time, np.arange(len(trajectory)))
     excess = played.tip_speed - _feed_ceiling(trajectory, motion)
@@ -64,17 +86,7 @@ def certify(
         ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, intervals),
         ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, intervals),
     )
-    findings = tuple(_worst(trajectory, *row) for row in rows)
-    certificate = Certificate(
-        findings=findings,
-        duration=float(struts.time_ms[-1]) / 1000,
-        intervals=len(struts) - 1,
-        instants=INSTANTS * (len(struts) - 1) + len(trajectory),
-        time=intervals.time,
-        tip_deviation=played.tip,
-        axis_deviation=played.axis,
-    )
-    return certificate, tuple(finding.diagnostic() for finding in findings if not finding.holds)
+    return tuple(_worst(trajectory, *row) for row in rows)
 
 
 @dataclass(frozen=True)
