@@ -15,7 +15,7 @@ import numpy as np
 from pkm_post.geometry.vectors import Array
 
 LONGEST_MS = 128
-"""The width to start from: short enough that a corner cannot hide between the places where the error is measured."""
+"""The width to start from: the narrower, the less can hide between the places where the error is measured."""
 
 
 def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array]) -> Array:
