@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pkm_post.cldata.faults import Fault, Faults, fault_of
-from pkm_post.cldata.grammar import parse
+from pkm_post.cldata.grammar import STATEMENT
 from pkm_post.cldata.lines import JOINT, MARK, Lines
 from pkm_post.cldata.statements import Form, Statements, form_of
 from pkm_post.model.program import Array
@@ -64,7 +64,7 @@ def parsed_line(shape: str, text: str) -> Form | Fault | UnexpectedInput | None:
         return Fault("L104", 0, f"{len(text)} characters")
     if shape.count("(") > DEEPEST:
         return Fault("L205", text.index("("), f"{shape.count('(')} parentheses, at most {DEEPEST}")
-    tree = parse(text)
+    tree = STATEMENT.parse(text)
     return tree if isinstance(tree, Exception) else form_of(tree)
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from pkm_post.gcode.blocks import column_of
-from pkm_post.gcode.grammar import parse
+from pkm_post.gcode.grammar import BLOCK
 
 if TYPE_CHECKING:
     from lark import Token, Tree, UnexpectedInput
@@ -85,7 +85,7 @@ def read_row(line: bytes) -> Row | UnexpectedInput | Fault:
     """
     if len(line) > LONGEST_LINE:
         return Fault("G104", 0, f"{len(line)} characters")
-    tree = parse(line.decode("latin-1"))
+    tree = BLOCK.parse(line.decode("latin-1"))
     if isinstance(tree, Exception):
         return tree
     try:

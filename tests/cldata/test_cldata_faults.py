@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pkm_post.cldata import grammar, read
+from pkm_post.cldata import read
 from pkm_post.cldata.faults import EXPECTED, MOST_TOLD
+from pkm_post.cldata.grammar import STATEMENT
+from pkm_post.grammar import parser_of
 from pkm_post.model.diagnostics import errors
 
 BAD_PROGRAMS = sorted((Path(__file__).parents[1] / "data" / "bad_cldata").glob("*.cl"))
@@ -48,7 +50,7 @@ def test_diagnostics_tell_what_was_found_and_expected(line, found):
 
 
 def test_every_terminal_has_words():
-    terminals = {terminal.name for terminal in grammar.statement_parser().terminals}
+    terminals = {terminal.name for terminal in parser_of(STATEMENT).terminals}
     assert terminals - {"BLANK", "TEXT"} <= set(EXPECTED)
 
 
@@ -59,12 +61,11 @@ def test_a_hundred_errors_are_told_and_the_others_counted():
 
 
 def test_a_missing_lark_is_named(monkeypatch):
-    grammar.statement_parser.cache_clear()
+    parser_of.cache_clear()
     monkeypatch.setitem(sys.modules, "lark", None)
     with pytest.raises(ImportError, match="needs lark: install python3-lark"):
         read("GOTO/1,2,3", "part.cl")
     monkeypatch.undo()
-    grammar.statement_parser.cache_clear()
 
 
 def test_any_bytes_give_a_program_or_diagnostics():

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from pkm_post.cldata import read
 from pkm_post.cldata.faults import Faults
-from pkm_post.cldata.grammar import parse
+from pkm_post.cldata.grammar import STATEMENT
 from pkm_post.cldata.lines import JOINT, decoded, logical_lines
 from pkm_post.cldata.scan import scan
 from pkm_post.cldata.statements import form_of
@@ -44,7 +44,7 @@ def test_the_fast_way_and_the_grammar_agree(written):
     assert faults.diagnostics() == ()
     assert len(table) == len(written)
     for row, one in enumerate(written):
-        tree = parse(one.replace("$\n", JOINT))
+        tree = STATEMENT.parse(one.replace("$\n", JOINT))
         assert table.statement(row) == form_of(tree).filled(iter(leaves(tree)))
 
 

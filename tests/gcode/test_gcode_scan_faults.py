@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from pkm_post.gcode.faults import EXPECTED
-from pkm_post.gcode.grammar import block_parser
+from pkm_post.gcode.grammar import BLOCK
 from pkm_post.gcode.scan import scan, scan_by_block
+from pkm_post.grammar import parser_of
 
 BAD_PROGRAMS = sorted((Path(__file__).parents[1] / "data" / "bad_gcode").glob("*.ngc"))
 EXPECTATION = re.compile(rb"; expects ((?:[GL]\d{3} \d+:\d+(?:, |\r?\n))+)")
@@ -81,5 +82,5 @@ def test_characters_are_shown_as_people_see_them():
 
 def test_every_terminal_of_the_grammar_has_words():
     told = {name for names in EXPECTED.values() for name in names}
-    terminals = {terminal.name for terminal in block_parser().terminals} - {"COMMENT", "BLANKS"}
+    terminals = {terminal.name for terminal in parser_of(BLOCK).terminals} - {"COMMENT", "BLANKS"}
     assert terminals | {"$END", "<END-OF-FILE>"} == told

@@ -5,13 +5,13 @@ import sys
 
 import pytest
 
-from pkm_post.gcode import grammar
 from pkm_post.gcode.scan import scan, scan_by_block
+from pkm_post.grammar import parser_of
 
 
 @pytest.mark.parametrize("way", [scan, scan_by_block])
 def test_a_missing_lark_is_named(monkeypatch, way):
-    grammar.block_parser.cache_clear()
+    parser_of.cache_clear()
     monkeypatch.setitem(sys.modules, "lark", None)
     with pytest.raises(ImportError, match="needs lark: install python3-lark, or type: pip install lark"):
         way("G1 X1", "part.ngc")

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Grammar: an EBNF grammar of record, and the parser that lark makes of it. This is the package's door to lark.
+
+Enters: a grammar file, and the text of one line. Leaves: the tree of the line, or what lark met and what it would have
+accepted in its place.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from lark import Lark, Token, Tree, UnexpectedInput
+
+
+@dataclass(frozen=True)
+class Grammar:
+    """The grammar of one line.
+
+    Attributes:
+        file: the grammar, in the EBNF of lark.
+        start: the rule of a whole line.
+        reads: what cannot be read without lark, in words.
+        empty_parts: whether a part that may be missing leaves None in the tree.
+    """
+
+    file: Path
+    start: str
+    reads: str
+    empty_parts: bool = False
+
+    def parse(self, text: str) -> Tree[Token] | UnexpectedInput:
+        """The tree of one line, or what stands where the line does not go on.
+
+        Args:
+            text: the line, without its end.
+
+        Raises:
+            ImportError: lark is not installed.
+        """
+        parser = parser_of(self)
+        from lark import UnexpectedInput
+
+        try:
+            return parser.parse(text)
+        except UnexpectedInput as unexpected:
+            return unexpected
+
+
+@functools.cache
+def parser_of(grammar: Grammar) -> Lark:
+    """The parser of a grammar; it is made once.
+
+    Raises:
+        ImportError: lark is not installed.
+    """
+    try:
+        from lark import Lark
+    except ImportError as missing:
+        cure = "install python3-lark, or type: pip install lark"
+        raise ImportError(f"reading {grammar.reads} needs lark: {cure}", name="lark") from missing
+    return Lark(
+        grammar.file.read_text(encoding="utf-8"),
+        start=grammar.start,
+        parser="lalr",
+        lexer="contextual",
+        maybe_placeholders=grammar.empty_parts,
+    )
