@@ -29,6 +29,14 @@ from pkm_post.report import plots, summary
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
+Log = Callable[[str], None]
+
+SUFFIX = ".pmc"
+"""How the name of a motion program ends."""
+
+
+def quiet(line: str) -> None:
+    """Log nothing."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +75,7 @@ class Posted:
 class _Run:
     """One run through the pipeline: says what it does, times it, and stops at errors."""
 
-    log: Callable[[str], None]
+    log: Log
     warnings: list[Diagnostic] = field(default_factory=list)
 
     def accept(self, diagnostics: Findings) -> None:
@@ -94,25 +102,29 @@ class _Run:
 
 
 def post(
-    program: Program,
-    machine: Machine,
+    program: Program | None,
+    machine: Machine | None,
     program_path: Path,
     options: Options | None = None,
-    log: Callable[[str], None] = lambda line: None,
+    log: Log = quiet,
+    found: Findings = (),
 ) -> Posted:
     """Make a certified motion program, with its trajectory, set-up file and report beside it.
 
     Args:
-        program: cutter locations in {C}.
-        machine: the machine to run it on.
+        program: cutter locations in {C}; None if what it was to be read from has errors.
+        machine: the machine to run it on; None if its file has errors.
         program_path: where the motion program goes; the other files take its stem.
         options: what the user chose.
         log: takes a line for each step.
+        found: what was found in reading these; it is told with what is found here.
 
     Raises:
         Refused: something in the input, or the place to write to, does not allow it; nothing was written.
     """
-    run, options = _Run(log), options or Options()
+    if program is None or machine is None or errors(found):
+        raise Refused(found)
+    run, options = _Run(log, list(found)), options or Options()
     try:
         with staged(program_path.parent) as folder:
             report = _post(run, program, machine, folder / program_path.name, options)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -19,17 +19,9 @@ import FreeCAD as App
 from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import POST_PROCESSOR, job_arguments
 from pkm_post.freecad_app.job import NO_LENGTHS, document_name, read_job
-from pkm_post.machine_file import find_machine, read_machine
-from pkm_post.model import Diagnostic, Machine, Place, Refused
+from pkm_post.machine_file import machine_named
+from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import FIXTURE_OF_THE_JOB, options_from, tool_lengths_from
-
-SUFFIX = ".pmc"
-
-Log = Callable[[str], None]
-
-
-def quiet(line: str) -> None:
-    """Log nothing."""
 
 
 def post_job(
@@ -38,7 +30,7 @@ def post_job(
     out: str | FilePath,
     options: pipeline.Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
-    log: Log = quiet,
+    log: pipeline.Log = pipeline.quiet,
 ) -> pipeline.Posted:
     """Post a CAM job.
 
@@ -56,7 +48,7 @@ def post_job(
     return post_to(FilePath(out) / _file_name(job), job, machine, options, tool_lengths, log)
 
 
-def post_as_the_job_says(job: Any, out: str | FilePath, log: Log = quiet) -> pipeline.Posted:
+def post_as_the_job_says(job: Any, out: str | FilePath, log: pipeline.Log = pipeline.quiet) -> pipeline.Posted:
     """Post a CAM job with the arguments it has for its post-processor; those for another one are left alone.
 
     Raises:
@@ -73,7 +65,7 @@ def post_document(
     options: pipeline.Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     job_name: str | None = None,
-    log: Log = quiet,
+    log: pipeline.Log = pipeline.quiet,
 ) -> tuple[pipeline.Posted, ...]:
     """Post one job of a saved document, or all of them.
 
@@ -127,7 +119,7 @@ def post_to(
     machine: str | FilePath,
     options: pipeline.Options | None,
     tool_lengths: Mapping[int, float],
-    log: Log,
+    log: pipeline.Log,
 ) -> pipeline.Posted:
     """Post a CAM job to a motion program of this name; the other files take its stem.
 
@@ -135,23 +127,10 @@ def post_to(
         Refused: as ``post_job``.
     """
     job.Document.recompute()
-    model, machine_faults = _machine(machine)
+    model, machine_faults = machine_named(machine)
     program, job_faults = read_job(job, tool_lengths)
     found = (*machine_faults, *job_faults)
-    if model is None or program is None:
-        raise Refused(found)
-    try:
-        posted = pipeline.post(program, model, program_path, _at_fixture(options, job), log)
-    except Refused as refused:
-        raise Refused((*found, *refused.diagnostics)) from refused
-    return dataclasses.replace(posted, diagnostics=(*found, *posted.diagnostics))
-
-
-def _machine(name_or_path: str | FilePath) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
-    path = find_machine(str(name_or_path))
-    if path is None:
-        return None, (Diagnostic("M101", Place(str(name_or_path)), "no machine of this name comes with PKM Post"),)
-    return read_machine(path)
+    return pipeline.post(program, model, program_path, _at_fixture(options, job), log, found)
 
 
 def _at_fixture(options: pipeline.Options | None, job: Any) -> pipeline.Options:
@@ -168,7 +147,7 @@ def _file_name(job: Any) -> str:
     stem = FilePath(document.FileName).stem or document.Label
     if len(find_jobs(document)) > 1:
         stem += f"-{job.Label}"
-    return re.sub(r"[^\w.-]+", "_", stem) + SUFFIX
+    return re.sub(r"[^\w.-]+", "_", stem) + pipeline.SUFFIX
 
 
 @contextlib.contextmanager

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and its like.
+
+Exit code 0 when all was done, 1 when the input was refused, 2 when the arguments make no sense. Each module adds its
+commands to the parser and runs them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+import pkm_post
+from pkm_post.cli import machine, part_programs, post
+
+__all__ = ["main"]
+
+_OPTIONAL = ("lark",)
+"""Packages that not every installation has; their doors say what to install."""
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run one command and return its exit code."""
+    namespace = _parser().parse_args(arguments)
+    try:
+        code: int = namespace.run(namespace, arguments)
+    except ImportError as missing:
+        if missing.name not in _OPTIONAL:
+            raise
+        print(missing, file=sys.stderr)
+        return 1
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python3 -m pkm_post", description=pkm_post.__doc__)
+    parser.add_argument("--version", action="version", version=f"PKM Post {pkm_post.__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    for module in (post, part_programs, machine):
+        module.add_commands(commands)
+    return parser

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A FreeCAD document can be read by FreeCAD alone: outside of it a command runs itself inside FreeCADCmd."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+_ADDON = Path(__file__).resolve().parents[2]
+
+
+def is_inside() -> bool:
+    """Whether this process is FreeCAD's."""
+    return "FreeCAD" in sys.modules
+
+
+def run_inside(arguments: Sequence[str]) -> int:
+    """Run the same command inside FreeCADCmd, with this add-on loaded; the exit code."""
+    freecad = _freecad_command()
+    if not freecad:
+        print("FreeCAD 1.0 or newer is needed: install it, or name its FreeCADCmd in $FREECADCMD", file=sys.stderr)
+        return 1
+    frame, module = _ADDON / "tools" / "run_script.py", _ADDON / "pkm_post" / "__main__.py"
+    command = [*freecad, "-M", str(_ADDON), str(frame), "--", str(module), *arguments]
+    return subprocess.run(command, check=False).returncode
+
+
+def _freecad_command() -> list[str]:
+    """How FreeCADCmd is started: as the user says, by the finder that comes with the add-on, or from the path."""
+    if os.environ.get("FREECADCMD"):
+        return [os.environ["FREECADCMD"]]
+    finder = _ADDON / "tools" / "freecad"
+    if finder.exists() and shutil.which("bash"):
+        return [str(finder)]
+    found = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
+    return [found] if found else []

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The commands ``check`` and ``convert``: part programs are read, and told of or written in another form."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pkm_post.cli.reading import add_reading, one_of, part_program, reading_from
+
+
+def add_commands(commands: Any) -> None:
+    """Add the commands to a parser."""
+    checking = commands.add_parser("check", help="say what is wrong with part programs, and what they hold")
+    checking.add_argument("files", nargs="+", type=part_program, metavar="FILE")
+    checking.add_argument("--json", action="store_true", help="write JSON instead of text")
+    add_reading(checking)
+    checking.set_defaults(run=_check)
+
+    converting = commands.add_parser("convert", help="write a part program in another form of G-code")
+    converting.add_argument("file", type=part_program, metavar="FILE")
+    forms = "gcode:vector, gcode:AC, gcode:BC, gcode:linuxcnc or gcode:3axis"
+    converting.add_argument("--to", required=True, type=_target, metavar="FORM", help=forms)
+    converting.add_argument("--out", required=True, type=Path, metavar="FILE", help="the file to write")
+    converting.add_argument("--inch", action="store_true", help="write inches (G20)")
+    add_reading(converting)
+    converting.set_defaults(run=_convert)
+
+
+def _target(text: str) -> str:
+    from pkm_post.convert import TARGETS
+
+    return one_of(TARGETS, text)
+
+
+def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post import check
+
+    results = [check.check(file, reading_from(namespace)) for file in namespace.files]
+    print(check.as_json(results) if namespace.json else check.as_text(results))
+    return 0 if all(result.is_clean for result in results) else 1
+
+
+def _convert(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.convert import convert
+    from pkm_post.model.diagnostics import errors
+
+    reading = reading_from(namespace)
+    diagnostics = convert(namespace.file, namespace.to, namespace.out, reading, inch=namespace.inch)
+    for diagnostic in diagnostics:
+        print(diagnostic, file=sys.stderr)
+    if errors(diagnostics):
+        return 1
+    print(namespace.out)
+    return 0

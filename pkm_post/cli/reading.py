@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The arguments that name a part program and say what it does not say itself."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Collection
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pkm_post.sources import Reading
+
+
+def add_reading(parser: argparse.ArgumentParser) -> None:
+    """Add what the user may say of a part program."""
+    parser.add_argument(
+        "--axis-words",
+        type=_axis_words,
+        default="none",
+        metavar="WORDS",
+        help="how the G-code says the tool axis: vector (I J K after G43.5), AC, BC or AB (rotary words after G43.4),"
+        " RPY (A B C of LinuxCNC's hexapod), or none, the default",
+    )
+    parser.add_argument(
+        "--tool",
+        dest="tools",
+        action="append",
+        type=_tool_diameter,
+        default=[],
+        metavar="NUMBER=MM",
+        help="diameter of a tool, for G41 and G42; may be repeated",
+    )
+
+
+def reading_from(namespace: argparse.Namespace) -> Reading:
+    """What the user said of the part programs."""
+    from pkm_post.sources import Reading
+
+    return Reading(namespace.axis_words, dict(namespace.tools))
+
+
+def part_program(text: str) -> Path:
+    """The path of a part program that is there."""
+    from pkm_post.sources import SUFFIXES, is_part_program
+
+    file = Path(text)
+    if not file.is_file():
+        raise argparse.ArgumentTypeError(f"there is no file {text}")
+    if not is_part_program(file):
+        raise argparse.ArgumentTypeError(f"expected a file ending in {', '.join(SUFFIXES)}, got {text}")
+    return file
+
+
+def one_of(allowed: Collection[str], text: str) -> str:
+    """A word that is allowed."""
+    if text not in allowed:
+        raise argparse.ArgumentTypeError(f"expected one of {', '.join(allowed)}, got {text!r}")
+    return text
+
+
+def _axis_words(text: str) -> str:
+    from pkm_post.sources import AXIS_WORDS
+
+    return one_of(AXIS_WORDS, text)
+
+
+def _tool_diameter(text: str) -> tuple[int, float]:
+    number, _, diameter = text.partition("=")
+    try:
+        value = int(number), float(diameter)
+    except ValueError:
+        value = 0, math.nan
+    if not 0 < value[1] < math.inf:
+        raise argparse.ArgumentTypeError(f"expected NUMBER=MM, got {text!r}")
+    return value

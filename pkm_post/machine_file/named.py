@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Named: the machine that a user means, by the name of a preset or by the path of a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pkm_post.machine_file.presets import find_machine
+from pkm_post.machine_file.reader import read_machine
+from pkm_post.model import Diagnostic, Machine, Place
+
+
+def machine_named(name_or_path: str | Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+    """The machine that is meant, or what is wrong with its name or its file.
+
+    Args:
+        name_or_path: name of a machine that comes with PKM Post, or path of a machine file.
+    """
+    path = find_machine(str(name_or_path))
+    if path is None:
+        return None, (Diagnostic("M101", Place(str(name_or_path)), "no machine of this name comes with PKM Post"),)
+    return read_machine(path)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""G-code and CL data are posted without FreeCAD, or refused with all that is wrong."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pkm_post.model import Refused
+from pkm_post.pipeline import Options
+from pkm_post.post_file import post_file
+from pkm_post.sources import Reading
+
+ADDON = Path(__file__).parents[1]
+WORK_OFFSET = np.eye(4)
+WORK_OFFSET[2, 3] = 250.0
+
+G_CODE = """\
+T1 M6 G43 H1
+G21 G90 G94 S8000 M3
+G0 X0 Y0 Z30
+G43.5 I0 J0 K1
+G1 X10 Y0 Z20 I0.1 J0 K1 F600
+G1 X20 Y5 Z20 I0.1 J0.1 K1
+M5
+M30
+"""
+CL_DATA = """\
+PARTNO TEST
+UNITS/MM
+MULTAX/ON
+CUTTER/10.0
+LOADTL/1
+SPINDL/RPM,8000,CLW
+RAPID
+GOTO/0,0,30,0,0,1
+FEDRAT/600,MMPM
+GOTO/10,0,20,0.0995037,0,0.9950372
+GOTO/20,5,20,0.0990148,0.0990148,0.9901475
+SPINDL/OFF
+FINI
+"""
+
+
+def posted(folder, name, text, **choices):
+    file = folder / name
+    file.write_text(text)
+    choices = {"tool_lengths": {1: 60.0}, "options": Options(work_offset=WORK_OFFSET)} | choices
+    return post_file(file, "example_6tps", folder / "out", **choices)
+
+
+def test_g_code_and_cl_data_of_one_path_give_one_report(tmp_path):
+    reports = [
+        posted(tmp_path, "a.ngc", G_CODE, reading=Reading("vector", {1: 10.0})).report,
+        posted(tmp_path, "a.cls", CL_DATA).report,
+    ]
+    assert all(report["certificate"]["holds"] for report in reports)
+    assert reports[0]["motion"] == reports[1]["motion"]
+
+
+def test_all_files_carry_the_stem(tmp_path):
+    made = posted(tmp_path, "part.ngc", G_CODE, reading=Reading("vector")).files
+    assert sorted(path.name for path in made) == [
+        "part-report.json",
+        "part-report.png",
+        "part-setup.pmc",
+        "part.pkmt",
+        "part.pmc",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "choices", "codes"),
+    [
+        ("a.ngc", G_CODE, {"tool_lengths": {}, "reading": Reading("vector")}, ["J113"]),
+        ("a.cls", CL_DATA, {"tool_lengths": {}}, ["J113"]),
+        ("a.cls", "GOTO/1,2\n", {}, ["L402"]),
+        ("a.ngc", G_CODE, {"reading": Reading("vector"), "options": Options(work_offset="G59")}, ["K108"]),
+    ],
+)
+def test_what_is_wrong_is_told_and_nothing_is_written(tmp_path, name, text, choices, codes):
+    with pytest.raises(Refused) as refused:
+        posted(tmp_path, name, text, **choices)
+    assert [fault.code for fault in refused.value.diagnostics] == codes
+    assert not list((tmp_path / "out").glob("*"))
+
+
+def test_faults_of_machine_and_file_are_told_together(tmp_path):
+    (tmp_path / "a.cls").write_text("GOTO/1,2\n")
+    with pytest.raises(Refused) as refused:
+        post_file(tmp_path / "a.cls", "no_such_machine", tmp_path)
+    assert [fault.code for fault in refused.value.diagnostics] == ["M101", "L402"]
+
+
+def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
+    (tmp_path / "a.cls").write_text(CL_DATA)
+    arguments = ["post", "a.cls", "--out", "made", "--work-offset=0,0,250", "--tool-length", "1=60"]
+    script = "import sys; sys.modules['FreeCAD'] = None; from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
+    told = subprocess.run(
+        [sys.executable if "python" in sys.executable else "python3", "-c", script, *arguments],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(ADDON), "PATH": "/usr/bin:/bin", "MPLBACKEND": "Agg"},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert told.returncode == 0, told.stderr
+    assert (tmp_path / "made" / "a.pmc").exists()
