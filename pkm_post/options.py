@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pkm_post.pipeline import Options
+    from pkm_post.spin import Policy
 
 FIXTURE_OF_THE_JOB = "job"
 """A work offset of this name is the fixture of the CAM job."""
@@ -55,6 +56,33 @@ def _tool_length(text: str) -> tuple[int, float]:
     return int(number), _positive(length)
 
 
+_SPINS = {
+    "zero": "",
+    "file": "",
+    "x-in-plane": "DEG",
+    "y-in-plane": "DEG",
+    "optimise": "OBJECTIVE",
+}
+"""The rules for the spin by name, each with what may follow it behind ``=``."""
+_OBJECTIVES = ("stroke", "joints", "singular", "weighted")
+
+
+def _spin(text: str) -> tuple[str, float, str]:
+    """Rule, heading in degrees and objective."""
+    rule, given, value = text.partition("=")
+    if rule not in _SPINS or (given and not _SPINS[rule]):
+        raise argparse.ArgumentTypeError(f"expected one of {_spin_words()}, got {text!r}")
+    if _SPINS[rule] == "DEG":
+        return rule, _number(value) if given else 0.0, _OBJECTIVES[0]
+    if given and value not in _OBJECTIVES:
+        raise argparse.ArgumentTypeError(f"expected one of {', '.join(_OBJECTIVES)} behind =, got {value!r}")
+    return rule, 0.0, value or _OBJECTIVES[0]
+
+
+def _spin_words() -> str:
+    return ", ".join(rule + (f"[={value}]" if value else "") for rule, value in _SPINS.items())
+
+
 _ARGUMENTS: dict[str, dict[str, Any]] = {
     "--machine": {
         "metavar": "NAME_OR_FILE",
@@ -87,6 +115,14 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "default": [],
         "help": "gauge length of a tool, instead of the GaugeLength of its tool controller; may be repeated",
     },
+    "--spin": {
+        "metavar": "RULE",
+        "type": _spin,
+        "default": "zero",
+        "help": f"how the platform turns about the tool axis: {_spin_words()}; DEG is where its x axis points when the"
+        f" tool is upright, OBJECTIVE one of {', '.join(_OBJECTIVES)} (default: zero, the shortest rotation from"
+        " upright)",
+    },
 }
 
 
@@ -105,6 +141,7 @@ def options_from(namespace: argparse.Namespace) -> Options:
         work_offset=offset if isinstance(offset, str) else _pose(*offset),
         tip_tolerance=namespace.tip_tolerance,
         axis_tolerance=math.radians(namespace.axis_tolerance),
+        spin=_policy(*namespace.spin),
     )
 
 
@@ -120,3 +157,9 @@ def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
     pose = rotation((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.radians(turn_deg))
     pose[:3, 3] = x, y, z
     return pose
+
+
+def _policy(rule: str, heading_deg: float, objective: str) -> Policy:
+    from pkm_post.spin import Policy, Rule
+
+    return Policy(Rule(rule), heading=math.radians(heading_deg), objective=objective)

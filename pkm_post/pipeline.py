@@ -26,6 +26,7 @@ from pkm_post.model.diagnostics import errors
 from pkm_post.model.findings import Tolerances
 from pkm_post.placement import place
 from pkm_post.report import plots, summary
+from pkm_post.spin import ZERO_TORSION, Policy, with_spin
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
@@ -47,11 +48,13 @@ class Options:
         work_offset: name of a work offset in the machine file, or the (4, 4) pose of {C} in {M}.
         tip_tolerance: how far the tool tip may be from the programmed path, mm.
         axis_tolerance: how far the tool axis may be from the programmed one, rad.
+        spin: how the platform turns about the tool axis.
     """
 
     work_offset: str | Array = "G54"
     tip_tolerance: float = 1e-3
     axis_tolerance: float = math.radians(1e-3)
+    spin: Policy = ZERO_TORSION
 
 
 @dataclass(frozen=True)
@@ -142,6 +145,7 @@ def _post(run: _Run, program: Program, machine: Machine, path: Path, options: Op
 
     with run.step("trajectory") as told:
         placed = run.value(place(program, machine, run.value(work_offset(machine, options))))
+        placed = run.value(with_spin(placed, machine, options.spin))
         stored = path.with_suffix(".pkmt")
         trajectory_file.write(placed, stored)
         trajectory = run.value(trajectory_file.read(stored))

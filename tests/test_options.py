@@ -6,8 +6,10 @@ import argparse
 import numpy as np
 import pytest
 
+from pkm_post import options
 from pkm_post.options import FIXTURE_OF_THE_JOB, add_options, options_from, tool_lengths_from
 from pkm_post.pipeline import Options
+from pkm_post.spin import OBJECTIVES, ZERO_TORSION, Policy, Rule
 
 
 def parsed(*arguments):
@@ -17,9 +19,9 @@ def parsed(*arguments):
 
 
 def test_defaults_are_those_of_the_pipeline():
-    options = options_from(parsed())
-    assert (options.tip_tolerance, options.axis_tolerance) == (Options().tip_tolerance, Options().axis_tolerance)
-    assert options.work_offset == FIXTURE_OF_THE_JOB
+    chosen = options_from(parsed())
+    assert (chosen.tip_tolerance, chosen.axis_tolerance) == (Options().tip_tolerance, Options().axis_tolerance)
+    assert chosen.work_offset == FIXTURE_OF_THE_JOB
     assert parsed().machine == "example_6tps"
     assert tool_lengths_from(parsed()) == {}
 
@@ -44,9 +46,25 @@ def test_tool_lengths():
     assert tool_lengths_from(namespace) == {1: 121, 12: 85.25}
 
 
+def test_every_rule_of_the_spin_can_be_chosen():
+    assert set(options._SPINS) == {rule.value for rule in Rule}
+    assert set(options._OBJECTIVES) == set(OBJECTIVES)
+    assert {options_from(parsed("--spin", rule)).spin.rule for rule in options._SPINS} == set(Rule)
+    assert options_from(parsed()).spin == ZERO_TORSION
+
+
+def test_the_numbers_of_the_spin():
+    assert options_from(parsed("--spin", "x-in-plane=-90")).spin.heading == pytest.approx(-np.pi / 2)
+    assert options_from(parsed("--spin=optimise=singular")).spin == Policy(Rule.OPTIMISED, objective="singular")
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["--spin", "fast"], "expected one of zero, file, x-in-plane[=DEG]"),
+        (["--spin", "zero=1"], "got 'zero=1'"),
+        (["--spin", "x-in-plane=x"], "expected a number, got 'x'"),
+        (["--spin", "optimise=x"], "expected one of stroke, joints, singular, weighted behind =, got 'x'"),
         (["--tip-tolerance", "0"], "expected a number above 0, got '0'"),
         (["--tip-tolerance", "nan"], "expected a number, got 'nan'"),
         (["--axis-tolerance", "x"], "expected a number, got 'x'"),

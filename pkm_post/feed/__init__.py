@@ -5,6 +5,7 @@ from pkm_post.feed.knots import knots
 from pkm_post.feed.limits import PLANNED_SHARE, Bounded, limits
 from pkm_post.feed.profile import speed_profile
 from pkm_post.feed.schedule import Schedule, by_time
+from pkm_post.feed.segments import Segments
 from pkm_post.feed.stations import Stations, stations
 from pkm_post.feed.tool_path import ToolPath
 
@@ -12,6 +13,7 @@ __all__ = [
     "PLANNED_SHARE",
     "Bounded",
     "Schedule",
+    "Segments",
     "Stations",
     "ToolPath",
     "by_time",

@@ -90,7 +90,10 @@ RULES: dict[str, Rule] = {
     "M103": _error("an entry is missing", "add it; docs/machine-file.md describes every entry"),
     "M104": _error("an entry has the wrong form", "correct it; docs/machine-file.md describes every entry"),
     "M105": _error("an entry is not known", "remove it or correct its spelling"),
-    "M106": _error("the geometry contradicts itself", "correct the joints, the stroke or the rest pose"),
+    "M106": _error("entries contradict each other", "correct the one shown, or what it is compared with"),
+    "M107": _error(
+        "something of this machine is not known", 'measure it or ask the maker, and write it in place of "unknown"'
+    ),
     # K: what the machine can reach
     "K101": _error("a strut would be too short", "move or turn the part on the table, or use another tool length"),
     "K102": _error("a strut would be too long", "move or turn the part on the table, or use another tool length"),
@@ -105,9 +108,65 @@ RULES: dict[str, Rule] = {
     "N101": _error("a contact point, normal or tool axis is no number or has no direction", "regenerate the path"),
     "N102": _error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),
     "N103": _error("the normal is parallel to the tool axis and no direction of travel is known", "lean the tool"),
+    "N104": _error(
+        "the surface is flatter than the bottom of the cutter: its corner does not touch it",
+        "lean the tool, or take a cutter with a flatter bottom",
+    ),
+    "N105": _warning(
+        "normal and tool axis are nearly parallel, and the side on which the cutter lies hangs on rounding",
+        "lean the tool, or give normals with more decimals",
+    ),
+    "N106": _warning(
+        "the tip jumps sideways where normal and tool axis are nearly parallel",
+        "lean the tool there, or take a ball end mill",
+    ),
+    "N107": _error("an arc would not stay an arc in 3D compensation", "let the CAM system write straight moves"),
+    "N108": _error("there are no surface normals to compensate with", "let the CAM system write normals"),
+    "N111": _error(
+        "a cutting move ends on no face of the model",
+        "correct the operation; give the faces it cuts, a LeadLength for leads, or a wider Tolerance",
+    ),
+    "N112": _error(
+        "a point is at an edge between faces with different normals",
+        "choose the face that is cut in the property Faces, or keep the path off the edge",
+    ),
+    "N113": _error(
+        "the surface normal turns too much from one point to the next",
+        "put the points of the operation closer together, end the cut at the edge, or allow more as ChordTolerance",
+    ),
+    "N114": _error(
+        "the tool leans in the direction of travel, and there is none at a contact point",
+        "keep the tool axis of the operation, or let the cut go on from there",
+    ),
+    "N115": _error("there is no face to touch", "choose the faces anew, or leave Faces empty for all of the model"),
+    "N116": _error("compensation does not know the shape of the tool", "take a flat, ball or bull nose end mill"),
     "K110": _warning("the feed is beyond the machine and is limited", "program a feed that the machine can run"),
     "K111": _error("2D cutter compensation (G41, G42) is not applied yet", "let the CAM system offset the path"),
     "K112": _error("cutter compensation would leave its plane", "compensate before the path is turned or mirrored"),
+    "K113": _error("two struts come too near to each other", "turn the platform about the tool axis, or move the part"),
+    "K114": _error("a strut comes too near to the spindle or its platform", "tilt the tool less, or turn the platform"),
+    "K115": _error("a strut comes too near to what stands on the table", "move the part or the fixture"),
+    "K116": _error("the spindle or holder comes too near to what stands on the table", "use a longer tool, or tilt it"),
+    "K117": _error("the spindle or holder comes too near to the part", "use a longer tool, or tilt it"),
+    "K118": _warning("a strut cannot keep up with the feed, and the tool will be slower", "program a lower feed"),
+    "K120": _error("the tool axis is at right angles to the plane that the spin is kept to", "choose another spin"),
+    "K119": _error("the machine is too compliant along the surface normal", "tilt the tool less, or move the part"),
+    # N3: paths over a surface
+    "N301": _error("only closed lines along u or v can be joined to a spiral", "choose Zigzag or One way"),
+    "N302": _error("there is nothing to be covered", "choose faces that have an area"),
+    "N303": _error(
+        "the cutter does not fit into a hollow of the surface, so there is no stepover for a scallop height",
+        "take a smaller cutter, or give the stepover as a distance",
+    ),
+    "N304": _error("the tool lies too flat to be lifted along its axis", "limit the cone of the tool axis"),
+    "N305": _error("the tolerances cannot be kept by straight moves", "raise the tolerances, or lean the tool less"),
+    "N306": _warning("the surface has an edge, where the tool turns at once", "cover the faces beside it one by one"),
+    "N307": _error("the path lies above the height at which the tool crosses", "raise SafeHeight and ClearanceHeight"),
+    "N308": _error("no face is chosen", "add faces as base geometry"),
+    "N309": _error("a tool of this shape cannot finish a surface", "choose a ball end, bull nose or flat end mill"),
+    "N310": _error("a value has no meaning", "correct the property"),
+    "N311": _error("the machine cannot reach the part with the tool upright", "move the part, or take another tool"),
+    "N312": _error("the path was stopped by the user", "recompute the operation"),
     # G1, G2: the letters and the grammar of G-code
     "G101": _error("a character has no meaning here", "remove it, or put the text into a comment"),
     "G102": _error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),

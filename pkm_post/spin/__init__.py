@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Spin: the turn of the platform about the tool axis, which cuts nothing and moves every strut."""
+
+from pkm_post.spin.apply import with_spin
+from pkm_post.spin.optimise import Optimised, optimise
+from pkm_post.spin.policy import OBJECTIVES, ZERO_TORSION, Policy, Rule
+from pkm_post.spin.rules import spin_in_plane
+
+__all__ = ["OBJECTIVES", "ZERO_TORSION", "Optimised", "Policy", "Rule", "optimise", "spin_in_plane", "with_spin"]
