@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plots: the report's picture; the one door to matplotlib.
+"""Plots: the report's picture.
 
 Path in 3D with the tool axes, strut lengths and speeds over time with their limits, and the deviations that the
 certificate found. Without matplotlib there is a warning instead of a picture.
@@ -24,6 +24,13 @@ _AXIS_DRAWN = 15.0
 _POINTS_SHOWN = 20000
 
 
+def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
+    """The warning that a picture is not made, or nothing."""
+    if importlib.util.find_spec("matplotlib") is None:
+        return (Diagnostic("F102", Place(picture.name), "no module named matplotlib"),)
+    return ()
+
+
 def draw(
     path: Path,
     trajectory: Trajectory,
@@ -44,8 +51,9 @@ def draw(
         certificate: what it was found to do.
         tolerances: what was asked for.
     """
-    if importlib.util.find_spec("matplotlib") is None:
-        return (Diagnostic("F102", Place(path.name), "no module named matplotlib"),)
+    missing = missing_matplotlib(path)
+    if missing:
+        return missing
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

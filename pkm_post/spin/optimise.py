@@ -18,7 +18,7 @@ from pkm_post.model import Machine, Trajectory
 from pkm_post.spin.course import best_course
 from pkm_post.spin.policy import Policy
 from pkm_post.spin.samples import Samples
-from pkm_post.spin.shares import shares
+from pkm_post.spin.shares import score, shares
 
 _REFINEMENT = 4
 """Each search has steps this much finer than the one before, and looks as far as one step of that."""
@@ -82,18 +82,9 @@ def _scores(samples: Samples, machine: Machine, policy: Policy, candidates: Arra
             np.repeat(column[rows], choices, axis=0) for column in (samples.tip, samples.axis, samples.tool_length)
         )
         left = shares(machine, tip, axis, candidates[samples.node[rows]].ravel(), length)
-        scores[first : first + block] = _judged(left, policy).reshape(-1, choices)
+        scores[first : first + block] = score(left, policy.weights).reshape(-1, choices)
     starts = np.searchsorted(samples.node[chosen_by], np.arange(len(candidates)))
     return np.asarray(np.minimum.reduceat(scores, starts, axis=0))
-
-
-def _judged(left: Array, policy: Policy) -> Array:
-    """One number for each row of shares, (N,): a pose beyond a limit is worse than any within all of them."""
-    worst = left.min(axis=1)
-    weights = np.zeros(left.shape[1])
-    for column, weight in policy.weights.items():
-        weights[column] = weight
-    return np.where(worst < 0, worst, left @ weights / weights.sum())
 
 
 def _spin_at(samples: Samples, trajectory: Trajectory) -> Array:

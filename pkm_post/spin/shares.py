@@ -6,6 +6,8 @@ Tool poses enter; for each of them three shares leave. 1 is the best there can b
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from pkm_post.geometry import angle_between, norm
@@ -41,6 +43,19 @@ def shares(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: 
         rows = slice(first, first + _CHUNK)
         found[rows] = _shares(machine, *(column[rows] for column in poses))
     return found
+
+
+def score(left: Array, weights: Mapping[int, float]) -> Array:
+    """One number for each row of shares, (N,): a pose beyond a limit is worse than any within all of them.
+
+    Args:
+        left: (N, 3) shares.
+        weights: of the columns that count; the others need only be above zero.
+    """
+    worst = left.min(axis=1)
+    columns = list(weights)
+    wanted = left[:, columns] @ np.array([weights[column] for column in columns]) / sum(weights.values())
+    return np.where(worst < 0, worst, wanted)
 
 
 def _shares(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command ``reach-map``: how far the tool may lean over the work volume of a machine."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+
+def add_commands(commands: Any) -> None:
+    """Add the command to a parser."""
+    mapping = commands.add_parser("reach-map", help="how far the tool may lean at each place of the work volume")
+    mapping.add_argument("machine", metavar="NAME_OR_FILE")
+    mapping.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the CSV and the picture")
+    mapping.add_argument(
+        "--length", type=float, default=120.0, metavar="MM", help="gauge length (default: %(default)s)"
+    )
+    for name, default in (("x", "-300:300:50"), ("y", "-300:300:50"), ("z", "0:500:100")):
+        mapping.add_argument(f"--{name}", type=_range, default=default, metavar="FROM:TO:STEP", help="mm, %(default)s")
+    mapping.add_argument("--widest", type=float, default=60.0, metavar="DEG", help="largest angle (%(default)s)")
+    mapping.set_defaults(run=_map)
+
+
+def _range(text: str) -> list[float]:
+    try:
+        first, last, step = (float(number) for number in text.split(":"))
+    except ValueError:
+        step = math.nan
+    if not (step > 0 and math.isfinite(last - first) and last >= first):
+        raise argparse.ArgumentTypeError(f"expected FROM:TO:STEP, got {text!r}")
+    return [first + number * step for number in range(math.floor((last - first) / step * (1 + 1e-12)) + 1)]
+
+
+def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    import numpy as np
+
+    from pkm_post.files import staged
+    from pkm_post.machine_file import machine_named
+    from pkm_post.model import Diagnostic, Place
+    from pkm_post.position import reach_map
+    from pkm_post.report.reach_plot import draw_reach
+
+    machine, faults = machine_named(namespace.machine)
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    if machine is None:
+        return 1
+    grid = np.meshgrid(namespace.x, namespace.y, namespace.z, indexing="ij")
+    places = np.column_stack([column.ravel() for column in grid])
+    with ThreadPoolExecutor(min(os.cpu_count() or 1, 8)) as executor:
+        found = reach_map(machine, places, namespace.length, math.radians(namespace.widest), executor=executor)
+    stem = f"{Path(namespace.machine).stem}-reach"
+    try:
+        with staged(namespace.out) as folder:
+            (folder / f"{stem}.csv").write_text(found.as_csv(), encoding="ascii", newline="\n")
+            for warning in draw_reach(folder / f"{stem}.png", machine.name, found.tip, found.cone):
+                print(warning, file=sys.stderr)
+            names = sorted(path.name for path in folder.iterdir())
+    except OSError as fault:
+        print(Diagnostic("F101", Place(str(namespace.out)), str(fault)), file=sys.stderr)
+        return 1
+    for name in names:
+        print(namespace.out / name)
+    return 0

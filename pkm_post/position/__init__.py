@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Position: where on the machine the part leaves most room."""
+
+from pkm_post.position.best_position import FREEDOMS, Position, best_position
+from pkm_post.position.reach_map import ReachMap, reach_map
+
+__all__ = ["FREEDOMS", "Position", "ReachMap", "best_position", "reach_map"]

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Best position: the work offset that makes the worst pose of a whole job as good as it can be.
+
+A trajectory enters with the work offset it was placed with; another work offset leaves, with what the machine has left
+before and after. The job counts with its mirrored and turned copies, since they are in the trajectory; the way from
+the home pose to its first point does not. Only a few poses decide: the search knows these alone, and whenever its
+result makes another pose the worst one, that pose joins them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Machine, Trajectory
+from pkm_post.placement import rotation
+from pkm_post.position.compass import compass_search
+from pkm_post.spin.samples import Samples
+from pkm_post.spin.shares import STROKE, score, shares
+
+FREEDOMS = "xyzabc"
+"""Shifts along and turns about the axes of {M} through the middle of the job, by letter."""
+
+_EVERY_NODE = 1.0
+_FIRST_STEP = np.array([80.0, 80.0, 80.0, *np.radians([10.0, 10.0, 30.0])])
+_LAST_STEP = np.array([0.1, 0.1, 0.1, *np.radians([0.02, 0.02, 0.02])])
+_FIRST_POSES = 40
+_POSES_THAT_JOIN = 8
+_ROUNDS = 50
+_EQUAL = 1e-6
+"""Difference of scores that is none."""
+
+
+@dataclass(frozen=True)
+class Position:
+    """What the search found.
+
+    Attributes:
+        machine_from_work: (4, 4) the work offset.
+        before: (3,) least shares of stroke, joints and distance to singular poses with the work offset as it was.
+        after: (3,) the same with the one found.
+    """
+
+    machine_from_work: Array
+    before: Array
+    after: Array
+
+
+@dataclass(frozen=True)
+class _Job:
+    """Poses of a job in {M}, moved as a whole about its middle."""
+
+    machine: Machine
+    middle: Array
+    tip: Array
+    axis: Array
+    spin: Array
+    tool_length: Array
+
+    def shares(self, moves: Array, rows: Array) -> Array:
+        """Shares of some poses after each of some moves, (P, R, 3), for moves (P, 6)."""
+        matrices = np.array([_matrix(move, self.middle) for move in moves])
+        turned = matrices[:, :3, :3].transpose(0, 2, 1)
+        tip = self.tip[rows] @ turned + matrices[:, None, :3, 3]
+        axis = self.axis[rows] @ turned
+        count = len(moves)
+        repeated = np.tile(self.spin[rows], count), np.tile(self.tool_length[rows], count)
+        left = shares(self.machine, tip.reshape(-1, 3), axis.reshape(-1, 3), *repeated)
+        return left.reshape(count, len(rows), 3)
+
+
+def best_position(
+    trajectory: Trajectory, machine: Machine, free: str = "xyzc", weights: dict[int, float] | None = None
+) -> Position:
+    """Search for the work offset.
+
+    Args:
+        trajectory: a job on the machine; its spin is kept at every pose.
+        machine: geometry and limits.
+        free: letters of ``FREEDOMS`` that may change.
+        weights: which shares count, by column; the stroke if nothing is said.
+
+    Raises:
+        ValueError: a letter is not known, or there is none.
+    """
+    if not free or set(free) - set(FREEDOMS):
+        raise ValueError(f"free: expected letters of {FREEDOMS!r}, got {free!r}")
+    job = _job(trajectory, machine)
+    every, weights = np.arange(len(job.tip)), weights or {STROKE: 1.0}
+    chosen = np.array([letter in free for letter in FREEDOMS])
+    move, active = np.zeros(6), _first_poses(job)
+    for _ in range(_ROUNDS):
+
+        def worst(moves: Array, rows: Array = active) -> Array:
+            left = job.shares(moves, rows)
+            scores = score(left.reshape(-1, 3), weights).reshape(len(moves), -1)
+            return np.asarray(scores.min(axis=1))
+
+        move = compass_search(worst, move, _FIRST_STEP * chosen, _LAST_STEP)
+        scores = score(job.shares(move[None], every)[0], weights)
+        if scores.min() >= worst(move[None])[0] - _EQUAL:
+            break
+        active = np.union1d(active, np.argsort(scores)[:_POSES_THAT_JOIN])
+    return Position(
+        machine_from_work=_matrix(move, job.middle) @ trajectory.machine_from_work,
+        before=job.shares(np.zeros((1, 6)), every)[0].min(axis=0),
+        after=job.shares(move[None], every)[0].min(axis=0),
+    )
+
+
+def _job(trajectory: Trajectory, machine: Machine) -> _Job:
+    samples = Samples.of(trajectory, _EVERY_NODE)
+    rows = samples.s >= samples.row_s[0]
+    tip = samples.tip[rows]
+    spin = np.interp(samples.s, samples.row_s, trajectory.spin)[rows]
+    middle = (tip.min(axis=0) + tip.max(axis=0)) / 2
+    return _Job(machine, middle, tip, samples.axis[rows], spin, samples.tool_length[rows])
+
+
+def _first_poses(job: _Job) -> Array:
+    """Poses at the ends of the job in every coordinate, and some between."""
+    coordinates = np.hstack([job.tip, job.axis])
+    ends = np.concatenate([coordinates.argmin(axis=0), coordinates.argmax(axis=0)])
+    between = np.linspace(0, len(job.tip) - 1, min(_FIRST_POSES, len(job.tip))).astype(np.int64)
+    return np.union1d(ends, between)
+
+
+def _matrix(move: Array, middle: Array) -> Array:
+    """The (4, 4) matrix of a shift and turns about the middle."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = move[:3]
+    for coordinate, angle in enumerate(move[3:]):
+        direction = np.eye(3)[coordinate]
+        if not math.isclose(angle, 0.0):
+            matrix = matrix @ rotation(middle, direction, angle)
+    return matrix
