@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pkm_post.model.findings import Tolerances
     from pkm_post.pipeline import Options
     from pkm_post.spin import Policy
 
@@ -128,19 +130,40 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that every way into PKM Post has."""
-    for flag, settings in _ARGUMENTS.items():
-        parser.add_argument(flag, **settings)
+    _add(parser, _ARGUMENTS)
+
+
+def add_machine(parser: argparse.ArgumentParser) -> None:
+    """Add the argument that names the machine."""
+    _add(parser, ("--machine",))
+
+
+def add_tolerances(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the tolerances."""
+    _add(parser, ("--tip-tolerance", "--axis-tolerance"))
+
+
+def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
+    for flag in flags:
+        parser.add_argument(flag, **_ARGUMENTS[flag])
+
+
+def tolerances_from(namespace: argparse.Namespace) -> Tolerances:
+    """The tolerances of a parsed command line, in mm and rad."""
+    from pkm_post.model.findings import Tolerances
+
+    return Tolerances(namespace.tip_tolerance, math.radians(namespace.axis_tolerance))
 
 
 def options_from(namespace: argparse.Namespace) -> Options:
     """The options of a parsed command line, in mm and rad."""
     from pkm_post.pipeline import Options
 
-    offset = namespace.work_offset
+    offset, tolerances = namespace.work_offset, tolerances_from(namespace)
     return Options(
         work_offset=offset if isinstance(offset, str) else _pose(*offset),
-        tip_tolerance=namespace.tip_tolerance,
-        axis_tolerance=math.radians(namespace.axis_tolerance),
+        tip_tolerance=tolerances.tip,
+        axis_tolerance=tolerances.axis,
         spin=_policy(*namespace.spin),
     )
 

@@ -141,7 +141,7 @@ def post(
 def _post(run: _Run, program: Program, machine: Machine, path: Path, options: Options) -> dict[str, Any]:
     """The steps in their order, on one screen; files go to the folder of ``path``."""
     tolerances = Tolerances(options.tip_tolerance, options.axis_tolerance)
-    settings = run.value(_controller(machine))
+    settings = run.value(pmac.settings_of(machine))
 
     with run.step("trajectory") as told:
         placed = run.value(place(program, machine, run.value(work_offset(machine, options))))
@@ -184,14 +184,6 @@ def _post(run: _Run, program: Program, machine: Machine, path: Path, options: Op
         run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))
         told.extend(summary.verdict(certificate))
     return report
-
-
-def _controller(machine: Machine) -> tuple[pmac.Settings | None, Findings]:
-    """Settings of the controller; whether its codes can be told apart is not known to the machine file's reader."""
-    try:
-        return pmac.Settings.of(machine.controller), ()
-    except ValueError as fault:
-        return None, (Diagnostic("M104", Place(machine.name), f"controller: {fault}"),)
 
 
 def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findings]:

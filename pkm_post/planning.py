@@ -111,19 +111,5 @@ def interpolate(
 
 def strut_motion(motion: Motion, machine: Machine) -> StrutMotion:
     """Strut lengths and speeds of a motion."""
-    still = np.zeros((len(motion), 3))
-    poses = Poses(
-        tip=motion.tip,
-        tip_1=motion.tip_rate,
-        tip_2=still,
-        axis=motion.axis,
-        axis_1=motion.axis_rate,
-        axis_2=still,
-        spin=motion.spin,
-        spin_1=motion.spin_rate,
-        spin_2=still[:, 0],
-        tool_length=motion.tool_length,
-        segment=motion.segment,
-    )
-    length, speed, _ = strut_rates(machine, poses)
+    length, speed, _ = strut_rates(machine, motion.poses())
     return StrutMotion(motion.time_ms, length, speed, motion.events)

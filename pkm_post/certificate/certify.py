@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.playback import INSTANTS, Played, at_joints, play
+from pkm_post.certificate.playback import INSTANTS, Played, at_joints, off_plan, play
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.findings import Certificate, Finding, Tolerances
@@ -71,6 +71,7 @@ def _findings(
     """One row for each quantity: code, name, unit, values, limit, and when and where they were taken."""
     intervals = _Series(struts.time_ms[:-1] / 1000, motion.segment[1:])
     joints = _Series(motion.joint_time, np.arange(len(trajectory)))
+    knots = _Series(struts.time_ms / 1000, motion.segment)
     excess = played.tip_speed - _feed_ceiling(trajectory, motion)
     passed = at_joints(struts, machine, trajectory, motion)
     axis_limit = math.degrees(tolerances.axis)
@@ -80,6 +81,7 @@ def _findings(
         ("V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), axis_limit, intervals),
         ("V110", "tool tip off a programmed point", "mm", passed[0], tolerances.tip, joints),
         ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed[1]), axis_limit, joints),
+        ("V111", "strut off its plan", "mm", off_plan(struts, machine, motion), tolerances.tip, knots),
         ("V108", "tip speed above the feed", "mm/s", excess, 0.0, intervals),
         ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, intervals),
         ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, intervals),

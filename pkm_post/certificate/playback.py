@@ -15,7 +15,7 @@ import numpy as np
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import angle_between, hermite_accelerations, hermite_lengths, hermite_speeds, norm
 from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import forward
+from pkm_post.kinematics import forward, strut_rates
 from pkm_post.kinematics.jacobian import linearise
 from pkm_post.model import Machine, Motion, StrutMotion, Trajectory
 
@@ -113,3 +113,16 @@ def at_joints(struts: StrutMotion, machine: Machine, trajectory: Trajectory, mot
     pose = forward(machine, length, trajectory.tool_length(), trajectory.tip, trajectory.axis, trajectory.spin)
     nowhere = np.where(pose.converged, 0.0, np.inf)
     return norm(pose.tip - trajectory.tip) + nowhere, angle_between(pose.axis, trajectory.axis) + nowhere
+
+
+def off_plan(struts: StrutMotion, machine: Machine, motion: Motion) -> Array:
+    """By how much a strut can leave its plan on either side of each knot, (K + 1,) mm.
+
+    A length that is wrong by dp and a speed that is wrong by dv move the cubic beside them by no more than
+    dp + 4/27 h dv. Tip and axis need not show it: the turn of the platform about the tool axis takes up what is left.
+    """
+    length, speed, _ = strut_rates(machine, motion.poses())
+    interval = np.diff(struts.time_ms / 1000)
+    longest = np.maximum(np.append(interval, 0.0), np.append(0.0, interval))[:, None]
+    wrong = np.abs(struts.length - length) + 4 / 27 * longest * np.abs(struts.speed - speed)
+    return np.asarray(wrong.max(axis=1))

@@ -94,6 +94,12 @@ RULES: dict[str, Rule] = {
     "M107": _error(
         "something of this machine is not known", 'measure it or ask the maker, and write it in place of "unknown"'
     ),
+    "M108": _warning("the machine cannot stand at home", "correct tool_path.home_tip, or the limit that is in the way"),
+    "M201": _error("the measurements cannot be read", "check the path; docs/calibration.md describes the file"),
+    "M202": _error("a row of the measurements is malformed", "correct it; docs/calibration.md describes the file"),
+    "M203": _error("no machine fits the measurements", "look for wrong rows, units and frames in the measurements"),
+    "M204": _error("the calibrated machine cannot be written", "correct what is said of the file that was written"),
+    "M205": _warning("the poses do not determine all parameters", "measure at more places, with more tilt and spin"),
     # K: what the machine can reach
     "K101": _error("a strut would be too short", "move or turn the part on the table, or use another tool length"),
     "K102": _error("a strut would be too long", "move or turn the part on the table, or use another tool length"),
@@ -140,6 +146,15 @@ RULES: dict[str, Rule] = {
     ),
     "N115": _error("there is no face to touch", "choose the faces anew, or leave Faces empty for all of the model"),
     "N116": _error("compensation does not know the shape of the tool", "take a flat, ball or bull nose end mill"),
+    "N201": _error("cutter compensation begins or ends on an arc", "begin and end it on a straight move"),
+    "N202": _error("the tool is too large for the block", "use a smaller tool, or let such blocks be removed"),
+    "N203": _warning("the tool is too large for the block, which is left out", "check what is not cut there"),
+    "N204": _error("the tool would cut into the contour", "use a smaller tool, or change the contour there"),
+    "N205": _warning(
+        "the tool cuts into the contour where compensation begins, ends or changes its side",
+        "begin and end it farther from the contour, at right angles to it",
+    ),
+    "N206": _error("cutter compensation has no one plane here", "keep plane and tool axis, and arcs in the plane"),
     "K110": _warning("the feed is beyond the machine and is limited", "program a feed that the machine can run"),
     "K111": _error("2D cutter compensation (G41, G42) is not applied yet", "let the CAM system offset the path"),
     "K112": _error("cutter compensation would leave its plane", "compensate before the path is turned or mirrored"),
@@ -163,10 +178,9 @@ RULES: dict[str, Rule] = {
     "N306": _warning("the surface has an edge, where the tool turns at once", "cover the faces beside it one by one"),
     "N307": _error("the path lies above the height at which the tool crosses", "raise SafeHeight and ClearanceHeight"),
     "N308": _error("no face is chosen", "add faces as base geometry"),
-    "N309": _error("a tool of this shape cannot finish a surface", "choose a ball end, bull nose or flat end mill"),
+    "N309": _error("a tapered tool cannot finish a surface yet", "choose a ball end, bull nose or flat end mill"),
     "N310": _error("a value has no meaning", "correct the property"),
     "N311": _error("the machine cannot reach the part with the tool upright", "move the part, or take another tool"),
-    "N312": _error("the path was stopped by the user", "recompute the operation"),
     # G1, G2: the letters and the grammar of G-code
     "G101": _error("a character has no meaning here", "remove it, or put the text into a comment"),
     "G102": _error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),
@@ -245,6 +259,7 @@ RULES: dict[str, Rule] = {
     "V107": _error("no pose of the platform belongs to the strut lengths", "post the job again; do not edit it"),
     "V108": _error("the feed is exceeded", "report this as a fault of the feed planner"),
     "V109": _error("the program does not carry out the events of the job", "post the job again; do not edit it"),
+    "V111": _error("the struts leave their plan", "post the job again; do not edit the program"),
     "V110": _error("the program does not follow the whole path", "post the job again; do not edit it"),
     # G3: the execution of a G-code program
     "G301": _error("a parameter has no value", "assign it before"),

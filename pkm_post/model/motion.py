@@ -9,6 +9,7 @@ import numpy as np
 
 from pkm_post.model.columns import RowType, freeze
 from pkm_post.model.event import Event
+from pkm_post.model.poses import Poses
 from pkm_post.model.program import Array
 
 MOTION_BY_TIME: dict[str, RowType] = {
@@ -60,3 +61,20 @@ class Motion:
 
     def __len__(self) -> int:
         return len(self.time_ms)
+
+    def poses(self) -> Poses:
+        """The poses at the knots with their rates; second derivatives are not known here and are zero."""
+        unknown = np.zeros((len(self), 3))
+        return Poses(
+            tip=self.tip,
+            tip_1=self.tip_rate,
+            tip_2=unknown,
+            axis=self.axis,
+            axis_1=self.axis_rate,
+            axis_2=unknown,
+            spin=self.spin,
+            spin_1=self.spin_rate,
+            spin_2=unknown[:, 0],
+            tool_length=self.tool_length,
+            segment=self.segment,
+        )

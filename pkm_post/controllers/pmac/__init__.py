@@ -5,7 +5,7 @@ from pkm_post.controllers.pmac.codes import event_faults
 from pkm_post.controllers.pmac.memory import memory_faults, program_words
 from pkm_post.controllers.pmac.program import program_text
 from pkm_post.controllers.pmac.reader import read_program
-from pkm_post.controllers.pmac.settings import Settings
+from pkm_post.controllers.pmac.settings import Settings, settings_of
 from pkm_post.controllers.pmac.setup import setup_text
 
 __all__ = [
@@ -15,5 +15,6 @@ __all__ = [
     "program_text",
     "program_words",
     "read_program",
+    "settings_of",
     "setup_text",
 ]

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from pkm_post.controllers.pmac.codes import DEFAULT_CODES, check_codes
+from pkm_post.model import Diagnostic, Machine, Place
 
 KIND = "turbo_pmac"
 
@@ -75,6 +76,14 @@ class Settings:
             if isinstance(entries.get(name), list):
                 entries[name] = tuple(entries[name])
         return cls(**entries | {"codes": DEFAULT_CODES | dict(entries.get("codes", {}))})
+
+
+def settings_of(machine: Machine) -> tuple[Settings | None, tuple[Diagnostic, ...]]:
+    """Settings of a machine's controller; whether its codes can be told apart its file's reader does not know."""
+    try:
+        return Settings.of(machine.controller), ()
+    except ValueError as fault:
+        return None, (Diagnostic("M104", Place(machine.name), f"controller: {fault}"),)
 
 
 def _whole(least: int, most: int) -> tuple[str, Callable[[Any], bool]]:

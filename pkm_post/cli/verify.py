@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command ``verify``: whether a motion program does what a trajectory file says."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pkm_post.options import add_machine, add_tolerances, tolerances_from
+
+
+def add_commands(commands: Any) -> None:
+    """Add the command to a parser."""
+    verifying = commands.add_parser("verify", help="say whether a motion program still does what was posted")
+    verifying.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+    verifying.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
+    verifying.add_argument("--json", action="store_true", help="write the whole report as JSON")
+    add_machine(verifying)
+    add_tolerances(verifying)
+    verifying.set_defaults(run=_verify)
+
+
+def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.machine_file import machine_named
+    from pkm_post.model import Refused
+    from pkm_post.verify import verify
+
+    machine, faults = machine_named(namespace.machine)
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    if machine is None:
+        return 1
+    try:
+        report = verify(namespace.program, namespace.against, machine, tolerances_from(namespace))
+    except Refused as refused:
+        print(refused, file=sys.stderr)
+        return 1
+    if namespace.json:
+        print(json.dumps(report, indent=2))
+    else:
+        for finding in report["certificate"]["findings"]:
+            print(f"{finding['what']}: {finding['value']:g} of {finding['limit']:g} {finding['unit']}".rstrip())
+        print(f"{namespace.program}: the certificate holds")
+    return 0

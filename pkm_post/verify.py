@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Verify: whether a motion program that lies somewhere still does what a trajectory file says.
+
+The text of a program, a trajectory file and a machine enter; the report leaves, as posting would have written it. The
+plan is made anew from the trajectory: the same input gives the same plan, so a program that was posted has its knots.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pkm_post import planning, trajectory_file
+from pkm_post.certificate import certify
+from pkm_post.controllers import pmac
+from pkm_post.model import Diagnostic, Machine, Place, Refused
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.findings import Tolerances
+from pkm_post.report import summary
+
+
+def verify(program: Path, trajectory: Path, machine: Machine, tolerances: Tolerances) -> dict[str, Any]:
+    """Certify a program that was written before.
+
+    Args:
+        program: the motion program.
+        trajectory: the trajectory file it was made from.
+        machine: the machine it was made for.
+        tolerances: what was asked for when it was posted.
+
+    Returns:
+        The report; its certificate holds.
+
+    Raises:
+        Refused: a file cannot be read or is faulty, or the certificate does not hold.
+    """
+    planned, faults = trajectory_file.read(trajectory)
+    if planned is None:
+        raise Refused(faults)
+    settings, faults = pmac.settings_of(machine)
+    if settings is None:
+        raise Refused(faults)
+    struts, faults = pmac.read_program(_text(program), settings, program.name)
+    if struts is None:
+        raise Refused(faults)
+    path = planning.tool_path(planned, tolerances)
+    schedule, faults = planning.plan_feed(path, planned, machine)
+    if errors(faults):
+        raise Refused(faults)
+    motion = planning.interpolate(path, schedule, planned.events, machine, tolerances)
+    certificate, faults = certify(struts, program.name, planned, machine, motion, tolerances)
+    if certificate is None or errors(faults):
+        raise Refused(faults)
+    return summary.report(planned, machine, certificate, tolerances, struts)
+
+
+def _text(program: Path) -> str:
+    """The text of a program; bytes that are not ASCII become marks that its reader refuses."""
+    try:
+        return program.read_bytes().decode("ascii", errors="replace")
+    except OSError as fault:
+        raise Refused([Diagnostic("F103", Place(str(program)), str(fault))]) from fault
