@@ -9,7 +9,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.feed import Bounded, Schedule, ToolPath, by_time, knots, limits, speed_profile, stations
+from pkm_post.feed import (
+    Bounded,
+    Ceilings,
+    Schedule,
+    Stations,
+    ToolPath,
+    by_time,
+    for_jerk,
+    knots,
+    limits,
+    speed_profile,
+    stations,
+)
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import reach_faults, stray, strut_rates
 from pkm_post.model import Diagnostic, Event, Machine, Motion, Poses, StrutMotion, Trajectory
@@ -23,6 +35,8 @@ _SPEED_SWING = 0.005
 """Part of the feed by which the controller's cubics may be faster than planned."""
 _STRUT_SPEED_SHARE = 0.95
 """Share of the strut speed that is planned: the controller's cubics swing a little about it."""
+_WINDOWS_MS = (4, 8, 16, 32, 64, 128)
+"""Windows of time that are tried for a plan with a limit of jerk; the one with the shortest motion is taken."""
 _SHARES_LOOKED_AT = np.sort(np.arange(1, 21) * (np.sqrt(5) - 1) / 2 % 1)
 """Spread by the golden ratio: even shares could keep step with the joints of the path and miss every one of them."""
 
@@ -43,9 +57,20 @@ def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple
     marks = stations(path)
     poses = path.within(marks.segment, marks.u)
     faults = reach_faults(machine, trajectory, poses)
-    square, along = limits(_feed_at(path, marks.segment, marks.u), _bounded(machine, poses))
+    bounded = _bounded(machine, poses)
+    square, along = limits(_feed_at(path, marks.segment, marks.u), bounded)
     square[marks.rest] = 0.0
-    return Schedule.of(marks, speed_profile(marks.s, square, along)), faults
+    ceilings = Ceilings(marks.s, marks.rest, square, along)
+    if not any(np.isfinite(item.jerk) for item in bounded):
+        return Schedule.of(marks, marks.s, marks.rest, speed_profile(marks.s, square, along)), faults
+    plans = (_averaged(marks, for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS)
+    return min(plans, key=lambda plan: plan.rests_ms[-1]), faults
+
+
+def _averaged(marks: Stations, ceilings: Ceilings, window_ms: int) -> Schedule:
+    """The schedule under ceilings that were made for a window."""
+    square = speed_profile(ceilings.s, ceilings.square, ceilings.along)
+    return Schedule.of(marks, ceilings.s, ceilings.rest, square, window_ms)
 
 
 def _feed_at(path: ToolPath, segment: Array, u: Array) -> Array:
@@ -58,7 +83,14 @@ def _feed_at(path: ToolPath, segment: Array, u: Array) -> Array:
 def _bounded(machine: Machine, poses: Poses) -> tuple[Bounded, ...]:
     _, first, second = strut_rates(machine, poses)
     return (
-        Bounded(first, second, _STRUT_SPEED_SHARE * machine.strut_speed, machine.strut_acceleration, each=True),
+        Bounded(
+            first,
+            second,
+            _STRUT_SPEED_SHARE * machine.strut_speed,
+            machine.strut_acceleration,
+            each=True,
+            jerk=machine.strut_jerk,
+        ),
         Bounded(poses.tip_1, poses.tip_2, np.inf, machine.tip_acceleration, each=False),
         Bounded(poses.axis_1, poses.axis_2, machine.axis_speed, np.inf, each=False),
     )

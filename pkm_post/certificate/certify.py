@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.playback import INSTANTS, Played, at_joints, off_plan, play
+from pkm_post.certificate.playback import INSTANTS, Played, at_joints, off_plan, play, strut_jerk
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.findings import Certificate, Finding, Tolerances
@@ -75,7 +75,7 @@ def _findings(
     excess = played.tip_speed - _feed_ceiling(trajectory, motion)
     passed = at_joints(struts, machine, trajectory, motion)
     axis_limit = math.degrees(tolerances.axis)
-    rows = (
+    rows: tuple[_Row, ...] = (
         ("V107", "instants without a pose", "", 1.0 - played.found, 0.0, intervals),
         ("V101", "deviation of the tool tip", "mm", played.tip, tolerances.tip, intervals),
         ("V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), axis_limit, intervals),
@@ -88,6 +88,8 @@ def _findings(
         ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, intervals),
         ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, intervals),
     )
+    if math.isfinite(machine.strut_jerk):
+        rows = (*rows, ("V112", "strut jerk", "mm/s^3", strut_jerk(struts), machine.strut_jerk, knots))
     return tuple(_worst(trajectory, *row) for row in rows)
 
 
@@ -97,6 +99,9 @@ class _Series:
 
     time: Array
     segment: Array
+
+
+_Row = tuple[str, str, str, Array, float, _Series]
 
 
 def _worst(

@@ -126,3 +126,16 @@ def off_plan(struts: StrutMotion, machine: Machine, motion: Motion) -> Array:
     longest = np.maximum(np.append(interval, 0.0), np.append(0.0, interval))[:, None]
     wrong = np.abs(struts.length - length) + 4 / 27 * longest * np.abs(struts.speed - speed)
     return np.asarray(wrong.max(axis=1))
+
+
+def strut_jerk(struts: StrutMotion) -> Array:
+    """Jerk of the fastest changing strut about each knot, (K + 1,) mm/s^3, with rests before and behind the program.
+
+    The mean acceleration of an interval is the change of its speeds by its duration. From one interval to the next
+    it changes by no more than the jerk times the time between their middles.
+    """
+    duration = np.diff(struts.time_ms / 1000)
+    still = np.zeros((1, 6))
+    mean = np.concatenate([still, np.diff(struts.speed, axis=0) / duration[:, None], still])
+    apart = (np.append(duration, 0.0) + np.append(0.0, duration)) / 2
+    return np.asarray(np.abs(np.diff(mean, axis=0)).max(axis=1) / apart)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Feed: corner blending, look-ahead and timing. Arrays alone: no machine, no kinematics."""
 
+from pkm_post.feed.jerk import Ceilings, for_jerk
 from pkm_post.feed.knots import knots
 from pkm_post.feed.limits import PLANNED_SHARE, Bounded, limits
 from pkm_post.feed.profile import speed_profile
@@ -12,11 +13,13 @@ from pkm_post.feed.tool_path import ToolPath
 __all__ = [
     "PLANNED_SHARE",
     "Bounded",
+    "Ceilings",
     "Schedule",
     "Segments",
     "Stations",
     "ToolPath",
     "by_time",
+    "for_jerk",
     "knots",
     "limits",
     "speed_profile",

@@ -28,7 +28,7 @@ _STEEPEST = 1e6
 
 @dataclass(frozen=True)
 class Bounded:
-    """A vector of the path with limits on the size of its rate and acceleration.
+    """A vector of the path with limits on the size of its rate, acceleration and jerk.
 
     Attributes:
         first: (M, C) derivatives by path length.
@@ -36,6 +36,7 @@ class Bounded:
         speed: limit of the rate, infinite where there is none.
         acceleration: limit of the acceleration, infinite where there is none.
         each: whether every column has the limit for itself (struts), or the vector as a whole (tip).
+        jerk: limit of the jerk, infinite where there is none.
     """
 
     first: Array
@@ -43,6 +44,7 @@ class Bounded:
     speed: float
     acceleration: float
     each: bool
+    jerk: float = np.inf
 
     def sizes(self) -> tuple[Array, Array]:
         """Sizes of first and second derivative by column of its own limit, (M, C) or (M, 1).

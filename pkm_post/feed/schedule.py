@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Schedule: where on the path the tool is at any time.
 
-Between two stations the speed squared is linear in path length, so the acceleration is constant and the time is
+Between two places the speed squared is linear in path length, so the acceleration is constant and the time is
 2 ds / (v0 + v1). Controllers take whole milliseconds: the time from one rest to the next is stretched to the next
-whole one, which makes every speed a little lower and breaks no limit.
+whole one, which makes every speed a little lower and breaks no limit. For a plan whose acceleration does not jump, the
+course is averaged over a window of time; at every rest it stands still for one window, so that a rest stays one.
 """
 
 from __future__ import annotations
@@ -12,54 +13,63 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pkm_post.feed.course import Course
 from pkm_post.feed.stations import Stations
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Poses
 
+_HALVINGS = 50
+"""Of a window, to find when a place is passed."""
+
 
 @dataclass(frozen=True)
 class Schedule:
-    """Columns of M stations.
+    """A course in time and what the planner wants to know of it.
 
     Attributes:
-        s: (M,) path length, mm.
-        time: (M,) s.
-        speed: (M,) along the path, mm/s.
+        course: path length by time.
+        window: s, over which the course is averaged; 0 leaves it as it is.
         rests_ms: (R,) whole milliseconds at which the motion rests, from 0 to the end.
         rest_joints: (R,) for each rest the number of segments that lie before it.
         edges_ms: (E,) whole milliseconds nearest to where blends begin and end.
         joint_time: (N,) s, when the end of each segment is passed.
     """
 
-    s: Array
-    time: Array
-    speed: Array
+    course: Course
+    window: float
     rests_ms: Array
     rest_joints: Array
     edges_ms: Array
     joint_time: Array
 
     @classmethod
-    def of(cls, stations: Stations, square: Array) -> Schedule:
-        """The schedule that runs through the stations with the given speeds squared, (M,)."""
-        speed = np.sqrt(square)
-        duration = 2 * np.diff(stations.s) / (speed[1:] + speed[:-1])
-        run = np.cumsum(stations.rest)[:-1] - 1
-        elapsed = np.bincount(run, duration)
-        whole_ms = np.ceil(1000 * elapsed).astype(np.int64)
-        stretch = whole_ms / (1000 * elapsed)
-        rests_ms = np.concatenate([[0], np.cumsum(whole_ms)])
+    def of(cls, stations: Stations, s: Array, rest: Array, square: Array, window_ms: int = 0) -> Schedule:
+        """The schedule that runs through places with the given speeds squared.
 
-        duration *= stretch[run]
-        since_start = np.concatenate([[0.0], np.cumsum(duration)])
-        rest_rows = np.flatnonzero(stations.rest)
-        time = since_start - since_start[rest_rows[np.append(run, run[-1])]] + rests_ms[np.append(run, run[-1])] / 1000
-        time[rest_rows] = rests_ms / 1000
-        speed[:-1] /= stretch[run]
-        joints = np.append(stations.segment[rest_rows[:-1] + 1], stations.segment[-1] + 1)
-        edges_ms = np.unique(np.rint(1000 * time[stations.edge]).astype(np.int64))
-        joint_time = time[np.append(np.diff(stations.segment) > 0, True)]
-        return cls(stations.s, time, speed, rests_ms, joints, edges_ms, joint_time)
+        Args:
+            stations: say which path lengths are joints and edges; all of them are among the places.
+            s: (M,) path length of each place.
+            rest: (M,) whether the motion stops there.
+            square: (M,) speed squared.
+            window_ms: how long a window the course is averaged over.
+        """
+        course, rests_ms = _stretched(s, rest, square, window_ms)
+        window, rests = window_ms / 1000, np.flatnonzero(rest)
+        row = np.searchsorted(s, stations.s)
+        passed = course.time[row]
+        if window_ms:
+            course = course.standing(rests, window)
+            under_way = ~stations.rest
+            passed[under_way] = _when_passed(course, window, stations.s[under_way], passed[under_way])
+        ends = np.append(np.diff(stations.segment) > 0, True)
+        return cls(
+            course=course,
+            window=window,
+            rests_ms=rests_ms,
+            rest_joints=np.append(stations.segment[np.flatnonzero(stations.rest)[:-1] + 1], stations.segment[-1] + 1),
+            edges_ms=np.unique(np.rint(1000 * passed[stations.edge]).astype(np.int64)),
+            joint_time=passed[ends],
+        )
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
         """Path length, speed and acceleration along the path at the times given, (N,) each.
@@ -67,15 +77,37 @@ class Schedule:
         Args:
             time: (N,) s, from 0 to the end.
         """
-        cell = np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(self.time) - 2)
-        v0, v1 = self.speed[cell], self.speed[cell + 1]
-        s0, s1 = self.s[cell], self.s[cell + 1]
-        acceleration = (v1**2 - v0**2) / (2 * (s1 - s0))
-        since = time - self.time[cell]
-        s = s0 + since * (v0 + since * acceleration / 2)
-        arrived = time >= self.time[cell + 1]  # exactly at rest in the end
-        speed = np.where(arrived, v1, np.maximum(v0 + since * acceleration, 0.0))
-        return np.clip(s, s0, s1), speed, acceleration
+        return self.course.mean(time, self.window) if self.window else self.course.at(time)
+
+
+def _stretched(s: Array, rest: Array, square: Array, window_ms: int) -> tuple[Course, Array]:
+    """The course from rest to rest in whole milliseconds, with a window of time at each rest; and the rests."""
+    speed = np.sqrt(square)
+    duration = 2 * np.diff(s) / (speed[1:] + speed[:-1])
+    run = np.cumsum(rest)[:-1] - 1
+    elapsed = np.bincount(run, duration)
+    whole_ms = np.ceil(1000 * elapsed).astype(np.int64)
+    stretch = whole_ms / (1000 * elapsed)
+    rests_ms = np.concatenate([[0], np.cumsum(whole_ms + window_ms)])
+
+    duration *= stretch[run]
+    since_start = np.concatenate([[0.0], np.cumsum(duration)])
+    rests = np.flatnonzero(rest)
+    of_row = np.append(run, run[-1])
+    time = since_start - since_start[rests[of_row]] + (rests_ms[of_row] + window_ms / 2) / 1000
+    time[rests] = rests_ms / 1000
+    speed[:-1] /= stretch[run]
+    return Course(s, time, speed), rests_ms
+
+
+def _when_passed(course: Course, window: float, s: Array, time: Array) -> Array:
+    """When the averaged course passes path lengths, (N,) s, given when the course itself does."""
+    early, late = time - window / 2, time + window / 2
+    for _ in range(_HALVINGS):
+        middle = (early + late) / 2
+        there = course.mean(middle, window)[0] >= s
+        early, late = np.where(there, early, middle), np.where(there, middle, late)
+    return late
 
 
 def by_time(poses: Poses, speed: Array, acceleration: Array) -> Poses:

@@ -107,7 +107,7 @@ RULES: dict[str, Rule] = {
     "K104": _error("a platform joint would swing too far", "tilt the tool less, or move the part"),
     "K105": _error("the path comes too near to a singular pose", "tilt the tool less, or move the part"),
     "K106": _error("the tool axis turns by half a turn in one move", "put a move between that says which way to turn"),
-    "K107": _error("the spindle speed is beyond the machine", "reduce it"),
+    "K107": _error("the spindle does not turn at this speed", "program a speed that the machine has"),
     "K108": _error("the work offset is unknown to the machine", "add it to the machine file, or pass --work-offset"),
     "K109": _error("the matrix is not a rotation, a mirror or a shift", "use a matrix without scale or shear"),
     # N: the normals of the surface and compensation with them
@@ -260,6 +260,7 @@ RULES: dict[str, Rule] = {
     "V108": _error("the feed is exceeded", "report this as a fault of the feed planner"),
     "V109": _error("the program does not carry out the events of the job", "post the job again; do not edit it"),
     "V111": _error("the struts leave their plan", "post the job again; do not edit the program"),
+    "V112": _error("the acceleration of a strut changes too fast", "report this as a fault of the feed planner"),
     "V110": _error("the program does not follow the whole path", "post the job again; do not edit it"),
     # G3: the execution of a G-code program
     "G301": _error("a parameter has no value", "assign it before"),

@@ -22,7 +22,6 @@ from pkm_post.model.tool import lengths_of
 from pkm_post.placement.smoothness import smooth
 from pkm_post.placement.symmetry import mirrors, transform
 
-UPRIGHT = np.array([0.0, 0.0, 1.0])
 _NO_MOVE = 1e-9
 """mm and rad: a row that moves less is left out."""
 _HALF_TURN = np.pi - 1e-6
@@ -56,8 +55,8 @@ def place(
     trajectory = Trajectory(
         **columns,
         start_tip=machine.home_tip,
-        start_axis=UPRIGHT,
-        start_spin=0.0,
+        start_axis=machine.home_axis,
+        start_spin=machine.home_spin,
         events=events,
         operations=program.operations,
         tools=program.tools,
@@ -73,7 +72,7 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
     """Columns of the way by row of the program: where each row begins and ends, and how far that is."""
     tip, axis, centre, turn = placed.position, placed.tool_axis, placed.arc_centre, placed.arc_axis
     tool = _tool_by_row(placed)
-    axis_before = np.vstack([UPRIGHT, axis[:-1]])
+    axis_before = np.vstack([machine.home_axis, axis[:-1]])
     # At a tool change the platform stands still: the tip of a longer tool begins further down.
     longer = np.diff(lengths_of(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
     tip_before = np.vstack([machine.home_tip, tip[:-1]]) - longer[:, None] * axis_before
@@ -116,8 +115,9 @@ def _faults(program: Program, machine: Machine, angle: Array, keep: Array) -> It
     for turned in np.flatnonzero(angle > _HALF_TURN):
         yield Diagnostic("K106", program.place(int(turned)), f"{np.degrees(angle[turned]):.3f} degrees")
     for event in program.events:
-        if event.kind is EventKind.SPINDLE and abs(event.value) > machine.spindle_speed:
-            found = f"{abs(event.value):g} rpm, the machine allows {machine.spindle_speed:g}"
+        speed = abs(event.value) if event.kind is EventKind.SPINDLE else 0.0
+        if speed and not machine.spindle_least_speed <= speed <= machine.spindle_speed:
+            found = f"{speed:g} rpm, the machine allows {machine.spindle_least_speed:g} to {machine.spindle_speed:g}"
             yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), found)
     for row in np.flatnonzero(program.side_offset)[:1]:
         found = f"radius {abs(program.side_offset[row]):g} mm"

@@ -17,8 +17,8 @@ TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 
 
 @cache
-def planned():
-    machine = example()
+def planned(jerk=np.inf):
+    machine = dataclasses.replace(example(), strut_jerk=jerk)
     trajectory, _ = place(cone(80, turns=0.25), machine, ON_PALLET)
     path = planning.tool_path(trajectory, TOLERANCES)
     schedule, faults = planning.plan_feed(path, trajectory, machine)
@@ -140,3 +140,13 @@ def test_too_fast_is_found():
 
 def test_tighter_tolerances_than_planned_do_not_hold():
     assert {"V101"} <= codes(verdict(tolerances=Tolerances(1e-5, np.radians(1e-5))))
+
+
+def test_a_limit_of_jerk_is_kept_and_its_breach_is_found():
+    jerk = 2e4
+    gentle, trajectory, motion, struts = planned(jerk)
+    certificate, faults = certify(struts, "x.pmc", trajectory, gentle, motion, TOLERANCES)
+    assert not faults
+    found = next(finding for finding in certificate.findings if finding.code == "V112")
+    assert 0.2 * jerk < found.value <= jerk
+    assert "V112" in codes(verdict(machine=gentle))

@@ -30,7 +30,7 @@ def stop_and_go():
 
 def test_speed_is_the_derivative_of_the_way():
     _, _, schedule = schedule_of(cone())
-    time = np.linspace(0.01, schedule.time[-1] - 0.01, 2000)
+    time = np.linspace(0.01, schedule.course.time[-1] - 0.01, 2000)
     step = 1e-6
     s, speed, _ = schedule.at(time)
     np.testing.assert_allclose((schedule.at(time + step)[0] - schedule.at(time - step)[0]) / (2 * step), speed,
@@ -51,8 +51,8 @@ def test_feed_is_kept_and_reached():
     _, path, schedule = schedule_of(program([[0, 0, 60], [0, 0, 50], [100, 0, 50]], feed=30.0))
     marks = stations(path)
     cutting = marks.segment[1:] > 0
-    assert schedule.speed[1:][cutting].max() <= 30.0
-    assert schedule.speed[1:][cutting].max() > 29.9
+    assert schedule.course.speed[1:][cutting].max() <= 30.0
+    assert schedule.course.speed[1:][cutting].max() > 29.9
 
 
 def test_knots_halve_until_the_error_holds():

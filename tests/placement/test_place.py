@@ -51,6 +51,22 @@ def test_smooth_joints_are_told_from_corners():
     assert straight.smooth.tolist() == [False, True, False]
 
 
+def test_the_way_begins_at_the_home_pose():
+    axis = np.array([0.0, np.sin(0.1), np.cos(0.1)])
+    leaning = dataclasses.replace(example(), home_axis=axis, home_spin=0.2)
+    trajectory, _ = place(cone(20), leaning, ON_PALLET)
+    np.testing.assert_array_equal(trajectory.start_axis, axis)
+    assert (trajectory.start_spin, trajectory.spin_before()[0]) == (0.2, 0.2)
+    assert trajectory.angle[0] == pytest.approx(np.arccos(axis @ trajectory.axis[0]))
+
+
+def test_a_spindle_speed_below_the_lowest_is_refused():
+    slow = dataclasses.replace(example(), spindle_least_speed=3000.0)
+    for speed, codes in ((-2999.0, ["K107"]), (3000.0, []), (0.0, [])):
+        made = program([[0, 0, 60], [1, 0, 60]], events=(Event(1, EventKind.SPINDLE, speed),))
+        assert [fault.code for fault in place(made, slow, ON_PALLET)[1]] == codes
+
+
 def test_feeds_are_limited_with_a_warning():
     made = program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], feed=np.array([np.nan, 30.0, 900.0]))
     trajectory, faults = place(made, example(), ON_PALLET)
