@@ -2,7 +2,17 @@
 """Machine files: a TOML text becomes a ``model.Machine`` in mm, rad and s, or a list of everything wrong with it."""
 
 from pkm_post.machine_file.named import machine_named
-from pkm_post.machine_file.presets import find_machine, presets
-from pkm_post.machine_file.reader import read_machine
+from pkm_post.machine_file.presets import find_machine, presets, templates
+from pkm_post.machine_file.reader import machine_of, read_machine
+from pkm_post.machine_file.rewrite import CannotRewriteError, with_entries
 
-__all__ = ["find_machine", "machine_named", "presets", "read_machine"]
+__all__ = [
+    "CannotRewriteError",
+    "find_machine",
+    "machine_named",
+    "machine_of",
+    "presets",
+    "read_machine",
+    "templates",
+    "with_entries",
+]

@@ -44,7 +44,7 @@ def _stands(document: Any, name: Name) -> bool:
     return True
 
 
-def _entry_lines(text: str, document: dict[str, Any]) -> dict[Name, int]:
+def entry_lines(text: str, document: dict[str, Any]) -> dict[Name, int]:
     """The line, from 1, of every section and key that starts a line."""
     lines: dict[Name, int] = {}
     section: Name = ()
@@ -66,7 +66,7 @@ def _line(name: Name, lines: dict[Name, int]) -> int:
 
 def tell(faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]) -> tuple[Diagnostic, ...]:
     """The faults as diagnostics, from the first line to the last."""
-    lines = _entry_lines(text, document)
+    lines = entry_lines(text, document)
     placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])
     return tuple(
         Diagnostic(fault.code, Place(file, line=line), f"{'.'.join(fault.name)}: {fault.found}")

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from pkm_post.machine_file import forms, units
+from pkm_post.machine_file import forms, solids, units
 from pkm_post.machine_file.forms import Form
 from pkm_post.machine_file.units import Dimension
 
@@ -50,6 +50,7 @@ class Field:
 
 MOST_DECIMALS = 9
 MOST_WORDS = 2**24
+JOINT_KIND = forms.choice("universal", "spherical")
 
 FIELDS: tuple[Field, ...] = (
     Field("name", forms.NAME, attribute="name"),
@@ -61,20 +62,41 @@ FIELDS: tuple[Field, ...] = (
     Field("struts.stroke", forms.STROKE, units.LENGTH, attribute="strut_stroke"),
     Field("struts.speed", forms.POSITIVE, units.SPEED, attribute="strut_speed"),
     Field("struts.acceleration", forms.POSITIVE, units.ACCELERATION, attribute="strut_acceleration"),
-    Field("joints.base_cone", forms.HALF_ANGLE, units.ANGLE, attribute="base_cone"),
-    Field("joints.platform_cone", forms.HALF_ANGLE, units.ANGLE, attribute="platform_cone"),
+    Field("struts.jerk", forms.POSITIVE, units.JERK, default=None, attribute="strut_jerk"),
+    Field("struts.length_offset", forms.SIX_NUMBERS, units.LENGTH, default=None, attribute="length_offset"),
+    Field("struts.screw_lead", forms.NUMBER, units.LENGTH, default=0.0, attribute="screw_lead"),
+    Field("struts.tube_radius", forms.POSITIVE, units.LENGTH, default=None, attribute="tube_radius"),
+    Field("struts.tube_length", forms.POSITIVE, units.LENGTH, default=None, attribute="tube_length"),
+    Field("struts.rod_radius", forms.POSITIVE, units.LENGTH, default=None, attribute="rod_radius"),
+    Field("struts.rod_length", forms.POSITIVE, units.LENGTH, default=None, attribute="rod_length"),
+    Field("struts.stiffness", forms.POSITIVE, units.STIFFNESS, default=None, attribute="strut_stiffness"),
+    Field("struts.rigidity", forms.POSITIVE, units.FORCE, default=None, attribute="strut_rigidity"),
+    Field("joints.base_kind", JOINT_KIND, default="universal", attribute="base_joint_kind"),
+    Field("joints.platform_kind", JOINT_KIND, default="spherical", attribute="platform_joint_kind"),
+    Field("joints.base_cone", forms.HALF_ANGLES, units.ANGLE, attribute="base_cone"),
+    Field("joints.platform_cone", forms.HALF_ANGLES, units.ANGLE, attribute="platform_cone"),
     Field("joints.rest_pose", forms.POINT, units.LENGTH),
-    Field("joints.rest_tool_length", forms.NOT_NEGATIVE, units.LENGTH),
+    Field("joints.rest_tool_length", forms.NOT_NEGATIVE, units.LENGTH, attribute="rest_tool_length"),
     Field("joints.base_rest", forms.SIX_DIRECTIONS, default=None),
     Field("joints.platform_rest", forms.SIX_DIRECTIONS, default=None),
+    Field("joints.base_axes", forms.SIX_DIRECTIONS, default=None, attribute="base_axes"),
+    Field("joints.platform_axes", forms.SIX_DIRECTIONS, default=None, attribute="platform_axes"),
+    Field("interference.clearance", forms.NOT_NEGATIVE, units.LENGTH, default=0.0, attribute="clearance"),
+    Field("interference.base_joint_radius", forms.NOT_NEGATIVE, units.LENGTH, 0.0, "base_joint_radius"),
+    Field("interference.platform_joint_radius", forms.NOT_NEGATIVE, units.LENGTH, 0.0, "platform_joint_radius"),
+    Field("interference.bodies", solids.BODIES, units.LENGTH, default=None, attribute="bodies"),
+    Field("interference.fixtures", solids.FIXTURES, units.LENGTH, default=None, attribute="fixtures"),
     Field("singularity.characteristic_length", forms.POSITIVE, units.LENGTH, attribute="characteristic_length"),
     Field("singularity.least_singular_value", forms.POSITIVE, attribute="least_singular_value"),
     Field("tool_path.home_tip", forms.POINT, units.LENGTH, attribute="home_tip"),
+    Field("tool_path.home_axis", forms.UPWARDS, default=[0.0, 0.0, 1.0], attribute="home_axis"),
+    Field("tool_path.home_spin", forms.NUMBER, units.ANGLE, default=0.0, attribute="home_spin"),
     Field("tool_path.rapid_speed", forms.POSITIVE, units.SPEED, attribute="rapid_speed"),
     Field("tool_path.feed_speed", forms.POSITIVE, units.SPEED, attribute="feed_speed"),
     Field("tool_path.tip_acceleration", forms.POSITIVE, units.ACCELERATION, attribute="tip_acceleration"),
     Field("tool_path.axis_speed", forms.POSITIVE, units.TURNING_RATE, attribute="axis_speed"),
     Field("spindle.speed", forms.POSITIVE, units.SPINDLE_SPEED, attribute="spindle_speed"),
+    Field("spindle.least_speed", forms.NOT_NEGATIVE, units.SPINDLE_SPEED, default=0.0, attribute="spindle_least_speed"),
     Field("work_offsets.*.origin", forms.POINT, units.LENGTH, default=None),
     Field("work_offsets.*.rotation_z", forms.NUMBER, units.ANGLE, default=0.0),
     Field("work_offsets.*.matrix", forms.POSE, units.LENGTH, default=None),

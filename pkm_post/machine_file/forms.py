@@ -20,6 +20,8 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 LARGEST = 1e12
 """A number beyond this, an infinity or a NaN is a slip: no quantity of a machine comes near it."""
 SHORTEST_DIRECTION = 1e-9
+UNKNOWN = "unknown"
+"""Stands in a template for what is not known of a machine."""
 RIGID_TOLERANCE = 1e-6
 """How far a typed matrix may be from a rotation: six decimals are common."""
 AXIS_LETTERS = "ABCUVWXYZ"
@@ -59,19 +61,30 @@ def shown(value: Any) -> str:
     return _SHOWN.get(type(value), str)(value)
 
 
+def holds_unknown(value: Any) -> bool:
+    """Whether a value, or anything in it, is still to be filled in."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    return any(map(holds_unknown, value)) if isinstance(value, list) else value == UNKNOWN
+
+
 def _is_number(value: Any) -> bool:
     # The comparison also turns away NaN, infinities and integers that no float can hold.
     return isinstance(value, int | float) and not isinstance(value, bool) and -LARGEST <= value <= LARGEST
 
 
-def _collect(value: Any, shape: tuple[int, ...], at: tuple[int, ...] = ()) -> Any:
-    """The nested lists of ``value`` as floats, when they have exactly this shape."""
+def collect(value: Any, shape: tuple[int, ...], at: tuple[int, ...] = ()) -> Any:
+    """The nested lists of ``value`` as floats, when they have exactly this shape.
+
+    Raises:
+        FormError: they have another; the text says what stands where.
+    """
     where = f" at place {', '.join(map(str, at))}" if at else ""
     if not shape and _is_number(value):
         return float(value)
     if not shape or not isinstance(value, list) or len(value) != shape[0]:
         raise FormError(shown(value) + where)
-    return [_collect(item, shape[1:], (*at, index)) for index, item in enumerate(value, start=1)]
+    return [collect(item, shape[1:], (*at, index)) for index, item in enumerate(value, start=1)]
 
 
 def _numbers(
@@ -83,7 +96,7 @@ def _numbers(
     """A form of numbers: their shape, what is accepted of them once converted, what they become."""
 
     def read(value: Any, factor: float) -> Any:
-        numbers = np.array(_collect(value, shape)) * factor
+        numbers = np.array(collect(value, shape)) * factor
         if not accept(numbers):
             raise FormError(_shorten(str(value)))
         return finish(numbers)
@@ -96,7 +109,7 @@ def _unit(directions: Array) -> Array:
 
 
 def _read_pose(value: Any, factor: float) -> Array:
-    pose = np.array(_collect(value, (4, 4)))
+    pose = np.array(collect(value, (4, 4)))
     rotation = pose[:3, :3]
     rigid = np.abs(rotation @ rotation.T - np.eye(3)).max() <= RIGID_TOLERANCE and np.linalg.det(rotation) > 0.0
     if not rigid or np.any(pose[3] != (0.0, 0.0, 0.0, 1.0)):
@@ -105,6 +118,14 @@ def _read_pose(value: Any, factor: float) -> Array:
     pose[:3, :3] = left @ right  # the nearest rotation: typed decimals must not stretch a path
     pose[:3, 3] *= factor
     return pose
+
+
+def _read_half_angles(value: Any, factor: float) -> Array:
+    shape = (STRUTS,) if isinstance(value, list) else ()
+    angles = np.array(collect(value, shape)) * factor
+    if np.any((angles <= 0.0) | (angles > math.pi / 2.0)):
+        raise FormError(_shorten(str(value)))
+    return np.full(STRUTS, angles)
 
 
 def _text(words: str, accept: Callable[[str], Any]) -> Form:
@@ -146,9 +167,7 @@ _CODE = re.compile(r"(?:[ -z|~]|\{value\}|\{value:d\}|\{value:\.[1-9]f\})+")
 NUMBER = _numbers("a number", finish=float)
 POSITIVE = _numbers("a number above 0", (), lambda number: number > 0.0, float)
 NOT_NEGATIVE = _numbers("a number, 0 or above", (), lambda number: number >= 0.0, float)
-HALF_ANGLE = _numbers(
-    "an angle above 0 and at most a right angle", (), lambda angle: 0.0 < angle <= math.pi / 2.0, float
-)
+HALF_ANGLES = Form("an angle above 0 and at most a right angle, or 6 of them", _read_half_angles)
 STROKE = _numbers(
     "2 numbers, 0 < first < second",
     (2,),
@@ -156,6 +175,7 @@ STROKE = _numbers(
     lambda stroke: (float(stroke[0]), float(stroke[1])),
 )
 POINT = _numbers("3 numbers", (3,))
+UPWARDS = _numbers("3 numbers, the third above 0", (3,), lambda row: row[2] > 0.0, lambda row: _unit(row[None])[0])
 SIX_NUMBERS = _numbers("6 numbers", (STRUTS,), finish=lambda numbers: tuple(map(float, numbers)))
 SIX_POINTS = _numbers("6 rows of 3 numbers", (STRUTS, 3))
 SIX_DIRECTIONS = _numbers(

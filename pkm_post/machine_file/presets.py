@@ -9,23 +9,35 @@ from __future__ import annotations
 from pathlib import Path
 
 FOLDER = Path(__file__).parents[2] / "resources" / "machines"
+TEMPLATES = FOLDER / "templates"
 SUFFIX = ".toml"
 
 
 def presets() -> list[str]:
-    """The names of the machines that come with the add-on, in alphabetical order."""
-    return sorted(path.stem for path in FOLDER.glob(f"*{SUFFIX}"))
+    """The names of the complete machines that come with the add-on, in alphabetical order."""
+    return _names(FOLDER)
+
+
+def templates() -> list[str]:
+    """The names of machines of which too little is known: their files are to be copied and filled in."""
+    return _names(TEMPLATES)
 
 
 def find_machine(name_or_path: str) -> Path | None:
     """The machine file that is meant.
 
     Args:
-        name_or_path: the name of a preset, or a path: anything with a separator or the suffix ``.toml``.
+        name_or_path: the name of a preset or template, or a path: anything with a separator or the suffix ``.toml``.
 
     Returns:
-        The path as it was given, whether there is such a file or not; for a name the preset's path, None if unknown.
+        The path as it was given, whether there is such a file or not; for a name the path of the preset or template,
+        None if unknown.
     """
     if "/" in name_or_path or "\\" in name_or_path or name_or_path.endswith(SUFFIX):
         return Path(name_or_path)
-    return FOLDER / f"{name_or_path}{SUFFIX}" if name_or_path in presets() else None
+    folder = next((folder for folder in (FOLDER, TEMPLATES) if name_or_path in _names(folder)), None)
+    return folder and folder / f"{name_or_path}{SUFFIX}"
+
+
+def _names(folder: Path) -> list[str]:
+    return sorted(path.stem for path in folder.glob(f"*{SUFFIX}"))

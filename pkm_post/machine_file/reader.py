@@ -14,15 +14,18 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from pkm_post.machine_file.contradictions import contradictions
 from pkm_post.machine_file.faults import Fault, not_toml, tell
 from pkm_post.machine_file.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
-from pkm_post.machine_file.forms import FormError, shown
-from pkm_post.machine_file.rest_pose import contradictions, rest_axes
+from pkm_post.machine_file.forms import NAME, PROSE, FormError, holds_unknown, shown
+from pkm_post.machine_file.rest_pose import rest_axes
 from pkm_post.machine_file.units import factor, stated_units
 from pkm_post.machine_file.work_offsets import offset_names, stated_poses, work_offsets
 from pkm_post.model import Diagnostic, Machine, Place
 
 CONTROLLER = "controller"
+_FREE_TEXTS = (NAME, PROSE)
+"""Here "unknown" is a word like others."""
 
 
 def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
@@ -37,9 +40,22 @@ def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
     file = str(path)
     try:
         content = path.read_bytes()
-        text = content.decode("utf-8")
     except (OSError, ValueError) as fault:
         return None, (Diagnostic("M101", Place(file), getattr(fault, "strerror", None) or str(fault)),)
+    return machine_of(content, file)
+
+
+def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+    """The same for the content of a machine file.
+
+    Args:
+        content: TOML in UTF-8.
+        file: what diagnostics call it.
+    """
+    try:
+        text = content.decode("utf-8")
+    except ValueError as fault:
+        return None, (Diagnostic("M101", Place(file), str(fault)),)
     try:
         document = tomllib.loads(text)
     except (ValueError, RecursionError) as fault:
@@ -64,6 +80,9 @@ def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[st
         try:
             if known is None:
                 faults.append(Fault("M105", name, _suggestion(name)))
+            elif isinstance(known, Field) and known.form not in _FREE_TEXTS and holds_unknown(value):
+                values.pop(".".join(name), None)
+                faults.append(Fault("M107", name, f"expected {known.form.words}"))
             elif isinstance(known, Field):
                 values[".".join(name)] = known.form.read(value, factor(known.dimension, units))
             else:
@@ -103,13 +122,15 @@ def _suggestion(name: Name) -> str:
 
 def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Machine:
     base_rest, platform_rest = rest_axes(values)
+    attributes = {field.attribute: values[field.entry] for field in FIELDS if field.attribute}
     return Machine(
         fingerprint=fingerprint,
         base_rest=base_rest,
         platform_rest=platform_rest,
         work_offsets=work_offsets(offsets, values),
         controller=_controller(values),
-        **{field.attribute: values[field.entry] for field in FIELDS if field.attribute},
+        # what the file leaves out is left to the machine's own defaults
+        **{name: value for name, value in attributes.items() if value is not None},
     )
 
 

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.machine_file.faults import Fault
 from pkm_post.machine_file.forms import Array
 
 Values = dict[str, Any]
@@ -23,7 +22,8 @@ Check = Callable[[Values], Iterator[tuple[str, str]]]
 COINCIDENT = 1e-3
 """Joint centres nearer than this (mm) give a strut no direction."""
 CONE_TOLERANCE = 1e-9
-_POSE = ("base.joints", "platform.joints", "platform.spindle_nose", "joints.rest_pose", "joints.rest_tool_length")
+_SIDES = ("base", "platform")
+POSE = ("base.joints", "platform.joints", "platform.spindle_nose", "joints.rest_pose", "joints.rest_tool_length")
 
 
 def rest_struts(values: Values) -> Array:
@@ -49,18 +49,46 @@ def rest_axes(values: Values) -> tuple[Array, Array]:
     return (along if base is None else base), (-along if platform is None else platform)
 
 
+def rest_distances(values: Values) -> Array:
+    """Distances of the joint centres in the rest pose, (6,) in mm."""
+    return np.asarray(np.linalg.norm(rest_struts(values), axis=1))
+
+
+def rest_twists(values: Values) -> tuple[Array, Array]:
+    """By how much the halves of each strut are turned against each other in the rest pose, as in ``kinematics.screw``.
+
+    Returns:
+        (6,) in rad, and (2, 6) sines of the angles between the strut and the fixed axes of its base and platform joint.
+    """
+    along = rest_struts(values) / np.maximum(rest_distances(values), COINCIDENT)[:, None]
+    first = np.cross(values["joints.base_axes"], along)
+    second = np.cross(values["joints.platform_axes"], along)
+    twist = np.arctan2((along * np.cross(first, second)).sum(axis=1), (first * second).sum(axis=1))
+    return twist, np.linalg.norm([first, second], axis=2)
+
+
+def _rest_lengths(values: Values) -> Array:
+    """Lengths as the controller counts them, (6,) in mm."""
+    length = rest_distances(values)
+    if values.get("struts.length_offset") is not None:
+        length = length - values["struts.length_offset"]
+    if values.get("struts.screw_lead") and all(values.get(f"joints.{side}_axes") is not None for side in _SIDES):
+        length = length + values["struts.screw_lead"] * rest_twists(values)[0] / (2.0 * np.pi)
+    return length
+
+
 def _coincident(values: Values) -> Iterator[tuple[str, str]]:
-    length = np.linalg.norm(rest_struts(values), axis=1)
+    length = rest_distances(values)
     if struts := np.flatnonzero(length < COINCIDENT).tolist():
-        yield "joints.rest_pose", _each(struts, "both joints of strut {} are at one place", length)
+        yield "joints.rest_pose", each(struts, "both joints of strut {} are at one place", length)
 
 
 def _outside_stroke(values: Values) -> Iterator[tuple[str, str]]:
-    length = np.linalg.norm(rest_struts(values), axis=1)
+    length = _rest_lengths(values)
     least, most = values["struts.stroke"]
-    outside = (length >= COINCIDENT) & ((length < least) | (length > most))
+    outside = (rest_distances(values) >= COINCIDENT) & ((length < least) | (length > most))
     if struts := np.flatnonzero(outside).tolist():
-        lengths = _each(struts, "strut {} is {:.4f} mm long", length)
+        lengths = each(struts, "strut {} is {:.4f} mm long", length)
         yield "joints.rest_pose", f"{lengths}, the stroke is {least:.4f} to {most:.4f} mm"
 
 
@@ -72,30 +100,22 @@ def _outside_cone(side: str, sign: float) -> Check:
         swing = np.arccos(np.clip((along * values[f"joints.{side}_rest"]).sum(axis=1), -1.0, 1.0))
         cone = values[f"joints.{side}_cone"]
         if joints := np.flatnonzero((length >= COINCIDENT) & (swing > cone + CONE_TOLERANCE)).tolist():
-            swings = _each(joints, "joint {} swings {:.2f} deg", np.degrees(swing))
-            yield f"joints.{side}_rest", f"in the rest pose {swings}, the cone is {np.degrees(cone):.2f} deg"
+            swings = each(joints, "joint {} swings {:.2f} deg", np.degrees(swing))
+            cones = ", ".join(f"{angle:.2f}" for angle in dict.fromkeys(np.degrees(cone[joints]).tolist()))
+            yield f"joints.{side}_rest", f"in the rest pose {swings}, the cone is {cones} deg"
 
     return check
 
 
-def _each(rows: list[int], words: str, quantity: Array) -> str:
+def each(rows: list[int], words: str, quantity: Array) -> str:
+    """The same words for each row, with its number from 1 and its quantity."""
     return ", ".join(words.format(row + 1, quantity[row]) for row in rows)
 
 
-_CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
-    (_POSE, _coincident),
-    ((*_POSE, "struts.stroke"), _outside_stroke),
-    ((*_POSE, "joints.base_rest", "joints.base_cone"), _outside_cone("base", 1.0)),
-    ((*_POSE, "joints.platform_rest", "joints.platform_cone"), _outside_cone("platform", -1.0)),
+CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
+    (POSE, _coincident),
+    ((*POSE, "struts.stroke"), _outside_stroke),
+    ((*POSE, "joints.base_rest", "joints.base_cone"), _outside_cone("base", 1.0)),
+    ((*POSE, "joints.platform_rest", "joints.platform_cone"), _outside_cone("platform", -1.0)),
 )
 """Each check with the entries it needs; it runs when all of them are there and well formed."""
-
-
-def contradictions(values: Values) -> list[Fault]:
-    """What the entries that could be read say against each other."""
-    return [
-        Fault("M106", tuple(entry.split(".")), found)
-        for needs, check in _CHECKS
-        if all(values.get(need) is not None for need in needs)
-        for entry, found in check(values)
-    ]

@@ -41,12 +41,16 @@ PLAIN = Dimension("-")
 LENGTH = Dimension("mm", length=1)
 SPEED = Dimension("mm/s", length=1, time=-1)
 ACCELERATION = Dimension("mm/s^2", length=1, time=-2)
+JERK = Dimension("mm/s^3", length=1, time=-3)
 ANGLE = Dimension("deg", angle=1)
 TURNING_RATE = Dimension("deg/s", angle=1, time=-1)
 SPINDLE_SPEED = Dimension("1/min")
 """Revolutions per minute whatever the units of the file: every spindle is named so."""
 COUNT_DENSITY = Dimension("1/mm")
 """Per mm whatever the units of the file: the entry carries its unit in its name."""
+STIFFNESS = Dimension("N/mm")
+"""N/mm whatever the units of the file, as a file states no unit of force."""
+FORCE = Dimension("N")
 
 
 def stated_units(document: dict[str, Any]) -> dict[str, float]:

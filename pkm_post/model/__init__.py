@@ -3,7 +3,7 @@
 
 from pkm_post.model.diagnostics import RULES, Diagnostic, Place, Refused, Rule, Severity
 from pkm_post.model.event import Event, EventKind
-from pkm_post.model.machine import Machine
+from pkm_post.model.machine import Body, Box, Machine
 from pkm_post.model.motion import Motion
 from pkm_post.model.poses import Poses
 from pkm_post.model.program import Kind, Program
@@ -13,6 +13,8 @@ from pkm_post.model.trajectory import Trajectory
 
 __all__ = [
     "RULES",
+    "Body",
+    "Box",
     "Diagnostic",
     "Event",
     "EventKind",

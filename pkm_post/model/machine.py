@@ -2,12 +2,17 @@
 """The 6-TPS machine: its geometry and limits, as a machine file states them.
 
 Frames: {M} machine, z up, fixed to the table; {T} platform, origin in the plane its joints are given in, z along the
-tool axis from the tip towards the spindle. Units: mm, rad, s.
+tool axis from the tip towards the spindle. Units: mm, rad, s, N.
+
+The length of a strut is the one that its controller counts: the distance of its joint centres, corrected for the turn
+of its screw, less its length offset. Screw lead and offsets are zero unless the file states them; then it is the
+distance.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,6 +20,45 @@ import numpy as np
 from pkm_post.model.columns import freeze
 
 Array = np.ndarray[Any, np.dtype[Any]]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A cylinder about the tool axis that moves with the platform: spindle, holder, or the platform itself.
+
+    Attributes:
+        name: how messages call it.
+        radius: mm.
+        start: z of one end in {T}, mm; the tool is at negative z.
+        end: z of the other end in {T}, mm, above ``start``.
+    """
+
+    name: str
+    radius: float
+    start: float
+    end: float
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box that stands still, with edges along the axes of {M}: table, vice, fixture.
+
+    Attributes:
+        name: how messages call it.
+        lowest: (3,) its corner with the least coordinates in {M}, mm.
+        highest: (3,) the opposite corner.
+    """
+
+    name: str
+    lowest: Array
+    highest: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, 3, {"lowest": (np.float64, ()), "highest": (np.float64, ())})
+
+
+def _no_axes() -> Array:
+    return np.zeros((6, 3))
 
 
 @dataclass(frozen=True)
@@ -27,16 +71,16 @@ class Machine:
         base_joints: (6, 3) joint centres in {M}.
         platform_joints: (6, 3) joint centres in {T}.
         spindle_nose: distance from the {T} origin along -z to the spindle nose, where gauge lengths begin.
-        strut_stroke: shortest and longest joint-to-joint length of a strut.
+        strut_stroke: shortest and longest length of a strut.
         strut_speed: highest rate of strut length, mm/s.
         strut_acceleration: highest second rate of strut length, mm/s^2.
         base_rest: (6, 3) unit rest axes of the base joints in {M}, from the base towards the platform.
-        base_cone: half angle each base joint may swing from its rest axis.
+        base_cone: (6,) half angle each base joint may swing from its rest axis; one number serves all.
         platform_rest: (6, 3) unit rest axes of the platform joints in {T}, from the platform towards the base.
-        platform_cone: half angle each platform joint may swing from its rest axis.
+        platform_cone: (6,) half angle each platform joint may swing from its rest axis; one number serves all.
         characteristic_length: divides the rotation columns of the Jacobian so that all its entries are plain numbers.
         least_singular_value: the path may not come nearer to a singular pose than this, dimensionless.
-        home_tip: (3,) tool tip in {M} where a program starts, with the tool axis vertical.
+        home_tip: (3,) tool tip in {M} where a program starts.
         rapid_speed: tool-tip speed of rapid moves, mm/s.
         feed_speed: highest tool-tip speed of cutting moves, mm/s.
         tip_acceleration: highest acceleration of the tool tip, mm/s^2.
@@ -44,6 +88,32 @@ class Machine:
         spindle_speed: highest spindle speed in revolutions per minute.
         work_offsets: for each name (G54, ...) the (4, 4) pose of {C} in {M}.
         controller: settings of the controller, as the machine file has them.
+        strut_jerk: highest third rate of strut length, mm/s^3; infinite when no limit is stated.
+        length_offset: (6,) mm by which the joints of each strut are farther apart than its controller counts.
+        base_joint_kind: ``"universal"`` or ``"spherical"``.
+        platform_joint_kind: ``"universal"`` or ``"spherical"``.
+        base_axes: (6, 3) unit axes of the universal base joints that are fixed to the base, in {M}; zero if unstated.
+        platform_axes: (6, 3) those of the platform joints that are fixed to the platform, in {T}; zero if unstated.
+        screw_lead: way of the nut in one turn of the screw when nothing but the joints keeps the strut's halves from
+            turning against each other, mm; negative for a left-hand screw, zero when a key keeps them.
+        tube_radius: of the strut's outer part, fixed to its base joint; zero when strut bodies are not stated.
+        tube_length: from the centre of the base joint along the strut.
+        rod_radius: of the strut's inner part, fixed to its platform joint.
+        rod_length: from the centre of the platform joint along the strut; more than the strut's length when the rod
+            comes out behind the base joint.
+        base_joint_radius: mm around the centre of a base joint in which contact of bodies is no collision.
+        platform_joint_radius: the same around a platform joint.
+        clearance: least distance that bodies must keep, mm.
+        bodies: cylinders that move with the platform.
+        fixtures: boxes that stand still.
+        rest_tool_length: gauge length of the tool in the rest pose; figures of the home pose are told for it.
+        home_axis: (3,) unit tool axis in {M} where a program starts.
+        home_spin: spin where a program starts.
+        spindle_least_speed: lowest spindle speed in revolutions per minute.
+        strut_stiffness: of one strut with its joints, all but the part that depends on the length, N/mm; None when
+            nothing is stated.
+        strut_rigidity: Young's modulus times cross-section of the screw, N: a length l of it has the stiffness
+            rigidity / l, in series with ``strut_stiffness``. Infinite when unstated.
     """
 
     name: str
@@ -55,9 +125,9 @@ class Machine:
     strut_speed: float
     strut_acceleration: float
     base_rest: Array
-    base_cone: float
+    base_cone: Array
     platform_rest: Array
-    platform_cone: float
+    platform_cone: Array
     characteristic_length: float
     least_singular_value: float
     home_tip: Array
@@ -68,8 +138,35 @@ class Machine:
     spindle_speed: float
     work_offsets: dict[str, Array]
     controller: dict[str, Any]
+    strut_jerk: float = math.inf
+    length_offset: Array = field(default_factory=lambda: np.zeros(6))
+    base_joint_kind: str = "universal"
+    platform_joint_kind: str = "spherical"
+    base_axes: Array = field(default_factory=_no_axes)
+    platform_axes: Array = field(default_factory=_no_axes)
+    screw_lead: float = 0.0
+    tube_radius: float = 0.0
+    tube_length: float = 0.0
+    rod_radius: float = 0.0
+    rod_length: float = 0.0
+    base_joint_radius: float = 0.0
+    platform_joint_radius: float = 0.0
+    clearance: float = 0.0
+    bodies: tuple[Body, ...] = ()
+    fixtures: tuple[Box, ...] = ()
+    rest_tool_length: float = 0.0
+    home_axis: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    home_spin: float = 0.0
+    spindle_least_speed: float = 0.0
+    strut_stiffness: float | None = None
+    strut_rigidity: float = math.inf
 
     def __post_init__(self) -> None:
-        six_points = ("base_joints", "platform_joints", "base_rest", "platform_rest")
+        for name in ("base_cone", "platform_cone"):
+            object.__setattr__(self, name, np.broadcast_to(getattr(self, name), 6))
+        six_points = (
+            "base_joints", "platform_joints", "base_rest", "platform_rest", "base_axes", "platform_axes",
+        )  # fmt: skip
         freeze(self, 6, {name: (np.float64, (3,)) for name in six_points})
-        freeze(self, 3, {"home_tip": (np.float64, ())})
+        freeze(self, 6, {name: (np.float64, ()) for name in ("base_cone", "platform_cone", "length_offset")})
+        freeze(self, 3, {"home_tip": (np.float64, ()), "home_axis": (np.float64, ())})

@@ -32,4 +32,4 @@ def test_document_names_every_unit():
 
 
 def test_document_names_every_code():
-    assert all(f"M10{number}" in DOCUMENT for number in range(1, 7))
+    assert all(f"M10{number}" in DOCUMENT for number in range(1, 8))

@@ -15,7 +15,7 @@ from pkm_post.machine_file.fields import FIELDS
 
 PRESET = find_machine("example_6tps")
 BAD_MACHINES = sorted((Path(__file__).parents[1] / "data" / "bad_machines").glob("*.toml"))
-MACHINE_FILE_CODES = {"M101", "M102", "M103", "M104", "M105", "M106"}
+MACHINE_FILE_CODES = {"M101", "M102", "M103", "M104", "M105", "M106", "M107"}
 
 
 def stated_faults(path):
@@ -45,8 +45,16 @@ def key_lines(table, above=()):
         if isinstance(value, dict):
             yield from key_lines(value, (*above, key))
         else:
-            shown = json.dumps(value) if isinstance(value, str | list) else str(value)
-            yield f"{'.'.join((*above, key))} = {shown}"
+            yield f"{'.'.join((*above, key))} = {shown(value)}"
+
+
+def shown(value):
+    """A value as TOML has it in one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {shown(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return f"[{', '.join(map(shown, value))}]"
+    return json.dumps(value) if isinstance(value, str) else str(value)
 
 
 @pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.entry)
@@ -54,7 +62,7 @@ def key_lines(table, above=()):
 def test_every_entry_turns_away_a_value_of_foreign_type(tmp_path, field, foreign):
     document = tomllib.loads(PRESET.read_text(encoding="utf-8"))
     *sections, key = field.entry.replace("*", "G54").split(".")
-    functools.reduce(dict.__getitem__, sections, document)[key] = "FOREIGN"
+    functools.reduce(lambda table, part: table.setdefault(part, {}), sections, document)[key] = "FOREIGN"
     path = tmp_path / "machine.toml"
     path.write_text("\n".join(key_lines(document)).replace('"FOREIGN"', str(foreign).lower()), encoding="utf-8")
     machine, diagnostics = read_machine(path)

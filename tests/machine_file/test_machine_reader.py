@@ -3,11 +3,13 @@
 
 import hashlib
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from pkm_post.kinematics import strut_lengths
 from pkm_post.machine_file import find_machine, read_machine
 
 MICRON = 1e-3
@@ -108,7 +110,8 @@ def test_numbers_arrive_in_mm_rad_and_s(machine):
     assert machine.spindle_nose == 80.0
     assert machine.strut_stroke == (750.0, 1250.0)
     assert (machine.strut_speed, machine.strut_acceleration) == (500.0, 5000.0)
-    assert (machine.base_cone, machine.platform_cone) == pytest.approx((math.radians(25), math.radians(45)))
+    assert machine.base_cone == pytest.approx(np.full(6, math.radians(25)))
+    assert machine.platform_cone == pytest.approx(np.full(6, math.radians(45)))
     assert (machine.characteristic_length, machine.least_singular_value) == (200.0, 0.1)
     assert machine.home_tip.tolist() == [0.0, 0.0, 300.0]
     assert (machine.rapid_speed, machine.feed_speed, machine.tip_acceleration) == (250.0, 200.0, 2000.0)
@@ -182,5 +185,99 @@ def test_stated_rest_axes_take_the_place_of_computed_ones(tmp_path, machine):
     assert np.array_equal(stated.platform_rest, machine.platform_rest)
 
 
+def test_entries_that_came_later_may_be_left_out(tmp_path):
+    """A file as it could be written first: everything that was added since has a default that changes nothing."""
+    text = PRESET.read_text(encoding="utf-8")
+    text = text[: text.index("# Bodies for")] + text[text.index("[joints]") :]
+    text = text[: text.index("# Cylinders")] + text[text.index("[singularity]") :]
+    machine = read_text(tmp_path, text)
+    assert machine.strut_jerk == math.inf
+    assert machine.length_offset.tolist() == [0.0] * 6
+    assert (machine.base_joint_kind, machine.platform_joint_kind) == ("universal", "spherical")
+    assert (machine.screw_lead, machine.clearance, machine.home_spin, machine.spindle_least_speed) == (0, 0, 0, 0)
+    assert (machine.tube_radius, machine.tube_length, machine.rod_radius, machine.rod_length) == (0, 0, 0, 0)
+    assert (machine.base_joint_radius, machine.platform_joint_radius) == (0, 0)
+    assert (machine.bodies, machine.fixtures) == ((), ())
+    assert machine.home_axis.tolist() == [0, 0, 1]
+    assert (machine.strut_stiffness, machine.strut_rigidity) == (None, math.inf)
+
+
+@pytest.mark.parametrize(
+    ("section", "line", "attribute", "value"),
+    [
+        ("struts", "jerk = 1e5", "strut_jerk", 1e5),
+        ("struts", "length_offset = [1, 2, 3, 4, 5, -6.5]", "length_offset", [1, 2, 3, 4, 5, -6.5]),
+        ("struts", "rigidity = 2e8", "strut_rigidity", 2e8),
+        ("joints", 'base_kind = "spherical"', "base_joint_kind", "spherical"),
+        ("joints", 'platform_kind = "universal"', "platform_joint_kind", "universal"),
+        ("tool_path", "home_axis = [0, 3, 4]", "home_axis", [0, 0.6, 0.8]),
+        ("tool_path", "home_spin = -90", "home_spin", -math.pi / 2),
+        ("spindle", "least_speed = 500", "spindle_least_speed", 500),
+    ],
+)
+def test_later_entries_arrive(tmp_path, section, line, attribute, value):
+    machine = read_text(tmp_path, preset_with(f"[{section}]\n", f"[{section}]\n{line}\n"))
+    found = getattr(machine, attribute)
+    assert (found if isinstance(value, str) else np.asarray(found)) == pytest.approx(value)
+
+
+def test_solids_of_the_example(machine):
+    assert [(body.name, body.radius, body.start, body.end) for body in machine.bodies] == [
+        ("platform", 150, -25, 25),
+        ("spindle", 60, -80, 200),
+        ("tool holder", 25, -130, -80),
+    ]
+    (table,) = machine.fixtures
+    assert (table.name, table.lowest.tolist(), table.highest.tolist()) == ("table", [-500, -500, -100], [500, 500, 0])
+    assert (machine.tube_radius, machine.tube_length, machine.rod_radius, machine.rod_length) == (32, 700, 20, 650)
+    assert (machine.clearance, machine.base_joint_radius, machine.platform_joint_radius) == (2, 60, 45)
+    assert machine.strut_stiffness == 1e5
+
+
+def test_bodies_may_be_tables_of_their_own(tmp_path):
+    start = PRESET.read_text(encoding="utf-8").index("bodies = [")
+    end = PRESET.read_text(encoding="utf-8").index("fixtures = ")
+    inline = PRESET.read_text(encoding="utf-8")[start:end]
+    table = '[[interference.bodies]]\nname = "nose"\nradius = 60\nfrom = -80\nto = 0\n\n[singularity]\n'
+    text = preset_with(inline, "").replace("[singularity]\n", table)
+    (body,) = read_text(tmp_path, text).bodies
+    assert (body.name, body.radius, body.start, body.end) == ("nose", 60, -80, 0)
+
+
+def test_rest_pose_is_held_against_the_stroke_as_it_is_counted(tmp_path):
+    """The struts are 1098.1 mm between their joints there; with an offset of 400 mm they count as 698.1."""
+    offsets = preset_with("[struts]\n", "[struts]\nlength_offset = [0, 0, 400, 0, 0, 0]\n")
+    path = tmp_path / "offset.toml"
+    path.write_text(offsets, encoding="utf-8")
+    machine, (fault,) = read_machine(path)
+    assert machine is None
+    assert fault.code == "M106"
+    assert "strut 3 is 698.1" in fault.found
+
+
+def test_twist_at_rest_is_that_of_the_kinematics(tmp_path):
+    """Two rooms that may not know each other have the same angle, and the stroke is that of the corrected length."""
+    axes = "base_axes = [[1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0]]\n"
+    axes += "platform_axes = [[1, 0.3, 0], [0, 1, 0], [1, 0, -0.2], [0.1, 1, 0], [1, 0, 0], [0, 1, 0]]\n"
+    text = preset_with("[struts]\n", "[struts]\nscrew_lead = 10\n").replace(
+        "[joints]\n", f'[joints]\nplatform_kind = "universal"\n{axes}'
+    )
+    machine = read_text(tmp_path, text)
+    rest = np.array([[0.0, 0.0, 200.0]]), np.array([[0.0, 0.0, 1.0]]), np.zeros(1), np.array([TOOL])
+    counted = strut_lengths(machine, *rest)[0]
+    assert np.ptp(counted) > 0.1
+    path = tmp_path / "machine.toml"
+    path.write_text(text.replace("stroke = [750.0, 1250.0]", "stroke = [750.0, 900.0]"), encoding="utf-8")
+    told = read_machine(path)[1]
+    found = [float(number) for number in re.findall(r"is (\d+\.\d{4}) mm long", told[0].found)]
+    assert found == pytest.approx(counted, abs=PRINTED_COORDINATE)
+
+
 def test_right_angle_is_a_possible_cone(tmp_path):
-    assert read_text(tmp_path, preset_with("platform_cone = 45.0", "platform_cone = 90")).platform_cone == math.pi / 2
+    machine = read_text(tmp_path, preset_with("platform_cone = 45.0", "platform_cone = 90"))
+    assert machine.platform_cone.tolist() == [math.pi / 2] * 6
+
+
+def test_every_joint_may_have_a_cone_of_its_own(tmp_path):
+    machine = read_text(tmp_path, preset_with("base_cone = 25.0", "base_cone = [20, 21, 22, 23, 24, 25.0]"))
+    assert np.degrees(machine.base_cone) == pytest.approx([20, 21, 22, 23, 24, 25])

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine check: what a machine file says, in figures that a person can compare with the machine.
+
+A machine enters. Leave rows of text, label and figure, and warnings when it cannot stand at home. Figures of the home
+pose are told for the tool of the rest pose; lengths in mm, angles in degrees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import norm
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import (
+    Finding,
+    Way,
+    jacobian_of_tip,
+    reach_findings,
+    scaled_jacobian,
+    stiffness_along,
+    strut_lengths,
+)
+from pkm_post.kinematics.findings import SHOWN
+from pkm_post.model import Diagnostic, Machine, Place
+
+Rows = list[tuple[str, str]]
+_SINGULAR = 1e-9
+"""Singular values below are rounding."""
+
+
+@dataclass(frozen=True)
+class Home:
+    """The machine at home with the tool of the rest pose.
+
+    Attributes:
+        lengths: (6,) counted strut lengths.
+        singular_values: (6,) of the scaled Jacobian, from the largest to the smallest.
+        turning_rate: which the strut speed allows about the tip, whatever the axis, rad/s.
+        stiffness: (3,) of the tip in x, y and z of {M}, N/mm; None when it is not stated, or the pose singular.
+        findings: of all checks of reach.
+    """
+
+    lengths: Array
+    singular_values: Array
+    turning_rate: float
+    stiffness: Array | None
+    findings: tuple[Finding, ...]
+
+
+def at_home(machine: Machine) -> Home:
+    """Put the machine at home."""
+    spin, tool_length = np.array([machine.home_spin]), np.array([machine.rest_tool_length])
+    pose = machine.home_tip[None], machine.home_axis[None], spin, tool_length
+    values = np.linalg.svd(scaled_jacobian(machine, *pose)[0], compute_uv=False)
+    stiffness = None
+    if machine.strut_stiffness is not None and values[-1] > _SINGULAR:
+        same = tuple(np.repeat(column, 3, axis=0) for column in pose)
+        stiffness = stiffness_along(machine, (same[0], same[1], same[2], same[3]), np.eye(3))
+    return Home(
+        lengths=strut_lengths(machine, *pose)[0],
+        singular_values=values,
+        turning_rate=float(machine.strut_speed / norm(jacobian_of_tip(machine, *pose)[0, :, 3:]).max()),
+        stiffness=stiffness,
+        findings=reach_findings(machine, Way.straight(*pose)),
+    )
+
+
+def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
+    """Warnings for limits that the home pose breaks.
+
+    Args:
+        machine: the machine.
+        file: what the messages call its file.
+    """
+    return tuple(
+        Diagnostic("M108", Place(file), f"{one.subject.name}: {one.subject.tell(int(one.part[0]), one.margin[0])}")
+        for one in at_home(machine).findings
+        if one.margin[0] < 0.0
+    )
+
+
+def summary(machine: Machine) -> Rows:
+    """What the file says and what follows from it."""
+    home = at_home(machine)
+    return [*_geometry(machine), *_limits(machine), *_bodies(machine), *_at_home(machine, home)]
+
+
+def as_text(rows: Rows) -> str:
+    """The rows as a table."""
+    width = max(len(label) for label, _ in rows)
+    return "\n".join(f"  {label.ljust(width)}  {figure}" for label, figure in rows)
+
+
+def _geometry(machine: Machine) -> Iterator[tuple[str, str]]:
+    yield "fingerprint", machine.fingerprint
+    for label, joints, frame in (
+        ("base joints", machine.base_joints, "{M}"),
+        ("platform joints", machine.platform_joints, "{T}"),
+    ):
+        yield label, f"radius {_span(norm(joints[:, :2]))} mm, z {_span(joints[:, 2])} mm in {frame}"
+    yield "joint kinds", f"{machine.base_joint_kind} at the base, {machine.platform_joint_kind} at the platform"
+    yield "spindle nose", f"{machine.spindle_nose:.4f} mm below the origin of {{T}}"
+    if machine.length_offset.any():
+        yield "length offsets", ", ".join(f"{offset:.4f}" for offset in machine.length_offset) + " mm"
+    if machine.screw_lead:
+        yield "screw lead", f"{machine.screw_lead:g} mm, turns with the strut"
+
+
+def _limits(machine: Machine) -> Iterator[tuple[str, str]]:
+    least, most = machine.strut_stroke
+    yield "stroke", f"{least:.4f} to {most:.4f} mm, {most - least:.4f} mm long"
+    yield "strut speed", f"{machine.strut_speed:g} mm/s"
+    yield "strut acceleration", f"{machine.strut_acceleration:g} mm/s^2"
+    yield "strut jerk", f"{machine.strut_jerk:g} mm/s^3" if np.isfinite(machine.strut_jerk) else "no limit stated"
+    yield "base cones", f"{_span(np.degrees(machine.base_cone), 2)} degrees"
+    yield "platform cones", f"{_span(np.degrees(machine.platform_cone), 2)} degrees"
+    yield "spindle", f"{machine.spindle_least_speed:g} to {machine.spindle_speed:g} 1/min"
+    yield "work offsets", ", ".join(sorted(machine.work_offsets)) or "none"
+
+
+def _bodies(machine: Machine) -> Iterator[tuple[str, str]]:
+    parts = [("tube", machine.tube_radius), ("rod", machine.rod_radius)]
+    struts = [f"{name} of radius {radius:g} mm" for name, radius in parts if radius]
+    yield "strut bodies", ", ".join(struts) or "none stated: struts are not checked for interference"
+    yield "bodies on the platform", ", ".join(body.name for body in machine.bodies) or "none stated"
+    yield "fixtures", ", ".join(box.name for box in machine.fixtures) or "none stated"
+
+
+def _at_home(machine: Machine, home: Home) -> Iterator[tuple[str, str]]:
+    tip = ", ".join(f"{value:g}" for value in machine.home_tip)
+    yield "home", f"tip at ({tip}) mm with a tool of {machine.rest_tool_length:g} mm"
+    yield "  strut lengths", f"{_span(home.lengths)} mm"
+    values = home.singular_values
+    condition = f"{values[0] / values[-1]:.3f}" if values[-1] > _SINGULAR else "none, the pose is singular"
+    yield "  condition", f"{condition}, with a length of {machine.characteristic_length:g} mm"
+    yield "  smallest singular value", f"{values[-1]:.4f}, at least {machine.least_singular_value:g} is asked for"
+    turning = f"{np.degrees(home.turning_rate):.1f} degrees/s about the tip, whatever the axis"
+    yield "  turning rate of struts", turning
+    if home.stiffness is not None:
+        yield "  stiffness", ", ".join(f"{value / 1000.0:.1f}" for value in home.stiffness) + " N/um in x, y, z"
+    for one in home.findings:
+        shown, factor = SHOWN[one.subject.unit]
+        if shown:  # the margin to singular poses is a bound; the value itself is told above
+            yield f"  room: {one.subject.name}", f"{one.margin[0] * factor:.3f} {shown}"
+
+
+def _span(values: Array, decimals: int = 4) -> str:
+    """The least and the greatest value, or the one they share."""
+    texts = list(dict.fromkeys(f"{value + 0.0:.{decimals}f}" for value in (values.min(), values.max())))
+    return " to ".join(texts)
