@@ -155,7 +155,7 @@ def _post(run: _Run, program: Program, machine: Machine, path: Path, options: Op
         tool_path = planning.tool_path(trajectory, tolerances)
         schedule, faults = planning.plan_feed(tool_path, trajectory, machine)
         run.accept(faults)
-        told.append(f"{schedule.time[-1]:.1f} s of motion")
+        told.append(f"{schedule.rests_ms[-1] / 1000:.1f} s of motion")
 
     with run.step("interpolation") as told:
         motion = planning.interpolate(tool_path, schedule, trajectory.events, machine, tolerances)
