@@ -37,16 +37,37 @@ class Arc:
         axis: as written.
         radius: as written, NaN if it is not given.
         angle: rad that it turns, NaN if that is not given.
-        tangent: direction in which it starts, None if that is not given.
         turns: full turns that it makes before the rest.
+        way: 1 if it turns right-handed about its axis, -1 if left-handed, 0 if that is not given.
+        seen_from_tool: the way is about the tool axis, whichever way the axis of the arc points.
+        shorter: it is less than half a turn.
     """
 
     centre: Vector
     axis: Vector
     radius: float = float("nan")
     angle: float = float("nan")
-    tangent: Vector | None = None
     turns: int = 0
+    way: float = 0.0
+    seen_from_tool: bool = False
+    shorter: bool = False
+
+
+@dataclass(frozen=True)
+class ArcData:
+    """A circle that waits for its motion, its row, and how far the tool rises or falls on it, as written."""
+
+    row: int
+    arc: Arc
+    rise: float
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane: its unit normal as written, and its distance from the origin along it, mm."""
+
+    normal: Vector
+    distance: float
 
 
 @dataclass(frozen=True)
@@ -56,13 +77,11 @@ class Point:
     Attributes:
         position: as written.
         axis: as written, None if the point has none.
-        incremental: it is given from the point before.
         start: it is where the tool is, not where it goes (FROM).
     """
 
     position: Vector
     axis: Vector | None = None
-    incremental: bool = False
     start: bool = False
 
 
@@ -70,13 +89,14 @@ class Point:
 class Course:
     """State while reading, and what was noted, each with the row of its statement.
 
-    ``gotos_before`` is, for each row, the number of plain GOTO statements before it.
+    ``goto_rows`` are the rows of plain GOTO statements, ``gotos_before`` is for each row their number before it.
     """
 
     statements: Statements
     dialect: Dialect
     options: ReadOptions
     faults: Faults
+    goto_rows: Array
     gotos_before: Array
 
     scale: float = 1.0
@@ -94,6 +114,8 @@ class Course:
     motions_at_change: int = 0
     diameter: float = 0.0
     corner: float = 0.0
+    bottom_angle: float = 0.0
+    side_angle: float = 0.0
     length: float = 0.0
     on_centre: bool = False
     cycle_return: bool = True
@@ -102,6 +124,9 @@ class Course:
     shift: Array | None = None
     work_from_given: Array | None = None
     tangent: Vector | None = None
+    part_surface: Plane | None = None
+    slope: float = 0.0
+    arc_data: ArcData | None = None
     ended: bool = False
 
     tools: dict[int, Tool] = field(default_factory=dict)
@@ -113,6 +138,7 @@ class Course:
     scales: list[tuple[int, float]] = field(default_factory=list)
     frames: list[tuple[int, Array]] = field(default_factory=list)
     arcs: list[tuple[int, Arc]] = field(default_factory=list)
+    circles: list[tuple[int, Arc]] = field(default_factory=list)
     cycles: list[tuple[int, Cycle | None]] = field(default_factory=list)
     sides: list[tuple[int, float, int]] = field(default_factory=list)
     starts: list[tuple[int, int]] = field(default_factory=list)

@@ -21,6 +21,7 @@ class Dialect:
         hand: "right" or "left": how an arc turns about the axis that is given with it; "vote" where it is not known.
         frames: major words that say the frame the points are given in; in others such words are for information.
         insert_is_tool: INSERT names the tool.
+        pted: points follow on lines of their own, without GOTO, and comments may hold circles.
     """
 
     name: str
@@ -29,13 +30,14 @@ class Dialect:
     hand: str
     frames: frozenset[str] = frozenset()
     insert_is_tool: bool = False
+    pted: bool = False
 
 
 DIALECTS: dict[str, Dialect] = {
     dialect.name: dialect
     for dialect in (
         Dialect("nx", "NX CLSF", r"TOOL PATH/|END-OF-PATH|PAINT/PATH|MSYS[ \t]*/|TLDATA[ \t]*/", "left",
-                frozenset({"MSYS"})),
+                frozenset({"MSYS"}), pted=True),
         Dialect("creo", "Creo, Pro/ENGINEER NCL", r"\$\$\*[ \t]+Pro/CLfile|\$\$->|REMARK[ \t]*->", "right",
                 frozenset({"CSYS"})),
         Dialect("catia", "CATIA aptsource",
@@ -43,7 +45,7 @@ DIALECTS: dict[str, Dialect] = {
                 frozenset({"CATIA0"})),
         Dialect("solidworks", "SolidWorks CAM, CAMWorks APT", r"CSI_SET_|TRNTYP/|UNIT/", "right", insert_is_tool=True),
         Dialect("makino", "Makino FF APT-CL", r"PPRINT/APTCL-SPEC,MAKINO|PPRINT/BEGIN-SECTION", "left"),
-        Dialect("apt", "NCL, APT", r"(?!)", "vote", frozenset({"MSYS", "CSYS", "CATIA0"})),
+        Dialect("apt", "NCL, APT", r"(?!)", "vote", frozenset({"MSYS", "CSYS", "CATIA0"}), pted=True),
     )
 }  # fmt: skip
 """The dialects by name, the most particular ones first."""

@@ -3,7 +3,8 @@
 
 The arcs of the course and the columns of points enter; for each arc its point, its centre and the unit axis it turns
 about right-handed leave. Which hand a file means is a matter of its dialect; where that is not known, the hand under
-which most arcs are shorter than half a turn is taken. An angle or a start tangent goes before both.
+which most arcs are shorter than half a turn is taken. An angle goes before both, and a way that the statement says
+before all.
 """
 
 from __future__ import annotations
@@ -12,16 +13,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.cldata.course import Arc, Course
-from pkm_post.cldata.points import NO_DIRECTION, Points, in_force
+from pkm_post.cldata.arcs import BAD_FIT, GOOD_FIT, NO_DIRECTION
+from pkm_post.cldata.circles import Ended, with_ends
+from pkm_post.cldata.course import Course
+from pkm_post.cldata.points import Points, in_force
 from pkm_post.geometry.arcs import across, arc_sweep
-from pkm_post.geometry.vectors import cross, dot, norm
+from pkm_post.geometry.vectors import dot, norm
 from pkm_post.model.program import Array
 
-GOOD_FIT = 5e-4
-"""mm by which the radii of start and end may differ: files have four decimals and more."""
-BAD_FIT = 0.05
-"""mm by which they may differ at most."""
+_ALIGNED = 0.9999
+"""Cosine from which on the axis of an arc is that of the tool."""
 
 
 @dataclass(frozen=True)
@@ -49,48 +50,40 @@ def fit_arcs(course: Course, points: Points, frames: Array) -> Fitted:
         points: resolved.
         frames: (P, 4, 4) or (1, 4, 4) what took the points to the work frame.
     """
-    found = _with_ends(course, points)
-    arcs = [arc for _, _, arc in found]
-    row = np.array([at for at, _, _ in found], dtype=np.int64)
-    end = np.array([point for _, point, _ in found], dtype=np.int64)
+    arcs = with_ends(course, points, lambda ended: _carried(course, ended, frames))
+    row, end = _columns(arcs)
+    centre, axis, radius = _carried(course, arcs, frames)
+    _check_fit(course, row, radius, points, end, centre, axis)
+    sense = _senses(course, arcs, points, centre, axis)
+    return Fitted(end, centre, axis * sense[:, None], np.array([one.arc.turns for one in arcs], dtype=np.int64))
+
+
+def _columns(arcs: list[Ended]) -> tuple[Array, Array]:
+    """Rows and end points, (A,) each."""
+    row, end = np.array([(one.row, one.end) for one in arcs], dtype=np.int64).reshape(-1, 2).T
+    return row, end
+
+
+def _carried(course: Course, arcs: list[Ended], frames: Array) -> tuple[Array, Array, Array]:
+    """Centres, unit axes and radii in mm and in the work frame."""
+    row, end = _columns(arcs)
     scales = np.array([scale for _, scale in course.scales])
     scale = scales[in_force(row, [at for at, _ in course.scales])]
     frame = frames[end] if len(frames) > 1 else np.broadcast_to(frames[0], (len(end), 4, 4))
     turn = frame[:, :3, :3]
-    centre = np.array([arc.centre for arc in arcs]).reshape(-1, 3) * scale[:, None]
+    centre = np.array([one.arc.centre for one in arcs]).reshape(-1, 3) * scale[:, None]
     centre = np.einsum("nij,nj->ni", turn, centre) + frame[:, :3, 3]
-    axis = np.array([arc.axis for arc in arcs]).reshape(-1, 3)
-    size = norm(axis)
-    for index in np.flatnonzero(size < NO_DIRECTION).tolist():
-        course.tell("L408", int(row[index]), "an axis without direction")
-    axis = np.einsum("nij,nj->ni", turn, axis / np.where(size < NO_DIRECTION, 1.0, size)[:, None])
-    _check_fit(course, row, arcs, scale, points, end, centre, axis)
-    sense = _senses(course, arcs, turn, points, end, centre, axis)
-    return Fitted(end, centre, axis * sense[:, None], np.array([arc.turns for arc in arcs], dtype=np.int64))
-
-
-def _with_ends(course: Course, points: Points) -> list[tuple[int, int, Arc]]:
-    """Row, end point and arc, for the arcs that have an end and a start."""
-    rows = np.array([row for row, _ in course.arcs], dtype=np.int64)
-    ends = np.searchsorted(points.row, rows, "left")
-    found = []
-    for index, ((row, arc), end) in enumerate(zip(course.arcs, ends.tolist(), strict=True)):
-        if end >= len(points.row) or (index + 1 < len(ends) and ends[index + 1] == end):
-            course.tell("L414", row, "the arc")
-        elif end == 0:
-            course.tell("L417", row, "an arc")
-        else:
-            found.append((row, end, arc))
-    return found
+    axis = np.array([one.arc.axis for one in arcs]).reshape(-1, 3)
+    axis = np.einsum("nij,nj->ni", turn, axis / norm(axis)[:, None])
+    return centre, axis, np.array([one.arc.radius for one in arcs]) * scale
 
 
 def _check_fit(
-    course: Course, row: Array, arcs: list[Arc], scale: Array, points: Points, end: Array, centre: Array, axis: Array
+    course: Course, row: Array, radius: Array, points: Points, end: Array, centre: Array, axis: Array
 ) -> None:
     """Tell arcs whose start, end and radius do not agree."""
     first = norm(across(points.position[end - 1] - centre, axis))
     last = norm(across(points.position[end] - centre, axis))
-    radius = np.array([arc.radius for arc in arcs]) * scale
     apart = np.fmax(np.abs(first - last), np.abs(np.where(np.isnan(radius), first, radius) - first))
     for index in np.flatnonzero((apart > BAD_FIT) | (np.fmin(first, last) < NO_DIRECTION)).tolist():
         stated = "" if np.isnan(radius[index]) else f", {radius[index]:.6g} mm as written"
@@ -102,24 +95,35 @@ def _check_fit(
         course.tell("L409", int(row[worst]), f"the radii differ by {apart[worst]:.4g} mm, the worst of {len(poor)}")
 
 
-def _senses(
-    course: Course, arcs: list[Arc], turn: Array, points: Points, end: Array, centre: Array, axis: Array
-) -> Array:
+def _hand(course: Course, sweep: Array) -> float:
+    """1 if arcs of the file turn right-handed about their axes, -1 if left-handed; their right-handed angles vote."""
+    hand = course.options.hand or course.dialect.hand
+    left = 2 * int(np.sum(sweep > np.pi)) > len(sweep) if hand == "vote" else hand == "left"
+    return -1.0 if left else 1.0
+
+
+def _senses(course: Course, arcs: list[Ended], points: Points, centre: Array, axis: Array) -> Array:
     """1 where the arc turns right-handed about its axis, -1 where left-handed, (A,)."""
+    row, end = _columns(arcs)
     start, stop = points.position[end - 1], points.position[end]
     sweep = arc_sweep(start, stop, centre, axis)
     full = norm(across(stop - start, axis)) < GOOD_FIT
-    hand = course.options.hand or course.dialect.hand
-    if hand == "vote":
-        voters = sweep[~full]
-        hand = "left" if 2 * int(np.sum(voters > np.pi)) > len(voters) else "right"
-    sense = np.full(len(arcs), -1.0 if hand == "left" else 1.0)
-    angle = np.array([arc.angle for arc in arcs])
+    shorter = np.array([one.arc.shorter for one in arcs], dtype=np.bool_)
+    angle = np.array([one.arc.angle for one in arcs])
+    way = np.array([one.arc.way for one in arcs])
+    sense = np.full(len(arcs), _hand(course, sweep[~full & ~shorter & (way == 0) & np.isnan(angle)]))
+    sense[shorter] = np.where(sweep > np.pi, -1.0, 1.0)[shorter]
     by_angle = ~np.isnan(angle) & ~full
-    other_way = np.abs(sweep - angle) > np.abs(2 * np.pi - sweep - angle)
-    sense[by_angle] = np.where(other_way, -1.0, 1.0)[by_angle]
-    tangent = np.array([arc.tangent or (np.nan,) * 3 for arc in arcs]).reshape(-1, 3)
-    along = dot(np.einsum("nij,nj->ni", turn, tangent), cross(axis, start - centre))
-    by_tangent = ~np.isnan(along)
-    sense[by_tangent] = np.where(along < 0, -1.0, 1.0)[by_tangent]
+    right, left = np.abs(sweep - angle), np.abs(2 * np.pi - sweep - angle)
+    sense[by_angle] = np.where(right > left, -1.0, 1.0)[by_angle]
+    off = np.minimum(right, left) * norm(across(start - centre, axis))
+    for index in np.flatnonzero(by_angle & (off > BAD_FIT)).tolist():
+        course.tell("L408", int(row[index]), f"its angle is {off[index]:.6g} mm off its end point")
+    said = way != 0
+    sense[said] = way[said]
+    seen = np.array([one.arc.seen_from_tool for one in arcs], dtype=np.bool_)
+    along = dot(axis, points.axis[end])
+    for index in np.flatnonzero(seen & (np.abs(along) < _ALIGNED)).tolist():
+        course.tell("L401", int(row[index]), "clockwise about an axis that is not the tool's")
+    sense[seen] *= np.sign(along[seen])
     return sense

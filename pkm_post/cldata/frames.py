@@ -33,10 +33,10 @@ def units(course: Course, row: int, statement: Statement) -> None:
 
 def frame(course: Course, row: int, statement: Statement) -> None:
     """MSYS/origin, X axis, Y axis; CSYS and CATIA0 as three rows of four."""
-    values = statement.numbers
+    values = statement.values
     expected = 9 if statement.word == "MSYS" else 12
-    if len(values) != expected or statement.words:
-        course.tell("L402", row, f"{statement.word} of {len(values)} values, expected {expected}")
+    if len(values) != expected:
+        course.tell("L402", row, f"{statement.word}/{shown(statement)}, expected {expected} values")
         return
     matrix = _from_axes(values) if statement.word == "MSYS" else _from_rows(values)
     if not _rigid(course, row, statement, matrix):
@@ -51,9 +51,9 @@ def frame(course: Course, row: int, statement: Statement) -> None:
 
 def origin(course: Course, row: int, statement: Statement) -> None:
     """ORIGIN/x,y,z[,X axis, Z axis]: where the origin of the machine lies among the points."""
-    values = statement.numbers
-    if len(values) not in (3, 9) or statement.words:
-        course.tell("L402", row, f"ORIGIN of {len(values)} values, expected 3 or 9")
+    values = statement.values
+    if len(values) not in (3, 9):
+        course.tell("L402", row, f"ORIGIN/{shown(statement)}, expected 3 or 9 values")
         return
     z, x = np.array(values[6:9] or (0, 0, 1.0)), np.array(values[3:6] or (1.0, 0, 0))
     matrix = _from_axes([*values[:3], *x, *np.cross(z, x)])
@@ -65,13 +65,13 @@ def origin(course: Course, row: int, statement: Statement) -> None:
 
 def trans(course: Course, row: int, statement: Statement) -> None:
     """TRANS/x,y,z, TRANS/three rows of four, and TRACUT likewise; NOMORE and OFF end it."""
-    values = statement.numbers
+    values = statement.values
     if not values and set(statement.words) & {"NOMORE", "OFF"}:
         course.shift = None
         _put(course, row)
         return
-    if len(values) not in (3, 12) or statement.words:
-        course.tell("L402", row, f"{statement.word} of {len(values)} values, expected 3 or 12")
+    if len(values) not in (3, 12):
+        course.tell("L402", row, f"{statement.word}/{shown(statement)}, expected 3 or 12 values")
         return
     matrix = np.eye(4) if len(values) == 3 else _from_rows(values)
     if len(values) == 3:

@@ -25,6 +25,12 @@ _DATA_COMMENT = re.compile(
     r"|^([ \t]*)\$\$(?=[ \t]*OPERATION[ \t]+NAME[ \t]*:)",
     re.MULTILINE | re.IGNORECASE,
 )
+_CIRCLE_COMMENT = re.compile(r"\$\$[ \t]*(?=(?:CIRCLE|CYLNDR)[ \t]*/[-+.,\dE \t]+$)", re.MULTILINE | re.IGNORECASE)
+_TEXT_GOES_ON = re.compile(
+    r"^[ \t]*(?:PARTNO|PPRINT|INSERT|LETTER|DISPLY|TPRINT|REMARK)\b[^\n]*~[ \t]*\n(?:[^\n]*~[ \t]*\n)*",
+    re.MULTILINE | re.IGNORECASE,
+)
+_TILDE = re.compile(r"~[ \t]*\n")
 _CATIA_FRAME = re.compile(
     r"^\$\$\*CATIA0[^\n]*\n(?:\$\$[^\n]*\n){0,1}?((?:\$\$(?:[ \t]+[-+.\dEe]+){4}[ \t]*\n){3})", re.M
 )
@@ -67,11 +73,20 @@ def logical_lines(text: str) -> Lines:
     """The statements of a decoded text."""
     text = _CATIA_FRAME.sub(_frame_statement, text)
     text = _DATA_COMMENT.sub(lambda found: " " * len(found[0]), text)
+    text = _CIRCLE_COMMENT.sub(_circle_statement, text)
+    if "~" in text:
+        text = _TEXT_GOES_ON.sub(lambda found: _TILDE.sub(JOINT, found[0]), text)
     text = _CONTINUED.sub(rf"\1{JOINT}", text)
     text = _PERCENT.sub("", _COMMENT.sub("", text))
     lines = text.split("\n")
     heights = np.array([line.count(JOINT) for line in lines], dtype=np.int64) + 1
     return Lines(lines, np.cumsum(heights) - heights + 1)
+
+
+def _circle_statement(found: re.Match[str]) -> str:
+    """The start of a circle in a comment on its own line as that of a statement, _CIRCLE or _CYLNDR."""
+    before = found.string[found.string.rfind("\n", 0, found.start()) + 1 : found.start()]
+    return found[0] if before.strip() else " " * (len(found[0]) - 1) + "_"
 
 
 def _frame_statement(found: re.Match[str]) -> str:

@@ -11,17 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pkm_post.cldata.arcs import NO_DIRECTION
 from pkm_post.cldata.course import Course, Point
+from pkm_post.cldata.dialects import Dialect
 from pkm_post.cldata.feeds import shown
 from pkm_post.cldata.options import AXIS, NORMAL, POINT, ReadOptions
+from pkm_post.cldata.place import place
 from pkm_post.cldata.statements import Statement, Statements
 from pkm_post.geometry.vectors import norm
 from pkm_post.model.program import Array
 
 ValueNames = dict[int, tuple[str, ...]]
 """For each form of a GOTO what its values are."""
-NO_DIRECTION = 1e-9
-"""Length below which a vector has none."""
 NOT_UNIT = 1e-3
 """Deviation from unit length that is told."""
 
@@ -35,7 +36,6 @@ class Points:
         position: (P, 3).
         axis: (P, 3) unit tool axis.
         normal: (P, 3) unit surface normal, NaN where there is none.
-        incremental: (P,) given from the point before.
         start: (P,) where the tool is, not where it goes.
     """
 
@@ -43,7 +43,6 @@ class Points:
     position: Array
     axis: Array
     normal: Array
-    incremental: Array
     start: Array
 
 
@@ -52,23 +51,34 @@ def goto(course: Course, row: int, statement: Statement) -> None:
     course.tell("L402", row, f"GOTO/{shown(statement)}, expected x,y,z or x,y,z,i,j,k")
 
 
+def bare(course: Course, row: int, statement: Statement) -> None:
+    """Numbers alone that are no further point of a GOTO."""
+    follows = course.dialect.pted and row > 0 and course.statements.word(row - 1) in ("GOTO", "")
+    code, expected = ("L402", "x,y,z or x,y,z,i,j,k") if follows else ("L201", "a word")
+    course.tell(code, row, f"{shown(statement)}, expected {expected}")
+
+
 def single(course: Course, row: int, statement: Statement) -> None:
-    """FROM/x,y,z[,i,j,k] and GODLTA/dx,dy,dz[,i,j,k]."""
-    values = statement.numbers
-    if len(values) not in (3, 6) or len(statement.items) != len(values):
+    """FROM/x,y,z[,i,j,k]: where the tool is; GODLTA/dx,dy,dz[,i,j,k]: where it goes to from there."""
+    values = statement.values
+    if len(values) not in (3, 6):
         course.tell("L402", row, f"{statement.word}/{shown(statement)}, expected 3 or 6 values")
         return
-    axis = tuple(values[3:]) or None
-    from_word = statement.word == "FROM"
-    course.points.append((row, Point(tuple(values[:3]), axis, incremental=not from_word, start=from_word)))
+    position, axis = np.array(values[:3]), tuple(values[3:]) or None
+    if statement.word == "GODLTA":
+        start = place(course, row, "GODLTA")
+        if start is None:
+            return
+        position = start + position
+    course.points.append((row, Point(tuple(position.tolist()), axis, start=statement.word == "FROM")))
 
 
 def tlaxis(course: Course, row: int, statement: Statement) -> None:
     """TLAXIS/i,j,k: the axis of points that have none."""
-    if len(statement.numbers) != 3 or statement.words:
+    if len(statement.values) != 3:
         course.tell("L402", row, f"TLAXIS/{shown(statement)}, expected 3 values")
     else:
-        course.axes.append((row, tuple(statement.numbers)))
+        course.axes.append((row, tuple(statement.values)))
 
 
 def multax(course: Course, row: int, statement: Statement) -> None:
@@ -77,14 +87,28 @@ def multax(course: Course, row: int, statement: Statement) -> None:
         course.axes.append((row, (0.0, 0.0, 1.0)))
 
 
-def bulk_rows(statements: Statements, options: ReadOptions) -> tuple[Array, ValueNames]:
-    """Which rows are GOTO statements that are taken all at once, and what the values of their forms are."""
+def bulk_rows(statements: Statements, options: ReadOptions, dialect: Dialect) -> tuple[Array, ValueNames]:
+    """Which rows are GOTO statements that are taken all at once, and what the values of their forms are.
+
+    Points without a major word are among them where they go on from a GOTO.
+    """
     names = {
         index: found
         for index, form in enumerate(statements.forms)
-        if form.word == "GOTO" and form.plain and (found := options.value_names(len(form.items)))
+        if form.word in ("GOTO", "") and form.plain and (found := options.value_names(len(form.items)))
     }
-    return np.isin(statements.form, list(names)), names
+    bulk: Array = np.isin(statements.form, list(names))
+    bare = without_word(statements)
+    if bare.any():
+        goto = np.maximum.accumulate(np.where(bare, -1, np.arange(len(bare))))
+        bulk &= ~bare | (bulk[goto] & (goto >= 0) & dialect.pted)
+    return bulk, names
+
+
+def without_word(statements: Statements) -> Array:
+    """Which rows are numbers alone, (N,)."""
+    rows: Array = np.array([form.word == "" for form in statements.forms], dtype=np.bool_)[statements.form]
+    return rows
 
 
 def all_points(course: Course, bulk: Array, names: ValueNames) -> Points:
@@ -96,10 +120,9 @@ def all_points(course: Course, bulk: Array, names: ValueNames) -> Points:
     nothing = (np.nan,) * 3
     more = np.array([(*one.position, *(one.axis or nothing), *nothing) for one in special]).reshape(-1, 9)
     columns = np.concatenate([values, more])[order]
-    flags = np.zeros((len(row), 2), dtype=np.bool_)
-    flags[len(rows) :] = np.array([(one.incremental, one.start) for one in special], np.bool_).reshape(-1, 2)
-    flags = flags[order]
-    return Points(row[order], columns[:, :3], columns[:, 3:6], columns[:, 6:], flags[:, 0], flags[:, 1])
+    start = np.zeros(len(row), dtype=np.bool_)
+    start[len(rows) :] = [one.start for one in special]
+    return Points(row[order], columns[:, :3], columns[:, 3:6], columns[:, 6:], start[order])
 
 
 def _bulk_values(course: Course, bulk: Array, names: ValueNames) -> tuple[Array, Array]:
@@ -127,7 +150,6 @@ def resolve(course: Course, points: Points) -> Array:
     """Take points to mm, the work frame and unit axes, in place; their frames, (P, 4, 4) or (1, 4, 4)."""
     scales = np.array([scale for _, scale in course.scales])
     points.position = points.position * scales[in_force(points.row, [row for row, _ in course.scales])][:, None]
-    _resolve_increments(course, points)
     points.axis = _modal_axes(course, points)
     _unit(course, points.row, points.axis, "axis")
     given = np.flatnonzero(~np.isnan(points.normal[:, 0]))
@@ -142,20 +164,6 @@ def resolve(course: Course, points: Points) -> Array:
     points.axis = np.einsum("nij,nj->ni", frame[:, :3, :3], points.axis)
     points.normal = np.einsum("nij,nj->ni", frame[:, :3, :3], points.normal)
     return frame
-
-
-def _resolve_increments(course: Course, points: Points) -> None:
-    """Add increments to the last point before them that is given in full."""
-    if not points.incremental.any():
-        return
-    if points.incremental[0]:
-        course.tell("L417", int(points.row[0]), "GODLTA")
-        return
-    base = np.maximum.accumulate(np.where(points.incremental, 0, np.arange(len(points.row))))
-    total = np.cumsum(np.where(points.incremental[:, None], points.position, 0.0), axis=0)
-    points.position = np.where(
-        points.incremental[:, None], points.position[base] + total - total[base], points.position
-    )
 
 
 def _modal_axes(course: Course, points: Points) -> Array:

@@ -48,8 +48,8 @@ def read(
     dialect = DIALECTS[options.dialect] if options.dialect else detect(whole)
     faults = Faults(file)
     statements = scan(logical_lines(whole), faults)
-    bulk, names = bulk_rows(statements, options)
-    course = Course(statements, dialect, options, faults, np.cumsum(bulk))
+    bulk, names = bulk_rows(statements, options, dialect)
+    course = Course(statements, dialect, options, faults, np.flatnonzero(bulk), np.cumsum(bulk))
     program = _program(course, bulk, names, file)
     return (None if faults.any_errors() else program), faults.diagnostics()
 

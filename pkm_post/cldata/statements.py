@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from pkm_post.cldata.lines import Lines
+from pkm_post.cldata.lines import JOINT, Lines
 from pkm_post.model.program import Array
 
 if TYPE_CHECKING:
@@ -42,6 +42,12 @@ class Statement:
         return [item for item in self.items if isinstance(item, float)]
 
     @property
+    def values(self) -> list[float]:
+        """The items if every one of them is a number, else none."""
+        numbers = self.numbers
+        return numbers if len(numbers) == len(self.items) else []
+
+    @property
     def words(self) -> list[str]:
         """The words among the items."""
         return [item for item in self.items if isinstance(item, str)]
@@ -52,7 +58,7 @@ class Form:
     """What statements that differ in their numbers alone have in common.
 
     Attributes:
-        word: the major word, of several joined by commas.
+        word: the major word, of several joined by commas; empty for numbers alone.
         items: words and nested forms; ``float`` itself stands for a number, None for an empty item.
         takes_text: whether the rest of the line is text.
     """
@@ -107,17 +113,23 @@ class Statements:
         form: Form = self.forms[self.form[row]]
         if form.takes_text:
             found = _TEXT.match(self.lines.text[self.index[row]])
-            return Statement(form.word, text=found[1].strip(" \t\x1f/:") if found else "")
+            return Statement(form.word, text=found[1].replace(JOINT, "").strip(" \t/:") if found else "")
         return form.filled(iter(self.numbers[self.number_start[row] : self.number_start[row + 1]].tolist()))
+
+    def word(self, row: int) -> str:
+        """The major word of one statement, empty where it has none."""
+        return self.forms[self.form[row]].word
 
     def place(self, row: int) -> tuple[int, int]:
         """Line and column of the first word of a statement."""
         text = self.lines.text[self.index[row]]
-        return self.lines.place(int(self.index[row]), len(text) - len(text.lstrip(" \t\x1f")))
+        return self.lines.place(int(self.index[row]), len(text) - len(text.lstrip(f" \t{JOINT}")))
 
 
 def form_of(tree: Tree[Token]) -> Form:
     """The form of a parsed statement."""
+    if tree.data == "bare":
+        return Form("", (float,) * len(tree.children))
     if tree.data == "text":
         return Form(" ".join(str(tree.children[0]).upper().split()), (), takes_text=True)
     _, head, items = cast("tuple[object, Tree[Token], Tree[Token] | None]", tree.children)

@@ -6,13 +6,12 @@ Statements enter; a course with all that they set leaves.
 
 from __future__ import annotations
 
-from collections import Counter
-
 import numpy as np
 
+from pkm_post.cldata.arc_moves import tell_unused
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.statements import Statements
-from pkm_post.cldata.words import HANDLERS, PASSED_OVER, REFUSED
+from pkm_post.cldata.words import HANDLERS, PASSED_OVER, REFUSED, Handler
 from pkm_post.model.program import Array
 
 LARGEST = 1e9
@@ -31,26 +30,31 @@ def walk(course: Course, bulk: Array) -> Array:
     """
     statements = course.statements
     possible = _possible(course)
-    unknown: Counter[str] = Counter()
-    first: dict[str, int] = {}
+    unknown: dict[str, list[int]] = {}
     for row in np.flatnonzero(~bulk & possible).tolist():
-        word = statements.forms[statements.form[row]].word
-        handler = HANDLERS.get(word)
+        word = statements.word(row)
+        handler = _handler(course, word)
         if handler is not None:
             handler(course, row, statements.statement(row))
         elif word in REFUSED:
             course.tell("L401", row, word)
         elif word not in PASSED_OVER:
-            unknown[word] += 1
-            first.setdefault(word, row)
+            unknown.setdefault(word, []).append(row)
         if course.ended:
             possible[row + 1 :] = False
             _tell_behind(course, row)
             break
-    for word, row in first.items():
-        times = f", {unknown[word]} times" if unknown[word] > 1 else ""
-        course.tell("L404", row, f"{word[:60]}{times}")
+    tell_unused(course)
+    for word, rows in unknown.items():
+        times = f", {len(rows)} times" if len(rows) > 1 else ""
+        course.tell("L404", rows[0], f"{word[:60]}{times}")
     return bulk & possible
+
+
+def _handler(course: Course, word: str) -> Handler | None:
+    """What reads statements of a word, None if it has no meaning here."""
+    # Where INSERT names no tool it is text for the NC program, which a motion cannot carry.
+    return HANDLERS.get(word) if word != "INSERT" or course.dialect.insert_is_tool else None
 
 
 def _possible(course: Course) -> Array:

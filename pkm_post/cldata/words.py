@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from pkm_post.cldata import arcs, feeds, frames, holes, points, tools
+from pkm_post.cldata import arc_moves, arcs, feeds, frames, guided, holes, points, tools
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.statements import Statement
 
@@ -32,8 +32,13 @@ def _fini(course: Course, row: int, statement: Statement) -> None:
 HANDLERS: dict[str, Handler] = {
     "GOTO": points.goto, "FROM": points.single, "GODLTA": points.single, "TLAXIS": points.tlaxis,
     "MULTAX": points.multax,
-    "CIRCLE": arcs.circle, "MOVARC": arcs.movarc, "INDIRV": arcs.indirv, "TLON,GOFWD": arcs.tlon,
-    "HELICAL": arcs.helical,
+    "": points.bare, "CIRCLE": arcs.circle, "CYLNDR": arcs.circle, "MOVARC": arcs.movarc,
+    "_CIRCLE": arcs.commented, "_CYLNDR": arcs.commented,
+    "INDIRV": guided.indirv, "INDIRP": guided.indirp, "PSIS": guided.psis, "AUTOPS": guided.autops,
+    "TLON,GOFWD": guided.tlon,
+    "ARCSLP": arc_moves.arcslp, "ARCDAT": arc_moves.arcdat, "ARCMOV": arc_moves.arcmov,
+    "GOCLW": arc_moves.gocclw, "GOCCLW": arc_moves.gocclw, "CW": arc_moves.ccw, "CCW": arc_moves.ccw,
+    "HELICAL": arc_moves.helical,
     "CYCLE": holes.cycle,
     "FEDRAT": feeds.fedrat, "RAPID": feeds.rapid, "SPINDL": feeds.spindl, "COOLNT": feeds.coolnt,
     "DELAY": feeds.delay, "DWELL": feeds.delay, "STOP": feeds.stop, "OPSTOP": feeds.stop,
@@ -47,14 +52,14 @@ HANDLERS: dict[str, Handler] = {
 
 PASSED_OVER = frozenset({
     "PARTNO", "PPRINT", "TPRINT", "LETTER", "DISPLY", "REMARK", "MACHIN", "PPWORD", "PAINT", "END-OF-PATH", "SETUP",
-    "SELECT", "SWITCH", "END", "REWIND", "LINTOL", "INTOL", "OUTTOL", "TOLER", "AUTOPS", "PSIS", "SET",
+    "SELECT", "SWITCH", "END", "REWIND", "LINTOL", "INTOL", "OUTTOL", "TOLER", "SET",
     "CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH", "CLPRNT", "NOPOST", "LEADER", "CLEARP",
     "MODE", "PRINT", "SEQNO",
 })  # fmt: skip
 """Words that say nothing of the motion."""
 
 REFUSED = frozenset({
-    "ARCDAT", "ARCMOV", "ARCSLP", "GOCLW", "GOCCLW", "CW", "CCW", "CYLNDR", "INDIRP", "SPLINE", "BSPLINE", "NURBS",
+    "SPLINE", "BSPLINE", "NURBS",
     "POLYGON", "ROTABL", "ROTHED", "ROTATE", "PIVOT", "TURRET", "MIRROR", "COPY", "INDEX", "LOOPST", "LOOPND", "JUMPTO",
     "MACRO", "CALL", "IF", "DO", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "OFFSET", "GOHOME",
     "TLLFT", "TLRGT", "TLON", "TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GORGT", "THREAD", "PITCH", "REFSYS",

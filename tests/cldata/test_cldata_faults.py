@@ -7,11 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from pkm_post.cldata import read
+from pkm_post.cldata import DIALECTS, ReadOptions, read, words
 from pkm_post.cldata.faults import EXPECTED, MOST_TOLD
 from pkm_post.cldata.grammar import STATEMENT
 from pkm_post.grammar import parser_of
+from pkm_post.model import Kind
 from pkm_post.model.diagnostics import errors
 
 BAD_PROGRAMS = sorted((Path(__file__).parents[1] / "data" / "bad_cldata").glob("*.cl"))
@@ -81,6 +84,47 @@ def test_any_bytes_give_a_program_or_diagnostics():
         noise = random.integers(0, 256, 200, dtype=np.uint8).tobytes()
         program, diagnostics = read(noise, "fuzz.cl")
         assert (program is None) == bool(errors(diagnostics))
+
+
+def shown(values):
+    return ",".join(f"{value:g}" for value in values)
+
+
+NUMBERS = st.one_of(st.sampled_from([0.0, 1.0, -1.0, 10.0, 360.0, 1e9]), st.floats(-50, 50).map(lambda x: round(x, 3)))
+WORDS = st.sampled_from(
+    ["ON", "TANTO", "INTOF", "CANON", "PERPTO", "CLW", "CCLW", "ANGLE", "TIMES", "OFF", "MM", "DRILL", "FEDTO", "RAPTO"]
+)
+MAJORS = st.sampled_from([*sorted({*words.HANDLERS, *words.REFUSED} - {""}), *["GOTO"] * 40])
+SURFACES = st.sampled_from(["PLANE", "LINE", "CIRCLE", "CYLNDR", "POINT", "VECTOR"])
+PARTS = st.builds("({}/{})".format, SURFACES, st.lists(NUMBERS, max_size=7).map(shown))
+ITEMS = st.lists(st.one_of(NUMBERS.map("{:g}".format), WORDS, PARTS, st.just("")), max_size=5).map(",".join)
+COUNTS = st.sampled_from([3, 4, 6, 7, 9, 10, 11, 13, 14, 17])
+COUNTED = COUNTS.flatmap(lambda count: st.lists(NUMBERS, min_size=count, max_size=count)).map(shown)
+TLON = st.builds(
+    "TLON,GOFWD/(CIRCLE/0,0,0,0,0,1,10),{},(PLANE/1,0,0,{:g})".format,
+    st.sampled_from(["ON", "TANTO", "ON,2,INTOF", "PAST"]),
+    NUMBERS,
+)
+SOUND = st.sampled_from([
+    "RAPID", "AUTOPS", "FEDRAT/9", "GOTO/10,0,0", "GOTO/0,10,0", "GODLTA/0,0,1", "8,6,0", "UNITS/INCHES",
+    "MSYS/1,2,3,0,1,0,-1,0,0", "MSYS/0,0,0,1,0,0,0,1,0", "$$ CIRCLE/0,0,0,0,0,1,10\nGOTO/8,6,0",
+    "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/8,6,0\n0,10,0", "GOTO/10,0,0\nGOCLW/0,0,0,0,0,1,10,0,10,0",
+    "GOTO/10,0,0\nINDIRP/10,5,0\nTLON,GOFWD/(CIRCLE/0,0,0,10),ON,2,INTOF,(PLANE/1,1,0,5)",
+    "GOTO/10,0,0\nARCSLP/3\nARCDAT/0,0,0,0,0,1,10\nARCMOV/CCLW,10,0,3,720",
+    "GOTO/10,0,0\nHELICAL/0,0,0,0,1,0,0,0,1,2,10,-10,0,9", "CYCLE/DRILL,FEDTO,5,RAPTO,2\nGOTO/3,3,0\nCYCLE/OFF",
+])  # fmt: skip
+RECORDS = st.one_of(st.builds("{}/{}".format, MAJORS, st.one_of(COUNTED, ITEMS)), COUNTED, TLON, SOUND)
+
+
+@settings(max_examples=400, deadline=None, derandomize=True)
+@given(st.one_of(st.lists(RECORDS, max_size=12), st.lists(SOUND, max_size=12)), st.sampled_from([None, *DIALECTS]))
+def test_any_records_give_a_program_or_diagnostics(records, dialect):
+    text = "\n".join(["UNITS/MM", "FEDRAT/100", "GOTO/10,0,0", *records])
+    program, diagnostics = read(text, "part.cl", ReadOptions(dialect=dialect))
+    assert (program is None) == bool(errors(diagnostics))
+    if program is not None:
+        assert np.isfinite(program.position).all()
+        assert np.isfinite(program.arc_centre[program.kind == Kind.ARC]).all()
 
 
 @pytest.mark.parametrize("piece", ["GOTO/1,", "1", "(", "A,", "$$", "'", "1.", "$ ", "A/(", " ", "-"])

@@ -75,6 +75,36 @@ def test_the_axis_is_modal_and_normals_are_mapped():
     assert found.normal[1].tolist() == [1, 0, 0]
 
 
+def test_normals_turn_with_the_frame():
+    """The second frame is the first turned by 90 degrees about Z: X becomes Y, and Y becomes -X."""
+    names = ("x", "y", "z", "i", "j", "k", "px", "py", "pz", "nx", "ny", "nz")
+    text = "MSYS/0,0,0,1,0,0,0,1,0\nGOTO/1,2,3,0,0,1,9,9,9,.6,.8,0\nMSYS/5,0,0,0,1,0,-1,0,0\n"
+    found = program(f"{HEAD}{text}GOTO/1,2,3,1,0,0,9,9,9,.6,.8,0\nGOTO/1,2,4\n", goto_values={12: names})
+    assert found.normal[1:] == pytest.approx(np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [np.nan] * 3]), nan_ok=True)
+    assert found.position[2] == pytest.approx([3, 1, 3])
+    assert found.tool_axis[2:] == pytest.approx(np.array([[0, 1, 0]] * 2))
+
+
+def test_points_follow_on_lines_of_their_own():
+    found = program(
+        HEAD + "RAPID\nGOTO/1,0,0,0,.6,.8\n$$ note\n2,0,0\n\n3,0,0,1,0,0\n  4.,-.5, 1E1 $\n,0,0,1\nGODLTA/1,0,0\n"
+    )
+    assert found.position[1:].tolist() == [[1, 0, 0], [2, 0, 0], [3, 0, 0], [4, -0.5, 10], [5, -0.5, 10]]
+    assert found.tool_axis[2:5] == pytest.approx(np.array([[0, 0.6, 0.8], [1, 0, 0], [0, 0, 1]]))
+    assert found.kind[1:].tolist() == [Kind.RAPID, *[Kind.LINE] * 4]
+    assert found.line[1:].tolist() == [7, 9, 11, 12, 14]
+    names = ("x", "y", "z", "i", "j", "k", "nx", "ny", "nz")
+    mapped = program(HEAD + "GOTO/1,0,0\n2,0,0,0,0,1,1,0,0\n", goto_values={9: names})
+    assert mapped.normal[2].tolist() == [1, 0, 0]
+
+
+def test_text_for_the_post_processor_is_told_once():
+    text = "INSERT M8\nGOTO/1,0,0\nINSERT/M9\n"
+    diagnostics = read(HEAD + text, "part.cl")[1]
+    assert [(fault.code, fault.found, fault.place.line) for fault in diagnostics] == [("L404", "INSERT, 2 times", 6)]
+    assert read(HEAD + text, "part.cl", ReadOptions(dialect="solidworks"))[1] == ()
+
+
 def test_increments_add_up_and_their_axis_is_absolute():
     found = program(HEAD + "GODLTA/1,0,0\nGODLTA/0,2,0,1,0,0\nGOTO/9,9,9\nGODLTA/0,0,1\n")
     assert found.position[1:].tolist() == [[1, 0, 0], [1, 2, 0], [9, 9, 9], [9, 9, 10]]

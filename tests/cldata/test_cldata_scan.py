@@ -27,6 +27,8 @@ def statements(draw):
     spaced = ",".join(
         before + item + after for before, item, after in zip(blanks[::2], items, blanks[1::2], strict=False)
     )
+    if draw(st.integers(0, 5)) == 0:
+        return ",".join(draw(st.lists(NUMBERS, min_size=1, max_size=6)))
     return f"{major}{draw(st.sampled_from(['', ' ']))}/{spaced}"
 
 
@@ -66,6 +68,14 @@ def test_continued_statements_keep_their_lines():
     text = "PARTNO X\nGOTO/1,$\n 2, $$ note\n$$ comment\nGOTO / 1, 2, $ $$ note\n  3 ; 4\nRAPID"
     diagnostics = read(text.replace("2, $$ note", "2,3"), "part.cl")[1]
     assert [(fault.code, str(fault.place)) for fault in diagnostics] == [("L101", "part.cl: line 6:5")]
+
+
+def test_text_goes_on_behind_a_tilde():
+    table = scan(logical_lines("TPRINT/one, ~\ntwo ~  \nthree\nGOTO/1,2,3\nPPRINT a ~ b\nRAPID"), Faults("part.cl"))
+    assert [form.word for form in table.forms] == ["TPRINT", "GOTO", "PPRINT", "RAPID"]
+    assert table.statement(0).text == "one, two three"
+    assert table.statement(2).text == "a ~ b"
+    assert [table.place(row)[0] for row in range(4)] == [1, 4, 5, 6]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])

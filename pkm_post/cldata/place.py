@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Place: where the tool is when a statement is read.
+
+Statements that go on from there need it: increments, directions to a point, arcs to a check surface. The course
+enters; a point leaves, in the units and the frame of the statement that asks.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+
+import numpy as np
+
+from pkm_post.cldata.course import Course
+from pkm_post.cldata.options import POINT
+from pkm_post.model.program import Array
+
+
+def place(course: Course, row: int, asker: str) -> Array | None:
+    """Where the tool is before a statement, (3,); None if that is not known, which is told.
+
+    Args:
+        course: with all that was read before.
+        row: the statement that asks.
+        asker: its name, for people.
+    """
+    before = int(course.gotos_before[row])
+    goto_row = int(course.goto_rows[before - 1]) if before else -1
+    special_row = course.points[-1][0] if course.points else -1
+    if max(goto_row, special_row) < 0:
+        course.tell("L417", row, asker)
+        return None
+    if goto_row > special_row:
+        return _carried(course, goto_row, _written(course, goto_row))
+    return _carried(course, special_row, np.array(course.points[-1][1].position))
+
+
+def _written(course: Course, row: int) -> Array:
+    """The point of a GOTO as written."""
+    first, end = course.statements.number_start[row : row + 2].tolist()
+    names = course.options.value_names(end - first) or POINT
+    return np.array([course.statements.numbers[first + names.index(name)] for name in POINT])
+
+
+def _carried(course: Course, row: int, position: Array) -> Array:
+    """A point that was written at a row, in the units and the frame of now."""
+    scale = course.scales[bisect_left(course.scales, row, key=lambda change: change[0]) - 1][1]
+    index = bisect_left(course.frames, row, key=lambda change: change[0])
+    if scale == course.scale and index == len(course.frames):
+        return position
+    now = course.frames[-1][1] if course.frames else np.eye(4)
+    then = course.frames[index - 1][1] if index else np.eye(4)
+    carried: Array = np.linalg.solve(now, then @ np.append(position * scale, 1.0))[:3] / course.scale
+    return carried
