@@ -148,13 +148,19 @@ def tool_axes(normals: Array, relief: float, lead: Array) -> Array:
     return np.cos(lead) * (np.cos(tilt) * UP + np.sin(tilt) * outward) + np.sin(lead) * along
 
 
-def quadrant(column: Column) -> list[str]:
-    """The G-code of the first quadrant, F in mm/s as CAM operations have it."""
-    touched = contacts(column)
+def tool_path(column: Column, touched: Contacts) -> tuple[Array, Array]:
+    """Tool tips and unit tool axes that touch the wall, (N, 3) each."""
     axis = tool_axes(touched.normal, column.relief, touched.lead)
     tip, faults = tip_from_contact(touched.point, touched.normal, axis, Cutter.of(column.tool))
     if tip is None:
         raise ValueError("\n".join(str(fault) for fault in faults))
+    return tip, axis
+
+
+def quadrant(column: Column) -> list[str]:
+    """The G-code of the first quadrant, F in mm/s as CAM operations have it."""
+    touched = contacts(column)
+    tip, axis = tool_path(column, touched)
     begin, end = (tip[row] + column.standoff * touched.normal[row] for row in (0, -1))
     above = column.height + column.clearance
     return [
