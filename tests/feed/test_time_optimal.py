@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The plan against the shortest time that is possible, as TOPP-RA found it (tests/oracles/make_time_optimal.py)."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from time_optimal_paths import LIMITS, PATHS, stations_of
+
+from pkm_post import planning
+from pkm_post.feed import limits, speed_profile
+
+SHORTEST = json.loads((Path(__file__).parents[1] / "data" / "time_optimal.json").read_text(encoding="ascii"))
+FACTOR = 1.7
+"""What docs/feed.md says of these paths."""
+OPTIMUM_DIGITS = 1e-3
+"""Relative: the shortest times have four decimals, and hold between grid points to about this."""
+
+
+@pytest.mark.parametrize("limits_name", LIMITS)
+@pytest.mark.parametrize("name", PATHS)
+def test_the_plan_is_no_faster_and_not_much_slower_than_the_optimum(name, limits_name):
+    machine, path, marks = stations_of(name, limits_name)
+    poses = path.within(marks.segment, marks.u)
+    feed = planning._feed_at(path, marks.segment, marks.u)
+    square, along = limits(feed, planning._bounded(machine, poses))
+    square[marks.rest] = 0.0
+    speed = np.sqrt(speed_profile(marks.s, square, along))
+    time = float(np.sum(2 * np.diff(marks.s) / (speed[1:] + speed[:-1])))
+    shortest = SHORTEST[f"{name}, {limits_name}"]
+    assert shortest * (1 - OPTIMUM_DIGITS) <= time <= FACTOR * shortest
