@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 import toppra
+from feed.time_optimal_paths import LIMITS, PATHS, stations_of
 from toppra.algorithm import TOPPRA
 from toppra.constraint import DiscretizationType, JointAccelerationConstraint, JointVelocityConstraint
 from toppra.interpolator import AbstractGeometricPath
 
-from feed.time_optimal_paths import LIMITS, PATHS, stations_of
 from pkm_post.kinematics import strut_rates
 
 TARGET = Path(__file__).resolve().parents[1] / "data" / "time_optimal.json"
