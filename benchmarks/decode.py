@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """How fast G-code is read: this reader next to others, on the same generated programs, in one run.
 
-    python3 benchmarks/decode.py [--blocks 200000]
+    python3 benchmarks/decode.py [--blocks 200000] [--memory 1000000 2000000 4000000 10000000]
 
-Enters: nothing but the number of blocks. Leaves: lines per second of each reader, and its ratio to this one, whose
+Enters: nothing but numbers of blocks. Leaves: lines per second of each reader, and its ratio to this one, whose
 first step is ``scan`` and whose whole is ``read``; for a 3-axis program (modal G1, four decimals) and a 5-axis program
 with the tool axis as I J K (G1 in every block). Readers that are not installed are left out; slow ones read the
 beginning of the program. Nothing is asserted about times.
+
+With ``--memory``, each size is read from a file by a process of its own. The most memory is told that it had, with
+Python, numpy and the text of the program, and per row what it had more than at its beginning; and the time of the
+processor, which others on the machine do not change as much as the time of the clock.
 """
 
 import argparse
 import importlib.util
 import random
+import resource
 import subprocess
 import sys
 import tempfile
@@ -23,6 +28,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from pkm_post.gcode import ReadOptions, read  # noqa: E402 - the path comes first
 from pkm_post.gcode.scan import scan, scan_by_block  # noqa: E402
 from pkm_post.model import Tool  # noqa: E402
+
+LAP = 100_000
+"""Lines after which a program for ``--memory`` repeats itself."""
 
 SLICE = 5000
 """Lines that the slow readers read."""
@@ -111,6 +119,50 @@ def by_rs274(lines):
 READERS = {"scan": by_scan, "read": by_read, "lark alone": by_lark, "pygcode": by_pygcode, "rs274": by_rs274}
 
 
+def write_program(path, program, blocks):
+    """A program of so many lines, the same ones over and over between heading and end."""
+    lines = program(min(blocks, LAP), random.Random(1))
+    heading, body, end = lines[:4], lines[4:-1], lines[-1:]
+    with path.open("w") as file:
+        file.write(_text(heading))
+        left = blocks - len(heading) - len(end)
+        while left > 0:
+            file.write(_text(body[:left]))
+            left -= len(body)
+        file.write(_text(end))
+
+
+def read_file(path):
+    """Read a program and tell what it took; the whole life of a process."""
+    before = _peak()
+    text = Path(path).read_bytes()
+    start = time.process_time()
+    program, told = read(text, path, OPTIONS)
+    took = time.process_time() - start
+    if program is None:
+        raise SystemExit("\n".join(map(str, told)))
+    rows, peak = len(program), _peak()
+    print(
+        f"{rows:12,} {len(text) / 1e6:9.0f} {peak:9.0f} {(peak - before) / rows * 1e6:10.0f} {took / rows * 1e6:10.2f}"
+    )
+
+
+def _peak():
+    """The most memory this process had so far, MB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6
+
+
+def print_memory(sizes):
+    """Memory by number of blocks."""
+    for name, program in PROGRAMS.items():
+        print(f"{name}\n{'rows':>12} {'text MB':>9} {'peak MB':>9} {'bytes/row':>10} {'us/row':>10}", flush=True)
+        for blocks in sizes:
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder, "part.ngc")
+                write_program(path, program, blocks)
+                subprocess.run([sys.executable, __file__, "--read", str(path)], check=True)
+
+
 def _text(lines):
     return "\n".join(lines) + "\n"
 
@@ -121,12 +173,27 @@ def _expect(result):
         raise SystemExit("\n".join(map(str, diagnostics)))
 
 
+PROGRAMS = {"3-axis": three_axes, "5-axis IJK": five_axes}
+
+
 def main():
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--blocks", type=int, default=200_000)
-    blocks = parser.parse_args().blocks
-    for name, program in (("3-axis", three_axes), ("5-axis IJK", five_axes)):
+    parser.add_argument("--memory", type=int, nargs="+", metavar="BLOCKS", help="tell memory instead of speed")
+    parser.add_argument("--read", metavar="FILE", help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.read:
+        read_file(arguments.read)
+    elif arguments.memory:
+        print_memory(arguments.memory)
+    else:
+        print_speed(arguments.blocks)
+
+
+def print_speed(blocks):
+    """Lines per second of all readers."""
+    for name, program in PROGRAMS.items():
         lines = program(blocks, random.Random(1))
         print(f"{name}: {len(lines)} lines, {len(_text(lines)) / 1e6:.1f} MB")
         print(f"  {'reader':12} {'lines/s':>12} {'scan is':>12}{'read is':>12} times as fast")

@@ -12,12 +12,14 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.gcode.arcs import ArcWords, arc_axes, centres, whole_turns
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import Group
 from pkm_post.gcode.findings import Findings
-from pkm_post.gcode.modal import ARCS, Group, Modal
-from pkm_post.gcode.walk import Motions
+from pkm_post.gcode.modal import Modal, is_arc
+from pkm_post.gcode.motions import Motions
 from pkm_post.geometry import dot, norm
 from pkm_post.geometry.arcs import arc_length
+from pkm_post.model.columns import uniform
 from pkm_post.model.program import Array
 
 MOST_TURNS = 10_000
@@ -26,10 +28,12 @@ MOST_TURNS = 10_000
 
 def arcs_of(blocks: Blocks, modal: Modal, motions: Motions, faults: Findings) -> tuple[Array, Array]:
     """Centres and axes of the arcs in coordinates of the program, (n, 3) each, NaN on other rows."""
-    rows = np.flatnonzero(np.isin(motions.motion, ARCS))
+    rows = np.flatnonzero(is_arc(motions.motion))
+    if not len(rows):
+        return uniform(np.full(3, np.nan), len(motions)), uniform(np.full(3, np.nan), len(motions))
     centre, axis = np.full_like(motions.end, np.nan), np.full_like(motions.end, np.nan)
-    words = _arc_words(blocks, modal, motions, rows)
-    unknown = ~motions.start_known[rows] | ~motions.known[rows]
+    words, start_known = _arc_words(blocks, modal, motions, rows)
+    unknown = ~start_known | ~motions.known[rows]
     for row in rows[unknown].tolist():
         faults.tell("G416", int(motions.block[row]), "an arc starts there")
     centre[rows], wrong = centres(words)
@@ -37,68 +41,81 @@ def arcs_of(blocks: Blocks, modal: Modal, motions: Motions, faults: Findings) ->
     for index, code, found in wrong:
         if not unknown[index]:
             faults.tell(code, int(motions.block[rows[index]]), found)
-    turns = blocks.words[motions.block[rows], column_of("P")]
-    for row in rows[(turns < 1) | (turns != np.round(turns)) & ~np.isnan(turns) | (turns > MOST_TURNS)].tolist():
-        faults.tell("G406", int(motions.block[row]), f"P{blocks.words[motions.block[row], column_of('P')]:g} turns")
+    turns = blocks.word("P")[motions.block[rows]]
+    bad = (turns < 1) | (turns != np.round(turns)) & ~np.isnan(turns) | (turns > MOST_TURNS)
+    for block, turn in zip(motions.block[rows[bad]].tolist(), turns[bad].tolist(), strict=True):
+        faults.tell("G406", block, f"P{turn:g} turns")
     return centre, axis
 
 
-def _arc_words(blocks: Blocks, modal: Modal, motions: Motions, rows: Array) -> ArcWords:
+def _arc_words(blocks: Blocks, modal: Modal, motions: Motions, rows: Array) -> tuple[ArcWords, Array]:
+    """What arcs are programmed with, and whether their starts are known."""
     block = motions.block[rows]
-    words = blocks.words[block] * modal.scale[block][:, None]
-    return ArcWords(
-        start=motions.start[rows],
+    scale = modal.scale[block]
+    start, known = motions.starts(rows)
+    words = ArcWords(
+        start=start,
         end=motions.end[rows],
         plane=modal.in_force[Group.PLANE][block],
         clockwise=motions.motion[rows] == 20,
-        centre=words[:, [column_of(letter) for letter in "IJK"]],
+        centre=np.column_stack([blocks.word(letter)[block] * scale for letter in "IJK"]),
         absolute=modal.in_force[Group.ARC_DISTANCE][block] == 901,
-        radius=words[:, column_of("R")],
+        radius=blocks.word("R")[block] * scale,
     )
+    return words, known
 
 
 def single_turns(
     blocks: Blocks, modal: Modal, motions: Motions, centre: Array, axis: Array
 ) -> tuple[Motions, Array, Array]:
     """The motions with arcs of several turns cut into arcs of one turn at most."""
-    turns = np.where(np.isin(motions.motion, ARCS), blocks.words[motions.block, column_of("P")], np.nan)
-    rows = np.flatnonzero(turns > 1)
+    arcs = np.flatnonzero(is_arc(motions.motion))
+    turns = blocks.word("P")[motions.block[arcs]]
+    rows, turns = arcs[turns > 1], turns[turns > 1]
     if not len(rows):
         return motions, centre, axis
-    words = _arc_words(blocks, modal, motions, rows)
-    _, start, end = whole_turns(words, centre[rows], turns[rows])
-    pieces = np.ones(len(turns), dtype=np.int64)
-    pieces[rows] = turns[rows].astype(np.int64)
-    source = np.repeat(np.arange(len(turns)), pieces)
-    cut = turns[source] > 1
-    starts, ends = motions.start[source], motions.end[source]
-    starts[cut], ends[cut] = start, end
-    first = np.append(0, np.cumsum(pieces))
-    moved = [(int(first[row]), block, kind, value) for row, block, kind, value in motions.in_cycles]
+    words, _ = _arc_words(blocks, modal, motions, rows)
+    _, start, end = whole_turns(words, centre[rows], turns)
+    pieces = np.ones(len(motions), dtype=np.int64)
+    pieces[rows] = turns.astype(np.int64)
+    source = np.repeat(np.arange(len(motions)), pieces)
+    cut = pieces[source] > 1
+    motions = _chosen(motions, source, np.cumsum(pieces) - pieces)
+    motions.end[cut] = end
     centre, axis = centre[source], axis[source]
     centre[cut] += dot(start - centre[cut], axis[cut])[:, None] * axis[cut]
-    return _chosen(replace(motions, in_cycles=moved), source, starts, ends), centre, axis
+    return motions, centre, axis
 
 
-def known_ones(motions: Motions, centre: Array, axis: Array) -> tuple[Motions, Array, Array]:
-    """The motions without those whose end is not known."""
+def known_ones(motions: Motions, columns: list[Array]) -> tuple[Motions, list[Array]]:
+    """The motions without those whose end is not known, and the same of columns of theirs."""
+    if motions.known.all():
+        return motions, columns
     rows = np.flatnonzero(motions.known)
-    if len(rows) == len(motions.known):
-        return motions, centre, axis
-    before = np.append(0, np.cumsum(motions.known))
-    moved = [(int(before[row]), block, kind, value) for row, block, kind, value in motions.in_cycles]
-    motions = _chosen(replace(motions, in_cycles=moved), rows, motions.start[rows], motions.end[rows])
-    return motions, centre[rows], axis[rows]
+    return _chosen(motions, rows, np.cumsum(motions.known) - motions.known), [column[rows] for column in columns]
 
 
-def _chosen(motions: Motions, rows: Array, start: Array, end: Array) -> Motions:
-    names = ("block", "motion", "known", "start_known", "frame")
-    return replace(motions, start=start, end=end, **{name: getattr(motions, name)[rows] for name in names})
+def _chosen(motions: Motions, rows: Array, place: Array) -> Motions:
+    """Some of the motions, or some of them several times.
+
+    Args:
+        motions: all of them.
+        rows: (m,) which.
+        place: (n,) where each of them begins among the chosen ones.
+    """
+    place = np.append(place, len(rows))
+    return replace(
+        motions,
+        **{name: getattr(motions, name)[rows] for name in ("block", "motion", "end", "known", "frame")},
+        first=place[motions.first],
+        in_cycles=[(int(place[row]), block, kind, value) for row, block, kind, value in motions.in_cycles],
+    )
 
 
 def lengths(motions: Motions, centre: Array, axis: Array) -> Array:
-    """Ways of the tool tip, (n,), mm."""
-    straight = norm(motions.end - motions.start)
-    arc = ~np.isnan(axis).any(axis=1)
-    straight[arc] = arc_length(motions.start[arc], motions.end[arc], centre[arc], axis[arc])
-    return np.where(motions.start_known, straight, 0.0)
+    """Ways of the tool tip, (n,), mm; 0 where it is not known."""
+    start, known = motions.starts(np.arange(len(motions)))
+    way = norm(motions.end - start)
+    arc = is_arc(motions.motion)
+    way[arc] = arc_length(start[arc], motions.end[arc], centre[arc], axis[arc])
+    return np.where(known, way, 0.0)

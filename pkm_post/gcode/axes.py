@@ -1,72 +1,121 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Axes: the words that say the tool axis become unit vectors.
 
-I J K after G43.5, or rotary words in degrees under a declared kinematic, enter as columns; unit tool axes in
-coordinates of the program leave, from the tip towards the spindle. k = Rz(C) Ry(B) Rx(A) e_z, with zero for an angle
-that the kinematic has not: (sin B cos C, sin B sin C, cos B) for a BC head, (sin A sin C, -sin A cos C, cos A) for an
-AC head.
+I J K after G43.5 and what other controls write for it, or rotary words in degrees under a declared kinematic, enter as
+columns; unit tool axes in coordinates of the program leave, from the tip towards the spindle, and unit surface normals.
+k = Rz(C) Ry(B) Rx(A) e_z, with zero for an angle that the kinematic has not: (sin B cos C, sin B sin C, cos B) for a BC
+head, (sin A sin C, -sin A cos C, cos A) for an AC head.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import Group
 from pkm_post.gcode.findings import Findings
-from pkm_post.gcode.modal import ARCS, Group, Modal, carried
-from pkm_post.gcode.options import AXIS_WORDS, ReadOptions
+from pkm_post.gcode.modal import Modal, carried, is_arc
+from pkm_post.gcode.motions import span
+from pkm_post.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
 from pkm_post.gcode.positions import follow
-from pkm_post.geometry import norm
+from pkm_post.model.columns import locked, uniform
 from pkm_post.model.program import Array
 
 _BY_ANGLES, _BY_VECTOR = 434, 435
+_UPRIGHT = (0.0, 0.0, 1.0)
+_TILTED = 1e-9
+"""rad: a tool axis nearer to upright is upright."""
+_LENGTH_ERROR = 1e-3
+"""A normal whose length differs more from 1 is told; less is rounding."""
 
 
 def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Array:
     """Unit tool axis at the end of each block, (N, 3)."""
-    if options.axis_words == "vector":
-        return _vectors(blocks, modal, faults)
-    if options.axis_words != "none":
-        return _angles(blocks, modal, options, faults)
-    return np.tile([0.0, 0.0, 1.0], (len(blocks), 1))
+    if options.axis_words == "none":
+        return uniform(_UPRIGHT, len(blocks))
+    find, code = (_vectors, _BY_VECTOR) if options.axis_words == "vector" else (_angles, _BY_ANGLES)
+    axes, said = find(blocks, modal, options, faults)
+    if options.axis_words != "RPY":
+        # X Y Z are those of the slides then, and where these bring the tip hangs on the machine.
+        idle = modal.moves & (modal.in_force[Group.LENGTH] != code) & ~said
+        idle &= (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
+        faults.tell_all("G424", idle, lambda row: f"({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
+    return locked(axes)
 
 
-def _columns(blocks: Blocks, letters: str) -> Array:
-    return blocks.words[:, [column_of(letter) for letter in letters]]
-
-
-def _vectors(blocks: Blocks, modal: Modal, faults: Findings) -> Array:
-    words = _columns(blocks, "IJK")
-    turning = modal.moves & ~np.isin(modal.in_force[Group.MOTION], ARCS)
-    count = np.where(turning, (~np.isnan(words)).sum(axis=1), 0)
-    length = norm(np.where((count == 3)[:, None], words, 1.0))
+def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> tuple[Array, Array]:
+    """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
+    on_arc = is_arc(modal.in_force[Group.MOTION])
+    words = [_component(blocks, letter, modal.moves & on_arc, faults) for letter in "IJK"]
+    count = np.where(modal.moves & ~on_arc, np.sum([~np.isnan(word) for word in words], axis=0, dtype=np.uint8), 0)
     inactive = (count > 0) & (modal.in_force[Group.LENGTH] != _BY_VECTOR)
     faults.tell_all("G415", inactive, lambda _: "I J K without G43.5")
     faults.tell_all("G415", ~inactive & (count > 0) & (count < 3), lambda row: f"{count[row]} of the words I J K")
-    faults.tell_all("G415", ~inactive & (length == 0), lambda _: "I0 J0 K0")
-    usable = (count == 3) & (length > 0)
-    unit = words / np.where(length > 0, length, 1.0)[:, None]
-    return np.column_stack([carried(unit[:, axis], usable, upright) for axis, upright in enumerate((0.0, 0.0, 1.0))])
+    whole = np.flatnonzero(count == 3)
+    unit, length = _unit([word[span(whole)] for word in words])
+    for row in whole[length == 0].tolist():
+        if not inactive[row]:
+            faults.tell("G415", row, "I0 J0 K0")
+    if not len(whole):
+        return uniform(_UPRIGHT, len(blocks)), count > 0
+    axes = np.empty((len(blocks), 3))
+    for column, before in enumerate(_UPRIGHT):
+        axes[:, column] = carried(whole, unit[column], before, len(blocks))
+    return axes, count > 0
 
 
-def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Array:
-    words = np.where(modal.moves[:, None], _columns(blocks, "ABC"), np.nan)
-    for column, letter in enumerate("ABC"):
-        if letter not in AXIS_WORDS[options.axis_words]:
-            words[:, column] = np.nan
-    given = ~np.isnan(words).all(axis=1)
+def _component(blocks: Blocks, letter: str, on_arc: Array, faults: Findings) -> Array:
+    """What is said of a component of the tool axis, in the words of any dialect, (N,)."""
+    value = blocks.word(letter)
+    for name in VECTOR_WORDS[letter]:
+        if name != letter and name in blocks.words:
+            said = blocks.has(name)
+            faults.tell_all("G317", said & on_arc, lambda row, name=name: f"{name} on an arc")  # type: ignore[misc]
+            twice = said & ~on_arc & ~np.isnan(value)
+            faults.tell_all("G317", twice, lambda row, name=name: f"{name} and another word for {letter}")  # type: ignore[misc]
+            value = np.where(said, blocks.words[name], value)
+    return value
+
+
+def _unit(vectors: list[Array]) -> tuple[list[Array], Array]:
+    """Vectors, by component, with unit length, and the length they had; those without any stay as they are."""
+    length = np.sqrt(vectors[0] ** 2 + vectors[1] ** 2 + vectors[2] ** 2)
+    return [component / np.where(length > 0, length, 1.0) for component in vectors], length
+
+
+def surface_normals(blocks: Blocks, faults: Findings) -> Array:
+    """Unit surface normals, (N, 3), NaN where a block gives none: they hold for their own block alone."""
+    said = [blocks.has(name) for name in NORMAL_WORDS if name in blocks.words]
+    if not said:
+        return uniform((np.nan, np.nan, np.nan), len(blocks))
+    count = np.asarray(np.sum(said, axis=0, dtype=np.uint8))
+    faults.tell_all("G422", (count > 0) & (count < 3), lambda row: f"{count[row]} of the words NX NY NZ")
+    unit, length = _unit([blocks.word(name) for name in NORMAL_WORDS])
+    faults.tell_all("G422", length == 0, lambda _: "NX0 NY0 NZ0")
+    faults.tell_all(
+        "G423", (np.abs(length - 1) > _LENGTH_ERROR) & (length > 0), lambda row: f"length {length[row]:.6f}"
+    )
+    return locked(np.column_stack(unit))
+
+
+def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> tuple[Array, Array]:
+    """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
+    letters = AXIS_WORDS[options.axis_words]
+    words = {letter: np.where(modal.moves, blocks.word(letter), np.nan) for letter in letters}
+    given: Array = np.any([~np.isnan(word) for word in words.values()], axis=0)
     if options.axis_words != "RPY":
         # Without G43.4 a machine with such a head would take X Y Z for places of its slides, not of the tip.
         inactive = given & (modal.in_force[Group.LENGTH] != _BY_ANGLES)
-        faults.tell_all("G414", inactive, lambda row: f"{_first(words[row])} without G43.4")
-    degrees, _ = follow(words, modal.in_force[Group.DISTANCE] == 910, np.zeros(3))
-    return axis_of(np.radians(degrees))
+        faults.tell_all("G414", inactive, lambda row: f"{_first(words, row)} without G43.4")
+    degrees, relative = np.zeros((len(blocks), 3)), modal.in_force[Group.DISTANCE] == 910
+    for letter in letters:
+        degrees[:, "ABC".index(letter)], _ = follow(words[letter], relative, 0.0)
+    return axis_of(np.radians(degrees)), given
 
 
-def _first(angles: Array) -> str:
+def _first(words: dict[str, Array], row: int) -> str:
     """The first rotary word of a block, as it is written."""
-    column = int(np.argmin(np.isnan(angles)))
-    return f"{'ABC'[column]}{angles[column]:g}"
+    return next(f"{letter}{word[row]:g}" for letter, word in words.items() if not np.isnan(word[row]))
 
 
 def axis_of(angles: Array) -> Array:

@@ -3,29 +3,26 @@
 
 Enters: what the scan found in the text, or what the execution made of it. Leaves: the same, checked and read-only.
 Units: as written (the program's inches or millimetres, degrees, F as it stands there); the resolve step converts.
+
+There is a column for each word that the program uses, and none for those it does not: a program of X, Y, Z and F has 37
+bytes for each block.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import DTypeLike
 
+from pkm_post.model.columns import uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.program import Array
 
 if TYPE_CHECKING:
     from lark import Token, Tree
-
-LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-"""The letters of the columns of ``words``, in order."""
-
-
-def column_of(letter: str) -> int:
-    """The column of ``words`` that holds the values of an upper-case letter."""
-    return ord(letter) - ord("A")
 
 
 @dataclass(frozen=True)
@@ -34,60 +31,122 @@ class Blocks:
 
     Attributes:
         line: (N,) line in the file, from 1; strictly increasing in scanned blocks, in any order in executed ones.
-        words: (N, 26) value of each letter A to Z, NaN where absent; the columns G, M, N and O are always NaN.
-        g_start: (N + 1,) the G codes of block i are ``g[g_start[i]:g_start[i + 1]]``, in the order of the block.
-        g: (K,) G codes in tenths: 10 for G1, 434 for G43.4.
-        m_start: (N + 1,) likewise for ``m``.
+        words: by letter, or by name such as A3 or NX, the (N,) values of a word, NaN where absent; what occurs nowhere
+            has no column, nor have G, M, N and O.
+        g: (K,) G codes in tenths, 10 for G1, 434 for G43.4, in the order of the program.
+        g_row: (K,) the row each stands in, never falling.
         m: (L,) M codes, whole numbers.
+        m_row: (L,) the row each stands in, never falling.
         deleted: (N,) whether the block begins with the block delete character ``/``.
         special: by row, the parsed block of the rows whose values are not known before they are executed or that
-            hold more than plain words: parameters, expressions, assignments, O words, named words such as ``A3=``.
-            ``words``, ``g`` and ``m`` of such a row are empty.
+            hold more than plain words: parameters, expressions, assignments, O words.
+            Such a row has no words and codes in the columns.
         comments: line and text of the comments that speak to the operator, and of those that describe a tool.
         source: name of the file.
     """
 
     line: Array
-    words: Array
-    g_start: Array
+    words: Mapping[str, Array]
     g: Array
-    m_start: Array
+    g_row: Array
     m: Array
+    m_row: Array
     deleted: Array
     special: dict[int, Tree[Token]]
     comments: tuple[tuple[int, str], ...]
     source: str
 
     def __post_init__(self) -> None:
-        rows, codes = len(self.line), {"g": len(self.g), "m": len(self.m)}
-        self._take("line", np.int32, (rows,))
-        self._take("words", np.float64, (rows, len(LETTERS)))
-        self._take("deleted", np.bool_, (rows,))
-        for name, count in codes.items():
-            self._take(name, np.int32, (count,))
-            self._take(f"{name}_start", np.int64, (rows + 1,))
-
-    def _take(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> None:
-        """Make a column read-only without copying it: ten million blocks have 2 GB of words."""
-        column = np.ascontiguousarray(getattr(self, name), dtype=dtype).view()
-        if column.shape != shape:
-            raise ValueError(f"Blocks.{name}: expected {shape}, got {column.shape}")
-        column.flags.writeable = False
-        object.__setattr__(self, name, column)
+        rows = len(self.line)
+        for name, dtype, count in (
+            ("line", np.int32, rows),
+            ("deleted", np.bool_, rows),
+            ("g", np.int32, len(self.g)),
+            ("g_row", np.int32, len(self.g)),
+            ("m", np.int32, len(self.m)),
+            ("m_row", np.int32, len(self.m)),
+        ):
+            object.__setattr__(self, name, _taken(name, getattr(self, name), dtype, count))
+        words = {letter: _taken(f"words {letter}", self.words[letter], np.float64, rows) for letter in self.words}
+        object.__setattr__(self, "words", {letter: words[letter] for letter in sorted(words)})
 
     def __len__(self) -> int:
         return len(self.line)
 
+    def word(self, letter: str) -> Array:
+        """The (N,) values of a word, NaN where absent."""
+        column = self.words.get(letter)
+        return uniform(np.nan, len(self)) if column is None else column
+
+    def has(self, letter: str) -> Array:
+        """(N,) whether a block has a word."""
+        column = self.words.get(letter)
+        return uniform(False, len(self)) if column is None else ~np.isnan(column)
+
+    def words_of(self, row: int) -> dict[str, float]:
+        """The words of a row, by letter."""
+        values = {letter: float(column[row]) for letter, column in self.words.items()}
+        return {letter: value for letter, value in values.items() if value == value}  # NaN is not itself
+
     def g_of(self, row: int) -> Array:
         """G codes of a row, in tenths, in the order of the block."""
-        codes: Array = self.g[self.g_start[row] : self.g_start[row + 1]]
+        codes: Array = self.g[self.g_row.searchsorted(row) : self.g_row.searchsorted(row, "right")]
         return codes
 
     def m_of(self, row: int) -> Array:
         """M codes of a row, in the order of the block."""
-        codes: Array = self.m[self.m_start[row] : self.m_start[row + 1]]
+        codes: Array = self.m[self.m_row.searchsorted(row) : self.m_row.searchsorted(row, "right")]
         return codes
 
     def place(self, row: int) -> Place:
         """Where a row stands in the source."""
         return Place(self.source, line=int(self.line[row]))
+
+    def first(self, count: int) -> Blocks:
+        """The first of the blocks, which must be plain, as views."""
+        g, m = (int(rows.searchsorted(count)) for rows in (self.g_row, self.m_row))
+        return replace(
+            self,
+            line=self.line[:count],
+            words={letter: column[:count] for letter, column in self.words.items()},
+            g=self.g[:g],
+            g_row=self.g_row[:g],
+            m=self.m[:m],
+            m_row=self.m_row[:m],
+            deleted=self.deleted[:count],
+        )
+
+    def chosen(self, rows: Array) -> Blocks:
+        """Blocks of some rows, which must be plain, in any order and as often as they are named."""
+        g, g_row = codes_of(self.g, self.g_row, rows)
+        m, m_row = codes_of(self.m, self.m_row, rows)
+        return replace(
+            self,
+            line=self.line[rows],
+            words={letter: column[rows] for letter, column in self.words.items()},
+            g=g,
+            g_row=g_row,
+            m=m,
+            m_row=m_row,
+            deleted=self.deleted[rows],
+        )
+
+
+def _taken(name: str, values: Array, dtype: DTypeLike, count: int) -> Array:
+    """A read-only view of a column, not a copy: these are most of the memory that a program takes."""
+    column = np.ascontiguousarray(values, dtype=dtype).view()
+    if column.shape != (count,):
+        raise ValueError(f"Blocks.{name}: expected {(count,)}, got {column.shape}")
+    column.flags.writeable = False
+    return column
+
+
+def codes_of(codes: Array, code_row: Array, rows: Array) -> tuple[Array, Array]:
+    """The codes of a choice of rows, one after the other, and by their place in the choice the rows they stand in."""
+    if not len(codes):
+        return codes, code_row
+    begin, end = code_row.searchsorted(rows), code_row.searchsorted(rows, "right")
+    count = end - begin
+    row = np.repeat(np.arange(len(rows)), count)
+    place = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    return codes[begin[row] + place], row

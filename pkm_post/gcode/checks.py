@@ -9,27 +9,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.gcode.blocks import LETTERS, Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import ANY_BLOCK, CYCLES, G_CODES, M_CODES, NONE, REFUSED, Code, Group, name_of
 from pkm_post.gcode.findings import Findings
-from pkm_post.gcode.modal import (
-    ANY_BLOCK,
-    CYCLES,
-    G_CODES,
-    M_CODES,
-    NONE,
-    REFUSED,
-    Group,
-    Modal,
-    name_of,
-    owners,
-)
-from pkm_post.gcode.options import AXIS_WORDS, ReadOptions
+from pkm_post.gcode.modal import Modal
+from pkm_post.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
+from pkm_post.model.columns import by_row
 from pkm_post.model.program import Array
 
 _WHOLE = "HLT"
 _NOT_NEGATIVE = "DFHLQST"
 _LIMIT = 1e9
 """No length, angle, time or number of a program is larger; beyond it decimals are lost."""
+
+_Codes = tuple[str, Array, Array, dict[int, Code]]
+"""Letter, codes, the rows they stand in, and what they mean."""
 
 
 def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> None:
@@ -49,118 +43,134 @@ def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) 
     _axis_words(blocks, modal, faults)
 
 
+def _codes(blocks: Blocks) -> tuple[_Codes, _Codes]:
+    return ("G", blocks.g, blocks.g_row, G_CODES), ("M", blocks.m, blocks.m_row, M_CODES)
+
+
+def _marked(blocks: Blocks, rows: Array) -> Array:
+    """Whether a block is one of some rows, (N,)."""
+    marked = np.zeros(len(blocks), dtype=np.bool_)
+    marked[rows] = True
+    return marked
+
+
 def _unknown_codes(blocks: Blocks, faults: Findings) -> None:
-    for letter, codes, start, known in (
-        ("G", blocks.g, blocks.g_start, G_CODES),
-        ("M", blocks.m, blocks.m_start, M_CODES),
-    ):
-        owner = owners(start)
+    for letter, codes, rows, known in _codes(blocks):
         for code in np.unique(codes).tolist():
             if code in known:
                 continue
             name = name_of(code, letter)
-            rows = np.zeros(len(blocks), dtype=np.bool_)
-            rows[owner[codes == code]] = True
+            wrong = _marked(blocks, rows[codes == code])
             if name in REFUSED:
-                faults.tell_all("G402", rows, lambda _, name=name: f"{name}: {REFUSED[name]}")  # type: ignore[misc]
+                faults.tell_all("G402", wrong, lambda _, name=name: f"{name}: {REFUSED[name]}")  # type: ignore[misc]
             else:
-                faults.tell_all("G401", rows, lambda _, name=name: name)  # type: ignore[misc]
+                faults.tell_all("G401", wrong, lambda _, name=name: name)  # type: ignore[misc]
 
 
 def _codes_of_one_group(blocks: Blocks, faults: Findings) -> None:
     groups = list(Group)
-    for letter, codes, start, known in (
-        ("G", blocks.g, blocks.g_start, G_CODES),
-        ("M", blocks.m, blocks.m_start, M_CODES),
-    ):
-        number = {code: groups.index(row.group) for code, row in known.items() if row.group is not Group.COOLANT}
-        group = np.full(int(max(codes, default=0)) + 1, NONE)
-        for code in np.unique(codes).tolist():
-            group[code] = number.get(code, NONE)
-        pairs = owners(start) * len(groups) + group[codes]
-        pairs, count = np.unique(pairs[group[codes] != NONE], return_counts=True)
+    for letter, codes, rows, known in _codes(blocks):
+        with_next = np.append(rows[1:] == rows[:-1], False)[: len(rows)]
+        together = with_next | np.append(False, with_next[:-1])[: len(rows)]
+        used, which = np.unique(codes[together], return_inverse=True)
+        group = [groups.index(known[code].group) if code in known else NONE for code in used.tolist()]
+        group = [NONE if number == groups.index(Group.COOLANT) else number for number in group]
+        number = np.array(group, dtype=np.int64)[which]
+        pairs, count = np.unique((rows[together] * len(groups) + number)[number != NONE], return_counts=True)
         for pair in pairs[count > 1].tolist():
-            row, which = divmod(pair, len(groups))
-            here = blocks.g_of(row) if letter == "G" else blocks.m_of(row)
-            names = [name_of(code, letter) for code in here.tolist() if number.get(code) == which]
-            faults.tell("G403", row, f"{' '.join(names)} ({groups[which].value})")
-
-
-def _bits(letters: str) -> int:
-    return sum(1 << column_of(letter) for letter in set(letters))
-
-
-def given_bits(blocks: Blocks) -> Array:
-    """The words a block has, (N,), one bit by letter."""
-    given = np.zeros(len(blocks), dtype=np.int32)
-    for column in range(len(LETTERS)):
-        given |= (~np.isnan(blocks.words[:, column])).astype(np.int32) << np.int32(column)
-    return given
+            row, of_group = divmod(pair, len(groups))
+            here = (blocks.g_of(row) if letter == "G" else blocks.m_of(row)).tolist()
+            names = [name_of(code, letter) for code in here if code in known and known[code].group is groups[of_group]]
+            faults.tell("G403", row, f"{' '.join(names)} ({groups[of_group].value})")
 
 
 def _words_without_use(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> None:
-    used = np.full(len(blocks), _bits(ANY_BLOCK), dtype=np.int32)
-    for codes, start, known in ((blocks.g, blocks.g_start, G_CODES), (blocks.m, blocks.m_start, M_CODES)):
-        owner = owners(start)
-        for code in np.unique(codes).tolist():
-            if code not in known:
-                used[owner[codes == code]] = _bits(LETTERS)
-            elif known[code].group is not Group.MOTION:
-                used[owner[codes == code]] |= _bits(known[code].letters)
-    motion = modal.in_force[Group.MOTION]
-    for code in np.unique(motion).tolist():
-        turns = AXIS_WORDS[options.axis_words] if code in (0, 10) or options.axis_words != "vector" else ""
-        letters = G_CODES[code].letters + turns if code != 800 else LETTERS
-        used[modal.moves & (motion == code)] |= _bits(letters)
-    rotary = _bits("ABC") & ~_bits(AXIS_WORDS[options.axis_words])
-    given = given_bits(blocks)
-    faults.tell_all("G414", (given & rotary) != 0, lambda row: _words(blocks, row, given[row] & rotary))
-    useless = given & ~used & ~rotary
-    faults.tell_all("G404", useless != 0, lambda row: _words(blocks, row, useless[row]))
+    rotary = set("ABC") - set(axis_names(options.axis_words))
+    useless = {}
+    for letter in blocks.words:
+        if letter not in ANY_BLOCK and letter not in rotary:
+            unused = blocks.has(letter) & ~_used_by_motion(letter, modal, options)
+            if unused.any():
+                unused[_rows_that_use(letter, blocks)] = False
+                useless[letter] = unused
+    _tell_words("G414", {letter: blocks.has(letter) for letter in blocks.words if letter in rotary}, blocks, faults)
+    _tell_words("G404", useless, blocks, faults)
 
 
-def _words(blocks: Blocks, row: int, bits: int) -> str:
-    values = blocks.words[row]
-    return " ".join(f"{letter}{values[i]:g}" for i, letter in enumerate(LETTERS) if bits >> i & 1)
+def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
+    """Whether the motion of a block takes a word, (N,)."""
+    takes = np.zeros(max(G_CODES) + 1, dtype=np.bool_)
+    for code, meaning in G_CODES.items():
+        if meaning.group is Group.MOTION:
+            turns = letter in axis_names(options.axis_words)
+            takes[code] = code == 800 or letter in meaning.letters or turns or letter in NORMAL_WORDS
+            if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # of an arc they are its centre, or nothing
+                takes[code] = letter in meaning.letters
+    return modal.moves & by_row(takes.__getitem__, modal.in_force[Group.MOTION])
+
+
+def _rows_that_use(letter: str, blocks: Blocks) -> Array:
+    """The rows with a code, other than a motion, that takes a word; a code that is not known may take any."""
+    rows = []
+    for _, codes, row, known in _codes(blocks):
+        users = [
+            code
+            for code in np.unique(codes).tolist()
+            if code not in known or (known[code].group is not Group.MOTION and letter in known[code].letters)
+        ]
+        rows.append(row[np.isin(codes, users)])
+    return np.concatenate(rows)
+
+
+def _tell_words(code: str, wrong: dict[str, Array], blocks: Blocks, faults: Findings) -> None:
+    """Tell blocks with words that they cannot have, all of them at once."""
+    if wrong:
+        faults.tell_all(
+            code,
+            np.any(list(wrong.values()), axis=0),
+            lambda row: " ".join(_word(letter, blocks.words[letter][row]) for letter in wrong if wrong[letter][row]),
+        )
+
+
+def _word(name: str, value: float) -> str:
+    """A word as it is written: X1, A3=1."""
+    return f"{name}={value:g}" if name[-1].isdigit() else f"{name}{value:g}"
 
 
 def _words_missing(blocks: Blocks, modal: Modal, faults: Findings) -> None:
-    owner = owners(blocks.g_start)
     for code in np.unique(blocks.g).tolist():
         for letter in G_CODES[code].needs if code in G_CODES else "":
-            missing = np.zeros(len(blocks), dtype=np.bool_)
-            missing[owner[blocks.g == code]] = True
-            missing &= np.isnan(blocks.words[:, column_of(letter)])
+            missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
             faults.tell_all("G405", missing, lambda _, c=code, w=letter: f"{name_of(c)} without {w}")  # type: ignore[misc]
-    turning = np.isin(modal.explicit[Group.SPINDLE], (3, 4))
-    first = ~np.isnan(blocks.words[:, column_of("S")])
-    unsaid = turning & ~np.logical_or.accumulate(first) if len(blocks) else turning
-    faults.tell_all("G405", unsaid, lambda row: f"M{modal.explicit[Group.SPINDLE][row]} without S")
-    changes = modal.explicit[Group.CHANGE] == 6
-    chosen = ~np.isnan(blocks.words[:, column_of("T")])
-    unsaid = changes & ~np.logical_or.accumulate(chosen) if len(blocks) else changes
-    faults.tell_all("G405", unsaid, lambda _: "M6 without T")
+    spindle = modal.explicit[Group.SPINDLE]
+    turning = by_row(lambda codes: np.isin(codes, (3, 4)), spindle)
+    faults.tell_all("G405", turning & _before_first(blocks, "S"), lambda row: f"M{spindle[row]} without S")
+    change = modal.explicit[Group.CHANGE] == 6
+    faults.tell_all("G405", change & _before_first(blocks, "T"), lambda _: "M6 without T")
+
+
+def _before_first(blocks: Blocks, letter: str) -> Array:
+    """Whether a block comes before the first one with a word, (N,)."""
+    rows = np.flatnonzero(blocks.has(letter))
+    return np.arange(len(blocks)) < (rows[0] if len(rows) else len(blocks))
 
 
 def _values(blocks: Blocks, modal: Modal, faults: Findings) -> None:
-    for letter in LETTERS:
-        value = blocks.words[:, column_of(letter)]
-        given = ~np.isnan(value)
-        if not given.any():
-            continue
-        wrong = given & ~(np.abs(value) <= _LIMIT)
+    for letter, value in blocks.words.items():
+        # Comparisons with NaN are false.
+        wrong = np.abs(value) > _LIMIT
         if letter in _WHOLE:
-            wrong |= given & (value != np.round(value))
+            wrong |= np.abs(value - np.round(value)) > 0
         if letter in _NOT_NEGATIVE:
-            wrong |= given & (value < 0)
-        faults.tell_all("G406", wrong, lambda row, name=letter, value=value: f"{name}{value[row]:g}")  # type: ignore[misc]
-    diameter = blocks.words[:, column_of("D")]
-    number = np.isin(modal.explicit[Group.SIDE], (410, 420)) & (diameter != np.round(diameter)) & ~np.isnan(diameter)
-    faults.tell_all("G406", number, lambda row: f"D{diameter[row]:g}")
-    dwell = np.zeros(len(blocks), dtype=np.bool_)
-    dwell[owners(blocks.g_start)[blocks.g == 40]] = True
-    pause = blocks.words[:, column_of("P")]
-    faults.tell_all("G406", dwell & (pause < 0), lambda row: f"P{pause[row]:g}")
+            wrong |= value < 0
+        faults.tell_all("G406", wrong, lambda row, name=letter, value=value: _word(name, value[row]))  # type: ignore[misc]
+    rows = np.flatnonzero(by_row(lambda codes: np.isin(codes, (410, 420)), modal.explicit[Group.SIDE]))
+    diameter = blocks.word("D")[rows]
+    for row in rows[np.abs(diameter - np.round(diameter)) > 0].tolist():
+        faults.tell("G406", row, f"D{blocks.word('D')[row]:g}")
+    rows = blocks.g_row[blocks.g == 40]
+    for row in np.unique(rows[blocks.word("P")[rows] < 0]).tolist():
+        faults.tell("G406", row, f"P{blocks.word('P')[row]:g}")
 
 
 def _axis_words(blocks: Blocks, modal: Modal, faults: Findings) -> None:
@@ -171,13 +181,12 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: Findings) -> None:
     faults.tell_all(
         "G407", both, lambda row: f"{name_of(modal.takes_axes[row])} and {name_of(explicit[row])} in one block"
     )
-    taken = np.zeros(len(blocks), dtype=np.int64)
-    for code in np.unique(blocks.g).tolist():
-        if code in G_CODES and G_CODES[code].takes_axes:
-            np.add.at(taken, owners(blocks.g_start)[blocks.g == code], 1)
-    faults.tell_all("G407", taken > 1, lambda row: " ".join(name_of(code) for code in blocks.g_of(row).tolist()))
+    takers = blocks.g_row[np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.takes_axes])]
+    for row in np.unique(takers[1:][takers[1:] == takers[:-1]]).tolist():
+        faults.tell("G407", row, " ".join(name_of(code) for code in blocks.g_of(row).tolist()))
     directly = modal.explicit[Group.ONCE] == 530
-    wrong = directly & ~np.isin(motion, (0, 10))
+    wrong = directly & (motion != 0) & (motion != 10)
     faults.tell_all("G407", wrong, lambda row: f"G53 while {name_of(motion[row])} is in force")
-    inverse = modal.moves & np.isin(motion, CYCLES) & (modal.in_force[Group.FEED_MODE] == 930)
+    cycle = by_row(lambda codes: np.isin(codes, CYCLES), motion)
+    inverse = modal.moves & cycle & (modal.in_force[Group.FEED_MODE] == 930)
     faults.tell_all("G407", inverse, lambda row: f"{name_of(motion[row])} with inverse time feed (G93)")

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pkm_post.gcode.modal import name_of
+from pkm_post.gcode.codes import name_of
 from pkm_post.model import EventKind, Kind
 from pkm_post.model.program import Array
 

@@ -10,18 +10,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import NONE, Group, name_of
 from pkm_post.gcode.cycles import Cycle, Hole, Strokes, fault_of, strokes
 from pkm_post.gcode.findings import Findings
 from pkm_post.gcode.frames import PLANES
-from pkm_post.gcode.modal import NONE, Group, Modal, name_of
+from pkm_post.gcode.modal import Modal
+from pkm_post.gcode.positions import Coordinates
 from pkm_post.model.program import Array
 
 
 class Drilling:
     """The cycle in force."""
 
-    def __init__(self, blocks: Blocks, modal: Modal, words: Array, spindle: Array, faults: Findings) -> None:
+    def __init__(self, blocks: Blocks, modal: Modal, words: Coordinates, spindle: Array, faults: Findings) -> None:
         self._blocks, self._modal, self._words = blocks, modal, words
         self._spindle, self._faults = spindle, faults
         self._cycle = Cycle(NONE)
@@ -38,13 +40,13 @@ class Drilling:
         cycle = self._in_force(row, code)
         axes = PLANES[int(self._modal.in_force[Group.PLANE][row])]
         relative = bool(self._modal.in_force[Group.DISTANCE][row] == 910)
-        said = ~np.isnan(self._words[row]) & (not relative)
+        said = ~np.isnan(self._words.at(row)) & (not relative)
         said[axes[2]] = False
         if not (known | said).all():
             self._faults.tell("G416", row, name_of(code))
             return None
         hole = self._hole(row, cycle, float(position[axes[2]]), relative)
-        repeats = float(np.nan_to_num(self._blocks.words[row, column_of("L")], nan=1.0))
+        repeats = float(np.nan_to_num(self._blocks.word("L")[row], nan=1.0))
         spindle = float(self._spindle[row])
         fault = fault_of(cycle, hole, repeats, spindle)
         if fault:
@@ -59,9 +61,11 @@ class Drilling:
         if before != code:
             self._cycle = Cycle(code)
         scale = float(self._modal.scale[row])
-        retract, peck, dwell = (float(self._blocks.words[row, column_of(letter)]) for letter in "RQP")
+        retract, peck, dwell = (float(self._blocks.word(letter)[row]) for letter in "RQP")
         normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
-        self._cycle = self._cycle.with_words(retract * scale, float(self._words[row, normal]), peck * scale, dwell)
+        self._cycle = self._cycle.with_words(
+            retract * scale, float(self._words.columns[normal][row]), peck * scale, dwell
+        )
         return self._cycle
 
     def _hole(self, row: int, cycle: Cycle, height: float, relative: bool) -> Hole:
@@ -72,7 +76,7 @@ class Drilling:
 
     def _centres(self, row: int, position: Array, axes: tuple[int, int, int], relative: bool, repeats: int) -> Array:
         """Places of the holes, (n, 2)."""
-        words, here = self._words[row, list(axes[:2])], position[list(axes[:2])]
+        words, here = self._words.at(row)[list(axes[:2])], position[list(axes[:2])]
         if relative:
             return here + np.arange(1, repeats + 1)[:, None] * np.nan_to_num(words)
         return np.tile(np.where(np.isnan(words), here, words), (repeats, 1))

@@ -15,7 +15,6 @@ from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.executed import ExecutedBlocks
 from pkm_post.gcode.flow import link
 from pkm_post.gcode.limits import ExecutionLimits
-from pkm_post.gcode.modal import ARCS, Group, modal_state, owners
 from pkm_post.gcode.parameters import ExecutionFault
 from pkm_post.gcode.run import PROGRAM_END, SUBPROGRAM_CODES, Run
 from pkm_post.gcode.statements import OWord, Statement, statement_of
@@ -50,7 +49,7 @@ def execute(
     if faults:
         return None, _diagnostics(blocks, faults)
     ruled = left_out.copy()
-    ruled[owners(blocks.m_start)[np.isin(blocks.m, (*SUBPROGRAM_CODES, *PROGRAM_END))]] = True
+    ruled[blocks.m_row[np.isin(blocks.m, (*SUBPROGRAM_CODES, *PROGRAM_END))]] = True
     ruled[list(statements)] = True
     executed = ExecutedBlocks(blocks)
     run = Run(blocks, statements, flow, left_out, limits, executed)
@@ -58,7 +57,7 @@ def execute(
         run.to_the_end(np.flatnonzero(ruled).tolist())
     except ExecutionFault as fault:
         return None, _diagnostics(blocks, [(run.row, fault)])
-    return _finished(executed)
+    return executed.table(), ()
 
 
 def _statements(blocks: Blocks, left_out: Array) -> tuple[dict[int, Statement], list[tuple[int, ExecutionFault]]]:
@@ -73,18 +72,6 @@ def _statements(blocks: Blocks, left_out: Array) -> tuple[dict[int, Statement], 
         except ExecutionFault as fault:
             faults.append((row, fault))
     return statements, faults
-
-
-def _finished(executed: ExecutedBlocks) -> tuple[Blocks | None, tuple[Diagnostic, ...]]:
-    """The plain blocks, if none of them would take a tool axis for the centre of an arc."""
-    blocks, axis_rows = executed.table()
-    if len(axis_rows):
-        motion = modal_state(blocks, 1.0, "IJK").in_force[Group.MOTION]
-        on_arc = axis_rows[np.isin(motion[axis_rows], ARCS)]
-        if len(on_arc):
-            fault = ExecutionFault("G317", "words for the tool axis on an arc")
-            return None, _diagnostics(blocks, [(row, fault) for row in on_arc.tolist()])
-    return blocks, ()
 
 
 def _diagnostics(blocks: Blocks, faults: list[tuple[int, ExecutionFault]]) -> tuple[Diagnostic, ...]:

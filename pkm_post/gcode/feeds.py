@@ -9,23 +9,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import Group
 from pkm_post.gcode.findings import Findings
-from pkm_post.gcode.modal import Group, Modal, carried, latest
+from pkm_post.gcode.modal import Modal, carried, changes
+from pkm_post.gcode.motions import Motions
 from pkm_post.model.program import Array
 
-_INVERSE_TIME, _BY_TURN = 930, 950
+INVERSE_TIME, _BY_TURN = 930, 950
 
 
 def feeds(
-    blocks: Blocks,
-    modal: Modal,
-    spindle: Array,
-    block: Array,
-    cuts: Array,
-    length: Array,
-    turns: Array,
-    faults: Findings,
+    blocks: Blocks, modal: Modal, spindle: Array, motions: Motions, way: Array, turns: Array, faults: Findings
 ) -> Array:
     """Speed of each motion, (n,), mm/s; NaN on rapid ones.
 
@@ -33,37 +28,40 @@ def feeds(
         blocks: the program.
         modal: its modal codes.
         spindle: (N,) signed speed of the spindle, 1/min.
-        block: (n,) the block of each motion.
-        cuts: (n,) whether it is a cutting move.
-        length: (n,) way of the tip, mm.
-        turns: (n,) whether the tool axis turns.
+        motions: what moves.
+        way: (n,) way of the tip, mm; looked at with G93 alone.
+        turns: (n,) whether the tool axis turns; looked at with G93 alone.
         faults: takes cutting moves without a feed.
     """
-    mode = modal.in_force[Group.FEED_MODE]
-    word = blocks.words[:, column_of("F")]
-    given = ~np.isnan(word)
-    changed = np.append(True, mode[1:] != mode[:-1])[: len(mode)]
-    index = latest(given)
-    in_force = (index >= latest(changed)) & (index >= 0) & ((mode != _INVERSE_TIME) | given)
-    value = np.where(in_force, word[index], np.nan)
-    speed = (value * modal.scale[index] / 60)[block]
-    way = np.bincount(block, weights=length, minlength=len(blocks))
-    speed = np.where((mode == _BY_TURN)[block], speed * np.abs(spindle[block]), speed)
-    speed = np.where((mode == _INVERSE_TIME)[block], (value * way / 60)[block], speed)
-    # A block that goes nowhere takes no time, whatever G93 says; one that only turns the tool axis has no tip speed.
-    still = (mode == _INVERSE_TIME)[block] & (speed == 0) & (value > 0)[block] & ~turns
-    speed = np.where(still, carried(speed, cuts & (speed > 0), np.nan), speed)
-    missing = np.zeros(len(blocks), dtype=np.bool_)
-    missing[block[cuts & ~(speed > 0)]] = True
-    faults.tell_all("G408", missing, lambda row: _found(row, mode, value, spindle, way))
+    mode, word = modal.in_force[Group.FEED_MODE], blocks.word("F")
+    rows = np.flatnonzero(blocks.has("F") | changes(mode, mode[0]))
+    speed = motions.of_blocks(carried(rows, word[rows] * modal.scale[rows] / 60, np.nan, len(blocks)))
+    cuts = motions.motion != 0
+    by_turn, by_time = (motions.of_blocks(mode == code) for code in (_BY_TURN, INVERSE_TIME))
+    if by_turn.any():
+        speed = np.where(by_turn, speed * np.abs(motions.of_blocks(spindle)), speed)
+    of_block = np.bincount(motions.block, weights=way, minlength=len(blocks)) if by_time.any() else np.zeros(0)
+    if by_time.any():
+        value = motions.of_blocks(word)
+        speed = np.where(by_time, value * motions.of_blocks(of_block) / 60, speed)
+        # A block that goes nowhere takes no time, whatever G93 says; one that only turns the tool has no tip speed.
+        still = by_time & (speed == 0) & (value > 0) & ~turns
+        moving = np.flatnonzero(cuts & (speed > 0))
+        speed = np.where(still, carried(moving, speed[moving], np.nan, len(speed)), speed)
+    missing = cuts & ~(speed > 0)
+    if missing.any():
+        wrong = np.zeros(len(blocks), dtype=np.bool_)
+        wrong[motions.block[missing]] = True
+        value = np.where(mode == INVERSE_TIME, word, carried(rows, word[rows], np.nan, len(blocks)))
+        faults.tell_all("G408", wrong, lambda row: _found(row, mode, value, spindle, of_block))
     return np.where(cuts, speed, np.nan)
 
 
 def _found(row: int, mode: Array, value: Array, spindle: Array, way: Array) -> str:
     if np.isnan(value[row]):
-        return "no F in the block (G93)" if mode[row] == _INVERSE_TIME else "no F"
+        return "no F in the block (G93)" if mode[row] == INVERSE_TIME else "no F"
     if mode[row] == _BY_TURN and not spindle[row]:
         return f"F{value[row]:g} a turn (G95), and the spindle stands still"
-    if mode[row] == _INVERSE_TIME and not way[row]:
+    if mode[row] == INVERSE_TIME and not way[row]:
         return "inverse time feed (G93) where the tip stays in its place"
     return f"F{value[row]:g}"

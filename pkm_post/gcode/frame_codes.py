@@ -8,15 +8,18 @@ order in a block is that of RS274NGC: length offset, work offset, then what acts
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import NONE, Group, name_of
 from pkm_post.gcode.findings import Findings
 from pkm_post.gcode.frames import PLANES, SYSTEMS, Offsets
 from pkm_post.gcode.magazine import tool_in_use
-from pkm_post.gcode.modal import NONE, Group, Modal, name_of
+from pkm_post.gcode.modal import Modal
 from pkm_post.gcode.options import ReadOptions
+from pkm_post.gcode.positions import Coordinates
 from pkm_post.model.program import Array
 
 SETS_OFFSETS = (100, 520, 920, 921, 922, 923)
@@ -33,18 +36,12 @@ class FrameCodes:
     """The offsets of a program, and the blocks that change them."""
 
     def __init__(
-        self, blocks: Blocks, modal: Modal, words: Array, tools: Array, options: ReadOptions, faults: Findings
+        self, blocks: Blocks, modal: Modal, words: Coordinates, tools: Array, options: ReadOptions, faults: Findings
     ) -> None:
         self._blocks, self._modal, self._words = blocks, modal, words
         self._tools, self._options, self._faults = tools, options, faults
         self.offsets = Offsets.of(options)
         self.offsets.own_length = options.default_tool.length if options.default_tool else 0.0
-        self._acts = {
-            Group.LENGTH: self._length,
-            Group.SYSTEM: self._system,
-            Group.ROTATION: self._rotation,
-            Group.MIRROR: self._mirror,
-        }
 
     def change(self, row: int) -> bool:
         """Whether a block changes the frame otherwise than by another tool."""
@@ -69,8 +66,8 @@ class FrameCodes:
         code = int(self._modal.explicit[group][row])
         if group is Group.ONCE and code in SETS_OFFSETS:
             self._local(row, code, position, known)
-        elif group in self._acts and code != NONE:
-            self._acts[group](row, code, position, known, moved)
+        elif group in _ACTS and code != NONE:
+            _ACTS[group](self, row, code, position, known, moved)
 
     def needs_position(self, row: int, known: Array, what: str) -> None:
         """Tell a block that needs coordinates, (m,), which are not all known."""
@@ -78,12 +75,13 @@ class FrameCodes:
             self._faults.tell("G416", row, what)
 
     def _length(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
-        offsets, word = self.offsets, self._blocks.words[row, column_of("H")]
+        offsets, word = self.offsets, self._blocks.word("H")[row]
         if code == 490 or word == 0:
             offsets.length = None
         elif code == 431:
             here = np.zeros(3) if offsets.length is None else offsets.length
-            offsets.length = np.where(np.isnan(self._words[row]), here, self._words[row])
+            words = self._words.at(row)
+            offsets.length = np.where(np.isnan(words), here, words)
         else:
             self._length_of_tool(row, code, float(word))
         own = np.array([0.0, 0.0, offsets.own_length])
@@ -122,23 +120,24 @@ class FrameCodes:
             return
         plane = int(self._modal.in_force[Group.PLANE][row])
         axes = list(PLANES[plane][:2])
-        words = self._words[row]
+        words = self._words.at(row)
         self.needs_position(row, known[axes] | ~np.isnan(words[axes]), "G68 without a centre")
         centre = np.where(np.isnan(words), self.offsets.inner(position), words)
-        self.offsets.rotation = plane, centre, math.radians(self._blocks.words[row, column_of("R")])
+        self.offsets.rotation = plane, centre, math.radians(self._blocks.word("R")[row])
 
     def _mirror(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
-        offsets, said = self.offsets, ~np.isnan(self._words[row])
+        offsets, words = self.offsets, self._words.at(row)
+        said = ~np.isnan(words)
         if code == 501:
             offsets.mirrored = offsets.mirrored & ~said & said.any()
             return
         if not said.any():
             self._faults.tell("G405", row, "G51.1 without X, Y or Z")
         offsets.mirrored = offsets.mirrored | said
-        offsets.mirror_at = np.where(said, self._words[row], offsets.mirror_at)
+        offsets.mirror_at = np.where(said, words, offsets.mirror_at)
 
     def _local(self, row: int, code: int, position: Array, known: Array) -> None:
-        offsets, words = self.offsets, self._words[row]
+        offsets, words = self.offsets, self._words.at(row)
         said = ~np.isnan(words)
         if code in (520, 920) and not said.any():
             self._faults.tell("G405", row, f"{name_of(code)} without X, Y or Z")
@@ -159,7 +158,7 @@ class FrameCodes:
     def _set_system(self, row: int, words: Array, position: Array, known: Array) -> None:
         """G10 L2 and L20."""
         offsets = self.offsets
-        kind, number, degrees = (float(self._blocks.words[row, column_of(letter)]) for letter in "LPR")
+        kind, number, degrees = (float(self._blocks.word(letter)[row]) for letter in "LPR")
         angle = "" if math.isnan(degrees) else f" R{degrees:g}"
         if kind not in (2, 20) or number not in range(len(SYSTEMS) + 1) or (kind == 20 and angle):
             self._faults.tell("G406", row, f"G10 L{kind:g} P{number:g}{angle}")
@@ -173,3 +172,11 @@ class FrameCodes:
         offsets.origins[system] = np.where(np.isnan(words), origin, words)
         if angle:
             offsets.angles[system] = math.radians(degrees)
+
+
+_ACTS: dict[Group, Callable[[FrameCodes, int, int, Array, Array, bool], None]] = {
+    Group.LENGTH: FrameCodes._length,
+    Group.SYSTEM: FrameCodes._system,
+    Group.ROTATION: FrameCodes._rotation,
+    Group.MIRROR: FrameCodes._mirror,
+}

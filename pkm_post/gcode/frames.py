@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.gcode.options import ReadOptions
+from pkm_post.model.columns import by_row, is_uniform, uniform
 from pkm_post.model.program import Array
 
 SYSTEMS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
@@ -136,11 +137,10 @@ def rotation(plane: int, angle: float) -> Array:
 
 def plane_axes(planes: Array) -> Array:
     """First, second and normal coordinate of each plane, (n,) codes to (n, 3)."""
-    table = np.zeros((max(PLANES) + 1, 3), dtype=np.int64)
+    table = np.zeros((max(PLANES) + 1, 3), dtype=np.uint8)
     for code, axes in PLANES.items():
         table[code] = axes
-    chosen: Array = table[planes]
-    return chosen
+    return by_row(table.__getitem__, planes)
 
 
 def normal_coordinate(planes: Array) -> Array:
@@ -165,25 +165,29 @@ class RowFrames:
     @classmethod
     def of(cls, frames: Sequence[Frame], frame: Array) -> RowFrames:
         """Those of rows whose frames are known by index."""
-        used, index = np.unique(frame, return_inverse=True)
-        chosen = [frames[which] for which in used.tolist()]
-        return cls(np.array([one.turn for one in chosen]), np.array([one.shift for one in chosen]), index)
+        if is_uniform(frame):
+            frames, frame = [frames[frame[0]]], uniform(0, len(frame))
+        return cls(np.array([one.turn for one in frames]), np.array([one.shift for one in frames]), frame)
 
     def directions(self, vectors: Array) -> Array:
         """(n, 3) vectors of the program in {C}; a vector with NaN becomes one."""
+        if (self.turn == np.eye(3)).all():
+            return vectors
         if len(self.turn) == 1:
             # Not with @: for three columns the threads of a BLAS cost more than they give.
-            return np.einsum("ij,nj->ni", self.turn[0], vectors)
+            return by_row(lambda some: np.einsum("ij,nj->ni", self.turn[0], some), vectors)
         return np.einsum("nij,nj->ni", self.turn[self.frame], vectors)
 
     def points(self, points: Array) -> Array:
         """(n, 3) points of the program in {C}."""
-        return self.directions(points) + self.shift[self.frame]
+        if not self.shift.any():
+            return self.directions(points)
+        shift = self.shift if len(self.shift) == 1 else self.shift[self.frame]
+        return self.directions(points) + shift
 
     def hand(self) -> Array:
         """Whether a frame is right-handed, 1, or a mirror image, -1, (n,)."""
-        hand: Array = np.sign(np.linalg.det(self.turn))[self.frame]
-        return hand
+        return by_row(np.sign(np.linalg.det(self.turn)).__getitem__, self.frame)
 
     def planes(self, normal: Array) -> tuple[Array, Array]:
         """What becomes of planes that are normal to a coordinate of the program.
@@ -196,4 +200,6 @@ class RowFrames:
         """
         plane = np.argmax(np.abs(self.turn), axis=1)
         along = np.take_along_axis(self.turn, plane[:, None, :], axis=1)[:, 0, :]
+        if len(self.turn) == 1:
+            return by_row(plane[0].astype(np.uint8).__getitem__, normal), by_row(along[0].__getitem__, normal)
         return plane[self.frame, normal], along[self.frame, normal]

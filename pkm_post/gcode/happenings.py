@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.gcode.blocks import Blocks, column_of
-from pkm_post.gcode.modal import NONE, Group, Modal, owners
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import NONE, Group
+from pkm_post.gcode.modal import Modal, changes
 from pkm_post.model import Event, EventKind
 from pkm_post.model.program import Array
 
@@ -28,22 +29,22 @@ InCycle = tuple[int, int, EventKind, float]
 def happenings(blocks: Blocks, modal: Modal, tools: Array, spindle: Array) -> list[Happening]:
     """What happens beside the motions, by block and rank."""
     found: list[Happening] = []
-    changes, stops = modal.explicit[Group.CHANGE], modal.explicit[Group.STOP]
-    for row in np.flatnonzero(changes == 6).tolist():
+    tool_changes, stops = modal.explicit[Group.CHANGE], modal.explicit[Group.STOP]
+    for row in np.flatnonzero(tool_changes == 6).tolist():
         found.append((row, -4, EventKind.TOOL_CHANGE, float(tools[row])))
-    before = np.append(0.0, spindle[:-1])[: len(spindle)]
-    switched = (modal.explicit[Group.SPINDLE] != NONE) | (spindle != before)
+    switched = (modal.explicit[Group.SPINDLE] != NONE) | changes(spindle, 0.0)
     for row in np.flatnonzero(switched).tolist():
         found.append((row, -3, EventKind.SPINDLE, float(spindle[row])))
     on_coolant = np.isin(blocks.m, list(_COOLANT))
-    for row, code in zip(owners(blocks.m_start)[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
+    for row, code in zip(blocks.m_row[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
         found.append((row, -2, EventKind.COOLANT, _COOLANT[code]))
-    for row in owners(blocks.g_start)[blocks.g == 40].tolist():
-        found.append((row, -1, EventKind.DWELL, float(blocks.words[row, column_of("P")])))
-    for row in np.flatnonzero(np.isin(stops, list(_STOPS))).tolist():
-        found.append((row, 1, EventKind.STOP, _STOPS[int(stops[row])]))
-    for row in np.flatnonzero(np.isin(stops, ENDS)).tolist():
-        found.extend(_at_the_end(row, spindle, found))
+    for row in blocks.g_row[blocks.g == 40].tolist():
+        found.append((row, -1, EventKind.DWELL, float(blocks.word("P")[row])))
+    for row in np.flatnonzero(stops != NONE).tolist():
+        if stops[row] in ENDS:
+            found.extend(_at_the_end(row, spindle, found))
+        else:
+            found.append((row, 1, EventKind.STOP, _STOPS[int(stops[row])]))
     return sorted(found, key=lambda one: one[:2])
 
 

@@ -15,8 +15,9 @@ from dataclasses import replace
 from pkm_post.model import Diagnostic
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
-_IN_MESSAGE = re.compile(rf"\b([A-Z])({_NUMBER}(?:e[+-]\d+)?)(?![\w.])")
-_IN_TEXT = re.compile(rf"([A-Z])[ \t]*({_NUMBER})", re.IGNORECASE)
+_NAME = r"[NT][XYZ]|[A-Z]"
+_IN_MESSAGE = re.compile(rf"\b({_NAME})({_NUMBER}(?:e[+-]\d+)?)(?![\w.])")
+_IN_TEXT = re.compile(rf"({_NAME})[ \t]*({_NUMBER})", re.IGNORECASE)
 _COMMENT = re.compile(r"\([^)]*\)?|;.*")
 
 

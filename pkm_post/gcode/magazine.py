@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import CYCLES, NONE, Group, name_of
 from pkm_post.gcode.findings import Findings
-from pkm_post.gcode.modal import NONE, Group, Modal, carried, name_of
+from pkm_post.gcode.modal import Modal, carried, changes
 from pkm_post.gcode.options import ReadOptions
 from pkm_post.model import Tool
 from pkm_post.model.program import Array
@@ -19,14 +20,18 @@ from pkm_post.model.program import Array
 
 def tools_in_spindle(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Array:
     """Number of the tool in the spindle in each block, (N,); ``NONE`` before the first M6."""
-    word = blocks.words[:, column_of("T")]
-    chosen = carried(word, ~np.isnan(word), NONE)
-    changes = modal.explicit[Group.CHANGE] == 6
-    number: Array = carried(chosen, changes, NONE).astype(np.int64)
-    for row in np.flatnonzero(changes).tolist():
-        if options.tool(int(number[row])) is None:
-            faults.tell("G411", row, f"T{number[row]}")
-    return number
+    chosen, change = _given(blocks, "T", NONE), np.flatnonzero(modal.explicit[Group.CHANGE] == 6)
+    number = chosen[change].astype(np.int32)
+    for row, called in zip(change.tolist(), number.tolist(), strict=True):
+        if options.tool(called) is None:
+            faults.tell("G411", row, f"T{called}")
+    return carried(change, number, NONE, len(blocks))
+
+
+def _given(blocks: Blocks, letter: str, before: float) -> Array:
+    """The last value of a word up to each block, (N,)."""
+    rows = np.flatnonzero(blocks.has(letter))
+    return carried(rows, blocks.word(letter)[rows], before, len(blocks))
 
 
 def tool_in_use(number: int, options: ReadOptions) -> Tool | None:
@@ -36,32 +41,35 @@ def tool_in_use(number: int, options: ReadOptions) -> Tool | None:
 
 def spindle_speeds(blocks: Blocks, modal: Modal) -> Array:
     """Signed speed of the spindle in each block, (N,), 1/min, positive clockwise, 0 at rest."""
-    word = blocks.words[:, column_of("S")]
-    speed = carried(word, ~np.isnan(word), 0.0)
-    turns = modal.explicit[Group.SPINDLE]
-    sense = carried(np.select([turns == 3, turns == 4], [1.0, -1.0], 0.0), turns != NONE, 0.0)
-    return speed * sense + 0.0
+    codes = modal.explicit[Group.SPINDLE]
+    rows = np.flatnonzero((codes != NONE) | blocks.has("S"))
+    speed = _given(blocks, "S", 0.0)[rows]
+    switched = np.flatnonzero(codes != NONE)
+    turns = np.select([codes[switched] == 3, codes[switched] == 4], [1.0, -1.0], 0.0)
+    sense = carried(switched, turns, 0.0, len(blocks))[rows]
+    return carried(rows, speed * sense + 0.0, 0.0, len(blocks))
 
 
 def side_offsets(blocks: Blocks, modal: Modal, tools: Array, options: ReadOptions, faults: Findings) -> Array:
     """Radius of the 2D compensation in force in each block, (N,), mm: positive to the left, negative to the right."""
     side = modal.explicit[Group.SIDE]
-    offset = np.zeros(len(blocks))
+    rows = np.flatnonzero(side != NONE)
+    offset = np.zeros(len(rows))
     before = 400
-    for row in np.flatnonzero(side != NONE).tolist():
+    for place, row in enumerate(rows.tolist()):
         code = int(side[row])
         if code != 400:
             if before != 400:
                 faults.tell("G419", row, f"{name_of(code)} while {name_of(before)} is in force")
             left = 1.0 if code in (410, 411) else -1.0
-            offset[row] = left * _radius(blocks, modal, row, int(tools[row]), options, faults)
+            offset[place] = left * _radius(blocks, modal, row, int(tools[row]), options, faults)
         before = code
     _unchanged(blocks, modal, faults)
-    return carried(offset, side != NONE, 0.0)
+    return carried(rows, offset, 0.0, len(blocks))
 
 
 def _radius(blocks: Blocks, modal: Modal, row: int, number: int, options: ReadOptions, faults: Findings) -> float:
-    word = blocks.words[row, column_of("D")]
+    word = blocks.word("D")[row]
     if modal.explicit[Group.SIDE][row] in (411, 421):
         return float(word * modal.scale[row] / 2)
     tool = tool_in_use(number, options) if np.isnan(word) else options.tool(int(word))
@@ -74,8 +82,10 @@ def _radius(blocks: Blocks, modal: Modal, row: int, number: int, options: ReadOp
 def _unchanged(blocks: Blocks, modal: Modal, faults: Findings) -> None:
     """What would change the plane or the frame under a compensated path is a fault."""
     on = modal.in_force[Group.SIDE] != 400
+    if not on.any():
+        return
     plane = modal.in_force[Group.PLANE]
-    turned = np.append(False, plane[1:] != plane[:-1])[: len(plane)]
+    turned = changes(plane, plane[0])
     was_on = np.append(False, on[:-1])[: len(on)]
     faults.tell_all("G419", on & was_on & turned, lambda row: name_of(plane[row]))
     frame = np.zeros(len(blocks), dtype=np.int32) + NONE
@@ -83,5 +93,5 @@ def _unchanged(blocks: Blocks, modal: Modal, faults: Findings) -> None:
         codes = modal.explicit[group]
         frame = np.where((codes != NONE) & (codes != 40), codes, frame)
     faults.tell_all("G419", on & (frame != NONE), lambda row: name_of(frame[row]))
-    cycle = modal.moves & (modal.in_force[Group.MOTION] >= 730) & (modal.in_force[Group.MOTION] != 800)
+    cycle = modal.moves & np.isin(modal.in_force[Group.MOTION], CYCLES)
     faults.tell_all("G419", on & cycle, lambda row: name_of(modal.in_force[Group.MOTION][row]))

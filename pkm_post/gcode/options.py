@@ -17,6 +17,19 @@ Point = tuple[float, float, float]
 AXIS_WORDS: dict[str, str] = {"none": "", "vector": "IJK", "AC": "AC", "BC": "BC", "AB": "AB", "RPY": "ABC"}
 """For each way to say the tool axis the letters that say it."""
 
+VECTOR_WORDS: dict[str, tuple[str, ...]] = {"I": ("I", "A3", "TX"), "J": ("J", "B3", "TY"), "K": ("K", "C3", "TZ")}
+"""For each component of a vector the words that say it, in the dialects there are."""
+
+NORMAL_WORDS = ("NX", "NY", "NZ")
+"""The words of the surface normal."""
+
+
+def axis_names(axis_words: str) -> tuple[str, ...]:
+    """The words that move the tool axis, in all dialects."""
+    letters = AXIS_WORDS[axis_words]
+    return tuple(name for letter in letters for name in VECTOR_WORDS.get(letter, (letter,)))
+
+
 UNITS: dict[str, float] = {"mm": 1.0, "inch": 25.4}
 """mm in one unit of length."""
 

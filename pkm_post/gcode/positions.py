@@ -7,29 +7,52 @@ sets the coordinate in absolute mode and adds to it in relative mode; between tw
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.modal import Modal, carried
 from pkm_post.model.program import Array
 
 
-def follow(words: Array, relative: Array, start: Array) -> tuple[Array, Array]:
-    """The coordinates after each block, and whether they are known.
+@dataclass(frozen=True)
+class Coordinates:
+    """Words X Y Z of N blocks in mm, NaN where a block has none: three (N,) columns."""
+
+    columns: tuple[Array, Array, Array]
+
+    @classmethod
+    def of(cls, blocks: Blocks, modal: Modal) -> Coordinates:
+        """Those of plain blocks."""
+        x, y, z = (modal.in_mm(blocks.word(letter)) for letter in "XYZ")
+        return cls((x, y, z))
+
+    def at(self, row: int) -> Array:
+        """Those of one block, (3,)."""
+        return np.array([column[row] for column in self.columns])
+
+
+def follow(words: Array, relative: Array, start: float) -> tuple[Array, int]:
+    """A coordinate after each block, and since when it is known.
 
     Args:
-        words: (n, m) values of m letters.
+        words: (n,) values of its letter.
         relative: (n,) whether they are distances (G91).
-        start: (m,) coordinates before.
+        start: the coordinate before.
 
     Returns:
-        (n, m) coordinates, and (n, m) whether an absolute word has been given by then.
+        (n,) coordinates, and the first row that has an absolute word, n if none has.
     """
-    rows = np.arange(len(words))[:, None]
     given = ~np.isnan(words)
-    values = np.where(given, words, 0.0)
-    last = np.maximum.accumulate(np.where(given & ~relative[:, None], rows, -1), axis=0)
-    known = last >= 0
     if not relative.any():
-        return np.where(known, np.take_along_axis(values, last, axis=0), start), known
-    travelled = np.cumsum(np.where(relative[:, None], values, 0.0), axis=0)
-    base = np.where(known, np.take_along_axis(values - travelled, last, axis=0), start)
-    return base + travelled, known
+        rows = np.flatnonzero(given)
+        return carried(rows, words[rows], start, len(words)), _first(rows, len(words))
+    rows = np.flatnonzero(given & ~relative)
+    travelled = np.cumsum(np.where(relative & given, words, 0.0))
+    base = carried(rows, words[rows] - travelled[rows], start, len(words))
+    return base + travelled, _first(rows, len(words))
+
+
+def _first(rows: Array, none: int) -> int:
+    return int(rows[0]) if len(rows) else none

@@ -8,26 +8,32 @@ known go to no place and are folded into the first one whose end is known. What 
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.gcode.arc_motions import arcs_of, known_ones, lengths, single_turns
-from pkm_post.gcode.axes import tool_axes
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.axes import surface_normals, tool_axes
+from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.checks import check
-from pkm_post.gcode.feeds import feeds
+from pkm_post.gcode.codes import NONE, Group
+from pkm_post.gcode.feeds import INVERSE_TIME, feeds
 from pkm_post.gcode.findings import Findings
 from pkm_post.gcode.frames import RowFrames, normal_coordinate
 from pkm_post.gcode.happenings import ENDS, events, happenings
 from pkm_post.gcode.magazine import side_offsets, spindle_speeds, tools_in_spindle
-from pkm_post.gcode.modal import NONE, Group, Modal, modal_state, owners
-from pkm_post.gcode.options import AXIS_WORDS, UNITS, ReadOptions
-from pkm_post.gcode.walk import Motions, Walk
+from pkm_post.gcode.modal import Modal, modal_state
+from pkm_post.gcode.motions import Motions
+from pkm_post.gcode.options import UNITS, ReadOptions, axis_names
+from pkm_post.gcode.walk import Walk
 from pkm_post.model import Diagnostic, Kind, Program, Tool
+from pkm_post.model.columns import by_row, is_uniform, locked, uniform
 from pkm_post.model.program import Array
 
 _ALONG_AN_AXIS = 1 - 1e-9
+_KIND = np.zeros(31, np.uint8)
+_KIND[[0, 10, 20, 30]] = Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC
+"""By code of a motion."""
 
 
 def resolve(blocks: Blocks, options: ReadOptions) -> tuple[Program | None, tuple[Diagnostic, ...]]:
@@ -47,7 +53,7 @@ def resolve(blocks: Blocks, options: ReadOptions) -> tuple[Program | None, tuple
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
     blocks = _read(blocks, options)
     faults = Findings(blocks)
-    modal = modal_state(blocks, UNITS[options.unit], AXIS_WORDS[options.axis_words])
+    modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words))
     check(blocks, modal, options, faults)
     if faults.stop():
         return None, faults.in_order()
@@ -57,73 +63,134 @@ def resolve(blocks: Blocks, options: ReadOptions) -> tuple[Program | None, tuple
 
 def _read(blocks: Blocks, options: ReadOptions) -> Blocks:
     """The blocks that are carried out: without deleted ones, up to the end of the program."""
-    ends = owners(blocks.m_start)[np.isin(blocks.m, ENDS)]
+    ends = blocks.m_row[np.isin(blocks.m, ENDS)]
     if options.block_delete:
         ends = ends[~blocks.deleted[ends]]
-    until = int(ends[0]) + 1 if len(ends) else len(blocks)
-    if until == len(blocks) and not (options.block_delete and blocks.deleted.any()):
-        return blocks
-    keep = np.arange(len(blocks)) < until
-    if options.block_delete:
-        keep &= ~blocks.deleted
-    codes = {}
-    for name in ("g", "m"):
-        start = getattr(blocks, f"{name}_start")
-        codes[name] = getattr(blocks, name)[keep[owners(start)]]
-        codes[f"{name}_start"] = np.append(0, np.cumsum(np.diff(start)[keep]))
-    return replace(blocks, line=blocks.line[keep], words=blocks.words[keep], deleted=blocks.deleted[keep], **codes)
+    if len(ends):
+        blocks = blocks.first(int(ends[0]) + 1)
+    if options.block_delete and blocks.deleted.any():
+        blocks = blocks.chosen(np.flatnonzero(~blocks.deleted))
+    return blocks
 
 
-def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Program | None:
+@dataclass(frozen=True)
+class _Settings:
+    """What holds in each block beside places and modes.
+
+    Attributes:
+        tools: (N,) number of the tool in the spindle.
+        spindle: (N,) signed speed of the spindle, 1/min.
+        sides: (N,) radius of the 2D compensation, mm.
+        axes: (N, 3) unit tool axis in coordinates of the program.
+        normals: (N, 3) unit surface normal likewise, or NaN.
+    """
+
+    tools: Array
+    spindle: Array
+    sides: Array
+    axes: Array
+    normals: Array
+
+
+def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> _Settings:
     tools = tools_in_spindle(blocks, modal, options, faults)
-    spindle = spindle_speeds(blocks, modal)
-    sides = side_offsets(blocks, modal, tools, options, faults)
-    upright = tool_axes(blocks, modal, options, faults)
-    _tolerances(modal, blocks, faults)
-    motions = Walk(blocks, modal, tools, spindle, options, faults).motions()
-    centre, axis = arcs_of(blocks, modal, motions, faults)
-    if faults.stop():
-        return None
-    motions, centre, axis = known_ones(*single_turns(blocks, modal, motions, centre, axis))
-    block = motions.block
-    if not len(block):
-        faults.tell("G420", 0, f"{len(blocks)} blocks")
-        return None
-    frames = RowFrames.of(motions.frames, motions.frame)
-    tilted = upright[block]
-    turns = np.append(True, np.any(tilted[1:] != tilted[:-1], axis=1))
-    way = lengths(motions, centre, axis)
-    side, plane = _compensation(blocks, modal, motions, frames, sides, faults)
-    return Program(
-        kind=np.select([motions.motion == 0, motions.motion == 10], [Kind.RAPID, Kind.LINE], Kind.ARC),
-        position=frames.points(motions.end),
-        tool_axis=frames.directions(tilted),
-        feed=feeds(blocks, modal, spindle, block, motions.motion != 0, way, turns, faults),
-        arc_centre=frames.points(centre),
-        arc_axis=frames.hand()[:, None] * frames.directions(axis),
-        operation=np.zeros(len(block)),
-        line=blocks.line[block],
-        events=events(happenings(blocks, modal, tools, spindle), motions.in_cycles, block),
-        operations=("",),
-        tools=_tools(tools, options),
-        source=blocks.source,
-        exact_stop=np.isin(modal.in_force[Group.PATH], (610, 611))[block],
-        side_offset=side,
-        plane=plane,
+    return _Settings(
+        tools=tools,
+        spindle=spindle_speeds(blocks, modal),
+        sides=side_offsets(blocks, modal, tools, options, faults),
+        axes=tool_axes(blocks, modal, options, faults),
+        normals=surface_normals(blocks, faults),
     )
 
 
+def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Program | None:
+    settings = _settings(blocks, modal, options, faults)
+    _tolerances(modal, blocks, faults)
+    motions = Walk(blocks, modal, settings.tools, settings.spindle, options, faults).motions()
+    centre, axis = arcs_of(blocks, modal, motions, faults)
+    if faults.stop():
+        return None
+    motions, centre, axis = single_turns(blocks, modal, motions, centre, axis)
+    way = _ways(modal, motions, centre, axis)
+    motions, (centre, axis, way) = known_ones(motions, [centre, axis, way])
+    if not len(motions):
+        faults.tell("G420", 0, f"{len(blocks)} blocks")
+        return None
+    columns = _directions(blocks, modal, settings, motions, axis, faults)
+    turns = _turns(modal, columns["tool_axis"])
+    columns |= {
+        "kind": _KIND[motions.motion],
+        "position": _frames(motions).points(motions.end),
+        "feed": feeds(blocks, modal, settings.spindle, motions, way, turns, faults),
+        "arc_centre": _frames(motions).points(centre),
+        "operation": uniform(0, len(motions), np.int32),
+        "line": motions.of_blocks(blocks.line),
+        "exact_stop": motions.of_blocks(by_row(_is_exact, modal.in_force[Group.PATH])),
+    }
+    return Program(
+        **{name: locked(column) for name, column in columns.items()},
+        events=events(happenings(blocks, modal, settings.tools, settings.spindle), motions.in_cycles, motions.block),
+        operations=("",),
+        tools=_tools(settings.tools, options),
+        source=blocks.source,
+    )
+
+
+def _frames(motions: Motions) -> RowFrames:
+    return RowFrames.of(motions.frames, motions.frame)
+
+
+def _directions(
+    blocks: Blocks, modal: Modal, settings: _Settings, motions: Motions, axis: Array, faults: Findings
+) -> dict[str, Array]:
+    """The columns of a program that frames turn and mirror, but do not shift."""
+    frames = _frames(motions)
+    side, plane = _compensation(blocks, modal, motions, frames, settings.sides, faults)
+    return {
+        "tool_axis": frames.directions(motions.of_blocks(settings.axes)),
+        "arc_axis": _turned(frames.hand(), frames.directions(axis)),
+        "side_offset": side,
+        "plane": plane,
+        "normal": frames.directions(motions.of_blocks(settings.normals)),
+    }
+
+
+def _ways(modal: Modal, motions: Motions, centre: Array, axis: Array) -> Array:
+    """Ways of the tool tip, (n,), mm; zeros in a program without G93, where nobody asks for them."""
+    if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
+        return lengths(motions, centre, axis)
+    return uniform(0.0, len(motions))
+
+
+def _turns(modal: Modal, axis: Array) -> Array:
+    """Whether the tool axis turns, (n,); all true in a program without G93, where nobody asks for it."""
+    if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
+        return np.append(True, np.any(axis[1:] != axis[:-1], axis=1))
+    return uniform(True, len(axis))
+
+
+def _turned(hand: Array, axis: Array) -> Array:
+    """Axes of arcs in {C}, right-handed again where a frame is a mirror image."""
+    return axis if is_uniform(axis) or (hand > 0).all() else hand[:, None] * axis
+
+
+def _is_exact(path: Array) -> Array:
+    return np.isin(path, (610, 611))
+
+
 def _tolerances(modal: Modal, blocks: Blocks, faults: Findings) -> None:
-    wanted = (modal.explicit[Group.PATH] == 640) & ~np.isnan(blocks.words[:, column_of("P")])
-    faults.tell_all("G417", wanted, lambda row: f"G64 P{blocks.words[row, column_of('P')]:g}")
+    wanted = (modal.explicit[Group.PATH] == 640) & blocks.has("P")
+    faults.tell_all("G417", wanted, lambda row: f"G64 P{blocks.word('P')[row]:g}")
 
 
 def _compensation(
     blocks: Blocks, modal: Modal, motions: Motions, frames: RowFrames, sides: Array, faults: Findings
 ) -> tuple[Array, Array]:
     """Side offset and plane of each motion in {C}, (n,) each: a mirror changes the side."""
-    plane, along = frames.planes(normal_coordinate(modal.in_force[Group.PLANE])[motions.block])
-    side = sides[motions.block]
+    plane, along = frames.planes(by_row(normal_coordinate, motions.of_blocks(modal.in_force[Group.PLANE])))
+    side = motions.of_blocks(sides)
+    if not side.any():
+        return side, plane
     oblique = np.zeros(len(blocks), dtype=np.bool_)
     oblique[motions.block[(side != 0) & (np.abs(along) < _ALONG_AN_AXIS)]] = True
     faults.tell_all("G419", oblique, lambda _: "the plane is turned out of X, Y and Z")

@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from pkm_post.gcode.blocks import column_of
 from pkm_post.gcode.grammar import BLOCK
 
 if TYPE_CHECKING:
@@ -26,6 +25,9 @@ DEEPEST_TREE = 100
 """Levels of an expression, so that whoever walks the tree may do it by recursion."""
 
 LARGEST_CODE = 9999.0
+
+DIALECT_CODES: dict[str, tuple[int, ...]] = {"LN": (435, 10), "TRAORI": (435,), "TRAFOOF": (430,)}
+"""Words of other dialects and the G codes, in tenths, that mean the same: G43.5 G1, G43.5 and G43."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Row:
     """What a block holds.
 
     Attributes:
-        columns: columns of ``Blocks.words`` in the order of the block.
+        letters: the words in the order of the block.
         values: their values.
         g: G codes in tenths.
         m: M codes.
@@ -56,7 +58,7 @@ class Row:
         tree: the block itself, if it holds more than plain words; the other fields are empty then.
     """
 
-    columns: list[int] = field(default_factory=list)
+    letters: list[str] = field(default_factory=list)
     values: list[float] = field(default_factory=list)
     g: list[int] = field(default_factory=list)
     m: list[int] = field(default_factory=list)
@@ -64,7 +66,7 @@ class Row:
     tree: Tree[Token] | None = None
 
     def __bool__(self) -> bool:
-        return bool(self.columns or self.g or self.m or self.tree)
+        return bool(self.letters or self.g or self.m or self.tree)
 
 
 class _Bad(Exception):  # noqa: N818 - it stays within this file
@@ -101,7 +103,7 @@ def _row_of(tree: Tree[Token]) -> Row:
     for child in tree.children:
         if isinstance(child, str):
             row.deleted |= child.type == "DELETE"
-            special |= child.type not in ("DELETE", "PERCENT")
+            row.g.extend(dialect_codes(child))
         elif child.data in ("word", "named_word", "surface_word"):
             special |= not _add_word(row, child, seen)
         else:
@@ -111,22 +113,27 @@ def _row_of(tree: Tree[Token]) -> Row:
     return row
 
 
+def dialect_codes(word: str) -> tuple[int, ...]:
+    """The G codes, in tenths, that a terminal such as TRAORI(1) stands for."""
+    return DIALECT_CODES.get(word.split("(")[0].strip().upper(), ())
+
+
 def _add_word(row: Row, word: Tree[Token], seen: set[str]) -> bool:
-    """Put a word into the row; whether it is a plain one, of a letter and a number."""
+    """Put a word into the row; whether it is a plain one, of a name and a number."""
     name, value = word.children
     assert isinstance(name, str)  # the grammar begins every word with a terminal
     letter = "".join(name.split()).upper()
     if letter in seen and letter not in "GM":
         raise _Bad("G202", name)
     seen.add(letter)
-    if not isinstance(value, str) or len(letter) > 1:
+    if not isinstance(value, str):
         return False
     if letter == "G":
         row.g.append(_code(name, value, 10))
     elif letter == "M":
         row.m.append(_code(name, value, 1))
     else:
-        row.columns.append(column_of(letter))
+        row.letters.append(letter)
         row.values.append(_finite(value))
     return True
 

@@ -12,9 +12,7 @@ from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.executed import ExecutedBlocks
 from pkm_post.gcode.flow import Flow
 from pkm_post.gcode.limits import ExecutionLimits
@@ -25,7 +23,6 @@ from pkm_post.model.program import Array
 PROGRAM_END = (2, 30)
 CALL, RETURN = 98, 99
 SUBPROGRAM_CODES = (CALL, RETURN)
-_P, _L = column_of("P"), column_of("L")
 
 
 @dataclass
@@ -73,7 +70,6 @@ class Run:
         self._limits, self._executed = limits, executed
         self._blocks_left, self._operations_left = limits.blocks, limits.operations
         self._cost = {row: statement.cost for row, statement in statements.items()}
-        self._code_start = blocks.g_start + blocks.m_start
         self._parameters = Parameters()
         self._levels = [_Level(back=len(blocks), begin=0)]
 
@@ -98,9 +94,14 @@ class Run:
         self._refuse_open_subprogram()
 
     def _move(self, stop: int) -> None:
-        self._spend(stop - self.row, int(self._code_start[stop] - self._code_start[self.row]))
+        self._spend(stop - self.row, self._codes(self.row, stop))
         self._executed.move(self.row, stop)
         self.row = stop
+
+    def _codes(self, begin: int, end: int) -> int:
+        """How many G and M codes stand in plain rows."""
+        bounds = [rows.searchsorted((begin, end)) for rows in (self._blocks.g_row, self._blocks.m_row)]
+        return int(sum(last - first for first, last in bounds))
 
     def _spend(self, blocks: int, operations: int) -> None:
         self._blocks_left -= blocks
@@ -125,10 +126,10 @@ class Run:
         return row + 1 if self._left_out[row] else self._finish(row, self._plain(row))
 
     def _plain(self, row: int) -> Row:
-        self._spend(0, int(self._code_start[row + 1] - self._code_start[row]))
-        given = np.flatnonzero(~np.isnan(self._blocks.words[row])).tolist()
-        values = {column: float(self._blocks.words[row, column]) for column in given}
-        return Row(values, tuple(self._blocks.g_of(row).tolist()), tuple(self._blocks.m_of(row).tolist()))
+        self._spend(0, self._codes(row, row + 1))
+        return Row(
+            self._blocks.words_of(row), tuple(self._blocks.g_of(row).tolist()), tuple(self._blocks.m_of(row).tolist())
+        )
 
     def _finish(self, row: int, done: Row) -> int:
         """Hand on a computed row, then do what its M codes say about the next one."""
@@ -140,7 +141,7 @@ class Run:
         if ruling and len(ruling) + len(ends) > 1:
             raise ExecutionFault("G316", " ".join(f"M{code}" for code in (*ruling, *ends)))
         if ruling:
-            rest = {column: value for column, value in done.values.items() if column not in (_P, _L)}
+            rest = {letter: value for letter, value in done.values.items() if letter not in "PL"}
             codes = tuple(code for code in done.m if code not in SUBPROGRAM_CODES)
             self._executed.add(row, replace(done, values=rest, m=codes))
             return self._call_program(row, done) if ruling == [CALL] else self._leave_program(done)
@@ -148,11 +149,9 @@ class Run:
         return len(self._blocks) + 1 if ends else row + 1
 
     def _call_program(self, row: int, done: Row) -> int:
-        number, passes = (whole(done.values.get(column, default)) for column, default in ((_P, -1.0), (_L, 1.0)))
+        number, passes = (whole(done.values.get(letter, default)) for letter, default in (("P", -1.0), ("L", 1.0)))
         if number is None or passes is None or number < 0 or passes < 0:
-            words = "".join(
-                f" {letter}{done.values[c]:.10g}" for letter, c in (("P", _P), ("L", _L)) if c in done.values
-            )
+            words = "".join(f" {letter}{done.values[letter]:.10g}" for letter in "PL" if letter in done.values)
             raise ExecutionFault("G316", f"M98{words}")
         label = str(number)
         # A subprogram with sub and endsub cannot be run by M98: it would not know its arguments.
@@ -166,8 +165,8 @@ class Run:
 
     def _leave_program(self, done: Row) -> int:
         level = self._levels[-1]
-        if not level.by_m98 or _P in done.values:
-            raise ExecutionFault("G312", "M99 P" if _P in done.values else "M99 outside of a subprogram called by M98")
+        if not level.by_m98 or "P" in done.values:
+            raise ExecutionFault("G312", "M99 P" if "P" in done.values else "M99 outside of a subprogram called by M98")
         self._parameters.leave(None)
         if level.passes:
             level.passes -= 1

@@ -13,10 +13,11 @@ import numpy as np
 
 from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.faults import Faults
-from pkm_post.gcode.lexer import BLANK, Lexed, lex, malformed_lines, read_numbers
+from pkm_post.gcode.lexer import Lexed, lex
 from pkm_post.gcode.lines import clean, pieces, without_comments, without_lines
+from pkm_post.gcode.numbers import values_of
 from pkm_post.gcode.row import LONGEST_LINE, Row, read_row
-from pkm_post.gcode.shapes import BY_ITSELF, NOTHING, Layouts, Shapes
+from pkm_post.gcode.shapes import BY_ITSELF, NOTHING, Shapes
 from pkm_post.gcode.table import Table
 from pkm_post.model.diagnostics import Diagnostic
 from pkm_post.model.program import Array
@@ -77,10 +78,10 @@ def _scan_piece(piece: bytes, shapes: Shapes, table: Table, faults: Faults) -> N
     lexed = lex(text)
     shape = np.fromiter(map(shapes.__getitem__, lexed.shapes), np.intp, len(lexed.shapes))
     shape[too_long] = BY_ITSELF
-    values = _values(text, lexed, line_start, shape, shapes.layouts())
+    values = _values(text, lexed, line_start, shape)
     alone, faulty = _read_alone(piece, line_start, shape, table.next_line, faults)
     shape[sorted(faulty)] = NOTHING
-    lines = np.searchsorted(line_start, [offset for offset, _ in spoken], side="right") - 1
+    lines = _lines_at(np.array([offset for offset, _ in spoken], np.int64), line_start)
     said = zip(lines.tolist(), (comment for _, comment in spoken), strict=True)
     table.comments.extend((table.next_line + index, comment) for index, comment in said if index not in faulty)
     table.add_lines(shape, shapes.layouts(), values, alone)
@@ -103,23 +104,16 @@ def _read_alone(
     return rows, faulty
 
 
-def _values(text: bytes, lexed: Lexed, line_start: Array, shape: Array, layouts: Layouts) -> Array:
+def _values(text: bytes, lexed: Lexed, line_start: Array, shape: Array) -> Array:
     """The numbers of all the lines that have a shape. Lines with a number that is none lose theirs."""
-    if lexed.suspicious:
-        shape[malformed_lines(text)] = BY_ITSELF
-    values = _read_numbers(lexed, line_start, shape, layouts)
-    if values is None:
-        shape[malformed_lines(text)] = BY_ITSELF
-        values = _read_numbers(lexed, line_start, shape, layouts)
-    if values is not None and not np.isfinite(values).all():
-        line_of_number = np.repeat(np.arange(len(shape)), layouts.columns.count[shape])
-        shape[line_of_number[~np.isfinite(values)]] = BY_ITSELF
-        values = _read_numbers(lexed, line_start, shape, layouts)
-    assert values is not None  # no malformed number is left
+    values = values_of(text, lexed.starts, lexed.ends)
+    wrong = np.concatenate([lexed.suspicious, lexed.starts[~np.isfinite(values)]])
+    shape[_lines_at(wrong, line_start)] = BY_ITSELF
+    if (shape == BY_ITSELF).any():
+        values = values[shape[_lines_at(lexed.starts, line_start)] != BY_ITSELF]
     return values
 
 
-def _read_numbers(lexed: Lexed, line_start: Array, shape: Array, layouts: Layouts) -> Array | None:
-    for index in np.flatnonzero(shape == BY_ITSELF).tolist():
-        lexed.numbers[line_start[index] : line_start[index + 1]] = BLANK
-    return read_numbers(lexed.numbers, int(layouts.columns.count[shape].sum()))
+def _lines_at(offsets: Array, line_start: Array) -> Array:
+    """The lines, from 0, that some bytes stand in."""
+    return np.searchsorted(line_start, offsets, side="right") - 1

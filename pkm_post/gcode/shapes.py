@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Shapes: what blocks hold that differ in nothing but their numbers.
 
-Enters: the shape of a line as the lexer leaves it. Leaves: its number in the table, and for that the columns that its
-numbers go to and its codes. Real programs have some ten to hundred shapes, so lark judges some hundred blocks of a
+Enters: the shape of a line as the lexer leaves it. Leaves: its number in the table, and for that the letters that its
+numbers belong to and its codes. Real programs have some ten to hundred shapes, so lark judges some hundred blocks of a
 million; nothing is accepted whose shape it has not accepted.
 """
 
@@ -38,6 +38,8 @@ class Lists:
     def of(self, shapes: Array) -> tuple[Array, Array]:
         """The lists of a column of shapes, one after the other, and the length of each."""
         count = self.count[shapes]
+        if not len(self._all):
+            return self._all, count
         first = np.repeat(self._start[shapes] - (np.cumsum(count) - count), count)
         numbers: Array = self._all[first + np.arange(len(first))]
         return numbers, count
@@ -50,14 +52,16 @@ class Layouts:
     Attributes:
         filled: (S,) whether there is anything in the block.
         deleted: (S,) whether it begins with ``/``.
-        columns: the columns of words its numbers go to.
+        count: (S,) how many numbers it has.
+        places: by letter, (S,) which of its numbers belongs to it, from 0; -1 where none does.
         g: its G codes in tenths.
         m: its M codes.
     """
 
     filled: Array
     deleted: Array
-    columns: Lists
+    count: Array
+    places: dict[str, Array]
     g: Lists
     m: Lists
 
@@ -91,7 +95,12 @@ def _layouts(rows: list[Row]) -> Layouts:
     return Layouts(
         filled=np.array([bool(row) for row in rows]),
         deleted=np.array([row.deleted for row in rows]),
-        columns=Lists([row.columns for row in rows]),
+        count=np.array([len(row.letters) for row in rows]),
+        places={letter: _places(letter, rows) for letter in sorted(set().union(*(row.letters for row in rows)))},
         g=Lists([row.g for row in rows]),
         m=Lists([row.m for row in rows]),
     )
+
+
+def _places(letter: str, rows: list[Row]) -> Array:
+    return np.array([row.letters.index(letter) if letter in row.letters else -1 for row in rows])

@@ -2,8 +2,8 @@
 """Statements: special blocks, made ready once to be executed as often as the program comes to them.
 
 Enters: the trees of the blocks. Leaves: for an O word its keyword, label and values; for every other block its words,
-codes and assignments as expressions. Words that name the components of the tool axis in other dialects become I J K
-here, and the words that switch such a dialect on and off become the G codes that mean the same.
+codes and assignments as expressions. Words that switch another dialect on and off become the G codes that mean the
+same.
 """
 
 from __future__ import annotations
@@ -12,21 +12,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from pkm_post.gcode.blocks import column_of
 from pkm_post.gcode.expressions import Expression, Target, column_of_node, expression_of, plain_name, target_of
 from pkm_post.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole
-from pkm_post.gcode.row import LARGEST_CODE
+from pkm_post.gcode.row import LARGEST_CODE, dialect_codes
 
 if TYPE_CHECKING:
     from lark import Token, Tree
 
     Node = Tree[Token] | Token
-
-AXIS_COMPONENTS: dict[str, str] = {"A3": "I", "B3": "J", "C3": "K", "TX": "I", "TY": "J", "TZ": "K"}
-"""Words for the components of the tool axis, and the letter of the same meaning after G43.5."""
-
-DIALECT_CODES: dict[str, tuple[int, ...]] = {"LN": (435, 10), "TRAORI": (435,), "TRAFOOF": (430,)}
-"""Words of other dialects and the G codes, in tenths, that mean the same: G43.5 G1, G43.5 and G43."""
 
 _NEAR_A_CODE = 1e-3
 """How far from a code, in its own parts, a value may be that stands for it."""
@@ -37,16 +30,14 @@ class Row:
     """The plain words of a block as executed.
 
     Attributes:
-        values: by column of ``Blocks.words``.
+        values: by letter.
         g: G codes in tenths.
         m: M codes.
-        turns_axis: whether I J K were written as words that mean nothing but the tool axis.
     """
 
-    values: dict[int, float] = field(default_factory=dict)
+    values: dict[str, float] = field(default_factory=dict)
     g: tuple[int, ...] = ()
     m: tuple[int, ...] = ()
-    turns_axis: bool = False
 
 
 @dataclass
@@ -54,20 +45,18 @@ class Words:
     """A block of words, codes and assignments.
 
     Attributes:
-        values: column of ``Blocks.words`` and value.
+        values: letter and value.
         g: G codes, as numbers and not in tenths.
         m: M codes.
         codes: G codes in tenths that stand for words of other dialects.
         assignments: what is assigned after all values of the block are computed.
-        turns_axis: as of ``Row``.
     """
 
-    values: list[tuple[int, Expression]] = field(default_factory=list)
+    values: list[tuple[str, Expression]] = field(default_factory=list)
     g: list[Expression] = field(default_factory=list)
     m: list[Expression] = field(default_factory=list)
     codes: tuple[int, ...] = ()
     assignments: list[tuple[Target, Expression]] = field(default_factory=list)
-    turns_axis: bool = False
 
     @property
     def cost(self) -> int:
@@ -85,7 +74,7 @@ class Words:
         Raises:
             ExecutionFault: a value cannot be computed or is no value of its word.
         """
-        values = {column: value.value(parameters) for column, value in self.values}
+        values = {letter: value.value(parameters) for letter, value in self.values}
         g = tuple([*self.codes, *[_code("G", code, 10, parameters) for code in self.g]])
         m = tuple([_code("M", code, 1, parameters) for code in self.m])
         computed = [(target.resolved(parameters), value.value(parameters)) for target, value in self.assignments]
@@ -94,7 +83,7 @@ class Words:
                 parameters.assign(name, value)
             except ExecutionFault as fault:
                 raise ExecutionFault(fault.code, fault.found, target.column) from None
-        return Row(values, g, m, self.turns_axis)
+        return Row(values, g, m)
 
 
 @dataclass(frozen=True)
@@ -133,7 +122,7 @@ def statement_of(tree: Tree[Token]) -> Statement:
     words = Words()
     for child in tree.children:
         if isinstance(child, str):
-            words.codes += DIALECT_CODES.get(child.split("(")[0].strip().upper(), ())
+            words.codes += dialect_codes(child)
         elif child.data == "o_word":
             return _o_word_of(child)
         elif child.data in _ADD:
@@ -142,29 +131,14 @@ def statement_of(tree: Tree[Token]) -> Statement:
 
 
 def _add_word(words: Words, word: Tree[Token]) -> None:
-    letter = str(word.children[0]).upper()
+    name = "".join(str(word.children[0]).split()).upper()
     value = expression_of(word.children[1])
-    if letter == "G":
+    if name == "G":
         words.g.append(value)
-    elif letter == "M":
+    elif name == "M":
         words.m.append(value)
     else:
-        _add_value(words, letter, value, word)
-
-
-def _add_axis_component(words: Words, word: Tree[Token]) -> None:
-    name = "".join(str(word.children[0]).split()).upper()
-    if name not in AXIS_COMPONENTS:
-        raise ExecutionFault("G317", f"{name}, of the normal of the surface", column_of_node(word))
-    words.turns_axis = True
-    _add_value(words, AXIS_COMPONENTS[name], expression_of(word.children[1]), word)
-
-
-def _add_value(words: Words, letter: str, value: Expression, word: Tree[Token]) -> None:
-    column = column_of(letter)
-    if any(column == given for given, _ in words.values):
-        raise ExecutionFault("G317", f"{word.children[0]} and another word for {letter}", column_of_node(word))
-    words.values.append((column, value))
+        words.values.append((name, value))
 
 
 def _add_assignment(words: Words, assignment: Tree[Token]) -> None:
@@ -174,8 +148,8 @@ def _add_assignment(words: Words, assignment: Tree[Token]) -> None:
 
 _ADD: dict[str, Callable[[Words, Tree[Token]], None]] = {
     "word": _add_word,
-    "named_word": _add_axis_component,
-    "surface_word": _add_axis_component,
+    "named_word": _add_word,
+    "surface_word": _add_word,
     "assignment": _add_assignment,
 }
 

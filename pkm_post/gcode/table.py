@@ -2,7 +2,7 @@
 """The table of blocks while it grows.
 
 Enters: rows, or the shapes and numbers of many lines. Leaves: ``Blocks``. The words are written where they stay: they
-are most of what a program needs of memory, 208 bytes per block.
+are most of what a program needs of memory, 8 bytes per block for each letter that it uses.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pkm_post.gcode.blocks import LETTERS, Blocks
+from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.row import Row
 from pkm_post.gcode.shapes import Layouts
+from pkm_post.model.columns import locked
 from pkm_post.model.program import Array
 
 if TYPE_CHECKING:
@@ -32,14 +33,11 @@ class Table:
         """Make room for the blocks of so many lines."""
         self.next_line = 1
         self.comments: list[tuple[int, str]] = []
-        self._rows = 0
-        self._words = np.empty((lines, len(LETTERS)))
-        self._line: list[Array] = []
-        self._deleted: list[Array] = []
-        self._g: list[Array] = []
-        self._g_count: list[Array] = []
-        self._m: list[Array] = []
-        self._m_count: list[Array] = []
+        self._lines, self._rows = lines, 0
+        self._line = np.empty(lines, np.int32)
+        self._deleted = np.empty(lines, np.bool_)
+        self._words: dict[str, Array] = {}
+        self._g, self._m = _Codes(), _Codes()
         self._special: dict[int, Tree[Token]] = {}
 
     def add_row(self, row: Row) -> None:
@@ -51,13 +49,10 @@ class Table:
         line, self.next_line = self.next_line, self.next_line + 1
         if not row:
             return
-        if row.tree is not None:
-            self._special[self._rows] = row.tree
-        g, m = np.array(row.g, np.int32), np.array(row.m, np.int32)
-        words = self._append(
-            np.array([line]), np.array([row.deleted]), (g, np.array([len(g)])), (m, np.array([len(m)]))
-        )
-        words[0, row.columns] = row.values
+        here = self._append(np.array([line]), np.array([row.deleted]))
+        self._add_alone(here.start, row)
+        self._g.add(np.array(row.g, np.int32), np.full(len(row.g), here.start))
+        self._m.add(np.array(row.m, np.int32), np.full(len(row.m), here.start))
 
     def add_lines(self, shape: Array, layouts: Layouts, values: Array, alone: dict[int, Row]) -> None:
         """Append what many lines hold.
@@ -71,30 +66,50 @@ class Table:
         filled, deleted = layouts.filled[shape], layouts.deleted[shape]
         for index, row in alone.items():
             filled[index], deleted[index] = bool(row), row.deleted
-        row_of_line = np.cumsum(filled) - 1
-        by_row = {int(row_of_line[index]): row for index, row in sorted(alone.items()) if row}
-        self._special |= {self._rows + number: row.tree for number, row in by_row.items() if row.tree}
         lines, shape_of_row = np.flatnonzero(filled), shape[filled]
-        g = _with(layouts.g.of(shape_of_row), {number: row.g for number, row in by_row.items()})
-        m = _with(layouts.m.of(shape_of_row), {number: row.m for number, row in by_row.items()})
-        words = self._append(self.next_line + lines, deleted[filled], g, m)
-        columns, count = layouts.columns.of(shape_of_row)
-        words[np.repeat(np.arange(len(lines)), count), columns] = values
+        here = self._append(self.next_line + lines, deleted[filled])
+        self._scatter(here, shape_of_row, layouts, values)
+        by_row = {here.start + int(np.searchsorted(lines, index)): row for index, row in alone.items() if row}
         for number, row in by_row.items():
-            words[number, row.columns] = row.values
+            self._add_alone(number, row)
+        for codes, lists, of in ((self._g, layouts.g, "g"), (self._m, layouts.m, "m")):
+            plain, count = lists.of(shape_of_row)
+            more = {number: getattr(row, of) for number, row in by_row.items() if getattr(row, of)}
+            codes.add(*_merged(plain, np.repeat(np.arange(here.start, here.stop), count), more))
         self.next_line += len(shape)
 
-    def _append(self, line: Array, deleted: Array, g: tuple[Array, Array], m: tuple[Array, Array]) -> Array:
-        """Append rows; their words, still without values."""
-        self._line.append(line)
-        self._deleted.append(deleted)
-        for codes, counts, (new, count) in ((self._g, self._g_count, g), (self._m, self._m_count, m)):
-            codes.append(new)
-            counts.append(count)
-        words = self._words[self._rows : self._rows + len(line)]
-        words.fill(np.nan)
-        self._rows += len(line)
-        return words
+    def _append(self, line: Array, deleted: Array) -> slice:
+        """Append rows; which ones, still without words."""
+        here = slice(self._rows, self._rows + len(line))
+        self._line[here], self._deleted[here] = line, deleted
+        for column in self._words.values():
+            column[here] = np.nan
+        self._rows = here.stop
+        return here
+
+    def _column(self, letter: str) -> Array:
+        """The column of a letter, NaN in all rows so far if it is new."""
+        if letter not in self._words:
+            self._words[letter] = np.empty(self._lines)
+            self._words[letter][: self._rows] = np.nan
+        return self._words[letter]
+
+    def _add_alone(self, number: int, row: Row) -> None:
+        if row.tree is not None:
+            self._special[number] = row.tree
+        for letter, value in zip(row.letters, row.values, strict=True):
+            self._column(letter)[number] = value
+
+    def _scatter(self, here: slice, shape_of_row: Array, layouts: Layouts, values: Array) -> None:
+        """Write the numbers of rows into the columns of their letters."""
+        count = layouts.count[shape_of_row]
+        first = np.cumsum(count) - count
+        present = np.flatnonzero(np.bincount(shape_of_row, minlength=1))
+        values = np.append(values, np.nan)
+        for letter, place in layouts.places.items():
+            if (place[present] >= 0).any():
+                of_row = place[shape_of_row]
+                self._column(letter)[here] = values[np.where(of_row >= 0, first + of_row, -1)]
 
     def blocks(self, source: str) -> Blocks:
         """The blocks of all lines.
@@ -102,29 +117,43 @@ class Table:
         Args:
             source: name of the file.
         """
+        g, g_row = self._g.joined()
+        m, m_row = self._m.joined()
         return Blocks(
-            line=_joined(self._line, np.int32),
-            words=self._words[: self._rows],
-            g_start=np.concatenate([[0], np.cumsum(_joined(self._g_count, np.int64))]),
-            g=_joined(self._g, np.int32),
-            m_start=np.concatenate([[0], np.cumsum(_joined(self._m_count, np.int64))]),
-            m=_joined(self._m, np.int32),
-            deleted=_joined(self._deleted, np.bool_),
+            line=locked(self._line)[: self._rows],
+            words={letter: locked(column)[: self._rows] for letter, column in self._words.items()},
+            g=g,
+            g_row=g_row,
+            m=m,
+            m_row=m_row,
+            deleted=locked(self._deleted)[: self._rows],
             special=self._special,
             comments=tuple(self.comments),
             source=source,
         )
 
 
-def _with(codes: tuple[Array, Array], more: dict[int, list[int]]) -> tuple[Array, Array]:
-    """Codes of rows and how many each has, with those of rows that had none."""
-    numbers, count = codes
-    rows = np.array([row for row, of_row in more.items() for _ in of_row], dtype=np.int64)
-    start = np.cumsum(count) - count
-    added = [code for of_row in more.values() for code in of_row]
-    return np.insert(numbers, start[rows], added), count + np.bincount(rows, minlength=len(count))
+class _Codes:
+    """G or M codes and their rows, in pieces."""
+
+    def __init__(self) -> None:
+        self._pieces: list[tuple[Array, Array]] = []
+
+    def add(self, codes: Array, rows: Array) -> None:
+        if len(codes):
+            self._pieces.append((codes, rows.astype(np.int32)))
+
+    def joined(self) -> tuple[Array, Array]:
+        none = np.empty(0, np.int32)
+        codes, rows = (np.concatenate([none, *column]) for column in zip((none, none), *self._pieces, strict=True))
+        return codes, rows
 
 
-def _joined(columns: list[Array], dtype: type[np.generic]) -> Array:
-    """Columns one after the other; an empty one where there are none."""
-    return np.concatenate([np.empty(0, dtype), *columns], dtype=dtype)
+def _merged(codes: Array, rows: Array, more: dict[int, list[int]]) -> tuple[Array, Array]:
+    """Codes and their rows, never falling, with those of rows that had none."""
+    if not more:
+        return codes, rows
+    new_rows = np.array([row for row, of_row in sorted(more.items()) for _ in of_row], dtype=np.int64)
+    new = [code for _, of_row in sorted(more.items()) for code in of_row]
+    place = np.searchsorted(rows, new_rows)
+    return np.insert(codes, place, new), np.insert(rows, place, new_rows)

@@ -8,49 +8,22 @@ columns; the loop goes over those blocks alone.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import CYCLES, NONE, Group, name_of
 from pkm_post.gcode.drilling import Drilling
 from pkm_post.gcode.findings import Findings
 from pkm_post.gcode.frame_codes import IN_ORDER, SETS_OFFSETS, TIP_CONTROL, FrameCodes
-from pkm_post.gcode.frames import Frame
 from pkm_post.gcode.happenings import InCycle
-from pkm_post.gcode.modal import CYCLES, NONE, Group, Modal, name_of
+from pkm_post.gcode.modal import Modal
+from pkm_post.gcode.motions import Motions, Stretch, span, together
 from pkm_post.gcode.options import ReadOptions
-from pkm_post.gcode.positions import follow
+from pkm_post.gcode.positions import Coordinates, follow
+from pkm_post.model.columns import by_row, is_uniform
 from pkm_post.model.program import Array
 
 _WORKS_ALONE = (280, 281, 300, 301, 530, *SETS_OFFSETS)
-
-
-@dataclass(frozen=True)
-class Motions:
-    """Columns of n motions in the order in which they are carried out.
-
-    Attributes:
-        block: (n,) the block each belongs to.
-        motion: (n,) G code: 0, 10, 20 or 30.
-        start: (n, 3) where it begins, in coordinates of the program, mm.
-        end: (n, 3) where it ends.
-        known: (n,) whether its end is known.
-        start_known: (n,) whether its start is.
-        frame: (n,) index into ``frames``.
-        frames: the frames the motions are written in.
-        in_cycles: what cycles do between their motions.
-    """
-
-    block: Array
-    motion: Array
-    start: Array
-    end: Array
-    known: Array
-    start_known: Array
-    frame: Array
-    frames: tuple[Frame, ...]
-    in_cycles: list[InCycle]
 
 
 class Walk:
@@ -61,13 +34,13 @@ class Walk:
     ):
         self.blocks, self.modal, self.options, self.faults = blocks, modal, options, faults
         self.tools, self.spindle = tools, spindle
-        self.words = blocks.words[:, [column_of(letter) for letter in "XYZ"]] * modal.scale[:, None]
+        self.words = Coordinates.of(blocks, modal)
         self.relative = modal.in_force[Group.DISTANCE] == 910
         self.codes = FrameCodes(blocks, modal, self.words, tools, options, faults)
         self.drilling = Drilling(blocks, modal, self.words, spindle, faults)
         self.home = {280: options.home, 300: options.second_home}
         self.in_cycles: list[InCycle] = []
-        self._parts: list[tuple[Array, Array, Array, Array, Array, Array, Array]] = []
+        self._stretches: list[Stretch] = []
         self._rows = 0
         self.frame = self.codes.offsets.frame()
         self.frames = [self.frame]
@@ -77,7 +50,7 @@ class Walk:
 
     def motions(self) -> Motions:
         """Follow all blocks."""
-        moves = np.flatnonzero(self.modal.moves)
+        moves = np.flatnonzero(self.modal.moves).astype(np.int32)
         done = 0
         for row in np.flatnonzero(self._breaks()).tolist():
             until = int(np.searchsorted(moves, row))
@@ -87,49 +60,43 @@ class Walk:
             if self._moves_by_itself(row):
                 done += int(self.modal.moves[row])
         self._follow(moves[done:])
-        return self._together()
+        return together(self._stretches, self.frames, self.in_cycles)
 
     def _breaks(self) -> Array:
         """The blocks that change the frame or move in a way of their own, (N,)."""
         explicit = self.modal.explicit
-        breaks = np.isin(explicit[Group.ONCE], _WORKS_ALONE)
-        for group in (Group.CHANGE, *IN_ORDER):
-            breaks |= explicit[group] != NONE
-        breaks &= ~self._says_again()
-        return breaks | (self.modal.moves & np.isin(self.modal.in_force[Group.MOTION], CYCLES))
+        breaks = self.modal.moves & by_row(lambda codes: np.isin(codes, CYCLES), self.modal.in_force[Group.MOTION])
+        alone = by_row(lambda codes: np.isin(codes, _WORKS_ALONE), explicit[Group.ONCE])
+        for group in (Group.CHANGE, *IN_ORDER[1:]):
+            alone = alone | (explicit[group] != NONE)
+        if not is_uniform(explicit[Group.LENGTH]):
+            alone = alone | ((explicit[Group.LENGTH] != NONE) & ~self._says_again())
+        return breaks | alone
 
     def _says_again(self) -> Array:
-        """Blocks whose only such code is a tip control that is in force already, (N,): every LN block has one."""
-        explicit, length = self.modal.explicit, self.modal.in_force[Group.LENGTH]
-        again = np.isin(explicit[Group.LENGTH], TIP_CONTROL) & np.isnan(self.blocks.words[:, column_of("H")])
-        again &= np.append(False, length[1:] == length[:-1])[: len(length)]
-        for group in (Group.CHANGE, Group.ONCE, *IN_ORDER[1:]):
-            again &= explicit[group] == NONE
-        return again
+        """Blocks with a tip control that is in force already, (N,): every LN block has one."""
+        explicit, length = self.modal.explicit[Group.LENGTH], self.modal.in_force[Group.LENGTH]
+        same = np.append(False, length[1:] == length[:-1])[: len(length)]
+        return same & np.isin(explicit, TIP_CONTROL) & ~self.blocks.has("H")
 
     def _follow(self, rows: Array) -> None:
         """Motions of blocks without anything special, all in one frame."""
         if not len(rows):
             return
-        ends, known = follow(self.words[rows], self.relative[rows], self.position)
-        self._add(rows, self.modal.in_force[Group.MOTION][rows], ends, known | self.known)
+        chosen = span(rows)
+        ends, since = np.empty((len(rows), 3)), np.zeros(3, np.int64)
+        for axis, column in enumerate(self.words.columns):
+            ends[:, axis], since[axis] = follow(column[chosen], self.relative[chosen], self.position[axis])
+        since[self.known] = 0
+        motion = self.modal.in_force[Group.MOTION][chosen]
+        self._add(rows, motion, ends, int(since.max()), since < len(rows))
 
-    def _add(self, block: Array, motion: Array, ends: Array, known: Array) -> None:
-        start = np.vstack([self.position, ends[:-1]])
-        all_known: Array = np.all(known, axis=1)
-        start_known = np.append(self.known.all(), all_known[:-1])
-        frame = np.full(len(block), len(self.frames) - 1)
-        self._parts.append((block, motion, start, ends, all_known, start_known, frame))
-        self.position, self.known = ends[-1], known[-1]
+    def _add(self, block: Array, motion: Array, ends: Array, unknown: int, known: Array) -> None:
+        """Add motions in the frame in force; of the last one the coordinates ``known``, (3,), are known."""
+        frame = len(self.frames) - 1
+        self._stretches.append(Stretch(block, motion, ends, unknown, self.position, bool(self.known.all()), frame))
+        self.position, self.known = ends[-1], known
         self._rows += len(block)
-
-    def _together(self) -> Motions:
-        empty = np.zeros(0, np.int64)
-        none = (empty, empty, np.zeros((0, 3)), np.zeros((0, 3)), empty == 1, empty == 1, empty)
-        block, motion, start, end, known, start_known, frame = (
-            np.concatenate(column) for column in zip(none, *self._parts, strict=True)
-        )
-        return Motions(block, motion, start, end, known, start_known, frame, tuple(self.frames), self.in_cycles)
 
     def _change_frame(self, row: int) -> None:
         if self.modal.explicit[Group.CHANGE][row] == 6:
@@ -180,8 +147,8 @@ class Walk:
     def _go(self, row: int, motions: list[int], places: list[Array], known: Array) -> None:
         """Straight moves of one block to (3,) places in coordinates of the program."""
         if places:
-            rows = np.full(len(places), row)
-            self._add(rows, np.array(motions), np.array(places), np.tile(known, (len(places), 1)))
+            rows, unknown = np.full(len(places), row, np.int32), 0 if known.all() else len(places)
+            self._add(rows, np.array(motions, np.int16), np.array(places), unknown, known)
 
     def _machine_move(self, row: int) -> None:
         """G53: words in machine coordinates, those of the spindle nose while a length offset is in force."""
@@ -191,7 +158,7 @@ class Walk:
         if self.options.axis_words != "none" and offsets.length is not None:
             self.faults.tell("G412", row, "machine coordinates (G53) while the tool axis can tilt")
         own = 0.0 if offsets.length is None else offsets.own_length
-        words = self.words[row] - np.array([0.0, 0.0, own])
+        words = self.words.at(row) - np.array([0.0, 0.0, own])
         self._to(row, int(self.modal.in_force[Group.MOTION][row]), words)
 
     def _to(self, row: int, motion: int, words: Array) -> None:
@@ -210,10 +177,12 @@ class Walk:
         if home is None:
             self.faults.tell("G413", row, name_of(code))
             return
-        words, said = self.words[row], ~np.isnan(self.words[row])
+        words = self.words.at(row)
+        said = ~np.isnan(words)
         if said.any():
-            over, known = follow(words[None], self.relative[row : row + 1], self.position)
-            self._go(row, [0], [over[0]], known[0] | self.known)
+            from_here = words + self.position if self.relative[row] else words
+            known = self.known if self.relative[row] else self.known | said
+            self._go(row, [0], [np.where(said, from_here, self.position)], known)
         self._to(row, 0, np.where(said if said.any() else True, np.array(home), np.nan))
 
     def _drill(self, row: int) -> None:

@@ -12,11 +12,11 @@ import numpy as np
 
 from pkm_post.gcode.chords import CHORD_ERROR, with_chords
 from pkm_post.gcode.writer_arcs import WrittenArcs, written_arcs
-from pkm_post.gcode.writer_axes import FORMS, Form, impossible_axis
+from pkm_post.gcode.writer_axes import FORMS, SWING, Form, impossible_axis, swings
 from pkm_post.gcode.writer_blocks import block_texts
 from pkm_post.gcode.writer_events import between_blocks, heading
-from pkm_post.gcode.writer_words import Numbers, codes_of, words_of
-from pkm_post.model import Diagnostic, Kind, Place, Program
+from pkm_post.gcode.writer_words import Numbers, codes_of, cutting, feed_as_written, words_of
+from pkm_post.model import Diagnostic, Place, Program
 
 __all__ = ["Form", "write"]
 
@@ -47,12 +47,17 @@ def write(
         row, code, found = fault
         return None, (Diagnostic(code, program.place(row), found),)
     numbers = Numbers(decimals, axis_decimals, _INCH if inch else 1.0)
+    standing = np.flatnonzero(cutting(program) & (feed_as_written(program, numbers) <= 0))
+    if len(standing):
+        row = int(standing[0])
+        return None, (Diagnostic("G506", program.place(row), f"{program.feed[row] * 60:g} mm/min"),)
     may_turn = not FORMS[form].as_vector
     arcs = written_arcs(program, numbers.unit, may_turn)
     diagnostics = (*_chords_told(program, arcs), *_normals_told(program))
     if not arcs.sayable.all():
         program = with_chords(program, arcs.row[~arcs.sayable])
         arcs = written_arcs(program, numbers.unit, may_turn)
+    diagnostics += _swings_told(program, form)
     between = between_blocks(program, form)
     blocks = block_texts(words_of(program, FORMS[form], arcs, numbers), codes_of(program, arcs, numbers), between)
     end = between.get(len(program), "")
@@ -60,12 +65,10 @@ def write(
 
 
 def _require_numbers(program: Program) -> None:
-    cutting = program.kind != Kind.RAPID
-    cutting[:1] = False
     columns = {
         "position": program.position,
         "tool_axis": program.tool_axis,
-        "feed of cutting moves": program.feed[cutting],
+        "feed of cutting moves": program.feed[cutting(program)],
         "side_offset": program.side_offset,
     }
     for name, values in columns.items():
@@ -79,6 +82,15 @@ def _chords_told(program: Program, arcs: WrittenArcs) -> tuple[Diagnostic, ...]:
         return ()
     found = f"{len(rows)} of {len(arcs.row)} arcs, this is the first; the lines stay within {CHORD_ERROR} mm"
     return (Diagnostic("G503", program.place(int(rows[0])), found),)
+
+
+def _swings_told(program: Program, form: Form) -> tuple[Diagnostic, ...]:
+    swing = np.where(cutting(program), swings(program.tool_axis, form), 0.0)
+    rows = np.flatnonzero(swing > SWING)
+    if not len(rows):
+        return ()
+    found = f"by up to {np.degrees(swing.max()):.2f} deg in {len(rows)} cutting moves, this is the first"
+    return (Diagnostic("G505", program.place(int(rows[0])), found),)
 
 
 def _normals_told(program: Program) -> tuple[Diagnostic, ...]:

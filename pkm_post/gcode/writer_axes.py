@@ -2,7 +2,8 @@
 """The forms of G-code that a program can be written in, and the words by which each says the tool axis.
 
 Unit tool axes in {C} enter, columns of words leave: components of the vector, or angles in degrees under a kinematic,
-chosen so that they go on from row to row. The formulas are those of ``axes.py``, the other way round.
+chosen so that they go on from row to row. The formulas are those of ``axes.py``, the other way round. Where angles that
+go evenly from row to row lead a control off the great circle between two tool axes, it is told how far.
 """
 
 from __future__ import annotations
@@ -13,10 +14,19 @@ from enum import Enum
 
 import numpy as np
 
+from pkm_post.gcode.axes import axis_of
+from pkm_post.geometry import along, angle_between, towards
 from pkm_post.model.program import Array
 
 POLE = 2e-6
 """rad: a tool axis nearer to +z or -z does not turn C. Vectors with six decimals have no direction within this."""
+
+
+SWING = np.radians(0.1)
+"""rad that the tool axis may leave the great circle between two rows before it is told."""
+
+_LOOKED_AT = (0.25, 0.5, 0.75)
+"""Parts of a move where its tool axis is compared with the great circle."""
 
 
 class Form(Enum):
@@ -113,6 +123,32 @@ FORMS: dict[Form, AxisWords] = {
     Form.LINUXCNC: AxisWords("ABC", "G43", False, _roll_pitch_yaw),
     Form.PLAIN: AxisWords("", "G43", False, _nothing),
 }
+
+
+def swings(axis: Array, form: Form) -> Array:
+    """How far angles that go evenly from row to row lead the tool axis off its great circle, (N,), rad.
+
+    Row i holds that of the move to it. It is 0 for forms that have no angles, and measured where both ways have done
+    the same part, so a lag counts as well.
+
+    Args:
+        axis: (N, 3) unit tool axes.
+        form: how they are said.
+    """
+    swing = np.zeros(len(axis))
+    words = FORMS[form]
+    if words.as_vector or not words.letters:
+        return swing
+    angles = np.zeros_like(axis)
+    angles[:, ["ABC".index(letter) for letter in words.letters]] = np.radians(words.values(axis))
+    turning = np.flatnonzero(np.any(angles[1:] != angles[:-1], axis=1)) + 1
+    before, after = axis[turning - 1], axis[turning]
+    way, step = towards(before, after), angles[turning] - angles[turning - 1]
+    for part in _LOOKED_AT:
+        led = axis_of(angles[turning - 1] + part * step)
+        swing[turning] = np.maximum(swing[turning], angle_between(led, along(before, part * way)))
+    return swing
+
 
 _LEVEL, _UPSIDE_DOWN = "the tool axis is {:.6f} deg from upright", "the tool axis is ({:.6f}, {:.6f}, {:.6f})"
 

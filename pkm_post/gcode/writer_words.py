@@ -118,7 +118,7 @@ def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers
     if axis_words.as_vector:
         _say_together(axes)
     centres = _centres(arcs, numbers, len(program))
-    feed = word("F", program.feed * (60 / numbers.scale), FEED_DECIMALS, _cutting(program))
+    feed = word("F", feed_as_written(program, numbers), FEED_DECIMALS, cutting(program))
     # A block without a place to go is no motion: it says at least where it stays.
     tips[0].said[~np.any([one.said for one in (*tips, *axes, *centres)], axis=0)] = True
     return [*tips, *axes, *centres, feed]
@@ -139,7 +139,7 @@ def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers) -> Codes:
     new_side = _changed(diameter, 0.0) | (compensated & was_on & new_plane)
     side = np.where(compensated, np.where(diameter > 0, 2, 3) + 2 * was_on, 1)
 
-    motion = np.where(_cutting(program), 2, 1)
+    motion = np.where(cutting(program), 2, 1)
     motion[arcs.row] = np.where(arcs.clockwise, 3, 4)
     return Codes(
         path=np.where(_changed(program.exact_stop, False), 1 + program.exact_stop, 0),
@@ -182,11 +182,16 @@ def _tool_changes(program: Program) -> Array:
     return np.searchsorted(np.sort(np.array(rows, dtype=np.int64)), np.arange(len(program)), "right")
 
 
-def _cutting(program: Program) -> Array:
+def cutting(program: Program) -> Array:
     """Rows that have a feed, (N,): row 0 is reached by a rapid move, whatever its kind."""
-    cutting: Array = program.kind != Kind.RAPID
-    cutting[:1] = False
-    return cutting
+    has_feed: Array = program.kind != Kind.RAPID
+    has_feed[:1] = False
+    return has_feed
+
+
+def feed_as_written(program: Program, numbers: Numbers) -> Array:
+    """Feeds in the unit of the text a minute, rounded as F is, (N,)."""
+    return _rounded(program.feed * (60 / numbers.scale), FEED_DECIMALS)
 
 
 def _say_together(words: list[Word]) -> None:

@@ -9,17 +9,15 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike
 
-from pkm_post.model.columns import RowType, freeze
+from pkm_post.model.columns import Array as Array  # the alias that all rooms use
+from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.event import Event
 from pkm_post.model.tool import Tool
-
-Array = np.ndarray[Any, np.dtype[Any]]
 
 
 class Kind(enum.IntEnum):
@@ -97,7 +95,7 @@ class Program:
         rows = len(self.kind)
         for name, (row_type, row_shape, default) in OPTIONAL_COLUMNS.items():
             if getattr(self, name) is None:
-                object.__setattr__(self, name, np.full((rows, *row_shape), default, row_type))
+                object.__setattr__(self, name, uniform(np.full(row_shape, default), rows, row_type))
         optional = {name: (row_type, row_shape) for name, (row_type, row_shape, _) in OPTIONAL_COLUMNS.items()}
         freeze(self, rows, MOTION_COLUMNS | vectors | optional)
 

@@ -69,7 +69,7 @@ class Machine:
         self.frames(words, g, xyz)
         if any(code in g for code in (680, 511, 501, 100, 520, 920)):
             return
-        vector = [words.get(letter) for letter in "IJK"]
+        vector = [words.get(letter, words.get(f"T{axis}")) for letter, axis in zip("IJK", "XYZ", strict=True)]
         turning = self.mode["motion"] in (0, 10) and vector[0] is not None
         if turning:
             self.axis = np.array(vector) / np.sqrt(sum(value**2 for value in vector))
@@ -243,6 +243,7 @@ class Machine:
         hand = np.sign(np.linalg.det(matrix[:3, :3]))
         normal = matrix[:3, :3] @ np.eye(3)[PLANE_AXES[self.mode["plane"]][2]]
         plane = int(np.argmax(np.abs(normal)))
+        surface = np.array([words.get(name, np.nan) for name in ("NX", "NY", "NZ")])
         self.rows.append(dict(
             line=line,
             kind=kind,
@@ -254,6 +255,7 @@ class Machine:
             exact_stop=self.exact,
             side_offset=self.side * hand * np.sign(normal[plane]),
             plane=plane,
+            normal=matrix[:3, :3] @ surface / np.sqrt(surface @ surface),
         ))  # fmt: skip
         self.here = np.array(end, dtype=float)
 
@@ -262,7 +264,5 @@ def resolve_by_block(blocks, tools):
     """The rows of the program, a dictionary each, and its events as (row, kind, value)."""
     machine = Machine(tools)
     for row in range(len(blocks)):
-        values = blocks.words[row]
-        words = {chr(65 + column): float(value) for column, value in enumerate(values) if not np.isnan(value)}
-        machine.block(int(blocks.line[row]), words, blocks.g_of(row).tolist(), blocks.m_of(row).tolist())
+        machine.block(int(blocks.line[row]), blocks.words_of(row), blocks.g_of(row).tolist(), blocks.m_of(row).tolist())
     return machine.rows, machine.events

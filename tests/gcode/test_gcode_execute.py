@@ -6,12 +6,10 @@ import time
 import numpy as np
 import pytest
 
-from pkm_post.gcode.blocks import column_of
 from pkm_post.gcode.execute import execute
 from pkm_post.gcode.limits import ExecutionLimits
 from pkm_post.gcode.scan import scan_by_block
 
-LETTERS = "ABCDEFHIJKLPQRSTUVWXYZ"
 LONG_LOOP = 100_000
 BOUND = 60.0  # s, far above what it takes, and far below what a hang takes
 
@@ -37,16 +35,11 @@ def shown(blocks):
                 f"{blocks.line[row]}:",
                 *(f"G{code / 10:g}" for code in blocks.g_of(row)),
                 *(f"M{code}" for code in blocks.m_of(row)),
-                *(f"{letter}{value:g}" for letter, value in words(blocks, row).items()),
+                *(f"{letter}{value:g}" for letter, value in blocks.words_of(row).items()),
             ]
         )
         for row in range(len(blocks))
     ]
-
-
-def words(blocks, row):
-    found = {letter: blocks.words[row, column_of(letter)] for letter in LETTERS}
-    return {letter: value for letter, value in found.items() if not np.isnan(value)}
 
 
 def test_a_program_with_nothing_to_execute_is_handed_on_itself():
@@ -110,22 +103,28 @@ def test_deleted_blocks_are_left_out_when_asked_for():
     assert shown(executed(text)) == ["6: Y5", "7: M30"]
 
 
-def test_words_for_the_tool_axis_become_i_j_k():
-    text = "TRAORI\nG1 X1 A3=0 B3=[0-1] C3=1\nTRAFOOF\nLN X2 TX0 TY0 TZ1\n"
-    assert shown(executed(text)) == ["1: G43.5", "2: G1 I0 J-1 K1 X1", "3: G43", "4: G43.5 G1 I0 J0 K1 X2"]
+def test_words_of_other_dialects_stand_for_codes():
+    text = "TRAORI\nG1 X1 A3=0 B3=[0-1] C3=1\nTRAFOOF\nLN X2 TX0 TY#1 TZ1\nLN\n"
+    assert shown(executed("#1=5\n" + text)) == [
+        "2: G43.5",
+        "3: G1 A30 B3-1 C31 X1",
+        "4: G43",
+        "5: G43.5 G1 TX0 TY5 TZ1 X2",
+        "6: G43.5 G1",
+    ]
 
 
 def test_a_long_loop_takes_bounded_time():
     begin = time.perf_counter()
     blocks = executed(f"#1=0\no1 while [#1 lt {LONG_LOOP}]\n#1=[#1+1]\nG1 X#1\no1 endwhile\n")
     assert time.perf_counter() - begin < BOUND
-    np.testing.assert_array_equal(blocks.words[:, column_of("X")], np.arange(1, LONG_LOOP + 1))
+    np.testing.assert_array_equal(blocks.word("X"), np.arange(1, LONG_LOOP + 1))
 
 
 def test_long_runs_are_moved_as_they_are():
     run = "".join(f"X{number}\n" for number in range(LONG_LOOP // 10))
     blocks = executed(f"o1 repeat [10]\n{run}o1 endrepeat\n")
-    np.testing.assert_array_equal(blocks.words[:, column_of("X")], np.tile(np.arange(LONG_LOOP // 10), 10))
+    np.testing.assert_array_equal(blocks.word("X"), np.tile(np.arange(LONG_LOOP // 10), 10))
 
 
 def test_deep_expressions_need_no_depth_of_python():

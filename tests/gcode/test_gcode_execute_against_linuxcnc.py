@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pkm_post.gcode.blocks import column_of
 from pkm_post.gcode.execute import execute
 from pkm_post.gcode.scan import scan_by_block
 
@@ -19,7 +18,7 @@ REFUSED = [name for name, case in CASES.items() if case["positions"] is None]
 
 def positions(blocks):
     """X Y Z A B C after each block that moves, from words that are absolute."""
-    moves = blocks.words[:, [column_of(letter) for letter in "XYZABC"]]
+    moves = np.column_stack([blocks.word(letter) for letter in "XYZABC"])
     moves = moves[~np.isnan(moves).all(axis=1)]
     here, path = np.zeros(6), []
     for move in moves:

@@ -2,8 +2,10 @@
 """Reading: the three steps one after the other, from text to a program."""
 
 import random
+import tracemalloc
 
 import numpy as np
+import pytest
 
 from pkm_post.gcode import ExecutionLimits, ReadOptions, read
 from pkm_post.model import Kind, Tool
@@ -78,3 +80,20 @@ def test_any_text_gives_a_program_or_errors():
         text = " ".join(chance.choices(words, k=chance.randint(0, 30)))
         program, diagnostics = read(text, "noise.ngc", OPTIONS, ExecutionLimits(blocks=1000))
         assert program is not None or diagnostics, text
+
+
+@pytest.mark.parametrize(
+    ("axis_words", "words", "most"), [("none", "X{} Y{} Z1", 80), ("vector", "G1 X{} Y{} Z1 I0.1 J0.2 K{}", 200)]
+)
+def test_memory_is_so_many_bytes_for_each_block(axis_words, words, most):
+    options = ReadOptions(default_tool=OPTIONS.default_tool, axis_words=axis_words)
+    peaks = []
+    for count in (20_000, 80_000):
+        body = "\n".join(words.format(row % 90, row % 70, row % 50 + 1) for row in range(count))
+        text = f"G43.5\nG0 X0 Y0 Z0\nG1 F100\n{body}\n".encode()
+        tracemalloc.start()
+        program, _ = read(text, "part.ngc", options)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+        assert len(program) == count + 1
+    assert (peaks[1] - peaks[0]) / 60_000 < most  # without the text; the difference leaves out what is needed once

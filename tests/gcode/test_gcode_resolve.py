@@ -232,3 +232,34 @@ def test_options_that_do_not_exist_are_refused():
         ReadOptions(axis_words="XY")
     with pytest.raises(ValueError, match="unit: expected one of mm, inch, got 'cm'"):
         ReadOptions(unit="cm")
+
+
+def test_normals_hold_for_their_own_block_and_turn_with_the_frame():
+    text = "LN X1 Y0 Z0 NX0.6 NY0 NZ0.8 F100\nLN X2\nG51.1 X0\nG68 R90\nLN Y3 NX0.6 NY0 NZ0.8\n"
+    program = read(START + text)
+    near(program.normal[1], [0.6, 0, 0.8])
+    assert np.isnan(program.normal[[0, 2]]).all()
+    # Mirrored in X it points to -X, and a quarter turn on to -Y.
+    near(program.normal[-1], [0, -0.6, 0.8])
+    near(program.tool_axis[-1], [0, 0, 1])
+
+
+def test_normals_and_tool_axes_stand_together():
+    program = read(f"{START}LN X1 Y0 Z0 NX0 NY-1.0000002 NZ0 TX0 TY3 TZ4 F100\n", axis_words="vector")
+    near(program.normal[1], [0, -1, 0])
+    near(program.tool_axis[1], [0, 0.6, 0.8])
+
+
+def test_without_normals_the_column_takes_no_memory():
+    assert read("G0 X1 Y2 Z3\nG1 X4 F600\n").normal.strides[0] == 0
+
+
+@pytest.mark.parametrize("words", ["A3=0 B3=0 C3=1", "A3=0 B3=0 C3=5"])
+def test_an_upright_tool_may_be_handed_over(words):
+    text = f"T1 M6\nTRAORI\n{START}G1 A3=1 B3=0 C3=1 F100\n{words}\nTRAFOOF\nX5\n"
+    near(read(text, axis_words="vector").tool_axis[-1], [0, 0, 1])
+
+
+def test_a_home_move_needs_no_tip_control():
+    text = f"G43.5\n{START}G1 I1 J0 K1 F100\nG49\nG28\n"
+    near(read(text, axis_words="vector", home=(0.0, 0.0, 99.0)).position[-1], [0, 0, 99])

@@ -7,7 +7,7 @@ from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 
 from pkm_post.gcode.blocks import Blocks
-from pkm_post.gcode.modal import G_CODES, M_CODES, REFUSED
+from pkm_post.gcode.codes import G_CODES, M_CODES, REFUSED
 from pkm_post.gcode.options import AXIS_WORDS, ReadOptions
 from pkm_post.gcode.resolve import resolve
 from pkm_post.model import Kind, Tool
@@ -28,14 +28,12 @@ START = ({"X": 1.0, "Y": 2.0, "Z": 3.0, "F": 100.0, "S": 500.0, "T": 1.0}, [0], 
 
 
 def table(rows):
-    columns = np.full((len(rows), 26), np.nan)
-    for row, (letters, *_) in enumerate(rows):
-        for letter, value in letters.items():
-            columns[row, ord(letter) - 65] = value
-    g_start, m_start = (np.append(0, np.cumsum([len(row[which]) for row in rows])) for which in (1, 2))
+    letters = {letter for row in rows for letter in row[0]}
+    columns = {letter: np.array([row[0].get(letter, np.nan) for row in rows]) for letter in letters}
+    g_row, m_row = (np.repeat(np.arange(len(rows)), [len(row[which]) for row in rows]) for which in (1, 2))
     g, m = (sum((row[which] for row in rows), []) for which in (1, 2))
     lines = np.arange(len(rows)) + 1
-    return Blocks(lines, columns, g_start, g, m_start, m, [row[3] for row in rows], {}, (), "part.ngc")
+    return Blocks(lines, columns, g, g_row, m, m_row, [row[3] for row in rows], {}, (), "part.ngc")
 
 
 @pytest.mark.parametrize("axis_words", AXIS_WORDS)

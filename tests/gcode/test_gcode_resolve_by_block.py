@@ -86,7 +86,7 @@ def same(text, axis_words="none"):
     assert len(read) == len(rows)
     for name in ("line", "kind", "exact_stop", "plane"):
         assert getattr(read, name).tolist() == [row[name] for row in rows], name
-    for name in ("position", "tool_axis", "arc_centre", "arc_axis", "side_offset"):
+    for name in ("position", "tool_axis", "arc_centre", "arc_axis", "side_offset", "normal"):
         np.testing.assert_allclose(getattr(read, name), np.array([row[name] for row in rows]), rtol=0, atol=NANOMETRE)
     feed = np.array([row["feed"] for row in rows])
     goes = feed != 0  # with G93 a block that goes nowhere has none
@@ -107,6 +107,9 @@ def test_same_program(text):
     st.tuples(number, size, number, words()).map(lambda w: f"G1 {w[3]} I{w[0]} J{w[1]} K{w[2]}"),
     words().map(lambda text: f"G1 {text}"),
     st.tuples(number, size, number).map(lambda w: f"G1 I{w[0]} J{w[1]} K{w[2]}"),
+    st.tuples(number, size, number, words()).map(lambda w: f"LN {w[3]} TX{w[0]} TY{w[1]} TZ{w[2]}"),
+    st.tuples(number, size, words()).map(lambda w: f"LN {w[2]} NX{w[0]} NY{w[1]} NZ0"),
+    number.map(lambda degrees: f"G68 X1 Y2 R{degrees}"),
     words("XY").map(lambda text: f"G51.1 {text}"),
     st.just("G3 X1 I2"),
 ), min_size=1, max_size=30))  # fmt: skip

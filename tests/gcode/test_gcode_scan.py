@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pkm_post.gcode import lines
-from pkm_post.gcode.blocks import Blocks, column_of
+from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.row import LONGEST_LINE
 from pkm_post.gcode.scan import scan, scan_by_block
 
@@ -20,21 +20,16 @@ def scanned(text):
     return blocks
 
 
-def words_of(blocks, row):
-    return {letter: blocks.words[row, column_of(letter)] for letter in "ABCDEFHIJKLPQRSTUVWXYZ"}
-
-
-def given_words(blocks, row):
-    return {letter: value for letter, value in words_of(blocks, row).items() if not np.isnan(value)}
-
-
 def assert_same(one, other):
     assert one[1] == other[1]
     if one[0] is None or other[0] is None:
         assert one[0] is other[0]
         return
-    for name in ("line", "words", "g_start", "g", "m_start", "m", "deleted"):
+    for name in ("line", "g", "g_row", "m", "m_row", "deleted"):
         np.testing.assert_array_equal(getattr(one[0], name), getattr(other[0], name), err_msg=name)
+    assert list(one[0].words) == list(other[0].words)
+    for letter in one[0].words:
+        np.testing.assert_array_equal(one[0].word(letter), other[0].word(letter), err_msg=letter)
     assert one[0].special == other[0].special
     assert one[0].comments == other[0].comments
     assert one[0].source == other[0].source
@@ -46,7 +41,7 @@ def test_a_block_has_words_and_codes():
     assert blocks.g_of(0).tolist() == [210, 900]
     assert blocks.g_of(1).tolist() == [10]
     assert blocks.m_of(1).tolist() == [3, 8]
-    assert given_words(blocks, 1) == {"X": 1.5, "Y": -2.0, "F": 300.0}
+    assert blocks.words_of(1) == {"X": 1.5, "Y": -2.0, "F": 300.0}
 
 
 @pytest.mark.parametrize(
@@ -60,7 +55,7 @@ def test_g_codes_are_kept_in_tenths(code, tenths):
     "number, value", [("5", 5.0), ("+.5", 0.5), ("5.", 5.0), ("-0", 0.0), ("-0012.250", -12.25), ("  16.3", 16.3)]
 )
 def test_numbers_are_read_in_every_form(number, value):
-    assert scanned(f"X{number}").words[0, column_of("X")] == value
+    assert scanned(f"X{number}").word("X")[0] == value
 
 
 def test_lines_that_say_nothing_are_no_rows():
@@ -78,15 +73,15 @@ def test_block_delete_is_told():
         ("#1=2", "assignment"),
         ("G1 X[#1+2]", "word"),
         ("O100 sub", "o_word"),
-        ("A3=0 B3=0 C3=1", "named_word"),
-        ("LN X1 Y2 Z3 NX0 NY0 NZ1", "surface_word"),
+        ("A3=[0+1] B3=0 C3=1", "named_word"),
+        ("LN X1 Y2 Z3 NX#1 NY0 NZ1", "surface_word"),
     ],
 )
 def test_blocks_with_more_than_plain_words_keep_their_tree(line, kind):
     blocks = scanned(f"G0 X0\n{line}\nG1 X1\n")
     assert list(blocks.special) == [1]
     assert kind in {child.data for child in blocks.special[1].children if not isinstance(child, str)}
-    assert np.isnan(blocks.words[1]).all()
+    assert blocks.words_of(1) == {}
     assert len(blocks.g_of(1)) == len(blocks.m_of(1)) == 0
 
 
@@ -108,6 +103,30 @@ def test_operators_bind_as_in_rs274ngc(expression, tree):
 
     (assignment,) = scanned(f"#1=[{expression}]").special[0].children
     assert written(assignment.children[1]) == tree
+
+
+@pytest.mark.parametrize(
+    "line, g, words",
+    [
+        ("TRAORI(1)", [435], {}),
+        ("G1 X2 A3=0.5 b 3=-1 C3 = 2", [10], {"X": 2, "A3": 0.5, "B3": -1, "C3": 2}),
+        ("LN X1 NX0 N Y-1 tz1", [435, 10], {"X": 1, "NX": 0, "NY": -1, "TZ": 1}),
+    ],
+)
+def test_words_of_other_dialects_are_plain(line, g, words):
+    for way in (scan, scan_by_block):
+        blocks, faults = way(f"G0 X0\n{line}\n", "part.ngc")
+        assert not faults and not blocks.special
+        assert blocks.g_of(1).tolist() == g
+        assert blocks.words_of(1) == words
+
+
+@pytest.mark.parametrize("line", ["L N X1", "TRA ORI", "T RAFOOF", "L N X1 NX1"])
+def test_keywords_have_no_blanks_inside(line):
+    for text in (line, f"LN X1\nTRAORI\nTRAFOOF\nLN NX1 X1\n{line}"):
+        one, other = scan(text, "part.ngc"), scan_by_block(text, "part.ngc")
+        assert one[0] is None
+        assert_same(one, other)
 
 
 def test_comments_that_speak_are_kept():
@@ -157,8 +176,8 @@ def test_columns_count_characters_not_bytes():
 
 def test_blocks_refuse_columns_of_another_length():
     blocks = scanned("G1 X1\nX2")
-    with pytest.raises(ValueError, match=r"Blocks.words: expected \(2, 26\), got \(1, 26\)"):
-        Blocks(np.array([1, 2]), blocks.words[:1], [0, 1], [10], [0, 0], [], [False, False], {}, (), "f")
+    with pytest.raises(ValueError, match=r"Blocks.words X: expected \(2,\), got \(1,\)"):
+        Blocks(np.array([1, 2]), {"X": blocks.word("X")[:1]}, [10], [0], [], [], [False, False], {}, (), "f")
 
 
 DIGITS = st.text("0123456789", min_size=1, max_size=4)
@@ -228,7 +247,7 @@ def test_numbers_are_the_nearest_doubles():
     chance = random.Random(21)
     texts = [f"{chance.uniform(-1, 1) * 10 ** chance.randint(-6, 12):.{chance.randint(0, 17)}f}" for _ in range(3000)]
     blocks = scanned("\n".join(f"X{text}" for text in texts))
-    assert blocks.words[:, column_of("X")].tolist() == [float(text) for text in texts]
+    assert blocks.word("X").tolist() == [float(text) for text in texts]
 
 
 @pytest.mark.parametrize("seed", range(4))

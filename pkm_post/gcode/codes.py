@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Codes: which G and M codes there are, the groups they belong to, and the words that go with them.
+
+Tables alone, in tenths for G (434 is G43.4). Of one group a block may have one code. The groups are those of RS274NGC
+[LinuxCNC, G codes, modal groups], with a group each for G68 and G51.1, which it has not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+NONE = -1
+"""Stands where a block has no code of a group."""
+
+
+class Group(Enum):
+    """Codes that exclude each other; the value is their name in messages."""
+
+    ONCE = "codes that act once"
+    MOTION = "motion"
+    PLANE = "plane"
+    DISTANCE = "distance mode"
+    ARC_DISTANCE = "arc distance mode"
+    FEED_MODE = "feed mode"
+    UNIT = "units"
+    SIDE = "cutter compensation"
+    LENGTH = "tool length offset"
+    RETRACT = "retract mode"
+    SYSTEM = "work offset"
+    PATH = "path control"
+    SPINDLE_MODE = "spindle mode"
+    ROTATION = "rotation"
+    MIRROR = "mirror"
+    STOP = "stop"
+    CHANGE = "tool change"
+    SPINDLE = "spindle"
+    COOLANT = "coolant"
+    OVERRIDE = "overrides"
+
+
+@dataclass(frozen=True)
+class Code:
+    """What a code is.
+
+    Attributes:
+        group: the codes it excludes.
+        letters: words it can have beside those that every block can have.
+        needs: words it must have.
+        takes_axes: whether the axis words of the block are its own and no motion's.
+    """
+
+    group: Group
+    letters: str = ""
+    needs: str = ""
+    takes_axes: bool = False
+
+
+_DRILL = "XYZRL"
+_SYSTEMS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
+
+G_CODES: dict[int, Code] = {
+    0: Code(Group.MOTION, "XYZ"),
+    10: Code(Group.MOTION, "XYZ"),
+    20: Code(Group.MOTION, "XYZIJKRP"),
+    30: Code(Group.MOTION, "XYZIJKRP"),
+    730: Code(Group.MOTION, _DRILL + "Q"),
+    800: Code(Group.MOTION),
+    810: Code(Group.MOTION, _DRILL),
+    820: Code(Group.MOTION, _DRILL + "P"),
+    830: Code(Group.MOTION, _DRILL + "Q"),
+    840: Code(Group.MOTION, _DRILL + "P"),
+    850: Code(Group.MOTION, _DRILL),
+    860: Code(Group.MOTION, _DRILL + "P"),
+    890: Code(Group.MOTION, _DRILL + "P"),
+    40: Code(Group.ONCE, "P", "P"),
+    100: Code(Group.ONCE, "LPXYZR", "LP", takes_axes=True),
+    280: Code(Group.ONCE, "XYZ", takes_axes=True),
+    281: Code(Group.ONCE),
+    300: Code(Group.ONCE, "XYZ", takes_axes=True),
+    301: Code(Group.ONCE),
+    520: Code(Group.ONCE, "XYZ", takes_axes=True),
+    530: Code(Group.ONCE),
+    920: Code(Group.ONCE, "XYZ", takes_axes=True),
+    921: Code(Group.ONCE),
+    922: Code(Group.ONCE),
+    923: Code(Group.ONCE),
+    **{code: Code(Group.PLANE) for code in (170, 180, 190)},
+    **{code: Code(Group.DISTANCE) for code in (900, 910)},
+    **{code: Code(Group.ARC_DISTANCE) for code in (901, 911)},
+    **{code: Code(Group.FEED_MODE) for code in (930, 940, 950)},
+    **{code: Code(Group.UNIT) for code in (200, 210)},
+    400: Code(Group.SIDE),
+    **{code: Code(Group.SIDE, "D") for code in (410, 420)},
+    **{code: Code(Group.SIDE, "D", "D") for code in (411, 421)},
+    **{code: Code(Group.LENGTH, "H") for code in (430, 434, 435)},
+    431: Code(Group.LENGTH, "XYZ", takes_axes=True),
+    432: Code(Group.LENGTH, "H", "H"),
+    490: Code(Group.LENGTH),
+    **{code: Code(Group.RETRACT) for code in (980, 990)},
+    **{code: Code(Group.SYSTEM) for code in _SYSTEMS},
+    **{code: Code(Group.PATH) for code in (610, 611)},
+    640: Code(Group.PATH, "PQ"),
+    970: Code(Group.SPINDLE_MODE),
+    680: Code(Group.ROTATION, "XYZR", "R", takes_axes=True),
+    690: Code(Group.ROTATION),
+    501: Code(Group.MIRROR, "XYZ", takes_axes=True),
+    511: Code(Group.MIRROR, "XYZ", takes_axes=True),
+}
+
+M_CODES: dict[int, Code] = {
+    **{code: Code(Group.STOP) for code in (0, 1, 2, 30, 60)},
+    6: Code(Group.CHANGE),
+    **{code: Code(Group.SPINDLE) for code in (3, 4, 5)},
+    **{code: Code(Group.COOLANT) for code in (7, 8, 9)},
+    **{code: Code(Group.OVERRIDE) for code in (48, 49)},
+}
+
+REFUSED: dict[str, str] = {
+    "G5": "splines",
+    "G5.1": "splines",
+    "G5.2": "NURBS",
+    "G5.3": "NURBS",
+    "G7": "diameters of a lathe",
+    "G15": "polar coordinates",
+    "G16": "polar coordinates",
+    "G33": "motion in step with the spindle",
+    "G33.1": "tapping in step with the spindle",
+    "G38.2": "probing",
+    "G38.3": "probing",
+    "G38.4": "probing",
+    "G38.5": "probing",
+    "G44": "negative length offsets",
+    "G50": "scaling",
+    "G51": "scaling",
+    "G68.2": "tilted planes",
+    "G74": "tapping with a left-hand tap",
+    "G76": "threading cycles",
+    "G87": "back boring, which needs an oriented spindle",
+    "G88": "boring with retraction by hand",
+    "G96": "constant cutting speed",
+    "M19": "orienting the spindle",
+    "M50": "switches of the feed override",
+    "M51": "switches of the spindle override",
+    "M52": "adaptive feed",
+    "M53": "switches of the feed hold",
+    "M61": "setting the tool number without a change",
+    **{f"M{code}": "digital and analogue outputs" for code in (62, 63, 64, 65, 66, 67, 68)},
+    **{f"M{code}": "saving and restoring modal states" for code in (70, 71, 72, 73)},
+}
+"""What well-known codes are for that no program for this machine can have."""
+
+CYCLES = (730, 810, 820, 830, 840, 850, 860, 890)
+ARCS = (20, 30)
+ANY_BLOCK = "FNSTO"
+
+
+def name_of(code: int, letter: str = "G") -> str:
+    """A code as it is written: G43.4 for 434, M6 for 6."""
+    return f"{letter}{code / 10:g}" if letter == "G" else f"{letter}{code}"
