@@ -18,7 +18,7 @@ FAMILIES = {
     "L": "CL data",
     "M": "The machine file",
     "K": "What the machine can reach",
-    "N": "Normals of the surface, and compensation with them",
+    "N": "Cutter compensation, with normals of the surface and in a plane",
     "T": "The trajectory file",
     "C": "The controller's program",
     "V": "The certificate",

@@ -7,42 +7,72 @@ the change, so a tool is known for what it is at the first motion behind both.
 
 from __future__ import annotations
 
+import math
+
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.feeds import shown
 from pkm_post.cldata.statements import Statement
 from pkm_post.model import EventKind, Tool
+from pkm_post.model.tool import angles_fit, corner_reach, largest_corner
 
 _PLANES = {"XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
+_TOUCHING = 2e-3
+"""How far in mm e and f may be from those of a corner that touches: files round to three decimals."""
 _SIDES = {"LEFT": 1.0, "RIGHT": -1.0}
 
 
 def cutter(course: Course, row: int, statement: Statement) -> None:
-    """CUTTER/d[,r[,e,f,a,b,h]]."""
+    """CUTTER/d[,r[,e,f,a,b,h]], angles in degrees; e and f follow from the others."""
     numbers = statement.numbers
     if not numbers or statement.words:
         course.tell("L402", row, f"CUTTER/{shown(statement)}, expected d[,r[,e,f,a,b,h]]")
         return
-    _new_cutter(course, row, numbers[0], numbers[1] if len(numbers) > 1 else 0.0)
+    d, r, e, f, a, b = _filled(numbers, 6)
+    if _new_cutter(course, row, d, r, a, b) and len(numbers) >= 4:
+        _check_corner(course, row, e * course.scale, f * course.scale)
 
 
 def tldata(course: Course, row: int, statement: Statement) -> None:
-    """TLDATA/MILL,d,r,length,... and TLDATA/DRILL,MILL,d,...: diameter and corner radius."""
+    """TLDATA/MILL,d,r,length,taper,tip,... and TLDATA/DRILL,MILL,d,...: of the latter the diameter alone."""
     numbers = statement.numbers
     if not numbers:
         course.tell("L402", row, f"TLDATA/{shown(statement)}, expected a diameter")
         return
-    corner = numbers[1] if len(numbers) > 1 and "DRILL" not in statement.words else 0.0
-    _new_cutter(course, row, numbers[0], corner)
+    d, r, _, taper, tip = _filled(numbers[:1] if "DRILL" in statement.words else numbers, 5)
+    _new_cutter(course, row, d, r, tip, taper)
 
 
-def _new_cutter(course: Course, row: int, diameter: float, corner: float) -> None:
+def _check_corner(course: Course, row: int, e: float, f: float) -> None:
+    """Tell of an e or f that belongs to another corner than the one that touches bottom and side."""
+    a, b, r = course.bottom_angle, course.side_angle, course.corner
+    touching_e = course.diameter / 2 - r * corner_reach(a, b)
+    touching_f = touching_e * math.tan(a) + r / math.cos(a)
+    if abs(e - touching_e) > _TOUCHING or abs(f - touching_f) > _TOUCHING:
+        found = f"e {e:g} mm, f {f:g} mm; touching are e {touching_e:.6g} mm, f {touching_f:.6g} mm"
+        course.tell("L418", row, found)
+
+
+def _filled(numbers: list[float], count: int) -> tuple[float, ...]:
+    """The first numbers of a statement, 0 for those that are missing."""
+    return (*numbers[:count], *(0.0,) * (count - len(numbers)))
+
+
+def _new_cutter(course: Course, row: int, diameter: float, corner: float, bottom: float, side: float) -> bool:
+    """Whether such a cutter can be; then it is the one in use."""
     diameter, corner = diameter * course.scale, corner * course.scale
-    if diameter < 0 or not 0 <= corner <= diameter / 2 + 1e-3:
+    bottom_angle, side_angle = math.radians(bottom), math.radians(side)
+    if not angles_fit(bottom_angle, side_angle):
+        course.tell("L403", row, f"bottom angle {bottom:g} degrees, side angle {side:g} degrees")
+        return False
+    largest = largest_corner(diameter, bottom_angle, side_angle)
+    if diameter < 0 or not 0 <= corner <= largest + 1e-3:
         course.tell("L403", row, f"diameter {diameter:g} mm, corner radius {corner:g} mm")
-        return
+        return False
     settle(course, row)
-    course.diameter, course.corner = diameter, min(corner, diameter / 2)
+    course.diameter, course.corner = diameter, min(corner, largest)
+    course.bottom_angle, course.side_angle = bottom_angle, side_angle
     course.tool_name = course.insert
+    return True
 
 
 def load(course: Course, row: int, statement: Statement) -> None:
@@ -95,7 +125,8 @@ def keep(course: Course) -> None:
     stands_for = course.options.default_tool
     given = course.options.tools.get(course.tool)
     length = course.length or (stands_for.length if stands_for else 0.0)
-    known = Tool(course.tool, course.tool_name, course.diameter, course.corner, length)
+    shape = (course.diameter, course.corner, length, course.bottom_angle, course.side_angle)
+    known = Tool(course.tool, course.tool_name, *shape)
     course.tools[course.tool] = given or known
 
 

@@ -1,7 +1,22 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool compensation: from what is to be touched to where the tool tip has to be."""
 
-from pkm_post.compensation.contact import tip_from_contact
+from pkm_post.compensation.apply import compensate
+from pkm_post.compensation.contact import tip_from_contact, tip_shift
 from pkm_post.compensation.cutter import Cutter
+from pkm_post.compensation.envelope import StockLeft, stock_left
+from pkm_post.compensation.options import OffsetOptions
+from pkm_post.compensation.side import offset_contours
+from pkm_post.compensation.tips import compensate_tips
 
-__all__ = ["Cutter", "tip_from_contact"]
+__all__ = [
+    "Cutter",
+    "OffsetOptions",
+    "StockLeft",
+    "compensate",
+    "compensate_tips",
+    "offset_contours",
+    "stock_left",
+    "tip_from_contact",
+    "tip_shift",
+]

@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tools: what compensation and kinematics need of the tool controllers of a CAM job.
 
-Tool controllers enter; tools by number, in mm, leave. FreeCAD 1.0 and newer ones name the shape of a tool bit and
-the corner of a bull nose differently, and none of them knows how far a tool stands out of the spindle: that is a
+Tool controllers enter; tools by number, in mm and rad, leave. FreeCAD 1.0 and newer ones name the shape of a tool bit
+and the corner of a bull nose differently, and none of them knows how far a tool stands out of the spindle: that is a
 property of our own, ``GaugeLength``.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from pkm_post.model import Diagnostic, Place, Tool
+from pkm_post.model.tool import corner_reach
 
 GAUGE_LENGTH = "GaugeLength"
 
@@ -63,8 +65,8 @@ def _told(tool: Tool) -> str:
 def _tool(controller: Any, number: int, length: float) -> Tool:
     bit = controller.Tool
     shape = str(getattr(bit, "ShapeType", None) or getattr(bit, "ShapeName", ""))
-    corner = _CORNERS.get(shape.lower(), lambda bit: 0.0)
-    return Tool(number, bit.Label, _millimetres(bit, "Diameter"), corner(bit), length)
+    known = _SHAPES.get(shape.lower().replace("_", ""), _flat)
+    return Tool(number, bit.Label, length=length, **known(bit))
 
 
 def _millimetres(thing: Any, name: str) -> float:
@@ -72,20 +74,61 @@ def _millimetres(thing: Any, name: str) -> float:
     return float(getattr(getattr(thing, name, 0.0), "Value", 0.0))
 
 
-def _ball(bit: Any) -> float:
-    return _millimetres(bit, "Diameter") / 2
+def _half_angle(bit: Any, name: str) -> float:
+    """Half of an angle property, in rad: from the axis to one side."""
+    return math.radians(_millimetres(bit, name)) / 2
 
 
-def _bull_nose(bit: Any) -> float:
+Sizes = dict[str, float]
+
+
+def _flat(bit: Any) -> Sizes:
+    return {"diameter": _millimetres(bit, "Diameter"), "corner_radius": 0.0}
+
+
+def _ball(bit: Any) -> Sizes:
+    return _flat(bit) | {"corner_radius": _millimetres(bit, "Diameter") / 2}
+
+
+def _bull_nose(bit: Any) -> Sizes:
     """FreeCAD 1.0 has the radius of the flat, newer ones that of the corner."""
     if hasattr(bit, "CornerRadius"):
-        return _millimetres(bit, "CornerRadius")
-    return _ball(bit) - _millimetres(bit, "FlatRadius")
+        return _flat(bit) | {"corner_radius": _millimetres(bit, "CornerRadius")}
+    return _flat(bit) | {"corner_radius": _millimetres(bit, "Diameter") / 2 - _millimetres(bit, "FlatRadius")}
 
 
-_CORNERS: dict[str, Callable[[Any], float]] = {
+def _tapered_ball(bit: Any) -> Sizes:
+    """The ball has the diameter of the bit; the side, which touches it, meets the plane of the tip elsewhere."""
+    ball, taper = _ball(bit), _half_angle(bit, "TaperAngle")
+    meeting = 2 * ball["corner_radius"] * corner_reach(0.0, taper)
+    return ball | {"diameter": meeting, "side_angle": taper}
+
+
+def _pointed(bit: Any) -> Sizes:
+    return _flat(bit) | {"bottom_angle": math.pi / 2 - _half_angle(bit, "TipAngle")}
+
+
+def _conical(bit: Any) -> Sizes:
+    """A cone that is its side where it ends in a flat of its own diameter, and its bottom where it ends in a point."""
+    tip, half = _millimetres(bit, "TipDiameter"), _half_angle(bit, "CuttingEdgeAngle")
+    if tip > 0.0:
+        return {"diameter": tip, "corner_radius": 0.0, "side_angle": half}
+    return _flat(bit) | {"bottom_angle": math.pi / 2 - half}
+
+
+def _dovetail(bit: Any) -> Sizes:
+    """Its angle is the one to the bottom."""
+    return _flat(bit) | {"side_angle": 2 * _half_angle(bit, "CuttingEdgeAngle") - math.pi / 2}
+
+
+_SHAPES: dict[str, Callable[[Any], Sizes]] = {
     "ballend": _ball,
-    "taperedballnose": _ball,
     "bullnose": _bull_nose,
+    "taperedballnose": _tapered_ball,
+    "drill": _pointed,
+    "tap": _pointed,
+    "vbit": _conical,
+    "chamfer": _conical,
+    "dovetail": _dovetail,
 }
-"""The corner radius by shape; other shapes have none."""
+"""Sizes by shape; the others, as end mills and reamers, are taken as flat below and upright at the side."""

@@ -55,15 +55,10 @@ def side_offsets(blocks: Blocks, modal: Modal, tools: Array, options: ReadOption
     side = modal.explicit[Group.SIDE]
     rows = np.flatnonzero(side != NONE)
     offset = np.zeros(len(rows))
-    before = 400
     for place, row in enumerate(rows.tolist()):
-        code = int(side[row])
-        if code != 400:
-            if before != 400:
-                faults.tell("G419", row, f"{name_of(code)} while {name_of(before)} is in force")
-            left = 1.0 if code in (410, 411) else -1.0
+        if side[row] != 400:
+            left = 1.0 if side[row] in (410, 411) else -1.0
             offset[place] = left * _radius(blocks, modal, row, int(tools[row]), options, faults)
-        before = code
     _unchanged(blocks, modal, faults)
     return carried(rows, offset, 0.0, len(blocks))
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -19,9 +20,12 @@ class Tool:
     Attributes:
         number: tool number, 0 when the source names none.
         name: the label shown to people.
-        diameter: cutter diameter in mm, 0 when unknown.
+        diameter: cutter diameter in mm, 0 when unknown: that of the circle where the lines of bottom and side meet.
         corner_radius: corner radius in mm: 0 for a flat end mill, half the diameter for a ball.
         length: gauge length in mm, from the spindle nose to the tip.
+        bottom_angle: rise of the bottom from the tip outwards, in rad: 0 for a flat bottom, 31 degrees for a drill
+            with a point of 118.
+        side_angle: angle of the side to the tool axis in rad, positive where the tool widens upwards.
     """
 
     number: int
@@ -29,6 +33,37 @@ class Tool:
     diameter: float
     corner_radius: float
     length: float
+    bottom_angle: float = 0.0
+    side_angle: float = 0.0
+
+
+def corner_reach(bottom_angle: float, side_angle: float) -> float:
+    """From the centre of a corner of radius 1 out to the circle where the lines of bottom and side meet.
+
+    (cos a - sin b) / cos(a + b), from the arc touching both lines; 1 for a flat bottom and an upright side.
+
+    Args:
+        bottom_angle: a, 0 <= a < pi/2, rad.
+        side_angle: b, with a + b < pi/2, rad.
+    """
+    return (math.cos(bottom_angle) - math.sin(side_angle)) / math.cos(bottom_angle + side_angle)
+
+
+def largest_corner(diameter: float, bottom_angle: float = 0.0, side_angle: float = 0.0) -> float:
+    """The corner radius in mm with which the centre of the corner is on the axis: that of a ball.
+
+    Args:
+        diameter: of the circle where the lines of bottom and side meet, mm.
+        bottom_angle: rad.
+        side_angle: rad.
+    """
+    return diameter / 2.0 / corner_reach(bottom_angle, side_angle)
+
+
+def angles_fit(bottom_angle: float, side_angle: float) -> bool:
+    """Whether the lines of bottom and side meet: a bottom angle from 0, and both together below a right angle."""
+    right = math.pi / 2.0
+    return 0.0 <= bottom_angle < right and -right < side_angle < right and bottom_angle + side_angle < right
 
 
 def lengths_of(tools: Mapping[int, Tool], numbers: Array) -> Array:

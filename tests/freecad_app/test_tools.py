@@ -4,21 +4,26 @@
 import math
 
 import FreeCAD as App
+import numpy as np
+import Part
 import pytest
 from cam_jobs import add_operation
 
+from pkm_post.compensation import Cutter
+from pkm_post.compensation.profile import Profile
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
 
 
 def stock_bit(document, shape, **sizes):
-    """A tool bit of a stock shape with some sizes in mm, as this FreeCAD makes them."""
+    """A tool bit of a stock shape with some sizes in mm and degrees, as this FreeCAD makes them."""
     try:
         from Path.Tool.toolbit import ToolBit
     except ImportError:
         from Path.Tool.Bit import Factory
 
-        parameters = {name: f"{size} mm" for name, size in sizes.items()}
+        units = {name: "deg" if name.endswith("Angle") else "mm" for name in sizes}
+        parameters = {name: f"{size} {units[name]}" for name, size in sizes.items()}
         declared = {"name": shape, "shape": shape, "parameter": parameters, "attribute": {}}
         return Factory.CreateFromAttrs(declared, shape)
     bit = ToolBit.from_shape_id(shape, label=shape).attach_to_doc(doc=document)
@@ -46,13 +51,76 @@ def assert_shape(bit, diameter, corner_radius):
     assert inside == [True, False]
 
 
-@pytest.mark.parametrize(("shape", "corner_radius"), [("endmill.fcstd", 0), ("ballend.fcstd", 6), ("drill.fcstd", 0)])
+def assert_profile(bit, tool, levels):
+    """The solid of the bit ends where the profile of the tool's cutter does, at some levels above the tip."""
+    outline = Profile.of(Cutter.of(tool), 100.0)
+    for z in levels:
+        low, high = 0.0, 50.0
+        for _ in range(40):
+            middle = (low + high) / 2
+            inside = outline.distance(np.array([middle]), np.array([z]))[0] < 0
+            low, high = (middle, high) if inside else (low, middle)
+        assert low > 0.02
+        hits = [bit.Shape.isInside(App.Vector(radius, 1e-4, z), 1e-7, False) for radius in (low - 0.01, low + 0.01)]
+        assert hits == [True, False], f"at level {z}"
+
+
+@pytest.mark.parametrize(("shape", "corner_radius"), [("endmill.fcstd", 0), ("ballend.fcstd", 6)])
 def test_corner_radius_by_shape(job, shape, corner_radius):
     bit = stock_bit(job.Document, shape, Diameter=12)
     tool = tool_of(job, bit)
-    assert (tool.diameter, tool.corner_radius) == (12, corner_radius)
-    if shape != "drill.fcstd":  # the point of a drill is a cone
-        assert_shape(bit, tool.diameter, tool.corner_radius)
+    assert (tool.diameter, tool.corner_radius, tool.bottom_angle, tool.side_angle) == (12, corner_radius, 0, 0)
+    assert_shape(bit, tool.diameter, tool.corner_radius)
+
+
+CONICAL = {
+    "drill": ("drill.fcstd", {"Diameter": 6}, {"TipAngle": 130}, (6, 0, 25, 0), (0.5, 1.0, 5.0)),
+    "v-bit with a flat": (
+        "v-bit.fcstd", {"Diameter": 10, "TipDiameter": 1}, {"CuttingEdgeAngle": 70}, (1, 0, 0, 35), (0.3, 0.9),
+    ),
+    "pointed v-bit": (
+        "v-bit.fcstd", {"Diameter": 10, "TipDiameter": 0}, {"CuttingEdgeAngle": 70}, (10, 0, 55, 0), (0.3, 0.9),
+    ),
+    "chamfer": ("chamfer.fcstd", {"TipDiameter": 5}, {"CuttingEdgeAngle": 80}, (5, 0, 0, 40), (0.3, 2.0)),
+    "dovetail": ("dovetail.fcstd", {}, {"CuttingEdgeAngle": 50}, None, (0.3, 4.0)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("shape", "lengths", "angles", "sizes", "levels"), CONICAL.values(), ids=CONICAL.keys())
+def test_cones_at_bottom_and_side(job, shape, lengths, angles, sizes, levels):
+    bit = stock_bit(job.Document, shape, **lengths, **angles)
+    tool = tool_of(job, bit)
+    if sizes is not None:
+        degrees = math.degrees(tool.bottom_angle), math.degrees(tool.side_angle)
+        assert (tool.diameter, tool.corner_radius, *degrees) == pytest.approx(sizes)
+    assert_profile(bit, tool, levels)
+
+
+def tapered_ball_of_newer_freecad(document):
+    """What FreeCAD 1.0 sees of such a bit in a document of a newer one, with the solid that its sizes stand for."""
+    bit = document.addObject("Part::FeaturePython", "TaperedBall")
+    bit.addProperty("App::PropertyString", "ShapeType")
+    bit.addProperty("App::PropertyLength", "Diameter")
+    bit.addProperty("App::PropertyAngle", "TaperAngle")
+    bit.ShapeType, bit.Diameter, bit.TaperAngle = "TaperedBallNose", 1.5875, 11
+    radius, taper, top = 1.5875 / 2, math.radians(5.5), 20.0
+    level = radius * (1 - math.sin(taper))
+    below = radius * math.cos(taper)
+    above = below + (top - level) * math.tan(taper)
+    ball = Part.makeSphere(radius, App.Vector(0, 0, radius))
+    bit.Shape = ball.fuse(Part.makeCone(below, above, top - level, App.Vector(0, 0, level)))
+    return bit
+
+
+def test_tapered_ball(job):
+    if int(App.Version()[1]) == 0:
+        bit = tapered_ball_of_newer_freecad(job.Document)
+    else:
+        bit = stock_bit(job.Document, "taperedballnose.fcstd")
+    tool = tool_of(job, bit)
+    assert (tool.corner_radius, math.degrees(tool.side_angle)) == pytest.approx((1.5875 / 2, 5.5))
+    assert Cutter.of(tool).radial_offset == pytest.approx(0.0, abs=1e-12)
+    assert_profile(bit, tool, (0.1, 0.6, 1.0, 10.0))
 
 
 def test_bull_nose_says_its_flat_or_its_corner(job):

@@ -97,6 +97,11 @@ def test_a_mirror_turns_arcs_and_compensation_round():
     assert program.plane.tolist() == [2, 2, 2, 2]
 
 
+def test_side_and_radius_may_change_under_compensation():
+    program = read(f"{START}G41.1 D6 G1 X10 F100\nG42.1 D6 X20\nG42.1 D8 X30\nG40 X40\n")
+    near(program.side_offset, [0, 3, -3, -4, 0])
+
+
 def test_a_quarter_turn_takes_the_plane_along():
     program = read(f"{START}G19 G68 Y0 Z0 R90\nG17 G41 D1 G1 X10 F100\n")
     assert program.plane.tolist() == [2, 1]

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command ``reach``: whether a machine can follow a program, and where it could do so better."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pkm_post.cli.inside_freecad import is_inside, run_inside
+from pkm_post.cli.reading import add_reading, reading_from
+from pkm_post.options import add_options, options_from, tool_lengths_from
+
+if TYPE_CHECKING:
+    from pkm_post.model import Diagnostic, Program
+    from pkm_post.pipeline import Options
+
+    Read = tuple[Program | None, tuple[Diagnostic, ...], Options]
+
+
+def add_commands(commands: Any) -> None:
+    """Add the command to a parser."""
+    reaching = commands.add_parser("reach", help="say whether a machine can follow FreeCAD documents and part programs")
+    reaching.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    reaching.add_argument("--job", metavar="NAME", help="this job of the document only, by name or label")
+    reaching.add_argument(
+        "--place",
+        nargs="?",
+        const="xyzc",
+        default="",
+        type=_freedoms,
+        metavar="FREEDOMS",
+        help="look for a better work offset: x, y, z shift and a, b, c turn the part (xyzc if nothing is said)",
+    )
+    reaching.add_argument("--json", action="store_true", help="write JSON instead of text")
+    add_options(reaching)
+    add_reading(reaching)
+    reaching.set_defaults(run=_reach)
+
+
+def _freedoms(text: str) -> str:
+    if set(text) - set("xyzabc"):
+        raise argparse.ArgumentTypeError(f"expected letters of xyzabc, got {text!r}")
+    return text
+
+
+def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.machine_file import machine_named
+    from pkm_post.model.diagnostics import errors
+    from pkm_post.reach_study import study
+    from pkm_post.sources import is_part_program
+
+    if not is_inside() and not all(map(is_part_program, namespace.files)):
+        return run_inside(arguments)
+    machine, faults = machine_named(namespace.machine)
+    _tell(faults)
+    failed = machine is None
+    found = []
+    for program, told, options in _programs(namespace):
+        if program is not None and machine is not None:
+            made, more = study(program, machine, options, namespace.place)
+            told += more
+            found += [made] if made else []
+        _tell(told)
+        failed |= bool(errors(told))
+    if namespace.json:
+        print(json.dumps([made.as_dict() for made in found], indent=2))
+    else:
+        print("\n".join(made.text() for made in found))
+    return int(failed)
+
+
+def _programs(namespace: argparse.Namespace) -> Iterator[Read]:
+    from pkm_post.post_file import read_to_post
+    from pkm_post.sources import is_part_program
+
+    for file in namespace.files:
+        options, lengths = options_from(namespace), tool_lengths_from(namespace)
+        if is_part_program(file):
+            yield read_to_post(file, options, lengths, reading_from(namespace))
+        else:
+            from pkm_post.freecad_app.post_job import read_document
+
+            yield from read_document(file, options, lengths, namespace.job)
+
+
+def _tell(diagnostics: Sequence[Diagnostic]) -> None:
+    for diagnostic in diagnostics:
+        print(diagnostic, file=sys.stderr)

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Apply: a program with everything compensated that it asks for, and for the cutters that are in the spindle.
+
+A program as it was read enters; one whose tips are where the tool has to go leaves. It comes before symmetry and
+placement: a mirror would change the sides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from pkm_post.compensation.cutter import Cutter
+from pkm_post.compensation.options import OffsetOptions
+from pkm_post.compensation.side import offset_contours
+from pkm_post.compensation.tips import compensate_tips
+from pkm_post.model import Diagnostic, Place, Program, Tool
+
+
+def compensate(
+    program: Program, contours: OffsetOptions, actual: Mapping[int, Tool]
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """The program with contours offset in 2D, and moved along its surface normals in 3D.
+
+    Args:
+        program: with side offsets, normals, or neither.
+        contours: how contours are offset.
+        actual: by number, the tools whose cutters are others than those the program was made for.
+    """
+    told: tuple[Diagnostic, ...] = ()
+    moved, faults = offset_contours(program, contours)
+    told += faults
+    for number, tool in sorted(actual.items()):
+        if moved is None:
+            break
+        moved, faults = _for_cutter(moved, number, tool)
+        told += faults
+    return moved, told
+
+
+def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    place = Place(program.source)
+    if number not in program.tools:
+        known = ", ".join(f"T{known}" for known in sorted(program.tools))
+        return None, (Diagnostic("N109", place, f"T{number}, the program has {known}"),)
+    tool = program.tools[number]
+    try:
+        nominal, ground = Cutter.of(tool), Cutter.of(actual)
+    except ValueError as fault:
+        return None, (Diagnostic("N109", place, str(fault)),)
+    moved, told = compensate_tips(program, nominal, ground, number if len(program.tools) > 1 else None)
+    if moved is None:
+        return None, told
+    ground_tool = replace(tool, diameter=actual.diameter, corner_radius=actual.corner_radius)
+    return replace(moved, tools=program.tools | {number: ground_tool}), told

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Compensation plane: the plane in which the path of each row is offset.
+
+The plane that a row names and the tool axis enter; unit normals leave, NaN where the axis says no plane. Where the
+axis is normal to the named plane, or lies in it (a ball in G18, as controls have it), the named plane holds. Where the
+axis leans, as in side milling, the plane is the one normal to the axis; left and right are those of the named plane.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import dot
+from pkm_post.geometry.vectors import Array
+
+PARALLEL = 1e-5
+"""rad below which two directions count as one: axes are written with six decimals, which may be 1e-6 off."""
+
+_LEAST_COSINE = 0.5
+"""An axis that leans by more than 60 degrees, and does not lie in the plane, does not say what is meant."""
+
+
+def plane_normals(plane: Array, tool_axis: Array) -> Array:
+    """Unit normals of the planes of compensation, (N, 3); NaN where the axis leans too far.
+
+    Args:
+        plane: (N,) the coordinate that the named plane is normal to.
+        tool_axis: (N, 3) unit tool axes.
+    """
+    named = np.eye(3)[plane]
+    cosine = dot(named, tool_axis)
+    sine = np.sqrt(np.maximum(1.0 - cosine**2, 0.0))
+    keeps = (sine < PARALLEL) | (np.abs(cosine) < PARALLEL)
+    leans = np.abs(cosine) >= _LEAST_COSINE
+    normal = np.where(leans[:, None], tool_axis * np.sign(cosine)[:, None], np.nan)
+    return np.where(keeps[:, None], named, normal)

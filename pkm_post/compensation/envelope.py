@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Envelope: what a path leaves on a surface, and where it cuts into it.
+
+The tips and axes of a path, a cutter, and points of the surface with their normals enter; for every point leaves the
+way in mm from the surface along its normal to the volume that the cutter sweeps: positive is material left, negative
+is the depth of a gouge. The cutter is taken with its true profile, and the path with all that lies between its rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pkm_post.compensation.cutter import Cutter
+from pkm_post.compensation.sweep import Sweep
+from pkm_post.geometry import norm, unit
+from pkm_post.geometry.cells import cells
+from pkm_post.geometry.vectors import Array
+
+_POINTS_PER_CELL = 100
+_ITERATIONS = 40
+
+
+@dataclass(frozen=True)
+class StockLeft:
+    """What a path leaves on a surface.
+
+    Attributes:
+        left: (N,) material left at the points along their normals, negative for gouges, mm; infinite where the
+            cutter does not come within the reach asked for.
+        row: (N,) the row of the path whose motion, from the row before, comes nearest; -1 where ``left`` is infinite.
+    """
+
+    left: Array
+    row: Array
+
+    @property
+    def deepest(self) -> int:
+        """Index of the point with the deepest gouge, or the least material left."""
+        return int(np.argmin(self.left))
+
+    @property
+    def highest(self) -> int:
+        """Index of the point with the most material left where the cutter comes; -1 where it comes nowhere."""
+        near = np.isfinite(self.left)
+        return int(np.argmax(np.where(near, self.left, -np.inf))) if near.any() else -1
+
+
+def stock_left(
+    tips: ArrayLike,
+    axes: ArrayLike,
+    cutter: Cutter,
+    points: ArrayLike,
+    normals: ArrayLike,
+    *,
+    tolerance: float = 1e-3,
+    reach: float = 1.0,
+    progress: Callable[[float], Any] | None = None,
+) -> StockLeft:
+    """Material that a path leaves at points of a surface, and gouges.
+
+    Between two rows the tip moves along a straight line and the axis turns evenly. A line through the point along its
+    normal enters the swept volume at the value; it is found by steps of the distance to that volume, none of which
+    can miss it.
+
+    Args:
+        tips: (M, 3) tool tips, mm.
+        axes: (M, 3) tool axes, from the tip towards the spindle, of any length.
+        cutter: the cutter; one of unknown height reaches as far as the points do.
+        points: (N, 3) points of the surface, mm.
+        normals: (N, 3) normals there, out of the material, of any length.
+        tolerance: how much too large a value may be, mm.
+        reach: material left of more than this is not measured, mm.
+        progress: told the share that is done, now and then, from 0 to 1 for each of a few rounds; what it raises stops
+            the work.
+
+    Raises:
+        ValueError: tips and axes, or points and normals, are not of one shape (M, 3); a vector has no direction;
+            there is no tip; or tolerance and reach are not above 0.
+    """
+    tip, axis = _pair("tips and axes", tips, axes)
+    start, normal = _pair("points and normals", points, normals)
+    if not (len(tip) and tolerance > 0.0 and reach > 0.0):
+        raise ValueError(f"stock_left: expected tips, tolerance and reach, got {len(tip)}, {tolerance}, {reach}")
+    if not len(start):
+        return StockLeft(np.zeros(0), np.zeros(0, dtype=np.int64))
+    everything = np.vstack([tip, start])
+    sweep = Sweep.of(tip, axis, cutter, reach, float(norm(np.ptp(everything, axis=0))) + reach)
+    left, row = np.zeros(len(start)), np.full(len(start), -1, dtype=np.int64)
+    open_rows = np.arange(len(start))
+    for _ in range(_ITERATIONS):
+        reached = start[open_rows] + left[open_rows, None] * normal[open_rows]
+        step, nearest = _distances(sweep, reached, tolerance / 2.0, progress)
+        left[open_rows] += step
+        row[open_rows] = nearest
+        beyond = left[open_rows] > reach
+        left[open_rows[beyond]], row[open_rows[beyond]] = np.inf, -1
+        open_rows = open_rows[~beyond & (np.abs(step) > tolerance / 2.0)]
+        if not len(open_rows):
+            break
+    return StockLeft(left, row)
+
+
+def _distances(
+    sweep: Sweep, points: Array, tolerance: float, progress: Callable[[float], Any] | None
+) -> tuple[Array, Array]:
+    """Signed distances (N,) to the swept volume and rows (N,), cell by cell."""
+    distance, row = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
+    done = 0
+    for rows in cells(points, _POINTS_PER_CELL):
+        distance[rows], row[rows] = sweep.distances(points[rows], tolerance)
+        done += len(rows)
+        if progress is not None:
+            progress(done / len(points))
+    return distance, row
+
+
+def _pair(names: str, positions: ArrayLike, directions: ArrayLike) -> tuple[Array, Array]:
+    position, direction = np.asarray(positions, dtype=np.float64), np.asarray(directions, dtype=np.float64)
+    if position.ndim != 2 or position.shape[1] != 3 or position.shape != direction.shape:
+        raise ValueError(f"stock_left: expected {names} (N, 3), got {position.shape} and {direction.shape}")
+    if not (np.isfinite(position).all() and np.isfinite(direction).all()):
+        raise ValueError(f"stock_left: expected finite {names}")
+    return position, unit(direction)

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options of the 2D compensation: what controls differ in, and what is done where the tool does not fit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+CHOICES = {"corners": ("chord", "arc"), "leads": ("A", "B"), "swallowed": ("refuse", "remove")}
+
+
+@dataclass(frozen=True)
+class OffsetOptions:
+    """How contours are offset.
+
+    Attributes:
+        corners: what goes round outer corners. "chord": the offset lines are extended until they meet, and beyond a
+            right angle are cut off by a chord, as in the paper; "arc": an arc about the corner, as in LinuxCNC.
+        leads: "A" leads straight to and from the point beside the contour's end; "B" goes round outer corners there.
+        swallowed: what is done with rows that the tool is too large for: "refuse" the program, or "remove" them.
+        tolerance: mm by which the tool may come nearer to the contour than its radius.
+    """
+
+    corners: str = "chord"
+    leads: str = "A"
+    swallowed: str = "refuse"
+    tolerance: float = 1e-3
+
+    def __post_init__(self) -> None:
+        for name, choices in CHOICES.items():
+            if getattr(self, name) not in choices:
+                raise ValueError(f"OffsetOptions.{name}: expected one of {choices}, got {getattr(self, name)!r}")
+        if not (math.isfinite(self.tolerance) and self.tolerance > 0.0):
+            raise ValueError(f"OffsetOptions.tolerance: expected a length above 0 mm, got {self.tolerance}")

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Normal Compensation: a dress-up that takes the points of a CAM operation for contact points on the model.
+
+An operation enters by the property ``Base``; for each of its points the face of the model and the normal there are
+found, and the ``Path`` of the tool tip leaves that makes the cutter touch there. Tool, coolant and feed are those of
+the base. Saved documents name the class by ``pkm_post.freecad_app.normal_compensation``: its place, its name and those
+of its properties are a file format.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+from Path.Base.Util import toolControllerForOp
+from PathScripts import PathUtils
+
+from pkm_post.compensation import Cutter
+from pkm_post.freecad_app.contact_faces import Contacts, NamedFace, contacts, nearest_face
+from pkm_post.freecad_app.contact_guides import guides
+from pkm_post.freecad_app.contact_moves import Compensation, compensated
+from pkm_post.freecad_app.derived_operation import BASE_AND_ACTIVE, DerivedOperation, Row
+from pkm_post.freecad_app.model_faces import model_faces
+from pkm_post.freecad_app.tool_cutter import read_cutter
+from pkm_post.gcode.chords import with_chords
+from pkm_post.model import Diagnostic, Kind, Place, Program
+from pkm_post.surface_path.tool_axis import AxisRule
+
+_VIEW = "pkm_post.freecad_gui.normal_compensation_view"
+"""The view is a floor above: it is named and not imported, as in saved documents."""
+
+KEEP, FROM_NORMAL = "Of the operation", "From the normal"
+
+_G = "Normal Compensation"
+_PROPERTIES: tuple[Row, ...] = (
+    *BASE_AND_ACTIVE,
+    ("App::PropertyLink", "Model", _G, "The model of the job, whose faces are touched", None),
+    ("App::PropertyLinkSubListGlobal", "Faces", _G, "The faces that may be touched; all of the model if empty", []),
+    ("App::PropertyLength", "Tolerance", _G, "How far a point may be from the face it touches", 0.01),
+    ("App::PropertyLength", "ChordTolerance", _G, "How far the tool may be off between two points", 0.05),
+    ("App::PropertyDistance", "StockToLeave", _G, "Stock left on the faces, along the normal", 0.0),
+    ("App::PropertyLength", "LeadLength", _G, "Length of feed moves off the faces before and after a cut", 0.0),
+    ("App::PropertyEnumeration", "ToolAxis", _G, "Where the tool axis comes from", [KEEP, FROM_NORMAL]),
+    ("App::PropertyAngle", "Lead", _G, "Lean from the normal forward, in the direction of feed", 0.0),
+    ("App::PropertyAngle", "Tilt", _G, "Lean from the normal to the left of the direction of feed", 0.0),
+)
+
+
+class NormalCompensation(DerivedOperation):
+    """The dress-up. It takes the place of its base in the job, and gives it back when it is deleted."""
+
+    properties = _PROPERTIES
+
+    def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+        """The program of the tool tip."""
+        program = with_chords(program, np.flatnonzero(program.kind == Kind.ARC))
+        if not len(program):
+            return program, ()
+        place = Place(program.source, program.operations[0])
+        faces, face_faults = model_faces(obj.Model, obj.Faces, place)
+        cutter, tool_faults = read_cutter(toolControllerForOp(obj), place)
+        if faces is None or cutter is None:
+            return None, (*face_faults, *tool_faults)
+        found = contacts(faces, program.position, obj.Tolerance.Value, obj.Label)
+        guide, astray = guides(program, found.face >= 0, obj.LeadLength.Value)
+        faults = (*_astray(program, astray, faces, obj.Tolerance.Value), *_at_edges(program, found, faces))
+        return (None, faults) if faults else compensated(program, found.normal, guide, _rule(obj, cutter))
+
+    def unsetupObject(self, obj: Any) -> None:
+        """Give the base back to the job: FreeCAD calls this before the object is deleted."""
+        job, base = PathUtils.findParentJob(obj), obj.Base
+        if job is not None and base is not None:
+            job.Proxy.addOperation(base, obj if obj in job.Operations.Group else None)
+            base.Visibility = True
+
+
+def _rule(obj: Any, cutter: Cutter) -> Compensation:
+    """What the properties say, in mm and rad."""
+    lead, tilt = math.radians(obj.Lead.Value), math.radians(obj.Tilt.Value)
+    lean = AxisRule(lead, tilt) if obj.ToolAxis == FROM_NORMAL else None
+    return Compensation(cutter, obj.StockToLeave.Value, obj.ChordTolerance.Value, lean)
+
+
+def _astray(program: Program, astray: Any, faces: Sequence[NamedFace], tolerance: float) -> list[Diagnostic]:
+    """The first cutting move that ends on no face, and how many there are."""
+    rows = np.flatnonzero(astray).tolist()
+    if not rows:
+        return []
+    name, distance = nearest_face(faces, program.position[rows[0]])
+    text = f"{_told(program, rows[0])} is {distance:.4g} mm from {name}, Tolerance {tolerance:.4g} mm"
+    return [Diagnostic("N111", program.place(rows[0]), text + _more(rows))]
+
+
+def _at_edges(program: Program, found: Contacts, faces: Sequence[NamedFace]) -> list[Diagnostic]:
+    """The first point that is on two faces with different normals, and how many there are."""
+    rows = np.flatnonzero(found.other >= 0).tolist()
+    if not rows:
+        return []
+    one, other = (faces[index[rows[0]]].name for index in (found.face, found.other))
+    text = f"{_told(program, rows[0])} is on {one} and on {other}"
+    return [Diagnostic("N112", program.place(rows[0]), text + _more(rows))]
+
+
+def _told(program: Program, row: int) -> str:
+    return "X{:.6g} Y{:.6g} Z{:.6g}".format(*(program.position[row] + 0.0))
+
+
+def _more(rows: list[int]) -> str:
+    return f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
+
+
+def create_normal_compensation(base: Any, label: str | None = None) -> Any:
+    """Put the dress-up over an operation of a job, in its place.
+
+    Args:
+        base: the operation, whose points are contact points.
+        label: name shown to people.
+
+    Raises:
+        ValueError: the operation is not in the list of a job, or another dress-up stands on it already.
+    """
+    job = PathUtils.findParentJob(base)
+    if job is None or base not in job.Operations.Group:
+        raise ValueError(f"expected an operation in the list of a CAM job, got {base.Label}")
+    obj = base.Document.addObject("Path::FeaturePython", "DressupPkmNormals")
+    NormalCompensation(obj)
+    obj.Label, obj.Base, obj.Model = label or f"Normal Compensation of {base.Label}", base, job.Model
+    job.Proxy.addOperation(obj, base, True)
+    base.Visibility = False
+    if App.GuiUp:
+        importlib.import_module(_VIEW).NormalCompensationView(obj.ViewObject)
+    return obj

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reach of a job: whether the machine of a CAM job can follow it, and the work offset that leaves it most room.
+
+A job enters, with the arguments of its post-processor; a study leaves. To place the job its argument ``--work-offset``
+is set: that is where posting takes it from.
+"""
+
+from __future__ import annotations
+
+import shlex
+from typing import Any
+
+from pkm_post import pipeline
+from pkm_post.freecad_app.arguments import POST_PROCESSOR, job_arguments
+from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.post_job import at_fixture
+from pkm_post.machine_file import machine_named
+from pkm_post.model import Refused
+from pkm_post.options import options_from, tool_lengths_from
+from pkm_post.reach_study import Study, study, told_offset
+
+_WORK_OFFSET = "--work-offset"
+
+
+def study_job(job: Any, free: str = "") -> Study:
+    """Check a job on its machine, as its arguments say it.
+
+    Args:
+        job: the CAM job, a document object; its document is recomputed.
+        free: letters of ``position.FREEDOMS`` in which the part may be moved; none leaves it where it is.
+
+    Raises:
+        Refused: the job cannot be read or placed. That it cannot be followed is told by the study.
+    """
+    job.Document.recompute()
+    chosen = job_arguments(job, job.PostProcessorArgs if job.PostProcessor == POST_PROCESSOR else "")
+    machine, faults = machine_named(chosen.machine)
+    program, told = read_job(job, tool_lengths_from(chosen))
+    if machine is None or program is None:
+        raise Refused((*faults, *told))
+    options: pipeline.Options = at_fixture(options_from(chosen), job)
+    found, told = study(program, machine, options, free)
+    if found is None:
+        raise Refused(told)
+    return found
+
+
+def place_job(job: Any, free: str = "xyzc") -> Study:
+    """Give a job the work offset that leaves its machine most room.
+
+    Args:
+        job: the CAM job, for PKM Post's post-processor.
+        free: letters of x, y, z and c in which the part may be moved.
+
+    Raises:
+        ValueError: a freedom cannot be said by ``--work-offset``, or the job has another post-processor.
+        Refused: as ``study_job``.
+    """
+    if set(free) - set("xyzc"):
+        raise ValueError(f"free: expected letters of 'xyzc', got {free!r}")
+    if job.PostProcessor != POST_PROCESSOR:
+        raise ValueError(f"expected a job for {POST_PROCESSOR}, got one for {job.PostProcessor or 'none'}")
+    found = study_job(job, free)
+    words = shlex.split(job.PostProcessorArgs)
+    if _WORK_OFFSET in words:
+        place = words.index(_WORK_OFFSET)
+        del words[place : place + 2]
+    kept = [word for word in words if not word.startswith(f"{_WORK_OFFSET}=")]
+    job.PostProcessorArgs = shlex.join([*kept, told_offset(found.machine_from_work)])
+    return found

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Distances: how far bodies are apart, batch first; the bodies are segments, boxes, cylinders and points.
+
+Boxes have edges along the axes. Cylinders are solid, with flat ends, and are given where they lie along z: points are
+brought into the frame of the cylinder first. What is touched or overlapped is at distance 0. Lengths in mm. All
+leading dimensions are broadcast.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array, dot, norm
+
+_HALVINGS = 24
+"""Leaves a strut of a metre 60 nm long; the distance is known better than that."""
+
+
+def segment_to_segment(start: Array, end: Array, other_start: Array, other_end: Array) -> Array:
+    """Distances of segments, (...); the closest points are found by clamping [Ericson2005].
+
+    Of almost parallel segments, within 1e-8 rad, any pair of points that face each other may be taken as the closest,
+    which is wrong by no more than this angle times their length.
+
+    Args:
+        start: (..., 3) one end of the first segment.
+        end: (..., 3) its other end.
+        other_start: (..., 3) one end of the second segment.
+        other_end: (..., 3) its other end.
+    """
+    d, e, r = end - start, other_end - other_start, start - other_start
+    dd, ee, de, dr, er = dot(d, d), dot(e, e), dot(d, e), dot(d, r), dot(e, r)
+    s = np.clip(_quotient(de * er - dr * ee, dd * ee - de * de), 0.0, 1.0)
+    t = np.clip(_quotient(de * s + er, ee), 0.0, 1.0)
+    s = np.clip(_quotient(de * t - dr, dd), 0.0, 1.0)
+    return norm(r + s[..., None] * d - t[..., None] * e)
+
+
+def point_to_box(point: Array, lowest: Array, highest: Array) -> Array:
+    """Distances of points (..., 3) from boxes between the corners ``lowest`` and ``highest`` (..., 3)."""
+    return norm(point - np.clip(point, lowest, highest))
+
+
+def point_to_cylinder(point: Array, radius: Array | float, low: Array | float, high: Array | float) -> Array:
+    """Distances of points (..., 3) from cylinders about the z axis, from z = ``low`` to ``high``."""
+    outward = np.hypot(point[..., 0], point[..., 1]) - radius
+    along = np.maximum(low - point[..., 2], point[..., 2] - high)
+    return np.hypot(np.maximum(outward, 0.0), np.maximum(along, 0.0))
+
+
+def segment_to_box(start: Array, end: Array, lowest: Array, highest: Array) -> Array:
+    """Distances of segments from boxes, (...).
+
+    Args:
+        start: (..., 3) one end of the segment.
+        end: (..., 3) the other end.
+        lowest: (..., 3) corner of the box with the least coordinates.
+        highest: (..., 3) the opposite corner.
+    """
+
+    def away(point: Array) -> Array:
+        return point - np.clip(point, lowest, highest)
+
+    return norm(away(_nearest(start, end, away)))
+
+
+def segment_to_cylinder(
+    start: Array, end: Array, radius: Array | float, low: Array | float, high: Array | float
+) -> Array:
+    """Distances of segments from cylinders about the z axis, (...).
+
+    Args:
+        start: (..., 3) one end of the segment in the frame of the cylinder.
+        end: (..., 3) the other end.
+        radius: of the cylinder.
+        low: z of its lower end.
+        high: z of its upper end.
+    """
+
+    def away(point: Array) -> Array:
+        out = np.hypot(point[..., 0], point[..., 1])
+        share = np.maximum(_quotient(out - radius, out), 0.0)
+        z = point[..., 2]
+        return np.stack([share * point[..., 0], share * point[..., 1], z - np.clip(z, low, high)], axis=-1)
+
+    return norm(away(_nearest(start, end, away)))
+
+
+def _nearest(start: Array, end: Array, away: Callable[[Array], Array]) -> Array:
+    """The point of each segment that is nearest to a convex body, (..., 3), by halving.
+
+    Half the square of the distance is convex along the segment, and its slope is away . direction, where ``away``
+    leads from the nearest point of the body to a point.
+    """
+    way = end - start
+    shape = np.broadcast_shapes(start.shape, end.shape, away(start).shape)[:-1]
+    low, high = np.zeros(shape), np.ones(shape)
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        rising = dot(away(start + middle[..., None] * way), np.broadcast_to(way, (*shape, 3))) > 0
+        low, high = np.where(rising, low, middle), np.where(rising, middle, high)
+    # Where the slope never changes its sign, the nearest point is an end, and must be met to the last digit.
+    share = np.where(high == 1.0, 1.0, low)
+    return start + share[..., None] * way
+
+
+def _quotient(dividend: Array, divisor: Array) -> Array:
+    """Quotients, 0 where the divisor is not above 0."""
+    dividend, divisor = np.broadcast_arrays(dividend, divisor)
+    return np.divide(dividend, divisor, out=np.zeros(dividend.shape), where=divisor > 0)

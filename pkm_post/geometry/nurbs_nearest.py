@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Nearest points of NURBS surfaces: feet of perpendiculars from many points at once.
+
+A surface and points in mm enter; parameters (u, v) of the feet leave, and which of them are to be trusted. Samples of
+the surface give the start, Newton's method on the squared distance the foot: beside the border, where the surface ends
+before the perpendicular, the foot is on the border.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pkm_post.geometry.cells import cells
+from pkm_post.geometry.nurbs import NurbsSurface
+from pkm_post.geometry.vectors import Array, dot
+
+_SAMPLES = 6000
+"""At most so many samples of the surface."""
+
+_SAMPLES_PER_POLE = 4
+"""Samples along a direction for each pole along it."""
+
+_POINTS_PER_CELL = 200
+"""Points on a surface that are compared with samples at a time, about."""
+
+_ITERATIONS = 30
+_SMALL = 1e-5
+"""Newton's step in mm that is taken even if the distance grows: so near its minimum, that is rounding."""
+
+_ARRIVED = 1e-8
+"""Newton's step in mm that is the last one: its error is of the order of its square."""
+
+Closed = tuple[bool, bool]
+
+
+def nearest(surface: NurbsSurface, points: Array, closed: Closed = (False, False)) -> tuple[Array, Array]:
+    """Parameters of the points of a surface that are nearest to given points.
+
+    Args:
+        surface: in mm.
+        points: (N, 3) finite points in mm; their feet are found where no other part of the surface is about as near.
+        closed: whether the surface runs on smoothly from its last u to its first, and from its last v.
+
+    Returns:
+        Parameters (N, 2), and whether the distance has its minimum there (N,). Where it has not, the search did not
+        arrive, at a crease for example.
+    """
+    bounds = surface.bounds
+    at = _seeds(surface, points)
+    arrived = np.zeros(len(points), dtype=np.bool_)
+    open_rows = np.arange(len(points))
+    found = surface.derivatives(*at.T)
+    scale = np.ones(len(points))
+    for _ in range(_ITERATIONS):
+        if not len(open_rows):
+            break
+        step = _step(found, points[open_rows], at[open_rows], bounds, closed) * scale[open_rows, None]
+        moved = _within(at[open_rows] + step, bounds, closed)
+        length = np.abs(step[:, 0]) * _length(found[1]) + np.abs(step[:, 1]) * _length(found[2])
+        last = (length < _ARRIVED) & (scale[open_rows] == 1.0)
+        trial = surface.derivatives(*moved.T)
+        better = _square(trial[0] - points[open_rows]) <= _square(found[0] - points[open_rows])
+        better |= length < _SMALL
+        at[open_rows[better]] = moved[better]
+        found[:, better] = trial[:, better]
+        scale[open_rows] = np.where(better, 1.0, 0.3 * scale[open_rows])
+        arrived[open_rows[last]] = True
+        open_rows, found = open_rows[~last], found[:, ~last]
+    return at, arrived
+
+
+def samples(surface: NurbsSurface) -> tuple[Array, Array]:
+    """Parameters (M, 2) and points (M, 3) of a grid that is denser where the surface has more poles."""
+    counts = [_SAMPLES_PER_POLE * count for count in surface.poles.shape[:2]]
+    coarser = max(1.0, math.sqrt(math.prod(counts) / _SAMPLES))
+    lines = [_evenly(surface.breaks(direction), round(counts[direction] / coarser)) for direction in (0, 1)]
+    u, v = (grid.ravel() for grid in np.meshgrid(*lines, indexing="ij"))
+    return np.column_stack([u, v]), surface.points(u, v)
+
+
+def _evenly(breaks: Array, count: int) -> Array:
+    """About ``count`` parameters, as many in each span."""
+    inside = max(2, math.ceil(count / (len(breaks) - 1)))
+    return np.interp(np.arange((len(breaks) - 1) * inside + 1) / inside, np.arange(len(breaks)), breaks)
+
+
+def _seeds(surface: NurbsSurface, points: Array) -> Array:
+    """Parameters (N, 2) of the nearest samples.
+
+    Points of one cell of space are done together: a sample that is farther from their middle than the nearest one, by
+    more than twice the radius of the cell, is not the nearest to any of them.
+    """
+    parameters, grid = samples(surface)
+    chosen = np.zeros(len(points), dtype=np.int64)
+    for rows in cells(points, _POINTS_PER_CELL):
+        some = points[rows]
+        middle = (some.min(axis=0) + some.max(axis=0)) / 2
+        radius = _length(some - middle).max()
+        from_middle = _length(grid - middle)
+        near = np.flatnonzero(from_middle <= from_middle.min() + 2 * radius)
+        moved = grid[near] - middle
+        chosen[rows] = near[np.argmin(_square(moved) - 2 * (some - middle) @ moved.T, axis=1)]
+    return parameters[chosen]
+
+
+def _step(found: Array, points: Array, at: Array, bounds: Array, closed: Closed) -> Array:
+    """Newton's step (N, 2) for |S - q|^2 / 2; the step of Gauss and Newton where the distance is not convex."""
+    s, su, sv, suu, suv, svv = found
+    away = s - points
+    slope = np.column_stack([dot(su, away), dot(sv, away)])
+    uu, uv, vv = dot(su, su), dot(su, sv), dot(sv, sv)
+    full = uu + dot(suu, away), uv + dot(suv, away), vv + dot(svv, away)
+    convex = (full[0] > 0) & (full[0] * full[2] - full[1] ** 2 > 1e-9 * uu * vv)
+    a, b, c = (np.where(convex, newton, gauss) for newton, gauss in zip(full, (uu, uv, vv), strict=True))
+    held = _held(slope, at, bounds, closed)
+    b = np.where(held.any(axis=1), 0.0, b)
+    fall = np.where(held, 0.0, slope)
+    determinant = a * c - b * b
+    safe = np.where(determinant > 0, determinant, np.inf)
+    return -np.column_stack([c * fall[:, 0] - b * fall[:, 1], a * fall[:, 1] - b * fall[:, 0]]) / safe[:, None]
+
+
+def _held(slope: Array, at: Array, bounds: Array, closed: Closed) -> Array:
+    """Parameters (N, 2) that stand at the border of the surface and would leave it."""
+    leaves = ((at <= bounds[:, 0]) & (slope > 0)) | ((at >= bounds[:, 1]) & (slope < 0))
+    held: Array = leaves & ~np.array(closed)
+    return held
+
+
+def _within(at: Array, bounds: Array, closed: Closed) -> Array:
+    """Parameters taken round where the surface is closed, and to the border where it ends."""
+    low, high = bounds.T
+    around = low + np.mod(at - low, high - low)
+    return np.where(closed, around, np.clip(at, low, high))
+
+
+def _square(vectors: Array) -> Array:
+    return dot(vectors, vectors)
+
+
+def _length(vectors: Array) -> Array:
+    return np.sqrt(_square(vectors))

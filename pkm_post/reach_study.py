@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reach study: whether a machine can follow a program, and what another spin or another place of the part would give.
+
+A program, a machine and the choices of the user enter; the report of all checks leaves, with what is left before and
+after each choice. Nothing is written.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pkm_post import pipeline
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Diagnostic, Machine, Program
+from pkm_post.position import best_position
+from pkm_post.reach import Reach, reach
+from pkm_post.spin import ZERO_TORSION, Rule, least_shares, with_spin
+
+_LABELS = ("stroke", "joints", "from singular")
+
+
+@dataclass(frozen=True)
+class Study:
+    """What was found.
+
+    Attributes:
+        reach: all checks of the way as it would be driven.
+        stages: for each choice, in order, what it was and the least shares (3,) after it.
+        machine_from_work: (4, 4) the work offset of the last stage.
+    """
+
+    reach: Reach
+    stages: tuple[tuple[str, Array], ...]
+    machine_from_work: Array
+
+    def as_dict(self) -> dict[str, Any]:
+        """The study for JSON."""
+        stages = [{"stage": name} | dict(zip(_LABELS, _rounded(left), strict=True)) for name, left in self.stages]
+        return self.reach.as_dict() | {"left": stages, "machine_from_work": self.machine_from_work.tolist()}
+
+    def text(self) -> str:
+        """The study for people."""
+        head = f"{'what is left (1 best, 0 at the limit)':<40}" + "".join(f"{label:>15}" for label in _LABELS)
+        rows = [f"{name:<40}" + "".join(f"{share:>15.3f}" for share in left) for name, left in self.stages]
+        return "\n".join([self.reach.text(), head, *rows, "", f"work offset: {told_offset(self.machine_from_work)}"])
+
+
+def study(
+    program: Program, machine: Machine, options: pipeline.Options, free: str = ""
+) -> tuple[Study | None, tuple[Diagnostic, ...]]:
+    """Check a program on a machine.
+
+    Args:
+        program: cutter locations in {C}.
+        machine: geometry and limits.
+        options: work offset, spin and compensation.
+        free: letters of ``position.FREEDOMS`` in which the part may be moved; none leaves it where it is.
+
+    Returns:
+        The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
+    """
+    placed, told = pipeline.trajectory_of(program, machine, replace(options, spin=ZERO_TORSION))
+    if placed is None:
+        return None, told
+    stages = [("as it is, zero torsion", least_shares(placed, machine))]
+    if free:
+        found = best_position(placed, machine, free)
+        moved = replace(options, work_offset=found.machine_from_work, spin=ZERO_TORSION)
+        placed, told = pipeline.trajectory_of(program, machine, moved)
+        if placed is None:
+            return None, told
+        stages.append((f"moved in {', '.join(free)}", least_shares(placed, machine)))
+    turned, faults = with_spin(placed, machine, options.spin)
+    told += faults
+    if turned is None:
+        return None, told
+    if options.spin.rule is not Rule.ZERO:
+        stages.append((f"spin {options.spin.rule.value}", least_shares(turned, machine)))
+    checked = reach(turned, machine)
+    return Study(checked, tuple(stages), turned.machine_from_work), (*told, *checked.faults())
+
+
+def told_offset(machine_from_work: Array) -> str:
+    """A work offset as ``--work-offset`` takes it, or as a matrix when it turns about more than z."""
+    x, y, z = machine_from_work[:3, 3]
+    if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
+        turn = np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0]))
+        return f"--work-offset={x:.3f},{y:.3f},{z:.3f},{turn:.4f}"
+    return np.array2string(machine_from_work, precision=6, suppress_small=True)
+
+
+def _rounded(left: Array) -> list[float]:
+    return [round(float(share), 6) for share in left]

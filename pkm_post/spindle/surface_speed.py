@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Surface speed: a spindle speed for each cut, so that the edge moves over the work as fast as the user wants.
+
+A program enters; the same with other spindle speeds leaves, and with other feeds if the chip load is to be kept. A cut
+is what lies between two rapid moves. The speed changes before it, where the machine rests with the tool off the work,
+never within: that would leave a mark. Speeds in mm/s; spindle speeds in revolutions per minute, as in events.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.compensation import Cutter
+from pkm_post.geometry import dot, norm
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
+
+_LEAST_SHARE = 0.1
+"""Of the cutter's diameter: near the tip of a ball the edge does not move, and no spindle speed helps."""
+
+
+@dataclass(frozen=True)
+class SurfaceSpeed:
+    """What is wanted of the spindle.
+
+    Attributes:
+        speed: of the edge over the work, mm/s.
+        keep_chip_load: whether the feed changes as the spindle speed does.
+    """
+
+    speed: float
+    keep_chip_load: bool = False
+
+
+def with_surface_speed(
+    program: Program, wanted: SurfaceSpeed, limits: tuple[float, float]
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """The program with a spindle speed for each cut.
+
+    S = v / (pi d) with d the mean, over the cut, of the diameter on which the cutter touches: 2 (e + r sin gamma) with
+    gamma between normal and tool axis, the diameter of the tool where the program has no normals.
+
+    Args:
+        program: in {C}; the sense of rotation and the spindle's being off stay as they are.
+        wanted: surface speed, and whether feeds follow.
+        limits: lowest and highest spindle speed.
+
+    Returns:
+        The program, None if the diameter of a tool is not known; and the diagnostics.
+    """
+    tool, spindle = _in_force(program, EventKind.TOOL_CHANGE), _in_force(program, EventKind.SPINDLE)
+    diameter = np.full(len(program), np.nan)
+    for number in np.unique(tool[~np.isnan(tool)]).astype(int).tolist():
+        try:
+            cutter = Cutter.of(program.tools[number])
+        except ValueError as fault:
+            return None, (Diagnostic("N109", Place(program.source), str(fault)),)
+        rows = tool == number
+        diameter[rows] = _contact_diameter(program, cutter, rows)
+    cut = program.kind != Kind.RAPID
+    turning = cut & ~np.isnan(diameter) & (np.nan_to_num(spindle) != 0)
+    number = np.cumsum(np.diff(cut.astype(np.int8), prepend=0) == 1) - 1
+    count = np.bincount(number[turning], minlength=int(number.max(initial=-1)) + 1)
+    mean = np.bincount(number[turning], diameter[turning], len(count)) / np.maximum(count, 1)
+    by_cut = np.clip(60 * wanted.speed / (math.pi * np.where(count > 0, mean, np.inf)), *limits)
+    revolutions = np.where(turning, np.rint(by_cut)[number] * np.sign(np.nan_to_num(spindle)), np.nan)
+    return _with_speeds(program, revolutions, spindle, wanted), ()
+
+
+def _contact_diameter(program: Program, cutter: Cutter, rows: Array) -> Array:
+    """The diameter of the cutter where it touches, (R,) mm."""
+    normal, axis = program.normal[rows], program.tool_axis[rows]
+    sine = norm(normal - dot(normal, axis)[:, None] * axis)
+    touched = 2 * (cutter.radial_offset + cutter.corner_radius * sine)
+    nominal = 2 * cutter.radius
+    return np.where(np.isnan(touched), nominal, np.maximum(touched, _LEAST_SHARE * nominal))
+
+
+def _in_force(program: Program, kind: EventKind) -> Array:
+    """The value of the latest event of a kind on each row, (N,); NaN before the first."""
+    events = [event for event in program.events if event.kind is kind]
+    values = np.array([np.nan, *(event.value for event in events)])
+    in_force: Array = values[np.searchsorted([event.row for event in events], np.arange(len(program)), side="right")]
+    return in_force
+
+
+def _with_speeds(program: Program, revolutions: Array, before: Array, wanted: SurfaceSpeed) -> Program:
+    """The program with the speeds of its cutting rows; where they are NaN, what was programmed stays."""
+    changed = ~np.isnan(revolutions)
+    rows = np.flatnonzero(changed & np.append(True, program.kind[:-1] == Kind.RAPID))
+    # A spindle that is switched on keeps its place; its speed is that of the first cut that follows.
+    events = [_switched_on(event, revolutions) for event in program.events]
+    state = {event.row: event.value for event in events if event.kind is EventKind.SPINDLE}
+    value = np.nan
+    for row in sorted({*rows.tolist(), *state}):
+        value = state.get(row, value)
+        if row in rows and value != revolutions[row]:
+            value = float(revolutions[row])
+            events.append(Event(row, EventKind.SPINDLE, value))
+    feed = program.feed
+    if wanted.keep_chip_load:
+        feed = np.where(changed, program.feed * np.abs(revolutions) / np.abs(before), program.feed)
+    return replace(program, feed=feed, events=tuple(sorted(events, key=lambda event: event.row)))
+
+
+def _switched_on(event: Event, revolutions: Array) -> Event:
+    following = revolutions[event.row :]
+    first = following[~np.isnan(following)][:1]
+    if event.kind is not EventKind.SPINDLE or event.value == 0 or not len(first):
+        return event
+    return replace(event, value=float(math.copysign(first[0], event.value)))

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The reach of a job from a macro: what is told, and the work offset that is set."""
+
+import pytest
+from cam_jobs import add_operation, new_job
+
+from pkm_post.freecad_app.arguments import job_arguments
+from pkm_post.freecad_app.post_job import post_as_the_job_says
+from pkm_post.freecad_app.reach_job import place_job, study_job
+from pkm_post.model import Refused
+
+
+@pytest.fixture
+def job(document):
+    job = new_job(document)
+    job.PostProcessor = "hexapod_pmac"
+    job.PostProcessorArgs = "--machine example_6tps --work-offset=600,0,200,10 --tip-tolerance 0.01"
+    add_operation(job)
+    return job
+
+
+def test_a_job_out_of_reach_is_placed_and_posted(job, tmp_path):
+    assert study_job(job).reach.faults()
+    with pytest.raises(Refused):
+        post_as_the_job_says(job, tmp_path)
+    found = place_job(job)
+    assert not found.reach.faults()
+    assert [name for name, _ in found.stages] == ["as it is, zero torsion", "moved in x, y, z, c"]
+    chosen = job_arguments(job, job.PostProcessorArgs)
+    assert (chosen.machine, chosen.tip_tolerance) == ("example_6tps", 0.01)
+    assert chosen.work_offset[:3] == pytest.approx(found.machine_from_work[:3, 3], abs=1e-3)
+    assert post_as_the_job_says(job, tmp_path).report["certificate"]["holds"]
+
+
+def test_an_offset_behind_a_blank_is_replaced(job):
+    job.PostProcessorArgs = "--work-offset 100,0,200 --spin zero"
+    place_job(job, "xy")
+    assert job.PostProcessorArgs.count("--work-offset") == 1
+    assert job.PostProcessorArgs.startswith("--spin zero ")
+
+
+def test_what_cannot_be_said_is_a_fault_of_the_caller(job):
+    with pytest.raises(ValueError, match="expected letters of 'xyzc'"):
+        place_job(job, "xa")
+    job.PostProcessor = "linuxcnc"
+    with pytest.raises(ValueError, match="expected a job for hexapod_pmac"):
+        place_job(job)
+
+
+def test_a_job_that_cannot_be_read_is_refused(job):
+    job.PostProcessorArgs = "--machine no_such_machine"
+    with pytest.raises(Refused) as refused:
+        study_job(job)
+    assert [fault.code for fault in refused.value.diagnostics] == ["M101"]
