@@ -21,7 +21,7 @@ from pkm_post.geometry.arcs import across
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Event, Kind, Program
 
-_COPIED = ("tool_axis", "feed", "operation", "line", "plane", "normal")
+_COPIED = ("tool_axis", "feed", "operation", "line", "plane", "normal", "spin")
 
 
 def compensated(program: Program, elements: Elements, offsets: Offsets) -> tuple[Program, Array, Array]:

@@ -18,6 +18,7 @@ from pkm_post.gcode.modal import Modal, carried, is_arc
 from pkm_post.gcode.motions import span
 from pkm_post.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
 from pkm_post.gcode.positions import follow
+from pkm_post.geometry import torsion
 from pkm_post.model.columns import locked, uniform
 from pkm_post.model.program import Array
 
@@ -100,22 +101,45 @@ def surface_normals(blocks: Blocks, faults: Findings) -> Array:
 
 def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> tuple[Array, Array]:
     """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
-    letters = AXIS_WORDS[options.axis_words]
-    words = {letter: np.where(modal.moves, blocks.word(letter), np.nan) for letter in letters}
+    words = _rotary_words(blocks, modal, options)
     given: Array = np.any([~np.isnan(word) for word in words.values()], axis=0)
     if options.axis_words != "RPY":
         # Without G43.4 a machine with such a head would take X Y Z for places of its slides, not of the tip.
         inactive = given & (modal.in_force[Group.LENGTH] != _BY_ANGLES)
         faults.tell_all("G414", inactive, lambda row: f"{_first(words, row)} without G43.4")
-    degrees, relative = np.zeros((len(blocks), 3)), modal.in_force[Group.DISTANCE] == 910
-    for letter in letters:
-        degrees[:, "ABC".index(letter)], _ = follow(words[letter], relative, 0.0)
-    return axis_of(np.radians(degrees)), given
+    return axis_of(_in_rad(modal, words)), given
+
+
+def spins(blocks: Blocks, modal: Modal, options: ReadOptions) -> Array:
+    """Turn of the platform about the tool axis in rad, (N,), from A B C of a hexapod; NaN where no words say it."""
+    if options.axis_words != "RPY":
+        return uniform(np.nan, len(blocks))
+    angles = _in_rad(modal, _rotary_words(blocks, modal, options))
+    return locked(np.unwrap(torsion(axis_of(angles), x_of(angles))))
+
+
+def _rotary_words(blocks: Blocks, modal: Modal, options: ReadOptions) -> dict[str, Array]:
+    return {letter: np.where(modal.moves, blocks.word(letter), np.nan) for letter in AXIS_WORDS[options.axis_words]}
+
+
+def _in_rad(modal: Modal, words: dict[str, Array]) -> Array:
+    """Angles A, B, C in each block, (N, 3)."""
+    relative = modal.in_force[Group.DISTANCE] == 910
+    degrees = np.zeros((len(relative), 3))
+    for letter, word in words.items():
+        degrees[:, "ABC".index(letter)], _ = follow(word, relative, 0.0)
+    return np.radians(degrees)
 
 
 def _first(words: dict[str, Array], row: int) -> str:
     """The first rotary word of a block, as it is written."""
     return next(f"{letter}{word[row]:g}" for letter, word in words.items() if not np.isnan(word[row]))
+
+
+def x_of(angles: Array) -> Array:
+    """The x axes of platforms at angles A, B, C in rad, (n, 3) to (n, 3): Rz(C) Ry(B) Rx(A) e_x."""
+    (_, sin_b, sin_c), (_, cos_b, cos_c) = np.sin(angles).T, np.cos(angles).T
+    return np.column_stack([cos_c * cos_b, sin_c * cos_b, -sin_b])
 
 
 def axis_of(angles: Array) -> Array:

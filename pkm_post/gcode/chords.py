@@ -32,7 +32,9 @@ def with_chords(program: Program, rows: Array) -> Program:
     position, axis = program.position[source].copy(), program.tool_axis[source].copy()
     inner = cut & (part < 1)
     position[inner], axis[inner] = _on_arcs(program, source[inner], part[inner])
-    columns = {name: getattr(program, name)[source] for name in ("feed", "operation", "line", "side_offset", "plane")}
+    columns = {
+        name: getattr(program, name)[source] for name in ("feed", "operation", "line", "side_offset", "plane", "spin")
+    }
     blank = np.where(cut[:, None], np.nan, 1.0)
     return replace(
         program,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.gcode.arc_motions import arcs_of, known_ones, lengths, single_turns
-from pkm_post.gcode.axes import surface_normals, tool_axes
+from pkm_post.gcode.axes import spins, surface_normals, tool_axes
 from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.checks import check
 from pkm_post.gcode.codes import NONE, Group
@@ -83,6 +83,7 @@ class _Settings:
         sides: (N,) radius of the 2D compensation, mm.
         axes: (N, 3) unit tool axis in coordinates of the program.
         normals: (N, 3) unit surface normal likewise, or NaN.
+        spins: (N,) turn of the platform about the tool axis, rad, or NaN.
     """
 
     tools: Array
@@ -90,6 +91,7 @@ class _Settings:
     sides: Array
     axes: Array
     normals: Array
+    spins: Array
 
 
 def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> _Settings:
@@ -100,6 +102,7 @@ def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
         sides=side_offsets(blocks, modal, tools, options, faults),
         axes=tool_axes(blocks, modal, options, faults),
         normals=surface_normals(blocks, faults),
+        spins=spins(blocks, modal, options),
     )
 
 
@@ -152,6 +155,7 @@ def _directions(
         "side_offset": side,
         "plane": plane,
         "normal": frames.directions(motions.of_blocks(settings.normals)),
+        "spin": _handed(frames.hand(), motions.of_blocks(settings.spins)),
     }
 
 
@@ -167,6 +171,11 @@ def _turns(modal: Modal, axis: Array) -> Array:
     if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
         return np.append(True, np.any(axis[1:] != axis[:-1], axis=1))
     return uniform(True, len(axis))
+
+
+def _handed(hand: Array, spin: Array) -> Array:
+    """Spins in {C}: a mirror turns them round."""
+    return spin if is_uniform(spin) else hand * spin
 
 
 def _turned(hand: Array, axis: Array) -> Array:

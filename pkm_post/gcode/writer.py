@@ -85,7 +85,7 @@ def _chords_told(program: Program, arcs: WrittenArcs) -> tuple[Diagnostic, ...]:
 
 
 def _swings_told(program: Program, form: Form) -> tuple[Diagnostic, ...]:
-    swing = np.where(cutting(program), swings(program.tool_axis, form), 0.0)
+    swing = np.where(cutting(program), swings(program.tool_axis, program.spin, form), 0.0)
     rows = np.flatnonzero(swing > SWING)
     if not len(rows):
         return ()

@@ -15,7 +15,7 @@ from enum import Enum
 import numpy as np
 
 from pkm_post.gcode.axes import axis_of
-from pkm_post.geometry import along, angle_between, towards
+from pkm_post.geometry import along, angle_between, towards, untwisted
 from pkm_post.model.program import Array
 
 POLE = 2e-6
@@ -39,7 +39,7 @@ class Form(Enum):
     BC = "BC"
     """Rotary words of a BC head after G43.4: k = Rz(C) Ry(B) e_z."""
     LINUXCNC = "linuxcnc"
-    """A B C of LinuxCNC's hexapod: R = Rz(C) Ry(B) Rx(A), the rotation without torsion that takes z to k."""
+    """A B C of LinuxCNC's hexapod: R = Rz(C) Ry(B) Rx(A) takes z to k, with the spin of the program."""
     PLAIN = "3axis"
     """No words: the tool axis is upright on every row."""
 
@@ -52,29 +52,29 @@ class AxisWords:
         letters: of the words.
         follows: the code that switches tool length compensation on.
         as_vector: whether the words are said all or none, and not at all with an arc, where they are its centre.
-        values: from (N, 3) unit axes to (N, len(letters)) words.
+        values: from (N, 3) unit axes and (N,) spins to (N, len(letters)) words.
     """
 
     letters: str
     follows: str
     as_vector: bool
-    values: Callable[[Array], Array]
+    values: Callable[[Array, Array], Array]
 
 
-def _vector(axis: Array) -> Array:
+def _vector(axis: Array, spin: Array) -> Array:
     return axis
 
 
-def _nothing(axis: Array) -> Array:
+def _nothing(axis: Array, spin: Array) -> Array:
     return np.empty((len(axis), 0))
 
 
-def _ac(axis: Array) -> Array:
+def _ac(axis: Array, spin: Array) -> Array:
     # k = (sin A sin C, -sin A cos C, cos A): C is a quarter turn ahead of the azimuth of k.
     return _head(axis, np.pi / 2)
 
 
-def _bc(axis: Array) -> Array:
+def _bc(axis: Array, spin: Array) -> Array:
     return _head(axis, 0.0)
 
 
@@ -108,12 +108,13 @@ def _filled(azimuth: Array, at_pole: Array) -> Array:
     return azimuth[known[source]]
 
 
-def _roll_pitch_yaw(axis: Array) -> Array:
-    """A, B, C in degrees, (N, 3), of R = I + [v] + [v]^2 / (1 + kz) with v = z x k: zero torsion, spin zero."""
-    x, y, z = axis.T
-    roll, yaw = np.arctan2(-y, z), np.arctan2(-x * y, 1 + z - x * x)
-    angles = np.column_stack([roll, np.arcsin(np.clip(x, -1, 1)), yaw])
-    return np.degrees(np.unwrap(angles, axis=0))
+def _roll_pitch_yaw(axis: Array, spin: Array) -> Array:
+    """A, B, C in degrees, (N, 3), of R(k, psi) = Rmin(k) Rz(psi): without torsion where no spin is known."""
+    straight, across = untwisted(axis)
+    cosine, sine = np.cos(np.nan_to_num(spin))[:, None], np.sin(np.nan_to_num(spin))[:, None]
+    x, y = cosine * straight + sine * across, cosine * across - sine * straight
+    pitch, yaw = np.arcsin(np.clip(-x[:, 2], -1, 1)), np.arctan2(x[:, 1], x[:, 0])
+    return np.degrees(np.unwrap(np.column_stack([np.arctan2(y[:, 2], axis[:, 2]), pitch, yaw]), axis=0))
 
 
 FORMS: dict[Form, AxisWords] = {
@@ -125,7 +126,7 @@ FORMS: dict[Form, AxisWords] = {
 }
 
 
-def swings(axis: Array, form: Form) -> Array:
+def swings(axis: Array, spin: Array, form: Form) -> Array:
     """How far angles that go evenly from row to row lead the tool axis off its great circle, (N,), rad.
 
     Row i holds that of the move to it. It is 0 for forms that have no angles, and measured where both ways have done
@@ -133,6 +134,7 @@ def swings(axis: Array, form: Form) -> Array:
 
     Args:
         axis: (N, 3) unit tool axes.
+        spin: (N,) turns about them, rad, or NaN.
         form: how they are said.
     """
     swing = np.zeros(len(axis))
@@ -140,7 +142,7 @@ def swings(axis: Array, form: Form) -> Array:
     if words.as_vector or not words.letters:
         return swing
     angles = np.zeros_like(axis)
-    angles[:, ["ABC".index(letter) for letter in words.letters]] = np.radians(words.values(axis))
+    angles[:, ["ABC".index(letter) for letter in words.letters]] = np.radians(words.values(axis, spin))
     turning = np.flatnonzero(np.any(angles[1:] != angles[:-1], axis=1)) + 1
     before, after = axis[turning - 1], axis[turning]
     way, step = towards(before, after), angles[turning] - angles[turning - 1]

@@ -111,7 +111,7 @@ def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers
     tips = [word(letter, tip[:, i], numbers.decimals, always) for i, letter in enumerate("XYZ")]
     on_arc = _scattered(arcs.row, np.ones(len(arcs.row), dtype=np.bool_), len(program))
     can_turn = ~on_arc if axis_words.as_vector else always
-    values = axis_words.values(program.tool_axis)
+    values = axis_words.values(program.tool_axis, program.spin)
     axes = [
         word(letter, values[:, i], numbers.axis_decimals, can_turn) for i, letter in enumerate(axis_words.letters)
     ]  # fmt: skip

@@ -4,6 +4,7 @@
 from pkm_post.geometry.arcs import arc_points, arc_sweep
 from pkm_post.geometry.great_circle import along, along_rates, angle_between, towards
 from pkm_post.geometry.hermite import hermite_accelerations, hermite_lengths, hermite_speeds
+from pkm_post.geometry.torsion import torsion, untwisted
 from pkm_post.geometry.vectors import dot, norm, unit
 
 __all__ = [
@@ -17,6 +18,8 @@ __all__ = [
     "hermite_lengths",
     "hermite_speeds",
     "norm",
+    "torsion",
     "towards",
     "unit",
+    "untwisted",
 ]

@@ -47,7 +47,12 @@ class Cylinders:
 
 
 def cylinder_to_corners(cylinders: Cylinders, corners: Array, faces: Array, edges: Array) -> Array:
-    """Lower bounds of the distances of N cylinders from N convex bodies, (N,).
+    """Lower bounds of the distances of N cylinders from N convex bodies, (N,); arguments as in ``separate``."""
+    return separate(cylinders, corners, faces, edges)[0]
+
+
+def separate(cylinders: Cylinders, corners: Array, faces: Array, edges: Array) -> tuple[Array, Array]:
+    """The same with the directions (N, 3) from cylinder to body in which these distances are seen.
 
     Args:
         cylinders: the cylinders.
@@ -66,7 +71,7 @@ def cylinder_to_corners(cylinders: Cylinders, corners: Array, faces: Array, edge
         wider, other = _widest_gap(cylinders, from_middle, _out_of(cylinders, met))
         direction = np.where((wider > gap)[:, None], other, direction)
         gap = np.maximum(gap, wider)
-    return gap
+    return gap, direction
 
 
 def _widest_gap(cylinders: Cylinders, from_middle: Array, tried: Array) -> tuple[Array, Array]:
@@ -74,15 +79,23 @@ def _widest_gap(cylinders: Cylinders, from_middle: Array, tried: Array) -> tuple
     lengths = norm(tried)
     long = lengths > _SHORT
     directions = np.divide(tried, lengths[..., None], out=np.zeros_like(tried), where=long[..., None])
-    along = np.abs(directions @ cylinders.axis[:, :, None])[..., 0]
-    sideways = np.sqrt(np.maximum(1.0 - along * along, 0.0))
-    shadow = cylinders.half[:, None] * along + cylinders.radius[:, None] * sideways
+    along = (directions @ cylinders.axis[:, :, None])[..., 0]
+    reach = _shadow(along, cylinders.half[:, None], cylinders.radius[:, None])
     seen = from_middle @ directions.transpose(0, 2, 1)
     ahead, behind = seen.min(axis=1), -seen.max(axis=1)
-    gap = np.where(long, np.maximum(ahead, behind) - shadow, -np.inf)
+    gap = np.where(long, np.maximum(ahead, behind) - reach, -np.inf)
     rows, best = np.arange(len(gap)), np.argmax(gap, axis=1)
     sign = np.where(ahead >= behind, 1.0, -1.0)[rows, best]
     return gap[rows, best], sign[:, None] * directions[rows, best]
+
+
+def shadow(cylinders: Cylinders, direction: Array) -> Array:
+    """How far the cylinders reach from their middles in unit directions (N, 3), (N,)."""
+    return _shadow(dot(direction, cylinders.axis), cylinders.half, cylinders.radius)
+
+
+def _shadow(along: Array, half: Array, radius: Array) -> Array:
+    return half * np.abs(along) + radius * np.sqrt(np.maximum(1.0 - along * along, 0.0))
 
 
 def _out_of(cylinders: Cylinders, points: Array) -> Array:

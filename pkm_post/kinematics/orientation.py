@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pkm_post.geometry.torsion import untwisted
 from pkm_post.geometry.vectors import Array, cross
 
 
@@ -23,12 +24,7 @@ def platform_rotation(axis: Array, spin: Array) -> Array:
     Raises:
         ValueError: a tool axis points straight down, where the shortest rotation is not unique.
     """
-    lean = 1 + axis[:, 2]
-    if np.any(lean < 1e-9):
-        raise ValueError("expected tool axes above the horizontal plane, got one that points straight down")
-    half = axis + [0.0, 0.0, 1.0]
-    x = [1.0, 0.0, 0.0] - (axis[:, 0] / lean)[:, None] * half
-    y = [0.0, 1.0, 0.0] - (axis[:, 1] / lean)[:, None] * half
+    x, y = untwisted(axis)
     cosine, sine = np.cos(spin)[:, None], np.sin(spin)[:, None]
     return np.stack([cosine * x + sine * y, cosine * y - sine * x, axis], axis=-1)
 

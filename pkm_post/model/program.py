@@ -43,6 +43,7 @@ OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
     "side_offset": (np.float64, (), 0.0),
     "plane": (np.uint8, (), 2),
     "normal": (np.float64, (3,), np.nan),
+    "spin": (np.float64, (), np.nan),
 }
 """Columns that few sources have, each with the value it has without."""
 
@@ -71,6 +72,8 @@ class Program:
             0 for YZ (G19).
         normal: (N, 3) unit surface normal at the contact point, towards the tool, in {C}; NaN, the default, where the
             source gives none.
+        spin: (N,) turn of the platform about the tool axis, from the shortest rotation upright, rad; NaN, the default,
+            where the source gives none.
     """
 
     kind: Array
@@ -89,6 +92,7 @@ class Program:
     side_offset: Array = None  # type: ignore[assignment] # filled in below
     plane: Array = None  # type: ignore[assignment] # filled in below
     normal: Array = None  # type: ignore[assignment] # filled in below
+    spin: Array = None  # type: ignore[assignment] # filled in below
 
     def __post_init__(self) -> None:
         vectors: dict[str, RowType] = {"position": (np.float64, (3,)), "tool_axis": (np.float64, (3,))}

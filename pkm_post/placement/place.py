@@ -3,7 +3,7 @@
 
 q_M = D q, k_M = R_D k with the work offset D, the pose of {C} in {M} [paper eq. 1, 2]. The way starts at the
 machine's home pose; rows that move nothing are left out, and their events kept. The spin stays at zero: the platform
-takes the zero-torsion pose of every tool axis.
+has the spin of the program, zero torsion where that says nothing.
 """
 
 from __future__ import annotations
@@ -36,7 +36,12 @@ def place(
         program: cutter locations in {C}.
         machine: gives the home pose and the limits of feed and spindle.
         machine_from_work: (4, 4) work offset D, a rotation with a shift.
+
+    Raises:
+        ValueError: the program has 2D cutter compensation that was not applied.
     """
+    if program.side_offset.any():
+        raise ValueError("place: expected a program whose cutter compensation was applied, got side offsets")
     placed, faults = transform(program, machine_from_work)
     if placed is None:
         return None, faults
@@ -86,7 +91,7 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
         "tip": tip,
         "axis_before": axis_before,
         "axis": axis,
-        "spin": np.zeros(len(placed)),
+        "spin": np.nan_to_num(placed.spin),
         "feed": np.fmin(placed.feed, np.where(placed.kind == Kind.RAPID, machine.rapid_speed, machine.feed_speed)),
         "arc_centre": centre,
         "arc_axis": turn,
@@ -119,9 +124,6 @@ def _faults(program: Program, machine: Machine, angle: Array, keep: Array) -> It
         if speed and not machine.spindle_least_speed <= speed <= machine.spindle_speed:
             found = f"{speed:g} rpm, the machine allows {machine.spindle_least_speed:g} to {machine.spindle_speed:g}"
             yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), found)
-    for row in np.flatnonzero(program.side_offset)[:1]:
-        found = f"radius {abs(program.side_offset[row]):g} mm"
-        yield Diagnostic("K111", program.place(int(row)), found)
     fast = program.feed > machine.feed_speed
     for operation in np.unique(program.operation[fast]):
         row = int(np.flatnonzero(fast & (program.operation == operation))[0])

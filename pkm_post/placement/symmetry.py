@@ -52,6 +52,8 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
         side_offset=side_offset,
         plane=plane,
         normal=program.normal @ turn.T,
+        # A mirror M takes the platform to M R M, which turns about the tool axis the other way.
+        spin=program.spin * np.sign(np.linalg.det(turn)),
     )
     return moved, ()
 

@@ -23,6 +23,7 @@ from pkm_post.spin.shares import score, shares
 _REFINEMENT = 4
 """Each search has steps this much finer than the one before, and looks as far as one step of that."""
 _REFINEMENTS = 2
+_EVERY_NODE = 1.0
 _BLOCK = 1 << 16
 """Poses per pass, samples times candidates: what is in memory at a time."""
 
@@ -65,9 +66,15 @@ def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Optimi
     nodes = np.concatenate([[0.0], samples.node_s]), np.concatenate([[home], course])
     return Optimised(
         trajectory=replace(trajectory, spin=np.interp(samples.row_s, *nodes)),
-        before=_least_shares(samples, machine, _spin_at(samples, trajectory)),
-        after=_least_shares(samples, machine, np.interp(samples.s, *nodes)),
+        before=_least(samples, machine, _spin_at(samples, trajectory)),
+        after=_least(samples, machine, np.interp(samples.s, *nodes)),
     )
+
+
+def least_shares(trajectory: Trajectory, machine: Machine) -> Array:
+    """What is left at the worst places of a trajectory, (3,): shares of stroke, joints and distance to singular poses."""
+    samples = Samples.of(trajectory, _EVERY_NODE)
+    return _least(samples, machine, _spin_at(samples, trajectory))
 
 
 def _scores(samples: Samples, machine: Machine, policy: Policy, candidates: Array) -> Array:
@@ -92,7 +99,7 @@ def _spin_at(samples: Samples, trajectory: Trajectory) -> Array:
     return np.interp(samples.s, s, np.concatenate([[trajectory.start_spin], trajectory.spin]))
 
 
-def _least_shares(samples: Samples, machine: Machine, spin: Array) -> Array:
+def _least(samples: Samples, machine: Machine, spin: Array) -> Array:
     found = shares(machine, samples.tip, samples.axis, spin, samples.tool_length)
     least: Array = found.min(axis=0)
     return least

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry import dot, norm
+from pkm_post.geometry import norm, torsion
 from pkm_post.geometry.vectors import Array, cross
-from pkm_post.kinematics import platform_rotation
 
 _NO_DIRECTION = 1e-6
 """Below this sine the tool axis is at right angles to the plane, and no direction in it is across the axis."""
@@ -31,8 +30,7 @@ def spin_in_plane(axis: Array, heading: float, of_y: bool = False) -> Array:
     cosine, sine = np.cos(heading), np.sin(heading)
     kept = cross(axis, np.array([cosine, sine, 0.0])) if of_y else cross(np.array([-sine, cosine, 0.0]), axis)
     x = cross(kept, axis) if of_y else kept
-    untwisted = platform_rotation(axis, np.zeros(len(axis)))
-    spin = np.arctan2(dot(x, untwisted[:, :, 1]), dot(x, untwisted[:, :, 0]))
+    spin = torsion(axis, x)
     spin[norm(kept) < _NO_DIRECTION] = np.nan
     known = np.flatnonzero(~np.isnan(spin))
     spin[known] = np.unwrap(spin[known])

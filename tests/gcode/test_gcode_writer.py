@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Programs written as G-code and read back, in every form."""
 
+import dataclasses
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from pkm_post.gcode.chords import CHORD_ERROR
 from pkm_post.gcode.writer_axes import FORMS, POLE, SWING, swings
 from pkm_post.geometry import angle_between, norm
 from pkm_post.kinematics.orientation import platform_rotation
-from pkm_post.model import Event, EventKind, Kind
+from pkm_post.model import Event, EventKind, Kind, Tool
 
 AXIS_WORDS = {Form.VECTOR: "vector", Form.AC: "AC", Form.BC: "BC", Form.LINUXCNC: "RPY", Form.PLAIN: "none"}
 TILTING = [form for form in Form if form is not Form.PLAIN]
@@ -219,14 +220,15 @@ def test_linuxcnc_refuses_a_tool_that_hangs():
 def test_c_rests_when_the_tool_swings_through_the_pole(form):
     tilt = np.radians(np.arange(-20.0, 21.0, 5.0))
     axis = np.column_stack([0.6 * np.sin(tilt), 0.8 * np.sin(tilt), np.cos(tilt)])
-    angles = FORMS[form].values(axis)
+    angles = FORMS[form].values(axis, np.zeros(len(axis)))
     steps = np.diff(angles, axis=0)
     np.testing.assert_allclose(steps, np.tile(steps[0], (8, 1)), atol=1e-9)
     np.testing.assert_allclose(np.abs(steps[0]), [5.0, 0.0], atol=1e-9)
 
 
 def test_c_turns_on_over_several_turns():
-    c = FORMS[Form.BC].values(cone(400, turns=3.0).tool_axis)[:, 1]
+    axis = cone(400, turns=3.0).tool_axis
+    c = FORMS[Form.BC].values(axis, np.zeros(len(axis)))[:, 1]
     assert c[-1] - c[0] == pytest.approx(3 * 360)
     assert np.diff(c).max() < 3.0
 
@@ -235,12 +237,12 @@ def test_c_turns_while_the_tool_stands_upright():
     tilt = np.radians([10, 0, 0, 0, 10])
     azimuth = np.radians([0, 0, 0, 0, 60])
     axis = np.column_stack([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
-    np.testing.assert_allclose(FORMS[Form.BC].values(axis)[:, 1], [0, 0, 60, 60, 60], atol=1e-9)
+    np.testing.assert_allclose(FORMS[Form.BC].values(axis, np.zeros(len(axis)))[:, 1], [0, 0, 60, 60, 60], atol=1e-9)
 
 
 def test_angles_of_linuxcnc_have_no_torsion():
     axis = random_job(np.random.default_rng(4)).tool_axis
-    a, b, c = np.radians(FORMS[Form.LINUXCNC].values(axis)).T
+    a, b, c = np.radians(FORMS[Form.LINUXCNC].values(axis, np.zeros(len(axis)))).T
     zero, one = np.zeros_like(a), np.ones_like(a)
 
     def rows(*entries):
@@ -296,14 +298,14 @@ def test_a_head_that_turns_c_alone_swings_past_the_great_circle(form, tilt, turn
     tilt, turn = np.radians(tilt), np.radians(turn)
     # Halfway C keeps the tilt t; the great circle is at atan(tan t cos(turn / 2)) there: a right spherical triangle.
     expected = tilt - np.arctan(np.tan(tilt) * np.cos(turn / 2))
-    swing = swings(leaning(np.array([tilt, tilt]), np.array([0.3, 0.3 + turn])), form)
+    swing = swings(leaning(np.array([tilt, tilt]), np.array([0.3, 0.3 + turn])), np.zeros(2), form)
     np.testing.assert_allclose(swing, [0.0, expected], rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("form", Form)
 def test_a_head_that_tilts_alone_stays_on_the_great_circle(form):
     axis = leaning(np.radians([0.0, 10.0, 30.0]), np.zeros(3))
-    np.testing.assert_allclose(swings(axis, form), 0.0, atol=1e-12)
+    np.testing.assert_allclose(swings(axis, np.zeros(len(axis)), form), 0.0, atol=1e-12)
 
 
 def test_swings_of_cutting_moves_are_told():
@@ -312,9 +314,10 @@ def test_swings_of_cutting_moves_are_told():
     (told,) = write(given, Form.BC)[1]
     assert (told.code, told.place.line) == ("G505", 3)
     assert (
-        told.found == f"by up to {np.degrees(swings(axis, Form.BC)[2]):.2f} deg in 1 cutting moves, this is the first"
+        told.found
+        == f"by up to {np.degrees(swings(axis, np.zeros(len(axis)), Form.BC)[2]):.2f} deg in 1 cutting moves, this is the first"
     )
-    assert swings(axis, Form.BC)[1] < SWING < swings(axis, Form.BC)[2]
+    assert swings(axis, np.zeros(len(axis)), Form.BC)[1] < SWING < swings(axis, np.zeros(len(axis)), Form.BC)[2]
     assert write(given, Form.VECTOR)[1] == ()
 
 
@@ -328,3 +331,19 @@ def test_a_feed_is_never_written_as_zero(feed, inch, written):
         assert [(one.code, one.place.line) for one in diagnostics] == [("G506", 2)]
     else:
         assert written in text
+
+
+def test_the_spin_of_a_hexapod_is_written_and_read():
+    random = np.random.default_rng(12)
+    angles = np.column_stack([random.uniform(-30, 30, (40, 2)), random.uniform(-50, 50, 40)])
+    blocks = [f"G1 X{row} Y0 Z0 A{a:.4f} B{b:.4f} C{c:.4f} F100" for row, (a, b, c) in enumerate(angles)]
+    options = ReadOptions(axis_words="RPY", default_tool=Tool(1, "", 10.0, 0.0, 50.0))
+    first, _ = read("G21 G90\nG0 X0 Y0 Z0\n" + "\n".join(blocks) + "\nM2\n", "a.ngc", options)
+    assert np.ptp(first.spin) > 0.5
+    text, _ = write(first, Form.LINUXCNC, decimals=6)
+    again, _ = read(text, "b.ngc", options)
+    np.testing.assert_allclose(again.spin, first.spin, atol=1e-6)
+    for form in (Form.VECTOR, Form.AC):
+        text, _ = write(first, form)
+        words = "vector" if form is Form.VECTOR else "AC"
+        assert np.isnan(read(text, "c.ngc", dataclasses.replace(options, axis_words=words))[0].spin).all()

@@ -117,8 +117,7 @@ def test_exact_stops_of_the_program_are_kept():
     assert not trajectory.smooth[1]
 
 
-def test_compensation_that_is_not_applied_is_refused():
+def test_compensation_that_was_not_applied_is_a_fault_of_the_caller():
     made = dataclasses.replace(program([[0, 0, 60], [10, 0, 60]]), side_offset=[0.0, 4.0])
-    trajectory, faults = place(made, example(), ON_PALLET)
-    assert trajectory is None
-    assert [(fault.code, fault.place.line) for fault in faults] == [("K111", 2)]
+    with pytest.raises(ValueError, match="expected a program whose cutter compensation was applied"):
+        place(made, example(), ON_PALLET)

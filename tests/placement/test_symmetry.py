@@ -205,3 +205,12 @@ def test_normals_turn_with_the_part():
     made = dataclasses.replace(program([[0, 0, 0], [9, 5, 2]]), normal=[[np.nan] * 3, [0, 0.6, 0.8]])
     moved, _ = transform(made, mirror((0, 0, 0), (0, 1, 0)))
     np.testing.assert_allclose(moved.normal[1], [0, -0.6, 0.8], atol=1e-15)
+
+
+def test_a_mirror_turns_the_spin_round_and_a_rotation_keeps_it():
+    made = dataclasses.replace(program([[0, 0, 0], [9, 5, 2]]), spin=[0.1, -0.3])
+    for matrix, spin in (
+        (mirror((0, 0, 0), (0, 1, 0)), [-0.1, 0.3]),
+        (rotation((0, 0, 0), (0, 0, 1), np.pi), [0.1, -0.3]),
+    ):
+        assert transform(made, matrix)[0].spin.tolist() == spin
