@@ -17,6 +17,8 @@ from pkm_post.model.program import Array
 
 CHORD_ERROR = 1e-3
 """mm that chords may leave the arc they replace."""
+_COPIED = ("feed", "operation", "line", "side_offset", "plane", "spin")
+"""What every chord has of its arc."""
 
 
 def with_chords(program: Program, rows: Array) -> Program:
@@ -32,9 +34,7 @@ def with_chords(program: Program, rows: Array) -> Program:
     position, axis = program.position[source].copy(), program.tool_axis[source].copy()
     inner = cut & (part < 1)
     position[inner], axis[inner] = _on_arcs(program, source[inner], part[inner])
-    columns = {
-        name: getattr(program, name)[source] for name in ("feed", "operation", "line", "side_offset", "plane", "spin")
-    }
+    columns = {name: getattr(program, name)[source] for name in _COPIED}
     blank = np.where(cut[:, None], np.nan, 1.0)
     return replace(
         program,

@@ -72,7 +72,7 @@ def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Optimi
 
 
 def least_shares(trajectory: Trajectory, machine: Machine) -> Array:
-    """What is left at the worst places of a trajectory, (3,): shares of stroke, joints and distance to singular poses."""
+    """What is left at the worst places of a trajectory, (3,): stroke, joints, distance to singular poses."""
     samples = Samples.of(trajectory, _EVERY_NODE)
     return _least(samples, machine, _spin_at(samples, trajectory))
 

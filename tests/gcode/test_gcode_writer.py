@@ -313,11 +313,9 @@ def test_swings_of_cutting_moves_are_told():
     given = program(np.zeros((4, 3)), axis, kind=[Kind.RAPID, Kind.LINE, Kind.LINE, Kind.RAPID])
     (told,) = write(given, Form.BC)[1]
     assert (told.code, told.place.line) == ("G505", 3)
-    assert (
-        told.found
-        == f"by up to {np.degrees(swings(axis, np.zeros(len(axis)), Form.BC)[2]):.2f} deg in 1 cutting moves, this is the first"
-    )
-    assert swings(axis, np.zeros(len(axis)), Form.BC)[1] < SWING < swings(axis, np.zeros(len(axis)), Form.BC)[2]
+    swing = swings(axis, np.zeros(4), Form.BC)
+    assert told.found == f"by up to {np.degrees(swing[2]):.2f} deg in 1 cutting moves, this is the first"
+    assert swing[1] < SWING < swing[2]
     assert write(given, Form.VECTOR)[1] == ()
 
 
