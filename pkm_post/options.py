@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pkm_post.model.findings import Tolerances
     from pkm_post.pipeline import Options
     from pkm_post.spin import Policy
+    from pkm_post.spindle import SurfaceSpeed
 
 FIXTURE_OF_THE_JOB = "job"
 """A work offset of this name is the fixture of the CAM job."""
@@ -58,6 +59,15 @@ def _tool_length(text: str) -> tuple[int, float]:
     return int(number), _positive(length)
 
 
+def _actual_tool(text: str) -> tuple[int, float, float]:
+    """Tool number, diameter and corner radius."""
+    number, _, sizes = text.partition("=")
+    diameter, _, corner = sizes.partition(",")
+    if not number.isdecimal():
+        raise argparse.ArgumentTypeError(f"expected NUMBER=D[,R], got {text!r}")
+    return int(number), _positive(diameter), _number(corner) if corner else 0.0
+
+
 _SPINS = {
     "zero": "",
     "file": "",
@@ -79,6 +89,18 @@ def _spin(text: str) -> tuple[str, float, str]:
     if given and value not in _OBJECTIVES:
         raise argparse.ArgumentTypeError(f"expected one of {', '.join(_OBJECTIVES)} behind =, got {value!r}")
     return rule, 0.0, value or _OBJECTIVES[0]
+
+
+_ALSO = ("csv", "halstreamer", "linuxcnc")
+"""What can be written beside the program: two tables of the strut motion, and G-code for LinuxCNC's hexapod."""
+
+
+def _also(text: str) -> tuple[str, ...]:
+    """Names, each once."""
+    chosen = text.split(",")
+    if not set(chosen) <= set(_ALSO):
+        raise argparse.ArgumentTypeError(f"expected names out of {', '.join(_ALSO)}, got {text!r}")
+    return tuple(name for name in _ALSO if name in chosen)
 
 
 def _spin_words() -> str:
@@ -117,6 +139,39 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "default": [],
         "help": "gauge length of a tool, instead of the GaugeLength of its tool controller; may be repeated",
     },
+    "--corners": {
+        "choices": ("chord", "arc"),
+        "default": "chord",
+        "help": "what goes round outer corners in 2D cutter compensation (default: %(default)s)",
+    },
+    "--leads": {
+        "choices": ("A", "B"),
+        "default": "A",
+        "help": "how 2D cutter compensation begins and ends: A straight to the contour, B round outer corners"
+        " (default: %(default)s)",
+    },
+    "--swallowed": {
+        "choices": ("refuse", "remove"),
+        "default": "refuse",
+        "help": "what becomes of blocks that the tool is too large for (default: %(default)s)",
+    },
+    "--actual-tool": {
+        "metavar": "NUMBER=D[,R]",
+        "type": _actual_tool,
+        "action": "append",
+        "default": [],
+        "help": "diameter and corner radius in mm of a cutter that is not the one a program with surface normals was"
+        " made for; may be repeated",
+    },
+    "--surface-speed": {
+        "metavar": "M/MIN",
+        "type": _positive,
+        "help": "speed of the cutting edge over the work: each cut gets its own spindle speed (default: as programmed)",
+    },
+    "--keep-chip-load": {
+        "action": "store_true",
+        "help": "change feeds as the spindle speed changes with --surface-speed",
+    },
     "--spin": {
         "metavar": "RULE",
         "type": _spin,
@@ -124,6 +179,12 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "help": f"how the platform turns about the tool axis: {_spin_words()}; DEG is where its x axis points when the"
         f" tool is upright, OBJECTIVE one of {', '.join(_OBJECTIVES)} (default: zero, the shortest rotation from"
         " upright)",
+    },
+    "--also": {
+        "metavar": "NAMES",
+        "type": _also,
+        "default": (),
+        "help": f"what to write beside the program, joined by commas: {', '.join(_ALSO)} (default: nothing)",
     },
 }
 
@@ -157,6 +218,8 @@ def tolerances_from(namespace: argparse.Namespace) -> Tolerances:
 
 def options_from(namespace: argparse.Namespace) -> Options:
     """The options of a parsed command line, in mm and rad."""
+    from pkm_post.compensation import OffsetOptions
+    from pkm_post.model import Tool
     from pkm_post.pipeline import Options
 
     offset, tolerances = namespace.work_offset, tolerances_from(namespace)
@@ -165,6 +228,12 @@ def options_from(namespace: argparse.Namespace) -> Options:
         tip_tolerance=tolerances.tip,
         axis_tolerance=tolerances.axis,
         spin=_policy(*namespace.spin),
+        contours=OffsetOptions(namespace.corners, namespace.leads, namespace.swallowed),
+        surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
+        also=namespace.also,
+        actual_tools={
+            number: Tool(number, "", diameter, corner, 0.0) for number, diameter, corner in namespace.actual_tool
+        },
     )
 
 
@@ -180,6 +249,12 @@ def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
     pose = rotation((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.radians(turn_deg))
     pose[:3, 3] = x, y, z
     return pose
+
+
+def _surface_speed(metres_per_minute: float | None, keep_chip_load: bool) -> SurfaceSpeed | None:
+    from pkm_post.spindle import SurfaceSpeed
+
+    return None if metres_per_minute is None else SurfaceSpeed(metres_per_minute * 1000 / 60, keep_chip_load)
 
 
 def _policy(rule: str, heading_deg: float, objective: str) -> Policy:

@@ -9,8 +9,8 @@ from __future__ import annotations
 import contextlib
 import math
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -18,15 +18,18 @@ import numpy as np
 
 from pkm_post import planning, trajectory_file
 from pkm_post.certificate import certify
-from pkm_post.controllers import pmac
+from pkm_post.compensation import OffsetOptions, compensate
+from pkm_post.controllers import TABLES, Table, controller_of, part_names
 from pkm_post.files import staged
+from pkm_post.gcode import Form, write
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Diagnostic, Machine, Place, Program, Refused
+from pkm_post.model import Diagnostic, Kind, Machine, Place, Program, Refused, StrutMotion, Tool, Trajectory
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.findings import Tolerances
 from pkm_post.placement import place
 from pkm_post.report import plots, summary
 from pkm_post.spin import ZERO_TORSION, Policy, with_spin
+from pkm_post.spindle import SurfaceSpeed, with_surface_speed
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
@@ -34,6 +37,8 @@ Log = Callable[[str], None]
 
 SUFFIX = ".pmc"
 """How the name of a motion program ends."""
+LINUXCNC = "linuxcnc"
+"""The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is no table of the motion."""
 
 
 def quiet(line: str) -> None:
@@ -49,12 +54,26 @@ class Options:
         tip_tolerance: how far the tool tip may be from the programmed path, mm.
         axis_tolerance: how far the tool axis may be from the programmed one, rad.
         spin: how the platform turns about the tool axis.
+        contours: how 2D cutter compensation (G41, G42, CUTCOM) is applied.
+        actual_tools: by number, tools whose cutters are others than those the program was made for; a program with
+            surface normals is compensated for them.
+        surface_speed: how fast the cutting edge is to move over the work; None leaves the spindle as programmed.
+        also: what is written beside the program: names of ``controllers.TABLES``, and ``LINUXCNC``.
     """
 
     work_offset: str | Array = "G54"
     tip_tolerance: float = 1e-3
     axis_tolerance: float = math.radians(1e-3)
     spin: Policy = ZERO_TORSION
+    contours: OffsetOptions = OffsetOptions()
+    actual_tools: Mapping[int, Tool] = field(default_factory=dict)
+    surface_speed: SurfaceSpeed | None = None
+    also: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        known = (*TABLES, LINUXCNC)
+        if not set(self.also) <= set(known):
+            raise ValueError(f"also: expected names out of {', '.join(known)}, got {', '.join(self.also)}")
 
 
 @dataclass(frozen=True)
@@ -62,7 +81,7 @@ class Posted:
     """What was made.
 
     Attributes:
-        program: the motion program.
+        program: the motion program, or the first of its parts.
         files: everything that was written, the program included.
         report: the content of the report file.
         diagnostics: warnings.
@@ -141,13 +160,13 @@ def post(
 def _post(run: _Run, program: Program, machine: Machine, path: Path, options: Options) -> dict[str, Any]:
     """The steps in their order, on one screen; files go to the folder of ``path``."""
     tolerances = Tolerances(options.tip_tolerance, options.axis_tolerance)
-    settings = run.value(pmac.settings_of(machine))
+    controller = run.value(controller_of(machine))
+    settings = run.value(controller.settings_of(machine))
 
     with run.step("trajectory") as told:
-        placed = run.value(place(program, machine, run.value(work_offset(machine, options))))
-        placed = run.value(with_spin(placed, machine, options.spin))
+        placed = run.value(trajectory_of(program, machine, options))
         stored = path.with_suffix(".pkmt")
-        trajectory_file.write(placed, stored)
+        trajectory_file.write(replace(placed, tolerances=tolerances), stored)
         trajectory = run.value(trajectory_file.read(stored))
         told.append(f"{len(trajectory)} segments")
 
@@ -160,30 +179,107 @@ def _post(run: _Run, program: Program, machine: Machine, path: Path, options: Op
     with run.step("interpolation") as told:
         motion = planning.interpolate(tool_path, schedule, trajectory.events, machine, tolerances)
         struts = planning.strut_motion(motion, machine)
-        run.accept(
-            pmac.event_faults(struts, settings.codes, path.name) + pmac.memory_faults(struts, settings, path.name)
-        )
+        run.accept(controller.faults(struts, settings, path.name))
         told.append(f"{len(motion)} points")
 
     with run.step("motion program") as told:
-        text = pmac.program_text(struts, settings, summary.heading(trajectory))
-        path.write_text(text, encoding="ascii", newline="\n")
-        setup = path.with_name(f"{path.stem}-setup.pmc")
-        setup.write_text(pmac.setup_text(settings, machine.name, machine.strut_stroke), encoding="ascii", newline="\n")
-        told.append(f"{len(text) / 1e6:.1f} MB")
+        parts = controller.program_parts(struts, settings, summary.heading(trajectory))
+        names = _write_parts(path, parts)
+        setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
+        if setup is not None:
+            _write_parts(path.with_name(path.stem + controller.SETUP_SUFFIX), (setup,))
+        told.append(f"{sum(map(len, parts)) / 1e6:.1f} MB" + f" in {len(parts)} parts" * (len(parts) > 1))
 
     with run.step("certificate") as told:
-        played = run.value(pmac.read_program(path.read_text(encoding="ascii"), settings, path.name))
+        played = run.value(controller.read_parts(_read_parts(path, names), settings))
         certificate = run.value(certify(played, path.name, trajectory, machine, motion, tolerances))
         told.append(f"{certificate.instants} poses by forward kinematics")
 
     with run.step("report") as told:
-        report = summary.report(trajectory, machine, certificate, tolerances, played)
+        report = summary.report(trajectory, machine, certificate, tolerances, played, motion)
         summary.write(report, path.with_name(f"{path.stem}-report.json"))
         picture = path.with_name(f"{path.stem}-report.png")
         run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))
         told.extend(summary.verdict(certificate))
+
+    for name in options.also:
+        with run.step(f"also {name}") as told:
+            if name == LINUXCNC:
+                _write_for_linuxcnc(run, path, trajectory)
+            else:
+                # the last line of the heading speaks of the program
+                told.append(_write_table(run, path, TABLES[name], played, summary.heading(trajectory)[:-1]))
     return report
+
+
+def _write_table(run: _Run, path: Path, table: Table, played: StrutMotion, heading: list[str]) -> str:
+    """Write a table of the motion that was certified; what was found when it was read back."""
+    target = path.with_name(path.stem + table.SUFFIX)
+    names = _write_parts(target, table.texts(played, heading))
+    found, faults = table.measured(_read_parts(target, names), played)
+    run.accept(faults)
+    return found
+
+
+def _write_for_linuxcnc(run: _Run, path: Path, trajectory: Trajectory) -> None:
+    """Write the trajectory for a control that has the kinematics and plans for itself."""
+    text = run.value(write(_as_program(trajectory), Form.LINUXCNC))
+    told = "(coordinates of the machine frame, work offsets are zero; not certified)\n"
+    path.with_name(f"{path.stem}-linuxcnc.ngc").write_text(told + text, encoding="ascii", newline="\n")
+
+
+def _as_program(trajectory: Trajectory) -> Program:
+    """A trajectory as a program whose work frame is {M}."""
+    return Program(
+        kind=trajectory.kind,
+        position=trajectory.tip,
+        tool_axis=trajectory.axis,
+        spin=trajectory.spin,
+        feed=np.where(trajectory.kind == Kind.RAPID, np.nan, trajectory.feed),
+        arc_centre=trajectory.arc_centre,
+        arc_axis=trajectory.arc_axis,
+        exact_stop=trajectory.exact_stop,
+        operation=trajectory.operation,
+        line=trajectory.line,
+        events=trajectory.events,
+        operations=trajectory.operations,
+        tools=trajectory.tools,
+        source=trajectory.source,
+    )
+
+
+def _write_parts(path: Path, texts: tuple[str, ...]) -> list[str]:
+    """Write the parts of a file; their names."""
+    names = part_names(path.name, len(texts))
+    for name, text in zip(names, texts, strict=True):
+        path.with_name(name).write_text(text, encoding="ascii", newline="\n")
+    return names
+
+
+def _read_parts(path: Path, names: list[str]) -> list[tuple[str, str]]:
+    """Names and texts of the parts of a file, read back."""
+    return [(name, path.with_name(name).read_text(encoding="ascii")) for name in names]
+
+
+def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple[Trajectory | None, Findings]:
+    """The program compensated, on the machine, with its spin; or what stands against it."""
+    offset, told = work_offset(machine, options)
+    moved, faults = compensate(program, options.contours, options.actual_tools)
+    told += faults
+    if offset is None or moved is None:
+        return None, told
+    if options.surface_speed is not None:
+        limits = machine.spindle_least_speed, machine.spindle_speed
+        moved, faults = with_surface_speed(moved, options.surface_speed, limits)
+        told += faults
+        if moved is None:
+            return None, told
+    placed, faults = place(moved, machine, offset)
+    told += faults
+    if placed is None:
+        return None, told
+    turned, faults = with_spin(placed, machine, options.spin)
+    return turned, told + faults
 
 
 def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findings]:

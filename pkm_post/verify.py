@@ -12,8 +12,8 @@ from typing import Any
 
 from pkm_post import planning, trajectory_file
 from pkm_post.certificate import certify
-from pkm_post.controllers import pmac
-from pkm_post.model import Diagnostic, Machine, Place, Refused
+from pkm_post.controllers import controller_of, part_siblings
+from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.findings import Tolerances
 from pkm_post.report import summary
@@ -23,7 +23,7 @@ def verify(program: Path, trajectory: Path, machine: Machine, tolerances: Tolera
     """Certify a program that was written before.
 
     Args:
-        program: the motion program.
+        program: the motion program, or the first of its parts.
         trajectory: the trajectory file it was made from.
         machine: the machine it was made for.
         tolerances: what was asked for when it was posted.
@@ -37,12 +37,7 @@ def verify(program: Path, trajectory: Path, machine: Machine, tolerances: Tolera
     planned, faults = trajectory_file.read(trajectory)
     if planned is None:
         raise Refused(faults)
-    settings, faults = pmac.settings_of(machine)
-    if settings is None:
-        raise Refused(faults)
-    struts, faults = pmac.read_program(_text(program), settings, program.name)
-    if struts is None:
-        raise Refused(faults)
+    struts = _read(program, machine)
     path = planning.tool_path(planned, tolerances)
     schedule, faults = planning.plan_feed(path, planned, machine)
     if errors(faults):
@@ -51,7 +46,24 @@ def verify(program: Path, trajectory: Path, machine: Machine, tolerances: Tolera
     certificate, faults = certify(struts, program.name, planned, machine, motion, tolerances)
     if certificate is None or errors(faults):
         raise Refused(faults)
-    return summary.report(planned, machine, certificate, tolerances, struts)
+    return summary.report(planned, machine, certificate, tolerances, struts, motion)
+
+
+def _read(program: Path, machine: Machine) -> StrutMotion:
+    """The motion of a program; its other parts lie beside its first one."""
+    controller, faults = controller_of(machine)
+    if controller is None:
+        raise Refused(faults)
+    settings, faults = controller.settings_of(machine)
+    if settings is None:
+        raise Refused(faults)
+    first = _text(program)
+    others = part_siblings(controller, program.name, first)
+    texts = [(program.name, first), *((name, _text(program.with_name(name))) for name in others)]
+    struts, faults = controller.read_parts(texts, settings)
+    if struts is None:
+        raise Refused(faults)
+    return struts
 
 
 def _text(program: Path) -> str:

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from pkm_post import options
+from pkm_post.compensation import OffsetOptions
 from pkm_post.options import FIXTURE_OF_THE_JOB, add_options, options_from, tool_lengths_from
 from pkm_post.pipeline import Options
 from pkm_post.spin import OBJECTIVES, ZERO_TORSION, Policy, Rule
+from pkm_post.spindle import SurfaceSpeed
 
 
 def parsed(*arguments):
@@ -46,6 +48,20 @@ def test_tool_lengths():
     assert tool_lengths_from(namespace) == {1: 121, 12: 85.25}
 
 
+def test_compensation():
+    chosen = options_from(parsed("--corners", "arc", "--leads", "B", "--actual-tool", "3=11.9,5.95"))
+    assert chosen.contours == OffsetOptions(corners="arc", leads="B")
+    assert (chosen.actual_tools[3].diameter, chosen.actual_tools[3].corner_radius) == (11.9, 5.95)
+    assert options_from(parsed()).contours == OffsetOptions()
+    assert not options_from(parsed()).actual_tools
+
+
+def test_surface_speed():
+    assert options_from(parsed()).surface_speed is None
+    wanted = options_from(parsed("--surface-speed", "120", "--keep-chip-load")).surface_speed
+    assert wanted == SurfaceSpeed(2000.0, keep_chip_load=True)
+
+
 def test_every_rule_of_the_spin_can_be_chosen():
     assert set(options._SPINS) == {rule.value for rule in Rule}
     assert set(options._OBJECTIVES) == set(OBJECTIVES)
@@ -61,6 +77,8 @@ def test_the_numbers_of_the_spin():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["--actual-tool", "3"], "expected a number, got ''"),
+        (["--actual-tool", "T3=10"], "expected NUMBER=D[,R], got 'T3=10'"),
         (["--spin", "fast"], "expected one of zero, file, x-in-plane[=DEG]"),
         (["--spin", "zero=1"], "got 'zero=1'"),
         (["--spin", "x-in-plane=x"], "expected a number, got 'x'"),

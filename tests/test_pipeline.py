@@ -11,7 +11,7 @@ from programs import ON_PALLET, cone, program, random_job
 
 from pkm_post.controllers import pmac
 from pkm_post.machine_file import find_machine, read_machine
-from pkm_post.model import Refused
+from pkm_post.model import Event, EventKind, Refused
 from pkm_post.pipeline import Options, post
 
 
@@ -54,6 +54,22 @@ def test_same_input_same_bytes(machine, tmp_path):
         post(cone(60, turns=0.3), machine, tmp_path / folder / "cone.pmc")
     for path in (tmp_path / "one").iterdir():
         assert path.read_bytes() == (tmp_path / "two" / path.name).read_bytes(), path.name
+
+
+def test_the_machining_time_is_that_of_the_program(machine, tmp_path):
+    made = program(
+        [[0, 0, 60], [10, 0, 60], [10, 10, 60], [0, 10, 60]],
+        events=(Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.DWELL, 0.75)),
+    )
+    posted = post(made, machine, tmp_path / "job.pmc")
+    told = posted.report["machining_time"]
+    settings = pmac.Settings.of(machine.controller)
+    milliseconds = pmac.read_program(posted.program.read_text(), settings, "job.pmc")[0].time_ms[-1]
+    (operation,) = told["operations"]
+    assert operation["name"] == "Finish"
+    assert operation["cutting_s"] + operation["rapid_s"] == pytest.approx(milliseconds / 1000, abs=2e-3)
+    assert operation["dwell_s"] == 0.75
+    assert told["total_s"] == pytest.approx(milliseconds / 1000 + 0.75, abs=1e-3)
 
 
 def test_work_offset_by_name_and_by_matrix(machine, tmp_path):

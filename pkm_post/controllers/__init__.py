@@ -1,2 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Controllers: from strut motion to the text a controller plays, and from that text back to strut motion."""
+"""Controllers: from strut motion to the text a controller plays, and from that text back to strut motion.
+
+A folder for each controller, a table of them by ``controller.kind``, and tables of the motion for other readers.
+"""
+
+from pkm_post.controllers.kinds import CONTROLLERS, Controller, controller_of, part_names, part_siblings
+from pkm_post.controllers.tables import TABLES, Table
+
+__all__ = ["CONTROLLERS", "TABLES", "Controller", "Table", "controller_of", "part_names", "part_siblings"]

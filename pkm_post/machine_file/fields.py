@@ -100,7 +100,7 @@ FIELDS: tuple[Field, ...] = (
     Field("work_offsets.*.origin", forms.POINT, units.LENGTH, default=None),
     Field("work_offsets.*.rotation_z", forms.NUMBER, units.ANGLE, default=0.0),
     Field("work_offsets.*.matrix", forms.POSE, units.LENGTH, default=None),
-    Field("controller.kind", forms.choice("turbo_pmac")),
+    Field("controller.kind", forms.choice("turbo_pmac", "power_pmac")),
     Field("controller.letters", forms.LETTERS),
     Field("controller.coordinate_system", forms.whole_number(1, 16), default=1),
     Field("controller.program", forms.whole_number(1, 999), default=10),

@@ -15,7 +15,7 @@ import numpy as np
 
 import pkm_post
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Kind, Machine, StrutMotion, Trajectory
+from pkm_post.model import EventKind, Kind, Machine, Motion, StrutMotion, Trajectory
 from pkm_post.model.findings import Certificate, Finding, Tolerances
 
 _FORMAT = 1
@@ -34,7 +34,12 @@ def heading(trajectory: Trajectory) -> list[str]:
 
 
 def report(
-    trajectory: Trajectory, machine: Machine, certificate: Certificate, tolerances: Tolerances, struts: StrutMotion
+    trajectory: Trajectory,
+    machine: Machine,
+    certificate: Certificate,
+    tolerances: Tolerances,
+    struts: StrutMotion,
+    motion: Motion,
 ) -> dict[str, Any]:
     """The report as data that JSON can hold."""
     return {
@@ -55,12 +60,33 @@ def report(
             "shortest_strut_mm": _rounded(struts.length.min(axis=0), 3),
             "longest_strut_mm": _rounded(struts.length.max(axis=0), 3),
         },
+        "machining_time": machining_time(trajectory, motion),
         "certificate": {
             "holds": certificate.holds,
             "instants": certificate.instants,
             "findings": [_finding(finding) for finding in certificate.findings],
         },
     }
+
+
+def machining_time(trajectory: Trajectory, motion: Motion) -> dict[str, Any]:
+    """How long the program takes, in all and by operation, s; changes of tools and stops for people not counted.
+
+    The times of motion add up to that of the written program.
+    """
+    segment_time = np.diff(motion.joint_time, prepend=0.0)
+    cutting = trajectory.kind != Kind.RAPID
+    dwell = np.zeros(len(trajectory))
+    for event in trajectory.events:
+        if event.kind is EventKind.DWELL:
+            dwell[min(event.row, len(trajectory) - 1)] += event.value
+    parts = {"cutting_s": segment_time * cutting, "rapid_s": segment_time * ~cutting, "dwell_s": dwell}
+    operations = [
+        {"name": name}
+        | {part: _rounded(column[trajectory.operation == number].sum(), 3) for part, column in parts.items()}
+        for number, name in enumerate(trajectory.operations)
+    ]
+    return {"total_s": _rounded(segment_time.sum() + dwell.sum(), 3), "operations": operations}
 
 
 def write(content: dict[str, Any], path: Path) -> None:

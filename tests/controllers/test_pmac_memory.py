@@ -3,24 +3,80 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import pytest
+from strut_motions import read_back, with_rests
 
-from pkm_post.controllers.pmac import memory_faults, program_text, program_words
-from pkm_post.model import StrutMotion
+from pkm_post.controllers.pmac import memory_faults, program_parts, program_text, program_words
+from pkm_post.model import Event, EventKind, StrutMotion
+
+
+def at_rest(knots, events=()):
+    return StrutMotion(np.arange(knots) * 20, np.full((knots, 6), 500.0), np.zeros((knots, 6)), tuple(events))
 
 
 def test_every_knot_takes_twelve_words():
-    def at_rest(knots):
-        return StrutMotion(np.arange(knots) * 20, np.full((knots, 6), 500.0), np.zeros((knots, 6)), ())
-
+    # a value takes one word (Turbo PMAC User Manual, p. 337), and a knot has six lengths and six speeds
     assert program_words(at_rest(1001)) - program_words(at_rest(1)) == 12 * 1000 + 1
 
 
-def test_a_program_that_fills_the_memory_is_accepted_and_one_word_more_is_not(job, settings):
+def test_a_program_that_fills_the_memory_is_written_whole_and_one_word_less_parts_it(job, settings):
     words = program_words(job)
-    assert memory_faults(job, replace(settings, memory_words=words), "job") == ()
-    (fault,) = memory_faults(job, replace(settings, memory_words=words - 1), "job")
+    assert len(program_parts(job, replace(settings, memory_words=words), [])) == 1
+    assert len(program_parts(job, replace(settings, memory_words=words - 1), [])) == 2
+
+
+def test_a_whole_program_says_nothing_of_parts(job, settings):
+    assert program_parts(job, settings, ["job"]) == (program_text(job, settings, ["job"]),)
+
+
+@pytest.mark.parametrize("memory_words", [400, 700, 2000])
+def test_the_parts_together_are_the_whole_and_each_fits(settings, memory_words):
+    events = [Event(row, EventKind.DWELL, 0.25) for row in (0, 30, 30, 60, 199)]
+    motion = with_rests(10, 200, events)
+    small = replace(settings, memory_words=memory_words)
+    texts = program_parts(motion, small, ["any heading"])
+    assert len(texts) > 1
+    for number, text in enumerate(texts, start=1):
+        part, faults = read_back([re.sub(r"; part .*\n", "", text)], small)
+        assert not faults
+        assert program_words(part) <= memory_words
+        assert f"; part {number} of {len(texts)}:" in text
+    whole, faults = read_back(texts, small)
+    assert not faults
+    alone, _ = read_back([program_text(motion, small, [])], small)
+    assert np.array_equal(whole.time_ms, motion.time_ms)
+    assert np.array_equal(whole.length, alone.length)
+    assert np.array_equal(whole.speed, alone.speed)
+    assert whole.events == motion.events
+
+
+def test_a_cut_is_where_the_machine_is_best_left_waiting(settings):
+    events = [Event(20, EventKind.TOOL_CHANGE, 2.0), Event(30, EventKind.STOP, 0.0), Event(40, EventKind.DWELL, 1.0)]
+    motion = with_rests(10, 101, events)
+    knots = [text.count(":") // 6 for text in program_parts(motion, replace(settings, memory_words=800), [])]
+    assert knots[0] == 20  # up to the tool change, though more would fit
+    without = with_rests(10, 101)
+    assert program_parts(without, replace(settings, memory_words=800), [])[0].count(":") // 6 == 60
+
+
+def test_what_happens_at_a_cut_belongs_to_the_part_behind_it(settings):
+    motion = with_rests(10, 41, [Event(20, EventKind.TOOL_CHANGE, 2.0), Event(20, EventKind.SPINDLE, 900.0)])
+    first, second = program_parts(motion, replace(settings, memory_words=400), [])
+    assert "M6" not in first
+    assert "DWELL0\nT2 M6\nS900 M3\nPVT" in second
+
+
+def test_a_motion_without_a_rest_that_is_near_enough_is_refused(settings):
+    motion = with_rests(50, 101)
+    small = replace(settings, memory_words=600)
+    (fault,) = memory_faults(motion, small, "job")
     assert (fault.code, fault.place.file) == ("C102", "job")
-    assert fault.found == f"about {words} words for 4 knots, the controller has {words - 1}"
+    assert re.fullmatch(
+        r"about 6\d\d words for 51 knots without a rest from 0 s on, the controller has 600", fault.found
+    )
+    with pytest.raises(ValueError, match="expected a rest within 600 words"):
+        program_parts(motion, small, [])
+    assert memory_faults(motion, replace(settings, memory_words=700), "job") == ()
 
 
 def test_the_estimate_is_not_below_the_numbers_and_words_of_the_text(job, settings):

@@ -82,6 +82,7 @@ def test_no_number_is_minus_zero(settings):
 
 
 def test_every_number_has_digits_on_both_sides_of_the_point_and_no_exponent(settings):
+    # the manuals show plain decimals only; a lexer of PMAC programs by others (dls_pmacanalyse 3.0.0) rejects .5 and 5.
     rng = np.random.default_rng(1)
     speed = rng.normal(size=(500, 6)) * 10.0 ** rng.integers(-12, 5, (500, 6))
     speed[[0, -1]] = 0.0
@@ -93,6 +94,7 @@ def test_every_number_has_digits_on_both_sides_of_the_point_and_no_exponent(sett
 
 
 def test_the_longest_plausible_line_is_within_the_limit(settings):
+    # 159 characters: what the dual-ported RAM takes of a line (PMAC Dual-Ported RAM manual, p. 29)
     motion = StrutMotion(np.array([0, 20, 40]), np.full((3, 6), -9999.999999), np.zeros((3, 6)), ())
     motion = replace(motion, speed=np.array([0.0, -9999.9999, 0.0])[:, None] * np.ones(6))
     assert max(map(len, program_text(motion, settings, ["x" * 500]).splitlines())) <= 159
@@ -116,6 +118,7 @@ def test_times_that_the_controller_cannot_keep_are_refused(settings, time_ms):
 
 
 def test_the_longest_interval_is_accepted(settings):
+    # 0 to 4095.9998 ms, whole ms with I42 = 1 (Turbo PMAC Software Reference, p. 463; User Manual, p. 292)
     assert "PVT4095\n" in program_text(_at_rest([0, 4095]), settings, [])
 
 

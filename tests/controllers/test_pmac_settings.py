@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from pkm_post.controllers.pmac import Settings
-from pkm_post.controllers.pmac.codes import DEFAULT_CODES
+from pkm_post.controllers.pvt.codes import DEFAULT_CODES
 
 PRESETS = sorted((Path(__file__).parents[2] / "resources" / "machines").glob("*.toml"))
 TABLE = {
@@ -21,6 +21,11 @@ def test_a_short_table_is_filled_with_defaults():
     assert settings.zero_length == (500, 500, 500, 500, 500, 501.5)
     assert settings.letters == ("A", "B", "C", "U", "V", "W")
     assert settings.codes == DEFAULT_CODES
+
+
+def test_the_memory_is_that_of_the_extended_option():
+    # open memory from $6000 to $40000 (Turbo PMAC Software Reference, p. 164)
+    assert Settings.of(TABLE).memory_words == 0x40000 - 0x6000
 
 
 def test_a_full_table_is_taken_as_it_is():

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Memory: whether a motion program fits into the controller.
+"""Memory: whether a motion program fits into the controller, and where it is cut when it does not.
 
-Enters: strut motion. Leaves: an estimate of the program's size in the controller's 48-bit words, and a diagnostic when
-that is more than there is. The controller keeps one word per value; ``SIZE`` tells what it has free.
+Enters: strut motion. Leaves: an estimate of the program's size in the controller's 48-bit words, the knots where it is
+cut into parts that fit, and a diagnostic when there is no rest to cut it at. The controller keeps one word per value;
+``SIZE`` tells what it has free.
 """
 
 from __future__ import annotations
@@ -10,34 +11,98 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.controllers.pmac.settings import Settings
-from pkm_post.model import Diagnostic, Place, StrutMotion
+from pkm_post.controllers.pvt.writer import rests
+from pkm_post.model import Diagnostic, EventKind, Place, StrutMotion
+from pkm_post.model.program import Array
 
 WORDS_PER_KNOT = 12
 """Six lengths and six speeds."""
 
-WORDS_PER_EVENT = 4
-"""DWELL0, the code, which may have two words, and the PVT that resumes the motion."""
+WORDS_PER_EVENT = 6
+"""DWELL0, the code, which may assign and dwell, and the PVT that resumes the motion."""
 
 WORDS_OF_FRAME = 20
 """ABS, FRAX with six letters, LINEAR, TA, TS, F, two DWELL0, LINEAR, with some to spare."""
 
+_GOOD_FOR_A_CUT = {EventKind.TOOL_CHANGE: 2, EventKind.STOP: 1}
+"""Where the machine is best left waiting for the next part: the higher, the better; 0 for any other rest."""
+
 
 def program_words(motion: StrutMotion) -> int:
     """Estimate the memory of the program of a motion, in 48-bit words."""
-    time_changes = int(np.count_nonzero(np.diff(np.diff(motion.time_ms), prepend=0)))
-    return WORDS_OF_FRAME + WORDS_PER_KNOT * len(motion) + WORDS_PER_EVENT * len(motion.events) + time_changes
+    return WORDS_OF_FRAME + int(_words_by_knot(motion).sum())
+
+
+def _words_by_knot(motion: StrutMotion) -> Array:
+    """Words of each knot and of what happens there, (M,)."""
+    words = np.full(len(motion), WORDS_PER_KNOT)
+    words[1:] += np.diff(np.diff(motion.time_ms), prepend=0) != 0
+    np.add.at(words, [event.row for event in motion.events], WORDS_PER_EVENT)
+    return words
+
+
+def memory_cuts(motion: StrutMotion, settings: Settings) -> tuple[int, ...]:
+    """The knots where a motion is cut so that each part fits into the controller.
+
+    Each part is cut at the best rest within the memory, and at the last of those that are equally good.
+
+    Raises:
+        ValueError: there is no rest within the memory; ``memory_faults`` tells beforehand.
+    """
+    cuts, stuck = _cuts(motion, settings)
+    if stuck is not None:
+        raise ValueError(f"motion: expected a rest within {settings.memory_words} words, got none behind knot {stuck}")
+    return cuts
 
 
 def memory_faults(motion: StrutMotion, settings: Settings, file: str) -> tuple[Diagnostic, ...]:
-    """Compare the program of a motion with the memory of the controller.
+    """Compare the program of a motion, in parts, with the memory of the controller.
 
     Args:
         motion: the motion to be written.
         settings: of the controller.
         file: name of the job, for the diagnostic.
     """
-    words = program_words(motion)
-    if words <= settings.memory_words:
+    _, stuck = _cuts(motion, settings)
+    if stuck is None:
         return ()
-    found = f"about {words} words for {len(motion)} knots, the controller has {settings.memory_words}"
+    resting = np.append(rests(motion, settings), len(motion) - 1)
+    end = int(resting[resting > stuck].min())
+    words = WORDS_OF_FRAME + int(_words_by_knot(motion)[stuck : end + 1].sum())
+    found = (
+        f"about {words} words for {end - stuck + 1} knots without a rest from {motion.time_ms[stuck] / 1000:g} s on, "
+        f"the controller has {settings.memory_words}"
+    )
     return (Diagnostic("C102", Place(file), found),)
+
+
+def _cuts(motion: StrutMotion, settings: Settings) -> tuple[tuple[int, ...], int | None]:
+    """The cuts, and the knot behind which there is no rest near enough, if there is one."""
+    own = _words_by_knot(motion)
+    if own.sum() <= _room(settings, 0):
+        return (), None
+    behind = np.cumsum(own)
+    resting, merit = rests(motion, settings), _merit(motion)
+    cuts: list[int] = []
+    first, last = 0, len(motion) - 1
+    while behind[last] - behind[first] + own[first] > (room := _room(settings, first)):
+        reach = np.searchsorted(behind, room + behind[first] - own[first], side="right") - 1
+        near = resting[(resting > first) & (resting <= reach)]
+        if not len(near):
+            return tuple(cuts), first
+        first = int(near[merit[near] == merit[near].max()][-1])
+        cuts.append(first)
+    return tuple(cuts), None
+
+
+def _room(settings: Settings, first: int) -> int:
+    """Words for the knots of a part; one that begins at a cut needs a word more, the time of its first interval."""
+    return settings.memory_words - WORDS_OF_FRAME - (first > 0)
+
+
+def _merit(motion: StrutMotion) -> Array:
+    """How good each knot is for a cut, (M,)."""
+    merit = np.zeros(len(motion), dtype=np.int64)
+    for event in motion.events:
+        merit[event.row] = max(merit[event.row], _GOOD_FOR_A_CUT.get(event.kind, 0))
+    return merit

@@ -1,48 +1,43 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program: strut motion written as a Turbo PMAC motion program.
 
-Enters: knots with six lengths in mm and six speeds in mm/s at whole ms. Leaves: ASCII text. The controller approaches
-knot 0 slowly in LINEAR mode, then follows from knot to knot the one cubic that has the lengths and speeds of both
-(PVT mode). Axis values are true strut lengths; times in the program are in ms.
+Enters: strut motion in mm, mm/s and whole ms. Leaves: the words and the frame of the Turbo PMAC about its moves, in
+one program or in as many parts as its memory asks for.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
-import numpy as np
-
-from pkm_post.controllers.pmac.codes import code_text
-from pkm_post.controllers.pmac.comment import comment_lines
-from pkm_post.controllers.pmac.decimals import plain
+from pkm_post.controllers.pmac.memory import memory_cuts
 from pkm_post.controllers.pmac.settings import Settings
+from pkm_post.controllers.pvt import parts, writer
+from pkm_post.controllers.pvt.decimals import plain
+from pkm_post.controllers.pvt.words import Words
 from pkm_post.model import StrutMotion
-from pkm_post.model.program import Array
 
-LONGEST_INTERVAL_MS = 4095
-_ROWS_PER_CHUNK = 4096
+WORDS = Words(comment=";", linear="LINEAR", dwell="DWELL", interval="PVT", close="CLOSE")
 
 
 def program_text(motion: StrutMotion, settings: Settings, heading: Sequence[str]) -> str:
-    """Write a motion as a motion program.
+    """Write a motion as one motion program; as ``pvt.writer.program_text``."""
+    return writer.program_text(motion, settings, WORDS, _opening(settings), heading)
+
+
+def program_parts(motion: StrutMotion, settings: Settings, heading: Sequence[str]) -> tuple[str, ...]:
+    """Write a motion as one program, or as several that fit into the memory one after the other.
 
     Args:
-        motion: at rest at both ends and at every event; knots from 1 to 4095 ms apart, the first at 0.
+        motion: as for ``program_text``.
         settings: of the controller.
-        heading: lines of text for the comment on top.
+        heading: lines of text for the comment on top of each part.
 
     Raises:
-        ValueError: the motion cannot be written: its times, a number that is not finite, a speed where it must rest,
-            or an event without code.
+        ValueError: the motion cannot be written, or no rest is near enough; ``memory_faults`` tells beforehand.
     """
-    _check(motion, settings)
-    lines = _knot_lines(motion, settings)
-    for knot, text in _interruptions(motion, settings).items():
-        lines[knot] += text
-    for knot, interval in _new_intervals(motion):
-        lines[knot] = f"PVT{interval}\n{lines[knot]}"
-    comment = [f"{line}\n" for text in heading for line in comment_lines(text, settings.line_limit)]
-    return "".join([*comment, _opening(settings), *lines, "LINEAR\nCLOSE\n"])
+    motions = parts.parted(motion, memory_cuts(motion, settings))
+    headings = parts.headings(heading, len(motions))
+    return tuple(program_text(part, settings, lines) for part, lines in zip(motions, headings, strict=True))
 
 
 def _opening(settings: Settings) -> str:
@@ -51,69 +46,3 @@ def _opening(settings: Settings) -> str:
         f"CLOSE\nDELETE GATHER\nOPEN PROG {settings.program}\nCLEAR\n"
         f"ABS\nFRAX({','.join(settings.letters)})\nLINEAR\nTA{settings.approach_ramp_ms} TS0 F{speed}\n"
     )
-
-
-def _knot_lines(motion: StrutMotion, settings: Settings) -> list[str]:
-    """One line per knot: lengths alone for the approach to knot 0, lengths and speeds for the others."""
-    values = np.stack(
-        [_rounded(motion.length, settings.length_decimals), _rounded(motion.speed, settings.speed_decimals)], axis=2
-    )
-    length, speed = f"%.{settings.length_decimals}f", f"%.{settings.speed_decimals}f"
-    approach = " ".join(f"{letter}{length}" for letter in settings.letters) + "\n"
-    move = " ".join(f"{letter}{length}:{speed}" for letter in settings.letters) + "\n"
-    lines = [approach % tuple(values[0, :, 0])]
-    for start in range(1, len(values), _ROWS_PER_CHUNK):
-        chunk = values[start : start + _ROWS_PER_CHUNK]
-        lines += ((move * len(chunk)) % tuple(chunk.ravel().tolist())).splitlines(keepends=True)
-    return lines
-
-
-def _rounded(column: Array, decimals: int) -> Array:
-    """The column as it will be printed; adding zero turns -0.0 into 0.0."""
-    return np.round(column, decimals) + 0.0
-
-
-def _resting_knots(motion: StrutMotion) -> list[int]:
-    return sorted({0, len(motion) - 1} | {event.row for event in motion.events})
-
-
-def _interruptions(motion: StrutMotion, settings: Settings) -> dict[int, str]:
-    """What stands after the line of a knot where the motion rests.
-
-    DWELL0 comes first: it keeps the controller from computing ahead, which would carry out the codes too early.
-    """
-    text = dict.fromkeys(_resting_knots(motion), "DWELL0\n")
-    for event in motion.events:
-        text[event.row] += code_text(event, settings.codes) + "\n"
-    return text
-
-
-def _new_intervals(motion: StrutMotion) -> Iterator[tuple[int, int]]:
-    """The knots whose interval the controller must be told: the time changes, or an interruption ended PVT mode."""
-    intervals = np.diff(motion.time_ms)
-    told = np.diff(intervals, prepend=0) != 0
-    told[[knot for knot in _resting_knots(motion) if knot < len(intervals)]] = True
-    for index in np.flatnonzero(told).tolist():
-        yield index + 1, int(intervals[index])
-
-
-def _check(motion: StrutMotion, settings: Settings) -> None:
-    if len(motion) == 0 or motion.time_ms[0] != 0:
-        raise ValueError(f"motion: expected knots from 0 ms on, got {motion.time_ms[:1].tolist()}")
-    intervals = np.diff(motion.time_ms)
-    wrong = np.flatnonzero((intervals < 1) | (intervals > LONGEST_INTERVAL_MS))
-    if len(wrong):
-        raise ValueError(
-            f"motion.time_ms: expected intervals of 1 to {LONGEST_INTERVAL_MS} ms, "
-            f"got {intervals[wrong[0]]} ms before knot {wrong[0] + 1}"
-        )
-    if not (np.isfinite(motion.length).all() and np.isfinite(motion.speed).all()):
-        raise ValueError("motion: expected finite lengths and speeds, got NaN or infinity")
-    rows = [event.row for event in motion.events]
-    if rows != sorted(rows) or any(not 0 <= row < len(motion) for row in rows):
-        raise ValueError(f"motion.events: expected rows in order from 0 to {len(motion) - 1}, got {rows}")
-    knots = _resting_knots(motion)
-    moving = np.flatnonzero(_rounded(motion.speed[knots], settings.speed_decimals).any(axis=1))
-    if len(moving):
-        knot = knots[moving[0]]
-        raise ValueError(f"motion.speed: expected rest at knot {knot}, got {motion.speed[knot].tolist()} mm/s")

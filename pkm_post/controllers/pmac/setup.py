@@ -11,11 +11,9 @@ import math
 from collections.abc import Callable
 from decimal import Decimal
 
-from pkm_post.controllers.pmac.comment import comment_lines
-from pkm_post.controllers.pmac.decimals import exact, plain
 from pkm_post.controllers.pmac.settings import Settings
-
-ROTARY_LETTERS = "ABC"
+from pkm_post.controllers.pvt.axes import ROTARY_LETTERS, axis_definitions, check_stroke, stroke_counts
+from pkm_post.controllers.pvt.comment import comment_lines
 
 
 def setup_text(settings: Settings, machine_name: str, stroke: tuple[float, float]) -> str:
@@ -31,9 +29,7 @@ def setup_text(settings: Settings, machine_name: str, stroke: tuple[float, float
     Raises:
         ValueError: the stroke is not two growing lengths.
     """
-    shortest, longest = stroke
-    if not (math.isfinite(shortest) and math.isfinite(longest) and shortest < longest):
-        raise ValueError(f"stroke: expected two finite lengths, the shorter first, got {stroke}")
+    check_stroke(stroke)
     # All lines with & and # come before the first assignment: some tools that read such files let an expression
     # run on into a following line that begins with one of these.
     lines = [
@@ -48,15 +44,10 @@ def setup_text(settings: Settings, machine_name: str, stroke: tuple[float, float
 
 
 def _axis_lines(settings: Settings) -> list[str]:
-    scale = exact(settings.counts_per_mm)
-    offsets = [-scale * exact(length) for length in settings.zero_length]
     return [
         f"&{settings.coordinate_system} ; the coordinate system that runs the program",
         "; #motor->SCALE LETTER OFFSET: counts = SCALE * strut length + OFFSET; the offset is counts at length zero",
-        *(
-            f"#{motor}->{plain(scale)}{letter}{'' if offset < 0 else '+'}{plain(offset)}"
-            for motor, (letter, offset) in enumerate(zip(settings.letters, offsets, strict=True), start=1)
-        ),
+        *axis_definitions(settings),
     ]
 
 
@@ -71,10 +62,8 @@ def _coordinate_system_lines(settings: Settings) -> list[str]:
 
 
 def _motor_lines(settings: Settings, stroke: tuple[float, float]) -> list[str]:
-    scale = exact(settings.counts_per_mm)
     lines = ["; Soft limits: the stroke in counts. 0 would switch a limit off, so 1 or -1 stands for it"]
-    for motor, zero_length in enumerate(settings.zero_length, start=1):
-        low, high = sorted(scale * (exact(length) - exact(zero_length)) for length in stroke)
+    for motor, (low, high) in enumerate(stroke_counts(settings, stroke), start=1):
         lines.append(f"I{motor}13={_limit(high, math.floor, 1)} ; strut {motor}, highest count")
         lines.append(f"I{motor}14={_limit(low, math.ceil, -1)} ; strut {motor}, lowest count")
     for motor, letter in enumerate(settings.letters, start=1):

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The Power PMAC: motion programs written and read back, and the set-up they rely on."""
+
+from collections.abc import Sequence
+
+from pkm_post.controllers.power_pmac.program import program_parts, program_text
+from pkm_post.controllers.power_pmac.settings import Settings, settings_of
+from pkm_post.controllers.power_pmac.setup import setup_text
+from pkm_post.controllers.power_pmac.syntax import grammar
+from pkm_post.controllers.pvt import reader
+from pkm_post.controllers.pvt.codes import event_faults
+from pkm_post.controllers.pvt.parts import stated_part
+from pkm_post.model import Diagnostic, StrutMotion
+
+__all__ = [
+    "SETUP_SUFFIX",
+    "SUFFIX",
+    "Settings",
+    "faults",
+    "program_parts",
+    "program_text",
+    "read_parts",
+    "read_program",
+    "settings_of",
+    "setup_text",
+    "stated_part",
+]
+
+SUFFIX = ".pmc"
+SETUP_SUFFIX = "-setup.cfg"
+
+
+def faults(motion: StrutMotion, settings: Settings, file: str) -> tuple[Diagnostic, ...]:
+    """Why a motion cannot be written for this controller.
+
+    Args:
+        motion: the motion to be written.
+        settings: of the controller.
+        file: name of the job, for the diagnostics.
+    """
+    return event_faults(motion, settings.codes, file)
+
+
+def read_parts(
+    texts: Sequence[tuple[str, str]], settings: Settings
+) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+    """Read a motion program; as ``pvt.reader.read_parts``."""
+    return reader.read_parts(texts, grammar(settings), settings)
+
+
+def read_program(text: str, settings: Settings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+    """Read a motion program.
+
+    Args:
+        text: the program.
+        settings: of the controller it was written for.
+        file: its name, for the diagnostics.
+
+    Returns:
+        The motion, or None when there are faults; and the first 20 faults in the order of their lines.
+    """
+    return read_parts([(file, text)], settings)

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Program: strut motion written as a Power PMAC motion program.
+
+Enters: strut motion in mm, mm/s and whole ms. Leaves: the words and the frame of the Power PMAC about its moves. Its
+memory is set in the controller's own project, so the motion is never cut into parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pkm_post.controllers.power_pmac.settings import Settings
+from pkm_post.controllers.pvt import writer
+from pkm_post.controllers.pvt.decimals import plain
+from pkm_post.controllers.pvt.words import Words
+from pkm_post.model import StrutMotion
+
+WORDS = Words(comment="//", linear="linear", dwell="dwell", interval="pvt", close="close")
+
+
+def program_text(motion: StrutMotion, settings: Settings, heading: Sequence[str]) -> str:
+    """Write a motion as a motion program; as ``pvt.writer.program_text``."""
+    return writer.program_text(motion, settings, WORDS, _opening(settings), heading)
+
+
+def program_parts(motion: StrutMotion, settings: Settings, heading: Sequence[str]) -> tuple[str, ...]:
+    """Write a motion; there is one part always."""
+    return (program_text(motion, settings, heading),)
+
+
+def _opening(settings: Settings) -> str:
+    speed = plain(settings.approach_speed)
+    return (
+        f"open prog {settings.program}\nabs\nfrax({','.join(settings.letters)})\n"
+        f"linear\nta{settings.approach_ramp_ms} ts0 F{speed}\n"
+    )

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parts: a motion in several programs that run one after the other, and the whole of it again.
+
+Enters: strut motion and the knots where it is cut, or the motions read from the parts. Leaves: a motion for each part,
+each from 0 ms on, or one motion. What happens at a cut belongs to the part behind it. Each part says in its heading
+which it is, for people and for the reader.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.model import Diagnostic, Event, Place, StrutMotion
+
+_STATED = re.compile(r"^(?:;|//) part ([1-9][0-9]*) of ([1-9][0-9]*):", re.MULTILINE)
+
+
+def parted(motion: StrutMotion, cuts: Sequence[int]) -> tuple[StrutMotion, ...]:
+    """The parts of a motion.
+
+    Args:
+        motion: the whole.
+        cuts: knots where it rests, in order, without its first and its last.
+    """
+    edges = [0, *cuts, len(motion) - 1]
+    return tuple(
+        _between(motion, first, last, last == edges[-1]) for first, last in zip(edges[:-1], edges[1:], strict=True)
+    )
+
+
+def _between(motion: StrutMotion, first: int, last: int, ends: bool) -> StrutMotion:
+    events = (event for event in motion.events if first <= event.row < last + ends)
+    return StrutMotion(
+        motion.time_ms[first : last + 1] - motion.time_ms[first],
+        motion.length[first : last + 1],
+        motion.speed[first : last + 1],
+        tuple(replace(event, row=event.row - first) for event in events),
+    )
+
+
+def headings(heading: Sequence[str], count: int) -> Iterator[list[str]]:
+    """The heading of each part: nothing is added when there is one only."""
+    for number in range(1, count + 1):
+        after = "the first" if number == 1 else f"start it where part {number - 1} ended, and only there"
+        yield [*heading, *([f"part {number} of {count}: {after}"] if count > 1 else [])]
+
+
+def stated_part(text: str) -> tuple[int, int]:
+    """Which part a program says it is, and of how many; 1 of 1 when it says nothing."""
+    found = _STATED.search(text)
+    return (int(found[1]), int(found[2])) if found else (1, 1)
+
+
+def part_faults(texts: Sequence[tuple[str, str]]) -> tuple[Diagnostic, ...]:
+    """What the parts say of themselves that does not go together.
+
+    Args:
+        texts: file name and text of each part, in order.
+    """
+    expected = [(number, len(texts)) for number in range(1, len(texts) + 1)]
+    return tuple(
+        Diagnostic("C105", Place(file), f"part {stated[0]} of {stated[1]}, expected part {due[0]} of {due[1]}")
+        for (file, _), stated, due in zip(texts, (stated_part(text) for _, text in texts), expected, strict=True)
+        if stated != due
+    )
+
+
+def joined(motions: Sequence[StrutMotion], files: Sequence[str]) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+    """The whole of the motions of the parts, when each begins where the one before it ended, at rest.
+
+    Args:
+        motions: of the parts, in order.
+        files: their names, for the diagnostics.
+    """
+    if len(motions) == 1:
+        return motions[0], ()
+    faults = tuple(_meeting_faults(motions, files))
+    if faults:
+        return None, faults
+    shift = np.cumsum([0, *(len(motion) - 1 for motion in motions)])
+    behind = [slice(0 if number == 0 else 1, None) for number in range(len(motions))]
+    begins = np.cumsum([0, *(motion.time_ms[-1] for motion in motions)])
+    rows = list(zip(motions, behind, begins[:-1], shift[:-1], strict=True))
+    events = [
+        Event(event.row + int(first), event.kind, event.value) for part, _, _, first in rows for event in part.events
+    ]
+    return StrutMotion(
+        np.concatenate([part.time_ms[knots] + begin for part, knots, begin, _ in rows]),
+        np.concatenate([part.length[knots] for part, knots, _, _ in rows]),
+        np.concatenate([part.speed[knots] for part, knots, _, _ in rows]),
+        tuple(events),
+    ), ()
+
+
+def _meeting_faults(motions: Sequence[StrutMotion], files: Sequence[str]) -> Iterator[Diagnostic]:
+    for before, after, file in zip(motions[:-1], motions[1:], files[1:], strict=True):
+        if before.speed[-1].any():
+            yield Diagnostic("C105", Place(file), "the part before it does not end at rest")
+        elif not np.array_equal(before.length[-1], after.length[0]):
+            apart = np.abs(before.length[-1] - after.length[0]).max()
+            yield Diagnostic("C105", Place(file), f"it begins {apart:.6g} mm from where the part before it ended")

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reader: a motion program read back as strut motion, or the list of what is wrong with it.
+
+Enters: the text of a program or of its parts, the grammar of the controller and the settings it was written for.
+Leaves: knots with lengths in mm and speeds in mm/s at whole ms, and the events, as the controller will carry them out.
+The reader is strict: a line it does not know, or one in a place where it does not belong, is a fault.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from decimal import Decimal
+
+import numpy as np
+
+from pkm_post.controllers.pvt.codes import MEANINGS
+from pkm_post.controllers.pvt.parts import joined, part_faults
+from pkm_post.controllers.pvt.settings import Settings
+from pkm_post.controllers.pvt.syntax import FINISHED, START, Form, Grammar, state_after
+from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
+
+MOST_FAULTS = 20
+_INTERVAL_MS = 4095
+_DWELL_MS = 8_388_607
+_SHOWN = 40
+
+
+def read_parts(
+    texts: Sequence[tuple[str, str]], grammar: Grammar, settings: Settings
+) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+    """Read a motion program that was written in parts, or in one.
+
+    Args:
+        texts: file name and text of each part, in order.
+        grammar: of the controller.
+        settings: of the controller it was written for.
+
+    Returns:
+        The whole motion, or None when there are faults; and the faults.
+    """
+    faults = part_faults(texts)
+    motions = []
+    for file, text in texts:
+        motion, found = read_program(text, grammar, settings, file)
+        motions += [motion] if motion is not None else []
+        faults += found
+    return (None, faults) if faults else joined(motions, [file for file, _ in texts])
+
+
+def read_program(
+    text: str, grammar: Grammar, settings: Settings, file: str
+) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+    """Read a motion program, or one part of it.
+
+    Args:
+        text: the program.
+        grammar: of the controller.
+        settings: of the controller it was written for.
+        file: its name, for the diagnostics.
+
+    Returns:
+        The motion, or None when there are faults; and the first 20 faults in the order of their lines.
+    """
+    reading = _Reading(grammar, settings, file)
+    number = 1
+    for piece in _pieces(text, reading.forms["move"]):
+        if len(reading.faults) >= MOST_FAULTS:
+            break
+        reading.take(number, piece)
+        number += piece.count("\n")
+    motion = reading.finish(number)
+    faults = sorted([*reading.faults, *_too_long(text, settings, file)], key=lambda fault: fault.place.line)
+    return (None if faults else motion), tuple(faults[:MOST_FAULTS])
+
+
+def _pieces(text: str, move: Form) -> Iterator[str]:
+    """The lines of a text with their line ends; lines of moves that follow each other come as one piece."""
+    piece = re.compile(rf"(?>{move.pattern.pattern}\n)++|[^\n]*\n|[^\n]+")
+    return (match[0] for match in piece.finditer(text))
+
+
+def _too_long(text: str, settings: Settings, file: str) -> Iterator[Diagnostic]:
+    for number, line in enumerate(text.split("\n"), start=1):
+        if len(line) > settings.line_limit:
+            found = f"{len(line)} characters, the controller takes {settings.line_limit}"
+            yield Diagnostic("C103", Place(file, line=number, column=settings.line_limit + 1), found)
+
+
+class _Reading:
+    """What is known of a program, piece by piece.
+
+    Attributes:
+        forms: the forms of its lines.
+        faults: what was wrong so far.
+    """
+
+    def __init__(self, grammar: Grammar, settings: Settings, file: str) -> None:
+        self.forms = grammar.forms
+        self.faults: list[Diagnostic] = []
+        self._due = {
+            state: [name for name in self.forms if _kind(name) in kinds] for state, kinds in grammar.flow.items()
+        }
+        self._grammar, self._letters, self._file = grammar, settings.letters, file
+        self._state = START
+        self._values: list[str] = []
+        self._knots = self._interval = 0
+        self._spans: list[tuple[int, int]] = []
+        self._halts: list[tuple[int, int]] = []
+        self._events: list[Event] = []
+        self._acts = {"feed": self._feed, "interval": self._new_interval, "approach": self._approach}
+        self._acts |= {"halt": self._halt, "dwell": self._dwell}
+
+    def take(self, number: int, piece: str) -> None:
+        """Take a piece: one line, or several lines of moves, the first of them line ``number``."""
+        line = piece.split("\n", 1)[0]
+        name, numbers = self._form_of(line)
+        if numbers is None:
+            name = self._malformed(number, line)
+        elif name not in self._due[self._state]:
+            self._fault(number, 0, line, self._expected())
+        if name:
+            self._state = state_after(self._grammar.flow, self._state, _kind(name))
+        if numbers is not None:
+            self._act(name, number, piece, numbers)
+
+    def finish(self, number: int) -> StrutMotion | None:
+        """The motion of a text that ended before line ``number``; None when there were faults."""
+        if self._state != FINISHED:
+            self._fault(number, 0, "", self._expected())
+        if self.faults:
+            return None
+        motion = self._motion()
+        self._check_rest(motion)
+        return None if self.faults else motion
+
+    def _motion(self) -> StrutMotion:
+        no_number = str.maketrans(dict.fromkeys("".join(self._letters) + ":\n", " "))
+        values = np.fromstring("".join(self._values).translate(no_number), sep=" ").reshape(self._knots, 6, 2)
+        spans = np.array(self._spans, dtype=np.int64).reshape(-1, 2)
+        time_ms = np.cumsum(np.concatenate([[0], np.repeat(spans[:, 0], spans[:, 1])]))
+        return StrutMotion(time_ms, values[:, :, 0], values[:, :, 1], tuple(self._events))
+
+    def _check_rest(self, motion: StrutMotion) -> None:
+        """Every interruption must find the struts at rest; whether the end does is a matter of the whole motion."""
+        eventful = {event.row for event in motion.events}
+        for knot, number in self._halts:
+            if motion.speed[knot].any() and (knot < len(motion) - 1 or knot in eventful):
+                self._fault(number, 0, self.forms["halt"].name, "struts at rest")
+
+    def _form_of(self, line: str) -> tuple[str, Sequence[str] | None]:
+        """The form of a line, one that is due if there is one, and its numbers; nothing when it has no known form."""
+        for name in (*self._due[self._state], *self.forms):
+            match = self.forms[name].fits(line)
+            if match:
+                return name, match.groups()
+        return "", None
+
+    def _act(self, name: str, number: int, piece: str, numbers: Sequence[str]) -> None:
+        if name == "move":
+            lines = piece.count("\n")
+            self._values.append(piece)
+            self._spans.append((self._interval, lines))
+            self._knots += lines
+        elif name in MEANINGS:
+            meaning = MEANINGS[name]
+            value = meaning.sign * float(numbers[0]) if meaning.value is None else meaning.value
+            self._events.append(Event(self._knots - 1, meaning.kind, value))
+        elif name in self._acts:
+            self._acts[name](number, piece, numbers)
+
+    def _feed(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+        if tuple(map(float, numbers)) != self._grammar.feed:
+            expected = "{}, {} and {}".format(*self._grammar.feed)
+            self._fault(number, 0, piece.rstrip("\n"), f"the numbers {expected}")
+
+    def _approach(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+        self._values.append(" ".join(f"{length} 0" for length in numbers) + "\n")
+        self._knots += 1
+
+    def _new_interval(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+        self._interval = int(numbers[0])
+        if self._interval > _INTERVAL_MS:
+            self._fault(number, len("PVT"), piece.rstrip("\n"), f"at most {_INTERVAL_MS} ms")
+
+    def _halt(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+        self._halts.append((self._knots - 1, number))
+
+    def _dwell(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+        milliseconds = Decimal(numbers[0])
+        if milliseconds > _DWELL_MS:
+            self._fault(number, len("DWELL"), piece.rstrip("\n"), f"at most {_DWELL_MS} ms")
+        self._events.append(Event(self._knots - 1, EventKind.DWELL, float(milliseconds / 1000)))
+
+    def _malformed(self, number: int, line: str) -> str:
+        """Report a line of no known form; the kind of line that was meant, empty when it cannot be told."""
+        agreed, expected, name = max(
+            ((*self.forms[name].agreement(line), name) for name in self._due[self._state]),
+            default=(0, "", ""),
+            key=lambda item: item[0],
+        )
+        self._fault(number, agreed, line, expected if agreed else self._expected())
+        return name if agreed else ""
+
+    def _expected(self) -> str:
+        due = self._due[self._state]
+        names = [self.forms[name].name for name in due if name not in MEANINGS]
+        return " or ".join([*names, "a code"] if len(names) < len(due) else names) or "nothing more"
+
+    def _fault(self, number: int, position: int, line: str, expected: str) -> None:
+        shown = repr(line[position : position + _SHOWN]) if line[position:] else "the end"
+        place = Place(self._file, line=number, column=position + 1)
+        self.faults.append(Diagnostic("C101", place, f"{shown}, expected {expected}"))
+
+
+def _kind(name: str) -> str:
+    return "code" if name in MEANINGS else name
