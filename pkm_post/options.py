@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pkm_post.model.findings import Tolerances
     from pkm_post.pipeline import Options
     from pkm_post.spin import Policy
-    from pkm_post.spindle import SurfaceSpeed
+    from pkm_post.surface_speed import SurfaceSpeed
 
 FIXTURE_OF_THE_JOB = "job"
 """A work offset of this name is the fixture of the CAM job."""
@@ -252,7 +252,7 @@ def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
 
 
 def _surface_speed(metres_per_minute: float | None, keep_chip_load: bool) -> SurfaceSpeed | None:
-    from pkm_post.spindle import SurfaceSpeed
+    from pkm_post.surface_speed import SurfaceSpeed
 
     return None if metres_per_minute is None else SurfaceSpeed(metres_per_minute * 1000 / 60, keep_chip_load)
 

@@ -29,7 +29,7 @@ from pkm_post.model.findings import Tolerances
 from pkm_post.placement import place
 from pkm_post.report import plots, summary
 from pkm_post.spin import ZERO_TORSION, Policy, with_spin
-from pkm_post.spindle import SurfaceSpeed, with_surface_speed
+from pkm_post.surface_speed import SurfaceSpeed, with_surface_speed
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]

@@ -11,7 +11,7 @@ from pkm_post.compensation import OffsetOptions
 from pkm_post.options import FIXTURE_OF_THE_JOB, add_options, options_from, tool_lengths_from
 from pkm_post.pipeline import Options
 from pkm_post.spin import OBJECTIVES, ZERO_TORSION, Policy, Rule
-from pkm_post.spindle import SurfaceSpeed
+from pkm_post.surface_speed import SurfaceSpeed
 
 
 def parsed(*arguments):

@@ -8,7 +8,7 @@ import pytest
 from programs import program
 
 from pkm_post.model import Event, EventKind, Kind, Tool
-from pkm_post.spindle import SurfaceSpeed, with_surface_speed
+from pkm_post.surface_speed import SurfaceSpeed, with_surface_speed
 
 WIDE = (0.0, np.inf)
 BALL = Tool(1, "ball", 12.0, 6.0, 120.0)
