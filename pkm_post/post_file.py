@@ -46,14 +46,24 @@ def post_file(
         ValueError: the suffix of the file is not known.
     """
     model, machine_faults = machine_named(machine)
+    program, program_faults, options = read_to_post(file, options, tool_lengths, reading)
+    target = Path(out) / f"{Path(file).stem}{pipeline.SUFFIX}"
+    return pipeline.post(program, model, target, options, log, (*machine_faults, *program_faults))
+
+
+def read_to_post(
+    file: str | Path,
+    options: pipeline.Options | None = None,
+    tool_lengths: Mapping[int, float] | None = None,
+    reading: Reading = AS_WRITTEN,
+) -> tuple[Program | None, tuple[Diagnostic, ...], pipeline.Options]:
+    """A part program with all that posting needs, what was found in it, and the options for it; as ``post_file``."""
     program, told = read_part_program(Path(file), reading)
-    program_faults = [fault for fault in told if fault.code != _ASKED_FOR]
+    faults = [fault for fault in told if fault.code != _ASKED_FOR]
     if program is not None:
         program = _with_lengths(program, tool_lengths or {})
-        program_faults += _missing_lengths(program)
-    found = (*machine_faults, *program_faults)
-    target = Path(out) / f"{Path(file).stem}{pipeline.SUFFIX}"
-    return pipeline.post(program, model, target, _at_first_fixture(options), log, found)
+        faults += _missing_lengths(program)
+    return program, tuple(faults), _at_first_fixture(options)
 
 
 def _with_lengths(program: Program, lengths: Mapping[int, float]) -> Program:

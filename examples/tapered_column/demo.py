@@ -48,7 +48,7 @@ def main() -> int:
     except Refused as refused:
         print(refused, file=sys.stderr)
         return 1
-    picture(saved, out / "machine.png")
+    pictures(saved, out / "path.png", out / "machine.png")
     print(f"in {out}:")
     for path in sorted(out.iterdir()):
         print(f"  {path.name:<34}{path.stat().st_size / 1024:10.1f} KiB")
@@ -67,24 +67,26 @@ def post(saved: FilePath, program: FilePath) -> None:
     FreeCAD.closeDocument(document.Name)
 
 
-def picture(saved: FilePath, target: FilePath) -> None:
-    """Machine and part in FreeCAD's 3D view; without a display or Xvfb there is none, and that is said."""
+def pictures(saved: FilePath, path: FilePath, machine: FilePath) -> None:
+    """Path and machine in FreeCAD's 3D view; without a display or Xvfb there are none, and that is said."""
     window = shutil.which("freecad") or shutil.which("FreeCAD")
     display = [] if os.environ.get("DISPLAY") else [shutil.which("xvfb-run"), "-a", "-s", "-screen 0 1600x1200x24"]
     if not window or None in display:
-        print("no picture of the machine: neither a display nor xvfb-run is there")
+        print("no pictures of path and machine: neither a display nor xvfb-run is there")
         return
     begin = time.perf_counter()
     here = FilePath(__file__).resolve()
     command = [*display, window, "-M", str(here.parents[2]), str(here.with_name("picture.py"))]
-    target.unlink(missing_ok=True)
-    subject = {"PKM_DOCUMENT": str(saved), "PKM_MACHINE": MACHINE, "PKM_PICTURE": str(target)}
+    for target in (path, machine):
+        target.unlink(missing_ok=True)
+    files = {"PKM_DOCUMENT": str(saved), "PKM_PATH_PICTURE": str(path), "PKM_PICTURE": str(machine)}
+    subject = files | {"PKM_MACHINE": MACHINE}
     drawn = subprocess.run(
         command, env=os.environ | subject, capture_output=True, text=True, timeout=PICTURE_SECONDS, check=False
     )
-    if drawn.returncode or not target.exists():
-        raise RuntimeError(f"the picture was not made, exit code {drawn.returncode}:\n{drawn.stdout}{drawn.stderr}")
-    print(f"{'picture':<22}{time.perf_counter() - begin:7.2f} s   {target.name}")
+    if drawn.returncode or not (path.exists() and machine.exists()):
+        raise RuntimeError(f"the pictures were not made, exit code {drawn.returncode}:\n{drawn.stdout}{drawn.stderr}")
+    print(f"{'pictures':<22}{time.perf_counter() - begin:7.2f} s   {path.name}, {machine.name}")
 
 
 if __name__ == "__main__":

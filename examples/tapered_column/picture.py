@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A picture of machine and part in FreeCAD's 3D view; run by FreeCAD with its window, on a display or under Xvfb.
+"""Pictures of path, part and machine in FreeCAD's 3D view; run by FreeCAD with its window, on a display or under Xvfb.
 
 The environment says what to draw, since FreeCAD would open the files that its command line names: PKM_DOCUMENT,
-PKM_MACHINE and PKM_PICTURE. The machine stands where the middle of the first operation has it, around the part as the
-work offset places it.
+PKM_MACHINE, PKM_PATH_PICTURE for the path of the tool tip over the part, each operation in a colour of its own, and
+PKM_PICTURE for the machine. It stands where the middle of the first operation has it, around the part as the work
+offset places it.
 """
 
 import os
@@ -22,16 +23,29 @@ from pkm_post.machine_file import find_machine, read_machine
 from pkm_post.placement import place
 
 SIZE = 1200, 1000
+FROM_ABOVE = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), 20) * FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 45)
+"""Orientation of the camera on the path."""
 STANDING_UP = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), 20) * FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 70)
-"""Orientation of the camera: from the front, a little from the right and from above."""
+"""Orientation of the camera on the machine: from the front, a little from the right and from above."""
+
+
+COLOURS = (0.46, 0.31, 0.48), (0.20, 0.40, 0.64), (0.31, 0.60, 0.02), (0.77, 0.63, 0.00)
+"""Of the operations, in their order; rapid moves are red."""
+
+
+def show_path(document):
+    """Hide what would hide the path, and give each operation its colour."""
+    job = find_job(document)
+    for item in (job.Stock, *(controller.Tool for controller in job.Tools.Group)):
+        item.ViewObject.Visibility = False
+    for operation, colour in zip(job.Operations.Group, COLOURS, strict=True):
+        operation.ViewObject.NormalColor = colour
+        operation.ViewObject.LineWidth = 1
 
 
 def show_machine(document, machine):
     """Add the machine's bodies to the document, at the middle of the job's first operation."""
-    job = find_job(document)
-    for item in (job.Stock, *(controller.Tool for controller in job.Tools.Group)):
-        item.ViewObject.Visibility = False  # they would hide the part
-    program, _ = read_job(job)
+    program, _ = read_job(find_job(document))
     trajectory, _ = place(program, machine, machine.work_offsets["G54"])
     rows = np.flatnonzero(trajectory.operation == 0)
     row = int(rows[len(rows) // 2])
@@ -46,29 +60,33 @@ def show_machine(document, machine):
         item.ViewObject.DisplayMode = "Shaded"
 
 
-def draw(document_path, machine_name, picture_path):
-    """Open, show, and save the picture."""
+def draw(document_path, machine_name, path_picture, picture_path):
+    """Open, show, and save the pictures."""
     FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View").SetBool("ShowNaviCube", False)
     document = FreeCAD.openDocument(document_path)
     document.recompute()
     machine, faults = read_machine(find_machine(machine_name))
     if machine is None:
         raise ValueError("\n".join(str(fault) for fault in faults))
-    show_machine(document, machine)
-    document.recompute()
     view = FreeCADGui.getDocument(document.Name).ActiveView
     view.setAnimationEnabled(False)
     view.setCameraType("Perspective")
-    view.setCameraOrientation(STANDING_UP)
-    view.fitAll(0.9)
-    view.saveImage(picture_path, *SIZE, "White")
+    for show, target, orientation in (
+        (show_path, path_picture, FROM_ABOVE),
+        (lambda opened: show_machine(opened, machine), picture_path, STANDING_UP),
+    ):
+        show(document)
+        document.recompute()
+        view.setCameraOrientation(orientation)
+        view.fitAll(0.9)
+        view.saveImage(target, *SIZE, "White")
 
 
 def main():
     """Draw, and end FreeCAD with an exit code that tells how it went."""
     code = 0
     try:
-        draw(*(os.environ[name] for name in ("PKM_DOCUMENT", "PKM_MACHINE", "PKM_PICTURE")))
+        draw(*(os.environ[name] for name in ("PKM_DOCUMENT", "PKM_MACHINE", "PKM_PATH_PICTURE", "PKM_PICTURE")))
     except Exception:
         traceback.print_exc()
         code = 1

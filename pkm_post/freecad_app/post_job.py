@@ -20,7 +20,7 @@ from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import POST_PROCESSOR, job_arguments
 from pkm_post.freecad_app.job import NO_LENGTHS, document_name, read_job
 from pkm_post.machine_file import machine_named
-from pkm_post.model import Diagnostic, Place, Refused
+from pkm_post.model import Diagnostic, Place, Program, Refused
 from pkm_post.options import FIXTURE_OF_THE_JOB, options_from, tool_lengths_from
 
 
@@ -86,6 +86,23 @@ def post_document(
         return tuple(post_job(job, machine, out, options, tool_lengths, log) for job in jobs)
 
 
+def read_document(
+    file: str | FilePath,
+    options: pipeline.Options,
+    tool_lengths: Mapping[int, float] = NO_LENGTHS,
+    job_name: str | None = None,
+) -> tuple[tuple[Program | None, tuple[Diagnostic, ...], pipeline.Options], ...]:
+    """The programs of the jobs of a saved document, what was found in each, and the options for it.
+
+    Raises:
+        Refused: as ``post_document``.
+    """
+    with _opened(FilePath(file)) as document:
+        jobs = [find_job(document, job_name)] if job_name else find_jobs(document)
+        document.recompute()
+        return tuple((*read_job(job, tool_lengths), at_fixture(options, job)) for job in jobs)
+
+
 def find_jobs(document: Any) -> list[Any]:
     """The CAM jobs of a document.
 
@@ -130,10 +147,10 @@ def post_to(
     model, machine_faults = machine_named(machine)
     program, job_faults = read_job(job, tool_lengths)
     found = (*machine_faults, *job_faults)
-    return pipeline.post(program, model, program_path, _at_fixture(options, job), log, found)
+    return pipeline.post(program, model, program_path, at_fixture(options, job), log, found)
 
 
-def _at_fixture(options: pipeline.Options | None, job: Any) -> pipeline.Options:
+def at_fixture(options: pipeline.Options | None, job: Any) -> pipeline.Options:
     """The options, with the fixture of the job for the work offset if none was chosen."""
     options = options or pipeline.Options(work_offset=FIXTURE_OF_THE_JOB)
     if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtWidgets
+from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_gui.workbench import ICONS
 
@@ -91,6 +91,32 @@ def _rotate(operation: FreeCAD.DocumentObject) -> None:
     _do("pkm_post.freecad_app.symmetry", "create_rotation({}, axis=(0, 0, 1), angle=3.141592653589793)", operation)
 
 
+def _compensate(operation: FreeCAD.DocumentObject) -> None:
+    _do("pkm_post.freecad_app.normal_compensation", "create_normal_compensation({})", operation)
+
+
+def _job_of(item: FreeCAD.DocumentObject) -> FreeCAD.DocumentObject | None:
+    """A job itself, or the job whose model an object is, as clone or as original."""
+    if is_job(item):
+        return item
+    jobs = [other for other in item.Document.Objects if is_job(other)]
+    models = [(job, clone) for job in jobs for clone in job.Model.Group]
+    return next((job for job, clone in models if item in (clone, job.Proxy.baseObject(job, clone))), None)
+
+
+def _finish(item: FreeCAD.DocumentObject) -> None:
+    """Add the operation over the faces that are selected, and open its panel when the command is done."""
+    module, document = "pkm_post.freecad_app.surface_finish", f"FreeCAD.getDocument({item.Document.Name!r})"
+    job, subject = (f"{document}.getObject({each.Name!r})" for each in (_job_of(item), item))
+    names = [name for each in FreeCADGui.Selection.getSelectionEx() for name in each.SubElementNames]
+    faces = [] if is_job(item) else [name for name in names if name.startswith("Face")]
+    FreeCADGui.addModule(module)
+    chosen = f"[({subject}, {faces!r})]" if faces else "[]"
+    FreeCADGui.doCommand(f"{module}.create_surface_finish({job}, {chosen})")
+    made = _job_of(item).Operations.Group[-1]
+    QtCore.QTimer.singleShot(0, lambda: made.ViewObject.Document.setEdit(made.ViewObject, 0))
+
+
 def _post(job: FreeCAD.DocumentObject) -> None:
     """Post beside the document and show what was made, or why nothing was."""
     from pkm_post.freecad_app.post_job import post_as_the_job_says
@@ -122,6 +148,27 @@ COMMANDS = (
         QT_TRANSLATE_NOOP("PKM_Rotate", "Add the selected operation turned, by half a turn about z at first"),
         is_operation,
         _rotate,
+    ),
+    Command(
+        "PKM_NormalCompensation",
+        "normal_compensation.svg",
+        QT_TRANSLATE_NOOP("PKM_NormalCompensation", "Normal Compensation"),
+        QT_TRANSLATE_NOOP(
+            "PKM_NormalCompensation",
+            "Take the points of the selected operation for contact points on the model, and let the cutter touch there",
+        ),
+        is_operation,
+        _compensate,
+    ),
+    Command(
+        "PKM_SurfaceFinish",
+        "surface_finish.svg",
+        QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Surface Finish (5-axis)"),
+        QT_TRANSLATE_NOOP(
+            "PKM_SurfaceFinish", "Cover the selected faces of a job's model with passes of a leaning tool"
+        ),
+        lambda item: _job_of(item) is not None,
+        _finish,
     ),
     Command(
         "PKM_Post",

@@ -8,6 +8,7 @@ from pkm_post.freecad_app.arguments import job_arguments
 from pkm_post.freecad_app.post_job import post_as_the_job_says
 from pkm_post.freecad_app.reach_job import place_job, study_job
 from pkm_post.model import Refused
+from pkm_post.model.diagnostics import errors
 
 
 @pytest.fixture
@@ -20,11 +21,11 @@ def job(document):
 
 
 def test_a_job_out_of_reach_is_placed_and_posted(job, tmp_path):
-    assert study_job(job).reach.faults()
+    assert errors(study_job(job).reach.faults())
     with pytest.raises(Refused):
         post_as_the_job_says(job, tmp_path)
     found = place_job(job)
-    assert not found.reach.faults()
+    assert not errors(found.reach.faults())
     assert [name for name, _ in found.stages] == ["as it is, zero torsion", "moved in x, y, z, c"]
     chosen = job_arguments(job, job.PostProcessorArgs)
     assert (chosen.machine, chosen.tip_tolerance) == ("example_6tps", 0.01)

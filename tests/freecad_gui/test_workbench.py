@@ -34,7 +34,13 @@ def test_no_step_ended_in_an_exception(session):
 def test_workbench_has_its_commands(session):
     found = session["found"]["workbench_has_its_commands"]
     assert found["listed"]
-    assert found["buttons"] == ["Mirror operation", "Rotate operation", "Post to a hexapod"]
+    assert found["buttons"] == [
+        "Mirror operation",
+        "Rotate operation",
+        "Normal Compensation",
+        "Surface Finish (5-axis)",
+        "Post to a hexapod",
+    ]
     assert all(found["icons"])
 
 
@@ -57,6 +63,32 @@ def test_buttons_add_copies_with_their_views(session):
 def test_one_undo_takes_one_copy_back(session):
     found = session["found"]["undo_takes_one_step_back"]
     assert (found["before"], found["after"]) == (3, 2)
+
+
+def test_button_puts_normal_compensation_over_an_operation(session):
+    found = session["found"]["normal_compensation_from_its_button"]
+    assert (found["view"], found["icon"]) == ("NormalCompensationView", "normal_compensation.svg")
+    assert (found["children"], found["moves"], found["base_is_shown"]) == (["Custom"], 4, False)
+    assert (found["given_back"], found["base_is_shown_again"]) == (["Custom"], True)
+
+
+def test_surface_finish_is_made_of_selected_faces_and_edited_in_cams_panel(session):
+    found = session["found"]["surface_finish_from_its_button"]
+    assert found["active"] == {"job": True, "face": True, "controller": False}
+    assert (found["view"], found["icon"]) == ("SurfaceFinishView", "surface_finish.svg")
+    assert (found["faces"], found["valid"]) == (["Face6"], True)
+    assert found["panel_is_open"]
+    assert (found["stepover_shown"], found["accepted"], found["passes"]) == (1.0, 2.0, 11)
+    assert found["rejected"] == 2.0
+    assert not found["panel_is_left_open"]
+    assert found["after_undo"] == 0
+
+
+def test_escape_stops_a_long_computation_in_a_recompute_and_outside(session):
+    found = session["found"]["escape_stops_a_long_computation"]
+    for told in (found["inside a recompute"], found["alone"]):
+        assert told.startswith("Waiting")
+        assert 20 <= int(told.split()[-1]) < 100
 
 
 def test_cam_menu_has_the_commands(session):

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine tilt: how far the tool may lean from upright everywhere about a part, as a machine stands.
+
+A machine, the pose of the part on it, the gauge length and a box about the faces enter; an angle in rad leaves. Every
+direction of lean is tried at the corners and the middle of the box; struts, joints and singular poses decide, as in
+the check of a whole path, which comes later and is the one that counts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pkm_post.freecad_app.tools import read_tools
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import reach_margins
+from pkm_post.machine_file import machine_named
+from pkm_post.model import Diagnostic, Machine, Place
+
+_TILTS = np.radians(np.arange(0.0, 80.5, 0.5))
+_DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
+_NO_LENGTHS: Mapping[int, float] = {}
+
+
+def machine_tilt(
+    name: str, job: Any, controller: Any, box: tuple[Array, Array], place: Place
+) -> tuple[float | None, tuple[Diagnostic, ...]]:
+    """The largest tilt from upright that a machine reaches at the part in every direction.
+
+    Args:
+        name: name of a machine that comes with PKM Post, or path of a machine file.
+        job: the CAM job; its first fixture is the work offset.
+        controller: the tool controller, with a gauge length.
+        box: lowest and highest corner of where the tip comes, (3,) each, mm.
+        place: what diagnostics name.
+
+    Returns:
+        The angle in rad, or None; and what is wrong: M1xx of the machine file, J113, K108, N310.
+    """
+    machine, machine_faults = machine_named(name)
+    tools, tool_faults = read_tools([controller], _NO_LENGTHS, place.file)
+    if machine is None or not tools:
+        return None, (*machine_faults, *tool_faults)
+    fixture = job.Fixtures[0] if job.Fixtures else "G54"
+    if fixture not in machine.work_offsets:
+        return None, (Diagnostic("K108", place, fixture),)
+    length = tools[int(controller.ToolNumber)].length
+    tilt = _largest(machine, machine.work_offsets[fixture], length, *box)
+    if tilt is None:
+        return None, (Diagnostic("N310", place, f"{machine.name} at {fixture}"),)
+    return tilt, ()
+
+
+def _largest(machine: Machine, machine_from_work: Array, length: float, low: Array, high: Array) -> float | None:
+    """The last tilt before the first that is out of reach somewhere; None if upright is."""
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+    points = np.vstack([(np.asarray(low) + high) / 2, corners])
+    tilt, turn = (each.ravel() for each in np.meshgrid(_TILTS, _DIRECTIONS, indexing="ij"))
+    lean = np.column_stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])
+    tip = np.tile(points @ machine_from_work[:3, :3].T + machine_from_work[:3, 3], (len(lean), 1))
+    axis = np.repeat(lean @ machine_from_work[:3, :3].T, len(points), axis=0)
+    margins = reach_margins(machine, tip, axis, np.zeros(len(tip)), np.full(len(tip), length))
+    worst = np.minimum.reduce([
+        *(each.min(axis=1) for each in (margins.shortest, margins.longest, margins.base, margins.platform)),
+        margins.singular,
+    ])  # fmt: skip
+    reached = (worst.reshape(len(_TILTS), -1) >= 0.0).all(axis=1)
+    beyond = int(np.argmin(reached)) if not reached.all() else len(_TILTS)
+    return float(_TILTS[beyond - 1]) if beyond else None
+
+
+def upright(cone_axis: Any) -> bool:
+    """Whether the axis of a cone points straight up."""
+    x, y, z = cone_axis
+    return bool(z > 0.0 and math.hypot(x, y) <= 1e-9 * z)

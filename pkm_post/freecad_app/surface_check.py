@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Surface check: what a path leaves on the faces of a model, and where it cuts into them.
+
+A program, a cutter and faces enter; the deepest gouge and the most material left, with their places, leave in mm.
+Faces are looked at in points; what is between them is not seen. Gouges are looked for on all faces of the model, with
+all moves, rapid ones too, and with the flank of the cutter: their depth is how far a point is inside the cutter where
+it comes deepest. Material left is measured along the normal, on the faces that were to be covered alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pkm_post.compensation import Cutter
+from pkm_post.compensation.envelope import stock_left
+from pkm_post.compensation.sweep import Sweep
+from pkm_post.freecad_app.face_surface import face_surface
+from pkm_post.geometry import norm
+from pkm_post.geometry.cells import cells
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Program
+
+_FEWEST = 3
+_NEAR = 0.1
+"""mm: points that are farther from the cutter are not gouged, whatever their distance."""
+_POINTS_PER_CELL = 25
+
+
+@dataclass(frozen=True)
+class Checked:
+    """The worst that a path does to a model.
+
+    Attributes:
+        gouge: depth of the deepest cut into a face, 0 for none.
+        gouge_point: (3,) where that is.
+        excess: most material left on the faces to be covered; ``reach`` where the cutter does not come at all.
+        excess_point: (3,) where that is.
+    """
+
+    gouge: float
+    gouge_point: Array
+    excess: float
+    excess_point: Array
+
+
+def check_faces(
+    program: Program,
+    cutter: Cutter,
+    covered: Sequence[Any],
+    others: Sequence[Any],
+    flipped: bool,
+    spacing: float,
+    tolerance: float,
+    reach: float,
+    progress: Callable[[float], None],
+) -> Checked:
+    """Measure a path against faces.
+
+    Args:
+        program: all moves of the operation.
+        cutter: the cutter.
+        covered: the faces that were to be covered.
+        others: the other faces of the model.
+        flipped: whether the material of the covered ones is on the other side.
+        spacing: largest distance of the points along u and v, mm.
+        tolerance: of the measurement, mm.
+        reach: material left of more than this is not measured, mm.
+        progress: is told how much is done; it may raise to stop the work.
+    """
+    samples = [_samples(face, flipped, spacing) for face in covered] + [
+        _samples(face, False, spacing) for face in others
+    ]
+    point, normal = (np.vstack([sample[column] for sample in samples]) for column in (0, 1))
+    ours = sum(len(sample[0]) for sample in samples[: len(covered)])
+    depth = -_distances(program, cutter, point, tolerance, progress)
+    left = stock_left(
+        program.position, program.tool_axis, cutter, point[:ours], normal[:ours], tolerance=tolerance, reach=reach
+    ).left
+    deepest, highest = int(np.argmax(depth)), int(np.argmax(left))
+    return Checked(max(0.0, float(depth[deepest])), point[deepest], min(reach, float(left[highest])), point[highest])
+
+
+def _distances(
+    program: Program, cutter: Cutter, points: Array, tolerance: float, progress: Callable[[float], None]
+) -> Array:
+    """Signed distances of points to all that the cutter sweeps, (N,), negative inside, infinite where it is far."""
+    extent = float(norm(np.ptp(np.vstack([program.position, points]), axis=0)))
+    sweep = Sweep.of(program.position, program.tool_axis, cutter, _NEAR, extent)
+    distance = np.empty(len(points))
+    done = 0
+    for rows in cells(points, _POINTS_PER_CELL):
+        distance[rows], _ = sweep.distances(points[rows], tolerance)
+        done += len(rows)
+        progress(done / len(points))
+    return distance
+
+
+def _samples(face: Any, flipped: bool, spacing: float) -> tuple[Array, Array]:
+    """Points of a face and normals there, evenly in its parameters."""
+    surface = face_surface(face, flipped)
+    u, v = np.linspace(surface.u.first, surface.u.last, 33), np.linspace(surface.v.first, surface.v.last, 33)
+    coarse = surface.at(*(each.ravel() for each in np.meshgrid(u, v, indexing="ij"))).point.reshape(33, 33, 3)
+    counts = [
+        max(math.ceil(float(np.max(np.sum(norm(np.diff(coarse, axis=axis)), axis=axis))) / spacing) + 1, _FEWEST)
+        for axis in (0, 1)
+    ]
+    spans = zip((surface.u, surface.v), counts, strict=True)
+    u, v = (each.ravel() for each in np.meshgrid(*(np.linspace(span.first, span.last, count) for span, count in spans)))
+    held = surface.holds(u, v)
+    patch = surface.at(u[held], v[held])
+    return patch.point, patch.normal

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Surface Finish (5-axis): a CAM operation that covers faces with passes of a leaning tool.
+
+Faces, tool controller and properties enter; the ``Path`` of the tool tip leaves, with the tool axis as I J K words. It
+is an operation as CAM's own are: tool controller, heights and coolant are handled by CAM's base class. Saved documents
+name the class by ``pkm_post.freecad_app.surface_finish``: its place, its name and those of its properties are a file
+format.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import FreeCAD as App
+import Path
+import Path.Op.Base
+from PathScripts import PathUtils
+
+from pkm_post.compensation import Cutter
+from pkm_post.freecad_app.commands import commands_of
+from pkm_post.freecad_app.contact_faces import NamedFace
+from pkm_post.freecad_app.face_surface import face_surface
+from pkm_post.freecad_app.job import document_name
+from pkm_post.freecad_app.model_faces import model_faces
+from pkm_post.freecad_app.progress import Progress
+from pkm_post.freecad_app.surface_check import check_faces
+from pkm_post.freecad_app.surface_finish_inputs import read_inputs
+from pkm_post.freecad_app.surface_finish_settings import add_missing_properties
+from pkm_post.model import Diagnostic, Place, Program
+from pkm_post.surface_path import Poses, Settings, cover, program_of
+
+_VIEW = "pkm_post.freecad_gui.surface_finish_view"
+"""The view is a floor above: it is named and not imported, as in saved documents."""
+_STEPS = 50
+"""Of the progress bar, for each face."""
+_REACH = 2.0
+"""mm: more material left is not measured."""
+
+_FEATURES = (
+    Path.Op.Base.FeatureTool | Path.Op.Base.FeatureHeights | Path.Op.Base.FeatureBaseFaces | Path.Op.Base.FeatureCoolant
+)
+
+
+class SurfaceFinish(Path.Op.Base.ObjectOp):
+    """The operation. Faults are exceptions that FreeCAD shows at the object, and its path is empty then."""
+
+    def opFeatures(self, obj: Any) -> int:
+        """What CAM's base class takes care of."""
+        return int(_FEATURES)
+
+    def initOperation(self, obj: Any) -> None:
+        """Add the properties of a new object."""
+        add_missing_properties(obj)
+
+    def opOnDocumentRestored(self, obj: Any) -> None:
+        """Give documents of older versions the properties they do not have yet."""
+        add_missing_properties(obj)
+
+    def isToolSupported(self, obj: Any, tool: Any) -> bool:
+        """Whether a tool bit can do this; CAM's panel asks."""
+        return str(getattr(tool, "ShapeType", None) or getattr(tool, "ShapeName", "")).lower() in (
+            "endmill",
+            "ballend",
+            "bullnose",
+        )
+
+    def execute(self, obj: Any) -> Any:
+        """Compute the path anew; should there be an error, no old path is left to be posted."""
+        obj.Path = Path.Path()
+        if obj.Active and (obj.ToolController is None or obj.ToolController.Tool is None):
+            _value(None, [Diagnostic("J112", _place(obj), "none is set")])
+        return super().execute(obj)
+
+    def opExecute(self, obj: Any) -> None:
+        """Fill the list of commands: called by the base class when tool and job are there."""
+        place = _place(obj)
+        faces, cutter, settings = _value(*read_inputs(obj, self.job, place))
+        covered = _covered(faces, cutter, settings, bool(obj.FlipNormals), place)
+        program = _value(*program_of(covered, settings, place))
+        _tell(obj, covered, settings)
+        _check(obj, program, cutter, faces, self.job)
+        self.commandlist += commands_of(program)
+
+
+def create_surface_finish(
+    job: Any,
+    faces: Iterable[tuple[Any, Sequence[str]]] = (),
+    label: str = "Surface Finish",
+    controller: Any = None,
+) -> Any:
+    """Add the operation to a job.
+
+    Args:
+        job: the CAM job.
+        faces: pairs of an object of the job's model and names of its faces, such as ``(clone, ["Face1"])``.
+        label: name shown to people.
+        controller: the tool controller; if none is given, CAM chooses or asks, and takes the first without a window.
+    """
+    obj = job.Document.addObject("Path::FeaturePython", "SurfaceFinish")
+    with _chosen(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):
+        obj.Proxy = SurfaceFinish(obj, "SurfaceFinish", job)
+    obj.Label, obj.Base = label, [(thing, tuple(names)) for thing, names in faces]
+    if controller is not None:
+        obj.ToolController = controller
+    if App.GuiUp:
+        importlib.import_module(_VIEW).SurfaceFinishView(obj.ViewObject)
+    return obj
+
+
+@contextlib.contextmanager
+def _chosen(controller: Any) -> Iterator[None]:
+    """Answer for the user which tool controller is meant: without a window CAM has nobody to ask."""
+    before = PathUtils.UserInput
+    if controller is not None:
+        PathUtils.UserInput = SimpleNamespace(selectedToolController=lambda: controller)
+    try:
+        yield
+    finally:
+        PathUtils.UserInput = before
+
+
+def _place(obj: Any) -> Place:
+    return Place(document_name(obj.Document), obj.Label)
+
+
+def _tell(obj: Any, covered: Sequence[Poses], settings: Settings) -> None:
+    """Fill in the results that cost nothing."""
+    obj.PassCount = sum(int(poses.course.number.max()) + 1 for poses in covered)
+    obj.ClampedAxes = sum(int(poses.clamped.sum()) for poses in covered)
+    obj.UsedConeLimit = math.degrees(settings.rule.cone)
+    obj.MaximumGouge = obj.MaximumExcess = -1.0
+    obj.GougePoint = obj.ExcessPoint = App.Vector()
+
+
+def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace], job: Any) -> None:
+    """Measure gouges and material left, if that is wanted, and fill them in."""
+    spacing = obj.CheckSpacing.Value
+    if not spacing > 0.0:
+        return
+    every, _ = model_faces(job.Model, (), _place(obj))
+    names = {named.name for named in faces}
+    others = [named.face for named in every or () if named.name not in names]
+    with Progress(f"{obj.Label}: gouges", _STEPS) as bar:
+        checked = check_faces(
+            program, cutter, [named.face for named in faces], others, bool(obj.FlipNormals), spacing,
+            obj.ChordTolerance.Value / 10.0, _REACH, _steps(bar),
+        )  # fmt: skip
+    obj.MaximumGouge, obj.GougePoint = checked.gouge, App.Vector(*checked.gouge_point)
+    obj.MaximumExcess, obj.ExcessPoint = checked.excess, App.Vector(*checked.excess_point)
+
+
+def _covered(
+    faces: Sequence[NamedFace], cutter: Cutter, settings: Settings, flipped: bool, place: Place
+) -> list[Poses]:
+    """The poses over each face, one after the other."""
+    covered: list[Poses] = []
+    with Progress(place.operation, _STEPS * len(faces)) as bar:
+        for named in faces:
+            found = cover(face_surface(named.face, flipped), cutter, settings, place, _steps(bar))
+            covered.append(_value(*found, f"{named.name}: "))
+    return covered
+
+
+def _steps(bar: Progress) -> Callable[[float], None]:
+    """Moves the bar on, to a share of so many steps; it raises when the user stops it."""
+    reached = 0
+
+    def progress(share: float) -> None:
+        nonlocal reached
+        while reached < int(share * _STEPS):
+            reached += 1
+            bar.step()
+
+    return progress
+
+
+def _value(value: Any, diagnostics: Iterable[Diagnostic], about: str = "") -> Any:
+    """The value, its warnings shown; or an exception that FreeCAD shows at the object."""
+    if value is None:
+        raise ValueError("\n".join(f"{about}{fault}" for fault in diagnostics))
+    for warning in diagnostics:
+        App.Console.PrintWarning(f"{about}{warning}\n")
+    return value

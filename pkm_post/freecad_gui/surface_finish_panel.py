@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Surface Finish panel: the operation's page in CAM's task panel.
+
+The operation enters, its properties change. CAM's panel holds the pages together: accepting it commits its transaction,
+rejecting it aborts it. The rows of the page are a table.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+import Path.Base.Gui.Util as CamUtil
+import Path.Op.Gui.Base as CamGui
+from PathScripts import PathUtils
+from PySide import QtWidgets
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_CHOICE, _QUANTITY, _FLAG = "choice", "quantity", "flag"
+_CONTEXT = "PKM_SurfaceFinish"
+ROWS: tuple[tuple[str, str, str], ...] = (
+    (_CHOICE, "CoolantMode", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Coolant")),
+    (_CHOICE, "Lines", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Lines")),
+    (_CHOICE, "Order", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Order")),
+    (_CHOICE, "CutMode", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Cut mode")),
+    (_FLAG, "Reversed", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Begin at the other side")),
+    (_CHOICE, "StepoverMode", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Stepover by")),
+    (_QUANTITY, "Stepover", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Distance")),
+    (_QUANTITY, "ScallopHeight", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Scallop height")),
+    (_QUANTITY, "ChordTolerance", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Chord tolerance")),
+    (_QUANTITY, "AxisTolerance", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Axis tolerance")),
+    (_QUANTITY, "Lead", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Lead")),
+    (_QUANTITY, "Tilt", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Tilt")),
+    (_QUANTITY, "ConeLimit", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Cone limit")),
+    (_QUANTITY, "ApproachDistance", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Approach distance")),
+    (_CHOICE, "LeadMove", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Lead-in and lead-out")),
+    (_QUANTITY, "LeadLength", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Length of leads")),
+    (_QUANTITY, "CheckSpacing", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Check points, distance")),
+)
+"""Kind of field, property and label, from top to bottom."""
+
+
+class SurfaceFinishPage(CamGui.TaskPanelPage):
+    """The page: tool controller, then a field for each row of the table. Other properties are in the property view."""
+
+    def getForm(self) -> Any:
+        """Make the fields."""
+        form = QtWidgets.QWidget()
+        layout = QtWidgets.QFormLayout(form)
+        form.controllers = QtWidgets.QComboBox()
+        layout.addRow(translate(_CONTEXT, "Tool controller"), form.controllers)
+        form.fields = {}
+        for kind, name, label in ROWS:
+            field = _FIELDS[kind]()
+            field.setToolTip(self.obj.getDocumentationOfProperty(name))
+            form.fields[name] = field
+            layout.addRow(translate(_CONTEXT, label), field)
+        form.quantities = {
+            name: CamUtil.QuantitySpinBox(form.fields[name], self.obj, name)
+            for kind, name, _ in ROWS
+            if kind == _QUANTITY
+        }
+        return form
+
+    def setFields(self, obj: Any) -> None:
+        """Show what the properties are."""
+        labels = [controller.Label for controller in PathUtils.getToolControllers(obj)]
+        current = obj.ToolController.Label if obj.ToolController else ""
+        _show(self.form.controllers, labels, current)
+        for kind, name, _ in ROWS:
+            field = self.form.fields[name]
+            if kind == _CHOICE:
+                _show(field, obj.getEnumerationsOfProperty(name), getattr(obj, name))
+            elif kind == _FLAG:
+                field.setChecked(getattr(obj, name))
+            else:
+                _refresh(self.form.quantities[name])
+
+    def getFields(self, obj: Any) -> None:
+        """Set the properties that differ from what is shown."""
+        for controller in PathUtils.getToolControllers(obj):
+            if controller.Label == self.form.controllers.currentText() and controller != obj.ToolController:
+                obj.ToolController = controller
+        for kind, name, _ in ROWS:
+            field = self.form.fields[name]
+            if kind == _QUANTITY:
+                self.form.quantities[name].updateProperty()
+                continue
+            value = field.currentText() if kind == _CHOICE else field.isChecked()
+            if getattr(obj, name) != value:
+                setattr(obj, name, value)
+
+    def getSignalsForUpdate(self, obj: Any) -> list[Any]:
+        """What tells that a field was changed."""
+        fields = self.form.fields
+        return [self.form.controllers.currentIndexChanged] + [
+            getattr(fields[name], _SIGNALS[kind]) for kind, name, _ in ROWS
+        ]
+
+
+def _show(box: Any, texts: list[str], current: str) -> None:
+    """Fill a box with choices, telling nobody."""
+    box.blockSignals(True)
+    box.clear()
+    box.addItems(texts)
+    box.setCurrentIndex(max(box.findText(current), 0))
+    box.blockSignals(False)
+
+
+def _refresh(quantity: Any) -> None:
+    """Show the value of the property; FreeCAD 1.0 has another name for it."""
+    getattr(quantity, "updateWidget" if hasattr(quantity, "updateWidget") else "updateSpinBox")()
+
+
+_FIELDS = {
+    _CHOICE: QtWidgets.QComboBox,
+    _QUANTITY: lambda: FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox"),
+    _FLAG: QtWidgets.QCheckBox,
+}
+_SIGNALS = {_CHOICE: "currentIndexChanged", _QUANTITY: "editingFinished", _FLAG: "toggled"}

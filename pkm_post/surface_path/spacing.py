@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Spacing: where the passes lie, so that none is farther from the next than allowed anywhere along it.
+
+The surface on a grid enters; the values of v of the passes, or the levels of their planes, leave. At each v the worst
+place along the line decides how many passes a unit of v needs; the passes share the integral of that evenly. So each
+distance is kept at every place of the grid, and all of them shrink alike until whole passes fit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.compensation import Cutter
+from pkm_post.geometry import dot, norm
+from pkm_post.geometry.vectors import cross
+from pkm_post.surface_path.course import Pattern
+from pkm_post.surface_path.engagement import pass_width
+from pkm_post.surface_path.surface import Array, Grid, Span, Surface, normal_curvatures, unit_or_nan
+from pkm_post.surface_path.tool_axis import AxisRule, tool_axes
+
+_GRID = (49, 97)
+_LEVELS = 128
+_FLATTEST = 0.05
+"""Sine of the angle between surface and planes below which planes get no closer: a flat place has no line in them."""
+_LOOKS = (65, 129)
+_HALVINGS = 30
+_POINT = 1e-6
+"""mm: a line that is shorter is a pole, or the tip of a face."""
+
+
+@dataclass(frozen=True)
+class Stepover:
+    """How far passes are apart: at most ``distance``, or so that scallops are at most ``scallop`` high, mm.
+
+    Attributes:
+        distance: largest distance of neighbouring passes along the surface; None where the scallops decide.
+        scallop: largest height of what is left between passes; None where the distance decides.
+    """
+
+    distance: float | None = None
+    scallop: float | None = None
+
+    def __post_init__(self) -> None:
+        given = [value for value in (self.distance, self.scallop) if value is not None]
+        if len(given) != 1 or not 0.0 < given[0] < math.inf:
+            raise ValueError(f"Stepover: expected one of distance and scallop above 0, got {self}")
+
+
+def widths(surface: Surface, grid: Grid, pattern: Pattern, stepover: Stepover, cutter: Cutter, rule: AxisRule) -> Array:
+    """Allowed distances of passes at the points of a grid, (M * N,); NaN where the cutter does not fit into a hollow.
+
+    The cutter may come from either side: the narrower width counts.
+    """
+    if stepover.distance is not None:
+        return np.full(len(grid.inside), stepover.distance)
+    assert stepover.scallop is not None
+    patch = grid.patch
+    feed = unit_or_nan(pattern.direction(patch))
+    u, v = (each.ravel() for each in np.meshgrid(grid.u, grid.v, indexing="ij"))
+    curvature = normal_curvatures(surface, u, v, patch, cross(patch.normal, feed))
+    both = []
+    for direction in (feed, -feed):
+        axis, _ = tool_axes(patch.normal, direction, rule, cross(patch.normal, feed))
+        both.append(pass_width(patch.normal, axis, direction, curvature, cutter, stepover.scallop))
+    pole = np.isnan(feed).any(axis=1) | np.isnan(curvature)
+    return np.where(pole, np.inf, np.minimum(*both))
+
+
+def passes_along_u(surface: Surface, stepover: Stepover, cutter: Cutter, rule: AxisRule) -> tuple[Array, float]:
+    """Values of v of passes along u, (P,), and the widest distance, NaN if there is none somewhere.
+
+    The borders are passes; where one is but a point, the first pass is half a step away from it.
+    """
+    surface = _face_alone(surface)
+    grid = Grid.over(surface, *_GRID)
+    allowed = widths(surface, grid, Pattern(None, np.zeros(0)), stepover, cutter, rule)
+    widest = _widest(allowed, grid)
+    if math.isnan(widest):
+        return np.zeros(0), widest
+    feed = np.nan_to_num(unit_or_nan(grid.patch.along_u))
+    across = norm(grid.patch.along_v - dot(grid.patch.along_v, feed)[:, None] * feed)
+    need = np.max(grid.shaped(np.where(grid.inside, across / allowed, 0.0)), axis=0)
+    first, last = (0.0 if length > _POINT else 0.5 for length in _lengths_on_borders(grid))
+    need[[0, -1]] = np.where([first, last], need[[1, -2]], need[[0, -1]])  # at a pole a line has no direction
+    return _shares(grid.v, need, first, last, surface.v.closed), widest
+
+
+def levels_of_planes(
+    surface: Surface, plane: Array, stepover: Stepover, cutter: Cutter, rule: AxisRule
+) -> tuple[Array, float]:
+    """Levels of parallel planes, (P,) in mm along their normal; and the widest distance, NaN if one has none.
+
+    The first and last plane are half a pass inside the surface. Planes hardly cut a flat place that is parallel to
+    them: there they are closer by no more than a factor of 20.
+    """
+    grid = Grid.over(surface, *_GRID)
+    allowed = widths(surface, grid, Pattern(plane, np.zeros(1)), stepover, cutter, rule)
+    height, widest = dot(grid.patch.point, plane)[grid.inside], _widest(allowed, grid)
+    if math.isnan(widest) or not len(height) or np.ptp(height) < _POINT:
+        return np.zeros(0), widest
+    slope = np.sqrt(np.maximum(1.0 - np.square(dot(grid.patch.normal, plane)), _FLATTEST**2))
+    need = np.nan_to_num(1.0 / (allowed * slope))[grid.inside]
+    edges = np.linspace(height.min(), height.max(), _LEVELS + 1)
+    band = np.minimum(np.searchsorted(edges, height, side="right") - 1, _LEVELS - 1)
+    worst = np.zeros(_LEVELS)
+    np.maximum.at(worst, band, need)
+    filled = np.flatnonzero(worst)
+    middle = (edges[:-1] + edges[1:]) / 2
+    at_edges = np.interp(edges, middle[filled], _widened(worst[filled]))
+    return _shares(edges, at_edges, 0.5, 0.5, closed=False), widest
+
+
+def _lengths_on_borders(grid: Grid) -> tuple[float, float]:
+    """How long the face is along the first and along the last line of a grid, mm; nothing at a pole or a tip."""
+    inside = grid.shaped(grid.inside)
+    steps = norm(np.diff(grid.shaped(grid.patch.point), axis=0)) * (inside[1:] & inside[:-1])
+    length = np.sum(steps, axis=0)
+    return float(length[0]), float(length[-1])
+
+
+def _face_alone(surface: Surface) -> Surface:
+    """The surface with the range of v that the face fills: to where the last of many points on a line leaves it."""
+    u, v = (
+        np.linspace(span.first, span.last, count) for span, count in zip((surface.u, surface.v), _LOOKS, strict=True)
+    )
+
+    def reached(place: float) -> bool:
+        return bool(surface.holds(u, np.full(len(u), place)).any())
+
+    rising = next((row for row in range(len(v)) if reached(v[row])), None)
+    if rising is None:
+        return surface
+    falling = next(row for row in reversed(range(len(v))) if reached(v[row]))
+    if (rising, falling) == (0, len(v) - 1):
+        return surface
+    first = _halved(reached, v[rising], v[rising - 1]) if rising > 0 else v[0]
+    last = _halved(reached, v[falling], v[falling + 1]) if falling < len(v) - 1 else v[-1]
+    return replace(surface, v=Span(first, last)) if first < last else surface
+
+
+def _halved(reached: Callable[[float], bool], within: float, beyond: float) -> float:
+    """The last value that is reached on the way from one that is to one that is not."""
+    for _ in range(_HALVINGS):
+        middle = (within + beyond) / 2
+        within, beyond = (middle, beyond) if reached(middle) else (within, middle)
+    return within
+
+
+def _widest(allowed: Array, grid: Grid) -> float:
+    """The widest distance that is not without a limit; NaN where the cutter does not fit somewhere."""
+    on_face = allowed[grid.inside & ~np.isposinf(allowed)]
+    return float(np.max(on_face, initial=0.0))
+
+
+def _widened(values: Array) -> Array:
+    """Each value or a greater one beside it: a band need not hold the worst place near its ends."""
+    padded = np.concatenate([values[:1], values, values[-1:]])
+    return np.maximum.reduce([padded[:-2], padded[1:-1], padded[2:]])
+
+
+def _shares(places: Array, need: Array, first: float, last: float, closed: bool) -> Array:
+    """Places that share the integral of the need evenly, in steps of one or less.
+
+    Args:
+        places: (N,) where the need is known, rising.
+        need: (N,) passes by unit of place.
+        first: how much of a step lies before the first pass: 0 for a pass on the border.
+        last: how much of a step lies behind the last one.
+        closed: whether the last place is the first one again; then no pass is made there.
+    """
+    between = (need[1:] + need[:-1]) / 2 * np.diff(places)
+    so_far = np.concatenate([[0.0], np.cumsum(between)])
+    if closed:
+        steps = max(math.ceil(so_far[-1] - 1e-9), 1)
+        share = np.arange(steps) / steps
+    else:
+        steps = max(math.ceil(so_far[-1] - first - last - 1e-9), 0 if first or last else 1)
+        share = (first + np.arange(steps + 1)) / (steps + first + last) if steps + first + last else np.array([0.5])
+    wanted: Array = np.interp(share * so_far[-1], so_far, places)
+    return wanted
