@@ -1,26 +1,39 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The 6-TPS machine: inverse and forward kinematics, Jacobian, rates, and what the machine can reach."""
 
+from pkm_post.kinematics.findings import Finding, faults_of
+from pkm_post.kinematics.following import follow
 from pkm_post.kinematics.forward import Solution, forward
 from pkm_post.kinematics.interpolation import Stray, stray
 from pkm_post.kinematics.inverse import platform_joints, strut_lengths, strut_vectors
 from pkm_post.kinematics.jacobian import jacobian_of_platform, jacobian_of_tip, scaled_jacobian
+from pkm_post.kinematics.margins import Margins, reach_margins
 from pkm_post.kinematics.orientation import platform_rotation
+from pkm_post.kinematics.part import Part
 from pkm_post.kinematics.rates import strut_rates
-from pkm_post.kinematics.workspace import Margins, reach_faults, reach_margins
+from pkm_post.kinematics.stiffness import stiffness_along
+from pkm_post.kinematics.way import Way
+from pkm_post.kinematics.workspace import reach_faults, reach_findings
 
 __all__ = [
+    "Finding",
     "Margins",
+    "Part",
     "Solution",
     "Stray",
+    "Way",
+    "faults_of",
+    "follow",
     "forward",
     "jacobian_of_platform",
     "jacobian_of_tip",
     "platform_joints",
     "platform_rotation",
     "reach_faults",
+    "reach_findings",
     "reach_margins",
     "scaled_jacobian",
+    "stiffness_along",
     "stray",
     "strut_lengths",
     "strut_rates",

@@ -17,6 +17,8 @@ from pkm_post.kinematics.jacobian import linearise
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.model import Machine
 
+_CHUNK = 4096
+"""Poses per pass: their Jacobians stay in the processor's cache."""
 _LENGTH_TOLERANCE = 1e-10
 """mm: Newton stops when no strut is off by more; about a thousand roundings of a metre-long strut."""
 
@@ -54,31 +56,69 @@ def forward(
 
     Args:
         machine: the geometry.
-        lengths: (N, 6) strut lengths, mm.
+        lengths: (N, 6) strut lengths as the controller counts them, mm.
         tool_length: (N,) gauge lengths, mm.
         guess_tip: (N, 3) tips to start from.
         guess_axis: (N, 3) unit tool axes to start from.
         guess_spin: (N,) spins to start from.
         iterations: Newton steps before a row is given up.
     """
-    tip = np.array(guess_tip, dtype=np.float64)
-    rotation = platform_rotation(guess_axis, guess_spin)
+    return newton(machine, lengths, tool_length, guess_tip, platform_rotation(guess_axis, guess_spin), iterations)
+
+
+def newton(
+    machine: Machine, lengths: Array, tool_length: Array, guess_tip: Array, guess_rotation: Array, iterations: int = 20
+) -> Solution:
+    """The same from guesses whose rotations are matrices, (N, 3, 3)."""
+    tip, rotation = np.array(guess_tip, dtype=np.float64), np.array(guess_rotation, dtype=np.float64)
     converged = np.zeros(len(tip), dtype=bool)
-    open_rows = np.arange(len(tip))
-    for _ in range(iterations):
-        jacobian, found = linearise(machine, tip[open_rows], rotation[open_rows], tool_length[open_rows])
-        residual = lengths[open_rows] - found
-        done = np.max(np.abs(residual), axis=1) < _LENGTH_TOLERANCE
-        converged[open_rows[done]] = True
-        regular = np.abs(np.linalg.det(jacobian)) > 0
-        keep = ~done & regular
-        open_rows, jacobian, residual = open_rows[keep], jacobian[keep], residual[keep]
-        if not len(open_rows):
-            break
-        step = np.linalg.solve(jacobian, residual[..., None])[..., 0]
-        tip[open_rows] += step[:, :3]
-        rotation[open_rows] = _rotation_of(step[:, 3:]) @ rotation[open_rows]
+    for first in range(0, len(tip), _CHUNK):
+        rows = slice(first, first + _CHUNK)
+        _newton(machine, lengths[rows], tool_length[rows], tip[rows], rotation[rows], converged[rows], iterations)
     return Solution(tip, rotation, converged)
+
+
+def _newton(
+    machine: Machine,
+    lengths: Array,
+    tool_length: Array,
+    tip: Array,
+    rotation: Array,
+    converged: Array,
+    iterations: int,
+) -> None:
+    """Move tips and rotations in place until they have the lengths; say of which rows that is so."""
+    at, turned, wanted, tool = tip.copy(), rotation.copy(), lengths, tool_length
+    rows = np.arange(len(tip))
+    for _ in range(iterations):
+        jacobian, found = linearise(machine, at, turned, tool)
+        residual = wanted - found
+        done = np.max(np.abs(residual), axis=1) < _LENGTH_TOLERANCE
+        if done.any():
+            closed = rows[done]
+            tip[closed], rotation[closed], converged[closed] = at[done], turned[done], True
+        if done.all():
+            return
+        step, regular = _solve(jacobian, residual)
+        keep = ~done & regular
+        if not keep.all():
+            rows, at, turned, wanted, tool = rows[keep], at[keep], turned[keep], wanted[keep], tool[keep]
+            step = step[keep]
+        if not len(rows):
+            return
+        at = at + step[:, :3]
+        turned = _rotation_of(step[:, 3:]) @ turned
+
+
+def _solve(jacobian: Array, residual: Array) -> tuple[Array, Array]:
+    """Newton steps (N, 6), and which rows have one: an exactly singular Jacobian has none."""
+    try:
+        return np.linalg.solve(jacobian, residual[..., None])[..., 0], np.ones(len(residual), dtype=bool)
+    except np.linalg.LinAlgError:
+        regular = np.abs(np.linalg.det(jacobian)) > 0
+        step = np.zeros_like(residual)
+        step[regular] = np.linalg.solve(jacobian[regular], residual[regular][..., None])[..., 0]
+        return step, regular
 
 
 def _rotation_of(vector: Array) -> Array:

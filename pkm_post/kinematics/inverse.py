@@ -1,16 +1,29 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Inverse kinematics: from tool poses to six strut lengths; unique and in closed form.
 
-r_T = q + L k, MT_i = r_T + R_T TT_i, l_i = |MT_i - MB_i| [paper eq. 1 to 5], where L is the distance from the tool
+r_T = q + L k, MT_i = r_T + R_T TT_i, d_i = |MT_i - MB_i| [paper eq. 1 to 5], where L is the distance from the tool
 tip to the platform origin: gauge length plus spindle nose. The strut vectors here run from the base to the platform,
-the paper's the other way.
+the paper's the other way. The length that the controller counts is d_i, corrected for the turn of the screw, less the
+length offset; both are zero unless the machine file states them.
+
+Lengths alone need no strut vectors. With p from the middle of the base to the platform origin, a and b the joints in
+their frames, d^2 = |p|^2 + |a|^2 + |b|^2 + 2 a.(R^T p) - 2 b.p - 2 b^T R a: linear in 17 numbers of a pose, with
+coefficients that belong to the machine. So six squares are one product of matrices, and a root. The terms cancel: what
+is lost is at most a few roundings of (|p| + |a| + |b|)^2 / 2 d. Measured from the middle of the base, |p| is no more
+than the mean strut and the offset of the middle of the platform's joints, so that it does not matter where {M} is.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from pkm_post.geometry.vectors import Array, norm
 from pkm_post.kinematics.orientation import platform_rotation
+from pkm_post.kinematics.screw import screw_correction
 from pkm_post.model import Machine
+
+_CHUNK = 8192
+"""Poses per pass: the 17 numbers of each fill about a megabyte, which stays in the processor's cache."""
 
 
 def platform_joints(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
@@ -22,6 +35,9 @@ def platform_joints(machine: Machine, tip: Array, axis: Array, spin: Array, tool
         axis: (N, 3) unit tool axes in {M}.
         spin: (N,) rad.
         tool_length: (N,) gauge lengths, mm.
+
+    Raises:
+        ValueError: a tool axis points straight down, where the shortest rotation is not unique.
     """
     origin = tip + (machine.spindle_nose + tool_length)[:, None] * axis
     rotation = platform_rotation(axis, spin)
@@ -34,5 +50,70 @@ def strut_vectors(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
 
 
 def strut_lengths(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
-    """Strut lengths, (N, 6) in mm; arguments as above."""
-    return norm(strut_vectors(machine, tip, axis, spin, tool_length))
+    """Strut lengths as the controller counts them, (N, 6) in mm; arguments as above."""
+    lengths = np.empty((len(tip), 6))
+    form, middle = _form_of_squares(machine)
+    space = np.empty((17, min(_CHUNK, len(tip))))
+    for first in range(0, len(tip), _CHUNK):
+        rows = slice(first, first + _CHUNK)
+        pose = tip[rows], axis[rows], spin[rows], tool_length[rows]
+        numbers = _fill(space[:, : len(pose[0])], machine, middle, *pose)
+        squares = np.matmul(numbers.T, form, out=lengths[rows])
+        np.sqrt(np.maximum(squares, 0.0, out=squares), out=squares)
+        squares += _counted_beyond_distance(machine, *pose)
+    return lengths
+
+
+def counted_lengths(machine: Machine, distance: Array, direction: Array, rotation: Array) -> Array:
+    """What the controller counts when joints are at these distances, (N, 6) in mm.
+
+    Args:
+        machine: screw and length offsets.
+        distance: (N, 6) from joint centre to joint centre, mm.
+        direction: (N, 6, 3) unit strut vectors.
+        rotation: (N, 3, 3) rotations of the platform.
+    """
+    return distance + screw_correction(direction, rotation, machine) - machine.length_offset
+
+
+def _counted_beyond_distance(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+    if machine.screw_lead == 0.0:
+        return -machine.length_offset
+    struts = strut_vectors(machine, tip, axis, spin, tool_length)
+    direction = struts / norm(struts)[..., None]
+    return screw_correction(direction, platform_rotation(axis, spin), machine) - machine.length_offset
+
+
+def _form_of_squares(machine: Machine) -> tuple[Array, Array]:
+    """Coefficients of the squared distances, (17, 6), and the middle of the base in {M}, (3,)."""
+    middle = machine.base_joints.mean(axis=0)
+    a, b = machine.platform_joints, machine.base_joints - middle
+    squares = np.sum(a * a, axis=1) + np.sum(b * b, axis=1)
+    turned = np.einsum("ij,ik->jki", a, b).reshape(9, 6)
+    return np.concatenate([-2 * b.T, 2 * a.T, np.ones((1, 6)), squares[None], -2 * turned]), middle
+
+
+def _fill(
+    numbers: Array, machine: Machine, middle: Array, tip: Array, axis: Array, spin: Array, tool_length: Array
+) -> Array:
+    """Write the 17 numbers of each pose, (17, N): p, R^T p, |p|^2, 1, and the columns of R one after the other."""
+    p, turned, x, y, k = numbers[0:3], numbers[3:6], numbers[8:11], numbers[11:14], numbers[14:17]
+    k[:] = axis.T
+    lean = 1 + k[2]
+    if np.any(lean < 1e-9):
+        raise ValueError("expected tool axes that do not point straight down, got one that does")
+    cosine, sine = np.cos(spin), np.sin(spin)
+    for column, along, across in ((x, cosine, sine), (y, -sine, cosine)):
+        down = along * k[0] + across * k[1]
+        np.multiply(-down / lean, k, out=column)
+        column[0] += along
+        column[1] += across
+        column[2] = -down
+    np.multiply(machine.spindle_nose + tool_length, k, out=p)
+    p += tip.T
+    p -= middle[:, None]
+    for product, column in zip(turned, (x, y, k), strict=True):
+        np.einsum("ij,ij->j", column, p, out=product)
+    np.einsum("ij,ij->j", p, p, out=numbers[6])
+    numbers[7] = 1.0
+    return numbers

@@ -2,7 +2,8 @@
 """Rates: first and second derivatives of the strut lengths along a moving tool pose, in closed form.
 
 With joint velocity V = q' + L k' + w x R a and acceleration A = q'' + L k'' + w' x R a + w x (w x R a):
-l' = u . V and l'' = u . A + (|V|^2 - (u . V)^2) / l. The parameter is that of the poses: path length or time.
+l' = u . V and l'' = u . A + (|V|^2 - (u . V)^2) / l. The turn of a screw without a key is added with its own
+derivatives. The parameter is that of the poses: path length or time.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import numpy as np
 
 from pkm_post.geometry.vectors import Array, cross, dot, norm
 from pkm_post.kinematics.orientation import angular_rates, platform_rotation
+from pkm_post.kinematics.screw import screw_rates
 from pkm_post.model import Machine, Poses
 
 _CHUNK = 16384
@@ -18,7 +20,7 @@ _CHUNK = 16384
 
 
 def strut_rates(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
-    """Strut lengths with first and second derivatives, (N, 6) each.
+    """Strut lengths as the controller counts them, with first and second derivatives, (N, 6) each.
 
     Args:
         machine: the geometry.
@@ -34,7 +36,8 @@ def strut_rates(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
 def _rates(machine: Machine, poses: Poses, rows: slice) -> tuple[Array, Array, Array]:
     axis, axis_1, axis_2 = poses.axis[rows], poses.axis_1[rows], poses.axis_2[rows]
     reach = (machine.spindle_nose + poses.tool_length[rows])[:, None]
-    arm = machine.platform_joints @ platform_rotation(axis, poses.spin[rows]).transpose(0, 2, 1)
+    rotation = platform_rotation(axis, poses.spin[rows])
+    arm = machine.platform_joints @ rotation.transpose(0, 2, 1)
     turn, turn_1 = angular_rates(axis, axis_1, axis_2, poses.spin_1[rows], poses.spin_2[rows])
     turning = cross(turn[:, None, :], arm)
 
@@ -46,8 +49,14 @@ def _rates(machine: Machine, poses: Poses, rows: slice) -> tuple[Array, Array, A
         + cross(turn[:, None, :], turning)
     )
     strut = joint - machine.base_joints
-    length = norm(strut)
-    direction = strut / length[..., None]
+    distance = norm(strut)
+    direction = strut / distance[..., None]
     speed = dot(direction, velocity)
     across = dot(velocity, velocity) - speed**2
-    return length, speed, dot(direction, acceleration) + across / length
+    growth = dot(direction, acceleration) + across / distance
+    if machine.screw_lead == 0.0:
+        return distance - machine.length_offset, speed, growth
+    swing = (velocity - speed[..., None] * direction) / distance[..., None]
+    swing_1 = (acceleration - growth[..., None] * direction - 2 * speed[..., None] * swing) / distance[..., None]
+    screw = screw_rates(machine, (direction, swing, swing_1), rotation, turn, turn_1)
+    return distance - machine.length_offset + screw[0], speed + screw[1], growth + screw[2]

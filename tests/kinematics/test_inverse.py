@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+import dataclasses
+
 import numpy as np
 import pytest
 from machines import INCH, axis_and_spin, direction, example, genhexkins, nategh, random_poses, rotation_about
+from screw_machines import screwed
 
 from pkm_post.geometry import norm
 from pkm_post.kinematics import platform_rotation, strut_lengths, strut_vectors
+from pkm_post.kinematics.screw import screw_correction
 
+PICOMETRE = 1e-9
+"""mm: what the two formulas may differ by; they are some ten roundings apart."""
 PRINTED = 5.1e-5
 """mm: golden lengths are printed to four decimals."""
 
@@ -83,9 +89,66 @@ def test_straight_down_is_refused():
         platform_rotation(np.array([[0.0, 0.0, -1.0]]), np.zeros(1))
 
 
-def test_lengths_are_the_lengths_of_the_strut_vectors():
-    poses = random_poses(np.random.default_rng(2), 50)
-    np.testing.assert_array_equal(strut_lengths(example(), *poses), norm(strut_vectors(example(), *poses)))
+def many_poses(machine, count=20000):
+    """More poses than one pass takes, tilted by up to 80 degrees, with two tools."""
+    rng = np.random.default_rng(2)
+    tip, axis, spin, _ = random_poses(rng, count, tilt_deg=80)
+    return tip, axis, spin, np.where(rng.random(count) < 0.5, 60.0, 150.0)
+
+
+def calibrated():
+    """The example machine with joints off by millimetres, in all three directions."""
+    rng, nominal = np.random.default_rng(8), example()
+    return dataclasses.replace(
+        nominal,
+        base_joints=nominal.base_joints + rng.normal(0, 3, (6, 3)),
+        platform_joints=nominal.platform_joints + rng.normal(0, 3, (6, 3)),
+    )
+
+
+@pytest.mark.parametrize("machine", [example(), genhexkins(), nategh(), calibrated()], ids=range(4))
+def test_lengths_are_the_lengths_of_the_strut_vectors(machine):
+    poses = many_poses(machine)
+    np.testing.assert_allclose(
+        strut_lengths(machine, *poses), norm(strut_vectors(machine, *poses)), atol=PICOMETRE, rtol=0
+    )
+
+
+def test_a_table_far_from_the_origin_costs_no_digits():
+    # A kilometre away, coordinates themselves are rounded to 1e-10 mm; squares about the origin would lose 1e-7 mm.
+    shift = np.array([1e6, -2e6, 5e5])
+    machine = dataclasses.replace(example(), base_joints=example().base_joints + shift)
+    tip, axis, spin, length = many_poses(machine)
+    far = strut_lengths(machine, tip + shift, axis, spin, length)
+    np.testing.assert_allclose(far, strut_lengths(example(), tip, axis, spin, length), atol=1e-9, rtol=0)
+
+
+def test_short_struts_keep_the_digits_that_are_promised():
+    # Struts of 2 mm on rings of 600 mm: the squares cancel most here. A few roundings of (2 + 600 + 600)^2 / 4.
+    base = example().base_joints * [1.0, 1.0, 0.0]
+    machine = dataclasses.replace(example(), base_joints=base, platform_joints=base, spindle_nose=0.0)
+    tip = np.tile([0.0, 0.0, 2.0], (50, 1)) + np.random.default_rng(9).normal(0, 0.1, (50, 3))
+    poses = tip, np.tile([0.0, 0.0, 1.0], (50, 1)), np.zeros(50), np.zeros(50)
+    promised = 10 * np.finfo(float).eps * (2 + 600 + 600) ** 2 / 4
+    np.testing.assert_allclose(
+        strut_lengths(machine, *poses), norm(strut_vectors(machine, *poses)), atol=promised, rtol=0
+    )
+
+
+def test_counted_lengths_are_distances_less_their_offsets():
+    offset = np.array([0.5, -0.25, 0.0, 1.0, 2.0, -3.0])
+    poses = many_poses(example(), 100)
+    counted = strut_lengths(dataclasses.replace(example(), length_offset=offset), *poses)
+    np.testing.assert_allclose(counted, strut_lengths(example(), *poses) - offset, atol=PICOMETRE, rtol=0)
+
+
+def test_the_screw_is_counted():
+    machine = screwed(example())
+    poses = many_poses(machine, 100)
+    struts = strut_vectors(machine, *poses)
+    correction = screw_correction(struts / norm(struts)[..., None], platform_rotation(poses[1], poses[2]), machine)
+    assert np.abs(correction).max() > 0.1
+    np.testing.assert_allclose(strut_lengths(machine, *poses), norm(struts) + correction, atol=PICOMETRE, rtol=0)
 
 
 def test_mirrored_quadrants_have_permuted_struts():

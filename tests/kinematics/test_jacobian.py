@@ -2,6 +2,7 @@
 import numpy as np
 import pytest
 from machines import axis_and_spin, direction, example, nategh, random_poses, rotation_about
+from screw_machines import screwed
 
 from pkm_post.kinematics import jacobian_of_platform, jacobian_of_tip, scaled_jacobian, strut_lengths
 from pkm_post.model import Machine
@@ -27,8 +28,8 @@ def lengths_after(machine: Machine, pose, twist, about_platform):
 
 
 @pytest.mark.parametrize("about_platform", [False, True])
-def test_against_finite_differences(about_platform):
-    machine = example()
+@pytest.mark.parametrize("machine", [example(), screwed(example())], ids=["keyed", "screwed"])
+def test_against_finite_differences(machine, about_platform):
     function = jacobian_of_platform if about_platform else jacobian_of_tip
     tips, axes, spins, lengths = random_poses(np.random.default_rng(4), 20)
     for row in range(20):
@@ -83,3 +84,9 @@ def test_a_quarter_turn_of_the_platform_is_singular():
     assert abs(determinants[2]) < 1e-12
     assert determinants[3] > 0
     assert lengths.min() > 750 and lengths.max() < 1250
+
+
+def test_the_determinant_has_one_sign_all_over_the_workspace():
+    # Assembly modes are parted by singular poses: poses that the machine can go to from home share the sign.
+    poses = random_poses(np.random.default_rng(9), 5000, tilt_deg=30)
+    assert np.all(np.linalg.det(scaled_jacobian(example(), *poses)) < -0.1)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
+import pytest
 from machines import example
+from screw_machines import screwed
 
 from pkm_post.kinematics import jacobian_of_tip, strut_lengths, strut_rates
 from pkm_post.kinematics.orientation import angular_rates
@@ -47,16 +49,17 @@ def wandering_poses(t):
     )  # fmt: skip
 
 
-def lengths_at(t):
+def lengths_at(t, machine):
     poses = wandering_poses(t)
-    return strut_lengths(example(), poses.tip, poses.axis, poses.spin, poses.tool_length)
+    return strut_lengths(machine, poses.tip, poses.axis, poses.spin, poses.tool_length)
 
 
-def test_rates_against_finite_differences():
+@pytest.mark.parametrize("machine", [example(), screwed(example())], ids=["keyed", "screwed"])
+def test_rates_against_finite_differences(machine):
     t = np.linspace(0, 6, 200)
-    length, first, second = strut_rates(example(), wandering_poses(t))
-    before, after = lengths_at(t - STEP), lengths_at(t + STEP)
-    np.testing.assert_allclose(length, lengths_at(t), atol=1e-12)
+    length, first, second = strut_rates(machine, wandering_poses(t))
+    before, after = lengths_at(t - STEP, machine), lengths_at(t + STEP, machine)
+    np.testing.assert_allclose(length, lengths_at(t, machine), atol=2e-12)
     np.testing.assert_allclose(first, (after - before) / (2 * STEP), atol=2e-6)
     np.testing.assert_allclose(second, (after - 2 * length + before) / STEP**2, atol=1e-3)
 

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Between: what a check says of a whole way, not only of its samples.
+
+Every margin of a check has a slope: how fast it can change, at most, when the platform moves. If it is m0 and m1 at the
+ends of a stretch and cannot change by more than c on it, it is nowhere less than (m0 + m1 - c) / 2 in between. Where
+that is not negative, nothing can have slipped through. Else the stretch is halved and looked at again, until a
+violation is found, or none is possible, or the stretch is so short that the margin is 0 within the resolution of the
+check, which counts as a violation. Margins may be lower bounds of the true ones at any pose: what is said stays true.
+
+A check whose margins take long to compute begins with every 64th row. It goes down to the rows where less than its
+comfort is left, and elsewhere far enough to know the least margin to a quarter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics.findings import Finding, Subject
+from pkm_post.kinematics.placed import Placed
+from pkm_post.kinematics.way import Way
+from pkm_post.model import Machine
+
+_CHUNK = 2048
+"""Poses per pass: the working arrays of one pass stay in the processor's cache."""
+_STRIDE = 64
+_THREE_QUARTERS = 0.75
+"""Beyond the comfort, how much of the least margin that was computed rows that are not computed must have."""
+
+
+@dataclass(frozen=True)
+class Check(Subject):
+    """One check of poses.
+
+    Attributes:
+        margins: (M, P) margins of M placed poses, or lower bounds of them; a column for each of the ``parts``.
+        by_travel: how much a margin changes at most by mm that every point of the platform travels.
+        by_turn: how much at most by rad that the platform turns about the tip.
+        resolution: a margin that is less, between two rows, counts as none.
+        comfort: margins beyond it need not be computed for every row.
+    """
+
+    margins: Callable[[Placed], Array]
+    by_travel: float
+    by_turn: float
+    resolution: float
+    comfort: float = np.inf
+
+
+def survey(machine: Machine, way: Way, checks: tuple[Check, ...]) -> tuple[Finding, ...]:
+    """Each check along the whole way.
+
+    Args:
+        machine: at whose poses the checks look.
+        way: the poses and what is between them, at least one row.
+        checks: what is looked at.
+    """
+    turn = way.turn()
+    surveys = [_Survey(machine, way, check, check.by_travel * way.travel + check.by_turn * turn) for check in checks]
+    thorough = [one for one in surveys if one.check.comfort == np.inf]
+    if thorough:
+        for rows in _chunks(np.arange(len(way))):
+            placed = Placed.of(machine, way.rows(rows))
+            for one in thorough:
+                one.note(rows, one.check.margins(placed))
+    for one in surveys:
+        if one.check.comfort < np.inf:
+            one.stride()
+        one.refine()
+    return tuple(one.finding() for one in surveys)
+
+
+def _chunks(rows: Array) -> Iterator[Array]:
+    return (rows[first : first + _CHUNK] for first in range(0, len(rows), _CHUNK))
+
+
+class _Survey:
+    """One check on its way along the rows."""
+
+    def __init__(self, machine: Machine, way: Way, check: Check, change: Array) -> None:
+        self.machine, self.way, self.check = machine, way, check
+        self.change = change
+        self.margin, self.part = np.empty(len(way)), np.zeros(len(way), dtype=np.int32)
+        self.computed = np.zeros(len(way), dtype=bool)
+        self.at_least = np.inf
+
+    def finding(self) -> Finding:
+        """What was found; rows that were not computed must not look as bad as the worst that was."""
+        beyond = np.nextafter(self.margin[self.computed].min(), np.inf)
+        margin = np.where(self.computed, self.margin, np.maximum(self.margin, beyond))
+        return Finding(self.check, margin, self.part, self.at_least)
+
+    def note(self, rows: Array, margins: Array) -> None:
+        """Keep the worst margins of rows."""
+        part = np.argmin(margins, axis=1)
+        self.margin[rows], self.part[rows] = margins[np.arange(len(part)), part], part
+        self.computed[rows] = True
+
+    def look(self, rows: Array) -> None:
+        """Compute and keep the margins of rows."""
+        for chunk in _chunks(rows):
+            self.note(chunk, self.check.margins(Placed.of(self.machine, self.way.rows(chunk))))
+
+    def stride(self) -> None:
+        """Compute margins of few rows, and of those between them where little may be left."""
+        sum_of_changes = np.cumsum(self.change)
+        marks = np.unique(np.append(np.arange(0, len(self.way), _STRIDE), len(self.way) - 1))
+        self.look(marks)
+        start, end = marks[:-1], marks[1:]
+        while len(start):
+            bound = (self.margin[start] + self.margin[end] - (sum_of_changes[end] - sum_of_changes[start])) / 2
+            enough = max(self.check.comfort, _THREE_QUARTERS * self.margin[self.computed].min())
+            wide, near = end - start > 1, bound < enough
+            self._fill(start[wide & ~near], end[wide & ~near], bound[wide & ~near])
+            start, end = start[wide & near], end[wide & near]
+            middle = (start + end) // 2
+            self.look(middle)
+            start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+
+    def _fill(self, start: Array, end: Array, bound: Array) -> None:
+        """Give the rows between two rows the bound that holds for all of them, and the part of the first one."""
+        count = end - start - 1
+        rows = np.repeat(start + 1 - (np.cumsum(count) - count), count) + np.arange(int(count.sum()))
+        self.margin[rows], self.part[rows] = np.repeat(bound, count), np.repeat(self.part[start], count)
+
+    def refine(self) -> None:
+        """Look between the rows where a violation may hide there."""
+        first = np.concatenate([self.margin[:1], self.margin[:-1]])
+        bound = (first + self.margin - self.change) / 2
+        cells = np.flatnonzero((bound < 0) & (first >= 0) & (self.margin >= 0))
+        for chunk in _chunks(cells):
+            least = self._halve(chunk, first[chunk], self.margin[chunk].copy())
+            bound[chunk] = np.where(least < 0, bound[chunk], least)
+        self.at_least = float(bound.min())
+
+    def _halve(self, cells: Array, at_start: Array, at_end: Array) -> Array:
+        """Halve cells until each is settled; the least margin that is left in each of them, (M,)."""
+        least = np.minimum(at_start, at_end)
+        owner = np.arange(len(cells))
+        start, width = np.zeros(len(cells)), 1.0
+        while len(owner):
+            change = width * self.change[cells[owner]]
+            bound = (at_start + at_end - change) / 2
+            unsure = bound < 0
+            np.minimum.at(least, owner[~unsure], bound[~unsure])
+            short = unsure & (change < self.check.resolution)
+            self._blame(cells, owner[short], np.minimum(bound[short], at_start[short]), None, least)
+            owner, start = owner[unsure & ~short], start[unsure & ~short]
+            at_start, at_end = at_start[unsure & ~short], at_end[unsure & ~short]
+            width /= 2
+            middle, part = self._at(cells[owner], start + width)
+            self._blame(cells, owner, middle, part, least)
+            # One violation settles a cell; what is left of the others is looked at half by half.
+            going = least[owner] >= 0
+            owner, start = np.tile(owner[going], 2), np.concatenate([start[going], start[going] + width])
+            at_start, at_end = (
+                np.concatenate([at_start[going], middle[going]]),
+                np.concatenate([middle[going], at_end[going]]),
+            )
+        return least
+
+    def _at(self, cells: Array, share: Array) -> tuple[Array, Array]:
+        """Worst margins at shares of cells and what has them, (M,) each."""
+        margin, part = np.empty(len(cells)), np.empty(len(cells), dtype=np.int32)
+        for chunk in _chunks(np.arange(len(cells))):
+            placed = Placed.of(self.machine, self.way.inside(cells[chunk], share[chunk]))
+            margins = self.check.margins(placed)
+            part[chunk] = np.argmin(margins, axis=1)
+            margin[chunk] = margins.min(axis=1)
+        return margin, part
+
+    def _blame(self, cells: Array, owner: Array, found: Array, part: Array | None, least: Array) -> None:
+        """Keep margins found inside cells where they are the least so far."""
+        worse = found < self.margin[cells[owner]]
+        order = np.argsort(-found[worse], kind="stable")  # of several in one cell the least is written last
+        rows = cells[owner[worse]][order]
+        self.margin[rows] = found[worse][order]
+        if part is not None:
+            self.part[rows] = part[worse][order]
+        np.minimum.at(least, owner, found)

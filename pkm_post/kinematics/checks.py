@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Checks: what can keep a machine from following a way: stroke, joint cones, singular poses, bodies that meet.
+
+Enters: the machine and the shortest strut on the way. Leaves: one ``Check`` for each limit that the machine file
+states. Slopes follow from the motion of the joints: with r_i from the tip, joint i moves by v_i <= travel + turn |r_i|.
+A strut's length changes by no more than v_i, its direction by v_i / length, the swing in the platform by turn more.
+Bodies are in ``interference``. docs/reach.md has the derivations.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array, norm
+from pkm_post.kinematics.between import Check
+from pkm_post.kinematics.inverse import strut_lengths
+from pkm_post.kinematics.placed import Placed
+from pkm_post.kinematics.way import Way
+from pkm_post.model import Machine
+
+HUNDREDTH = 0.01
+"""mm: between two rows, what is left of a length is told to this."""
+ANGLE = 1e-4
+"""rad, the same for angles, about 0.006 degrees."""
+SINGULAR = 1e-4
+"""The same for singular values."""
+
+STRUTS = tuple(str(strut) for strut in range(1, 7))
+_SCREW_SLOPE = 4.0
+"""How fast the screw's correction changes, in leads by turn of joint or platform, while every strut keeps 30 degrees
+away from the fixed axes of its universal joints: 1 / sin 30 for each of them."""
+
+
+def arms_from_tip(machine: Machine, tool_length: Array) -> Array:
+    """Distances of the platform joints from the tip of the longest tool, (6,) in mm."""
+    reach = machine.spindle_nose + np.array([tool_length.min(), tool_length.max()])
+    return norm(machine.platform_joints + reach[:, None, None] * [0.0, 0.0, 1.0]).max(axis=0)
+
+
+def shortest_distance(machine: Machine, way: Way) -> float:
+    """Lower bound of the distance of a strut's joints on the whole way, mm; not above 0 if none is proven."""
+    lengths = strut_lengths(machine, *way.rows(slice(None))) + machine.length_offset - abs(machine.screw_lead) / 2
+    change = way.travel[:, None] + way.turn()[:, None] * arms_from_tip(machine, way.tool_length)
+    inside = (lengths[:-1] + lengths[1:] - change[1:]) / 2
+    return float(min(lengths.min(), inside.min(initial=np.inf)))
+
+
+def stroke_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:
+    """That no strut is too short or too long."""
+    low, high = machine.strut_stroke
+    per_turn = _SCREW_SLOPE * abs(machine.screw_lead) / (2 * np.pi)
+    by_travel = 1.0 + per_turn / shortest
+    by_turn = arms_from_tip(machine, way.tool_length).max() * by_travel + per_turn
+
+    def check(name: str, code: str, told: str, sign: float, limit: float) -> Check:
+        def margins(placed: Placed) -> Array:
+            return sign * (placed.lengths() - limit)
+
+        return Check(name, code, "mm", STRUTS, told, margins, by_travel, by_turn, HUNDREDTH)
+
+    return (
+        check("shortest struts", "K101", f"strut {{part}} by {{by:.3f}} mm; it shortens to {low:g} mm", 1.0, low),
+        check("longest struts", "K102", f"strut {{part}} by {{by:.3f}} mm; it extends to {high:g} mm", -1.0, high),
+    )
+
+
+def joint_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:
+    """That no joint swings too far from its rest axis."""
+    by_travel = 1.0 / shortest
+    by_turn = arms_from_tip(machine, way.tool_length).max() / shortest
+
+    def base(placed: Placed) -> Array:
+        return machine.base_cone - swing(placed.direction, machine.base_rest)
+
+    def platform(placed: Placed) -> Array:
+        return machine.platform_cone - swing(placed.in_platform(), -machine.platform_rest)
+
+    told = "joint {part} by {by:.3f} degrees"
+    return (
+        Check("base joints", "K103", "rad", STRUTS, told, base, by_travel, by_turn, ANGLE),
+        Check("platform joints", "K104", "rad", STRUTS, told, platform, by_travel, by_turn + 1.0, ANGLE),
+    )
+
+
+def swing(direction: Array, rest: Array) -> Array:
+    """Angles between unit vectors, (N, 6); half a chord is the sine of half the angle, exact for small ones."""
+    chord = direction - rest
+    return 2.0 * np.arcsin(np.minimum(norm(chord) / 2, 1.0))
+
+
+def singularity_check(machine: Machine, way: Way, shortest: float) -> Check:
+    """That no singular pose is near, nor lies between two rows.
+
+    The least singular value of a matrix changes by no more than the matrix does, in the Frobenius norm. While it stays
+    above zero, the determinant keeps its sign: where that is other than at the start, a singular pose was passed.
+    """
+    start = np.sign(np.linalg.det(Placed.of(machine, way.rows(slice(0, 1))).scaled_jacobian()))
+    least = machine.least_singular_value
+
+    def margins(placed: Placed) -> Array:
+        jacobian = placed.scaled_jacobian()
+        value = np.linalg.svd(jacobian, compute_uv=False)[:, -1:]
+        return np.where(np.sign(np.linalg.det(jacobian)) == start, 1.0, -1.0)[:, None] * value - least
+
+    arm = norm(machine.platform_joints) / machine.characteristic_length
+    swing_by_turn = arms_from_tip(machine, way.tool_length) / shortest
+    by_travel = float(np.sqrt(np.sum(1 + arm**2)) / shortest)
+    by_turn = float(np.sqrt(np.sum(swing_by_turn**2 + ((1 + swing_by_turn) * arm) ** 2)))
+    told = f"smallest singular value below {least:g} by {{by:.4f}}"
+    return Check("singular poses", "K105", "", ("",), told, margins, by_travel, by_turn, SINGULAR, _WELL_CONDITIONED)
+
+
+_WELL_CONDITIONED = 0.1
+"""Singular values this far above the limit need not be computed for every row."""
+
+
+def smallest_singular_value(jacobian: Array, determinant: Array, limit: float) -> Array:
+    """Smallest singular values, (N,); where that cannot be below the limit, a lower bound of it that is cheap.
+
+    |det J| is the product of the singular values and |J|^2 the sum of their squares. The product of five of them is
+    largest when they are equal, so the sixth is at least |det J| / (|J|^2 / 5)^(5/2). Where that does not decide, it
+    is at least 1 / |J^-1|, and where that does not either, it is computed.
+    """
+    square = np.einsum("nij,nij->n", jacobian, jacobian)
+    bound = np.abs(determinant) / (square / 5) ** 2.5
+    near = np.flatnonzero(bound < limit)
+    regular = near[np.abs(determinant[near]) > _REGULAR]
+    inverse = np.linalg.inv(jacobian[regular])
+    bound[regular] = 1 / np.sqrt(np.einsum("nij,nij->n", inverse, inverse))
+    near = near[bound[near] < limit]
+    bound[near] = np.linalg.svd(jacobian[near], compute_uv=False)[:, -1]
+    return bound
+
+
+_REGULAR = 1e-6
+"""Determinants above it belong to Jacobians whose inverse has at least ten correct digits."""

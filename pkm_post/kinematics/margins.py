@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Margins: how far single poses are inside the limits of struts, joints and singular poses, strut by strut.
+
+For poses in order, whose neighbours matter for the sign of the determinant alone. What is between them, and bodies
+that meet, are looked at in ``workspace``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics.checks import smallest_singular_value, swing
+from pkm_post.kinematics.placed import Placed
+from pkm_post.model import Machine
+
+_CHUNK = 4096
+"""Poses per pass: the working arrays of one pass stay in the processor's cache."""
+
+
+@dataclass(frozen=True)
+class Margins:
+    """How far each pose is inside each limit; negative means outside.
+
+    Attributes:
+        shortest: (N, 6) strut length minus the shortest one, mm.
+        longest: (N, 6) the longest strut length minus this one, mm.
+        base: (N, 6) base cone minus swing of the base joint, rad.
+        platform: (N, 6) platform cone minus swing of the platform joint, rad.
+        singular: (N,) smallest singular value of the scaled Jacobian minus the least allowed, or less where it is
+            positive anyway; negative as well where the determinant has another sign than at the start of the path,
+            since a singular pose lies between.
+    """
+
+    shortest: Array
+    longest: Array
+    base: Array
+    platform: Array
+    singular: Array
+
+
+def reach_margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Margins:
+    """Margins of poses in order along a path; arguments as in ``inverse``."""
+    poses = tip, axis, spin, tool_length
+    parts = [
+        _margins(machine, *(column[first : first + _CHUNK] for column in poses)) for first in range(0, len(tip), _CHUNK)
+    ]
+    shortest, longest, base, platform, smallest, sign = (
+        np.concatenate(columns) for columns in zip(*parts, strict=True)
+    )
+    smallest = np.where(sign == sign[:1], smallest, -smallest)
+    return Margins(shortest, longest, base, platform, singular=smallest - machine.least_singular_value)
+
+
+def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> tuple[Array, ...]:
+    """Margins of a chunk; instead of that to singular poses, smallest singular value and sign of the determinant."""
+    placed = Placed.of(machine, (tip, axis, spin, tool_length))
+    length, jacobian = placed.lengths(), placed.scaled_jacobian()
+    determinant = np.linalg.det(jacobian)
+    return (
+        length - machine.strut_stroke[0],
+        machine.strut_stroke[1] - length,
+        machine.base_cone - swing(placed.direction, machine.base_rest),
+        machine.platform_cone - swing(-placed.in_platform(), machine.platform_rest),
+        smallest_singular_value(jacobian, determinant, machine.least_singular_value),
+        np.sign(determinant),
+    )

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Part: what is being cut, a mesh of triangles, boxes or points, in {M}; and how far cylinders are from it.
+
+The triangles are kept in balls within balls. A ball that is farther away than a triangle that was met already, or than
+what needs to be told, is not looked into. Units: mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry.separation import TRIANGLE_EDGES, Cylinders, separate, shadow
+from pkm_post.geometry.vectors import Array, cross, dot, norm
+from pkm_post.kinematics.bodies import corners_of
+from pkm_post.model.machine import Box
+
+_GROUP = 16
+"""Triangles in a ball, and balls in the next one."""
+_POSES = 256
+"""Poses in one pass."""
+_HAIR = 0.003
+"""mm by which what is told may be too low, so that the last of many triangles that are equally near do not matter."""
+_BOX_FACES = np.array(
+    [
+        [0, 1, 2], [1, 2, 3], [4, 5, 6], [5, 6, 7], [0, 1, 4], [1, 4, 5],
+        [2, 3, 6], [3, 6, 7], [0, 2, 4], [2, 4, 6], [1, 3, 5], [3, 5, 7],
+    ]
+)  # fmt: skip
+"""Corners of the twelve triangles of a box, numbered as ``corners_of`` has them."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """T triangles, and balls around them, around 16 neighbours, around 16 of these, and so on.
+
+    Attributes:
+        triangles: (T, 3, 3) corners, neighbours in space near to each other in order.
+        faces: (T, 4, 3) normal and edges of each.
+        balls: for each level centres (K, 3) and radii (K,); of the first, one for each triangle; of the last, at most
+            16. Ball i holds balls 16 i to 16 i + 15 of the level before.
+    """
+
+    triangles: Array
+    faces: Array
+    balls: tuple[tuple[Array, Array], ...]
+
+    @classmethod
+    def of(cls, triangles: Array | None = None, boxes: Sequence[Box] = (), points: Array | None = None) -> Part:
+        """A part of all that is given, at least one thing.
+
+        Args:
+            triangles: (T, 3, 3) corners of triangles in {M}.
+            boxes: solid boxes.
+            points: (P, 3) single points.
+        """
+        pieces = [np.empty((0, 3, 3)) if triangles is None else np.asarray(triangles, dtype=np.float64)]
+        pieces += [corners_of(box)[_BOX_FACES] for box in boxes]
+        if points is not None:
+            pieces.append(np.repeat(np.asarray(points, dtype=np.float64)[:, None, :], 3, axis=1))
+        every = np.concatenate(pieces)
+        if not len(every):
+            raise ValueError("expected a part of at least one triangle, box or point, got none")
+        every = every[np.argsort(_along_a_curve(every.mean(axis=1)), kind="stable")]
+        edges = np.roll(every, -1, axis=1) - every
+        normal = cross(edges[:, 0], edges[:, 1])[:, None]
+        return cls(every, np.concatenate([normal, edges], axis=1), tuple(_balls_around(every)))
+
+
+def _balls_around(triangles: Array) -> Iterator[tuple[Array, Array]]:
+    """Balls of all levels."""
+    points = triangles
+    while True:
+        centre = (points.min(axis=1) + points.max(axis=1)) / 2
+        yield centre, norm(points - centre[:, None]).max(axis=1)
+        if len(points) <= _GROUP:
+            return
+        groups = _members(np.arange(-(-len(points) // _GROUP)), len(points))
+        points = points[groups].reshape(len(groups), -1, 3)
+
+
+def _members(ball: Array, count: int) -> Array:
+    """What balls (K,) hold of the ``count`` of the level below, (K, 16); where there is none left, the last one."""
+    return np.minimum(ball[:, None] * _GROUP + np.arange(_GROUP), count - 1)
+
+
+def _along_a_curve(points: Array) -> Array:
+    """Numbers by which neighbours in space come to be neighbours in order: the bits of the coordinates in turn."""
+    low, size = points.min(axis=0), np.ptp(points, axis=0).max()
+    cells = ((points - low) / max(size, 1e-300) * 1023).astype(np.int64)
+    order = np.zeros(len(points), dtype=np.int64)
+    for bit in range(10):
+        for coordinate in range(3):
+            order |= (cells[:, coordinate] >> bit & 1) << (3 * bit + coordinate)
+    return order
+
+
+def distance_from_part(cylinders: Cylinders, part: Part, far: float) -> Array:
+    """Lower bounds of the distances of cylinders from the part, (M,), none of them above ``far``."""
+    passes = (cylinders.take(slice(first, first + _POSES)) for first in range(0, len(cylinders), _POSES))
+    return np.concatenate([_distance(some, part, far) for some in passes])
+
+
+def _distance(cylinders: Cylinders, part: Part, far: float) -> Array:
+    """First down to one near triangle of each pose, then to all that may be nearer."""
+    poses, top = np.arange(len(cylinders)), np.arange(len(part.balls[-1][1]))
+    near = np.tile(top, (len(poses), 1))
+    for level in reversed(range(len(part.balls))):
+        if level < len(part.balls) - 1:
+            near = _members(near[:, 0], len(part.balls[level][1]))
+        bound = _from_balls(cylinders, part.balls[level], np.repeat(poses, near.shape[1]), near.ravel())
+        near = near[poses, np.argmin(bound.reshape(near.shape), axis=1)][:, None]
+    least, plane = _measure(cylinders, part, poses, near[:, 0])
+    least = np.minimum(least, far)
+    return _lowered(cylinders, part, least, plane, *_near_triangles(cylinders, part, least))
+
+
+def _near_triangles(cylinders: Cylinders, part: Part, least: Array) -> tuple[Array, Array, Array]:
+    """Pairs of a pose and a triangle that may be nearer than the least distance so far, and how near at least, (K,)."""
+    top = len(part.balls[-1][1])
+    pose, ball = np.repeat(np.arange(len(least)), top), np.tile(np.arange(top), len(least))
+    for level in reversed(range(len(part.balls))):
+        bound = _from_balls(cylinders, part.balls[level], pose, ball)
+        near = bound < least[pose]
+        pose, ball, bound = pose[near], ball[near], bound[near]
+        if level > 0:
+            members = _members(ball, len(part.balls[level - 1][1]))
+            pose, ball = np.repeat(pose, members.shape[1]), members.ravel()
+    return pose, ball, bound
+
+
+def _lowered(
+    cylinders: Cylinders, part: Part, least: Array, plane: Array, pose: Array, triangle: Array, bound: Array
+) -> Array:
+    """The least distances (M,), lowered by those from triangles that are named with their poses, (K,) each.
+
+    The plane, with its normal (M, 3), that shows how far the nearest triangle so far is, shows the same of most others.
+    """
+    lowest = np.full(len(least), np.inf)
+    while True:
+        offset = dot(cylinders.middle, plane) + shadow(cylinders, plane)
+        x, y, z = (np.einsum("kj,kj->k", part.triangles[triangle, corner], plane[pose]) for corner in range(3))
+        bound = np.maximum(bound, np.minimum(np.minimum(x, y), z) - offset[pose])
+        near = bound < least[pose] - _HAIR
+        np.minimum.at(lowest, pose[~near], bound[~near])
+        pose, triangle, bound = pose[near], triangle[near], bound[near]
+        if not len(pose):
+            return np.minimum(least, lowest)
+        order = np.lexsort((bound, pose))
+        first = order[np.append(True, pose[order][1:] != pose[order][:-1])]
+        bound[first], direction = _measure(cylinders, part, pose[first], triangle[first])
+        nearer = bound[first] < least[pose[first]]
+        rows = pose[first][nearer]
+        least[rows], plane[rows] = bound[first][nearer], direction[nearer]
+
+
+def _from_balls(cylinders: Cylinders, balls: tuple[Array, Array], pose: Array, ball: Array) -> Array:
+    """Distances of cylinders from balls, pair by pair, (K,), negative inside."""
+    away = balls[0][ball] - cylinders.middle[pose]
+    high = dot(away, cylinders.axis[pose])
+    out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
+    beside = np.maximum(out - cylinders.radius[pose], 0.0)
+    return np.hypot(beside, np.maximum(np.abs(high) - cylinders.half[pose], 0.0)) - balls[1][ball]
+
+
+def _measure(cylinders: Cylinders, part: Part, pose: Array, triangle: Array) -> tuple[Array, Array]:
+    """Distances (K,) and normals (K, 3) of planes between cylinders and triangles, pair by pair."""
+    return separate(cylinders.take(pose), part.triangles[triangle], part.faces[triangle], TRIANGLE_EDGES)

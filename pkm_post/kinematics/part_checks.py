@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Part checks: spindle, holder and struts against the part.
+
+Only surfaces count: a body that is inside of the part from the first pose on is not seen, one that enters it is. The
+tool is not a body: it is there to touch the part. Units: mm.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics.between import Check
+from pkm_post.kinematics.bodies import cylinders_of, has_strut_bodies, lever_of_rod, reach_of_body, strut_cylinders
+from pkm_post.kinematics.checks import HUNDREDTH, STRUTS, arms_from_tip
+from pkm_post.kinematics.interference import COMFORT
+from pkm_post.kinematics.part import Part, distance_from_part
+from pkm_post.kinematics.placed import Placed
+from pkm_post.kinematics.way import Way
+from pkm_post.model import Machine
+from pkm_post.model.machine import Body
+
+_FAR = 5 * COMFORT
+"""mm: no margin is told beyond it. It leaves the survey room to go in large steps."""
+
+
+def part_checks(machine: Machine, way: Way, shortest: float, part: Part) -> tuple[Check, ...]:
+    """That bodies of the platform and struts keep clear of the part; none for what the machine file does not state.
+
+    Args:
+        machine: bodies and struts.
+        way: for the longest tool.
+        shortest: no joints of a strut come nearer to each other on the way, mm.
+        part: what they keep clear of.
+    """
+    far = _FAR + machine.clearance
+    checks = [
+        Check(
+            f"{body.name} and part", "K117", "mm", (body.name,), "{part} by {by:.3f} mm",
+            partial(_of_body, body, part, far), 1.0, reach_of_body(machine, way, body), HUNDREDTH, COMFORT,
+        )
+        for body in machine.bodies
+    ]  # fmt: skip
+    if has_strut_bodies(machine):
+        lever, arm = lever_of_rod(machine, shortest), float(arms_from_tip(machine, way.tool_length).max())
+        checks.append(
+            Check(
+                "strut and part", "K121", "mm", STRUTS, "strut {part} by {by:.3f} mm", partial(_of_struts, part, far),
+                lever, lever * arm, HUNDREDTH, COMFORT,
+            )
+        )  # fmt: skip
+    return tuple(checks)
+
+
+def _of_body(body: Body, part: Part, far: float, placed: Placed) -> Array:
+    """Margins of one body, (M, 1)."""
+    return distance_from_part(cylinders_of(placed, body), part, far)[:, None] - placed.machine.clearance
+
+
+def _of_struts(part: Part, far: float, placed: Placed) -> Array:
+    """Margins of the struts, (M, 6)."""
+    pieces = [distance_from_part(piece, part, far) for piece in strut_cylinders(placed)]
+    return np.min(pieces, axis=0).reshape(-1, 6) - placed.machine.clearance

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Way: tool poses in order, what lies between them, and how far a point of the platform can come on it at most.
+
+Cell i leads from row i - 1 to row i. Inside it the pose is known for any share of the cell, from 0 to 1, and tip, axis
+and spin move evenly with the share: the tip along a line or an arc, the axis along a great circle. Two numbers bound
+what any point of the platform does in a cell: it moves by no more than travel + turn * its distance from the tip.
+
+The platform turns by w = k x k' + (psi' + tau) k, |tau| <= tan(tilt / 2) |k'|, so that turn^2 = angle^2 + (|spin| +
+tan(tilt / 2) angle)^2 with the highest tilt of the cell. Units: mm, rad.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry.great_circle import along, angle_between, towards
+from pkm_post.geometry.vectors import Array, norm
+
+Pose = tuple[Array, Array, Array, Array]
+"""Tips (N, 3), unit tool axes (N, 3), spins (N,), gauge lengths (N,): the arguments of ``inverse``."""
+
+_ALMOST_DOWN = np.pi / 2 - 1e-3
+"""Half of the highest tilt that has a bound of the turn; a platform does not come near it."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """N poses and the cells between them; cell 0 has no extent.
+
+    Attributes:
+        tip: (N, 3) tool tips in {M}.
+        axis: (N, 3) unit tool axes.
+        spin: (N,) spins.
+        tool_length: (N,) gauge lengths, of the cell that ends at the row as well.
+        travel: (N,) length of the tip's way in the cell, or more.
+        bend: (N,) largest second derivative of the tip by the share of the cell: 0 on lines, sweep^2 radius on arcs.
+        angle: (N,) angle the tool axis turns in the cell.
+        spin_change: (N,) change of the spin in the cell.
+        inside: pose at shares (M,) of cells (M,).
+    """
+
+    tip: Array
+    axis: Array
+    spin: Array
+    tool_length: Array
+    travel: Array
+    bend: Array
+    angle: Array
+    spin_change: Array
+    inside: Callable[[Array, Array], Pose]
+
+    @classmethod
+    def straight(cls, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Way:
+        """The way through poses, tips on straight lines; arguments as in ``inverse``.
+
+        Where the gauge length changes, the platform stands still, and the tip of the new tool starts elsewhere.
+        """
+        before = np.maximum(np.arange(len(tip)) - 1, 0)
+        start = tip[before] - (tool_length - tool_length[before])[:, None] * axis[before]
+        chord, change = tip - start, spin - spin[before]
+
+        def inside(cell: Array, share: Array) -> Pose:
+            beginning, part = axis[before[cell]], share[:, None]
+            turned = along(beginning, part * towards(beginning, axis[cell]))
+            shifted = start[cell] + part * chord[cell]
+            return shifted, turned, spin[before[cell]] + share * change[cell], tool_length[cell]
+
+        return cls(
+            tip=tip,
+            axis=axis,
+            spin=spin,
+            tool_length=tool_length,
+            travel=norm(chord),
+            bend=np.zeros(len(tip)),
+            angle=angle_between(axis[before], axis),
+            spin_change=change,
+            inside=inside,
+        )
+
+    def __len__(self) -> int:
+        return len(self.tip)
+
+    def rows(self, rows: slice | Array) -> Pose:
+        """The poses of some rows."""
+        return self.tip[rows], self.axis[rows], self.spin[rows], self.tool_length[rows]
+
+    def half_tilt(self) -> Array:
+        """Tangent of half the highest tilt in each cell, (N,)."""
+        tilt = np.arctan2(np.hypot(self.axis[:, 0], self.axis[:, 1]), self.axis[:, 2])
+        highest = np.maximum(tilt, np.concatenate([tilt[:1], tilt[:-1]])) + self.angle / 2
+        return np.tan(np.minimum(highest / 2, _ALMOST_DOWN))
+
+    def turn(self) -> Array:
+        """Angle the platform turns in each cell, or more, (N,)."""
+        return np.hypot(self.angle, np.abs(self.spin_change) + self.half_tilt() * self.angle)

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reach: whether a machine can follow a trajectory, everywhere and not only at samples.
+
+A trajectory and a machine enter; a report leaves: for each check its least margin, what has it and in which block, the
+first block that violates it, and what to do. As data, as text, as a dictionary for JSON, and as columns by pose.
+
+The trajectory is taken as it is written: lines, arcs, great circles, even spin. The rounded corners that the machine
+will drive differ from it by less than the tolerances of the job; posting checks those. Units: mm, rad, s inside,
+degrees in texts and in JSON.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pkm_post.feed.segments import Segments
+from pkm_post.geometry.vectors import Array, norm
+from pkm_post.kinematics import Finding, Part, Way, faults_of, reach_findings
+from pkm_post.kinematics.findings import SHOWN
+from pkm_post.kinematics.way import Pose
+from pkm_post.model import RULES, Diagnostic, Machine, Trajectory
+
+_LONGEST_CELL = 5.0
+"""mm or degrees of path length"""
+_WIDEST_CELL = np.radians(2.0)
+"""rad of axis turn, arc sweep or spin; so the margin of a pose is told at least so often."""
+_CHUNK = 65536
+"""Cells per pass where poses are computed."""
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What the checks say of a trajectory; N poses, each the end of a cell of the way.
+
+    Attributes:
+        trajectory: what was checked.
+        machine: on which machine.
+        tip: (N, 3) tool tips of the poses in {M}, for pictures.
+        segment: (N,) segment of the trajectory that each pose lies on.
+        findings: one for each check.
+    """
+
+    trajectory: Trajectory
+    machine: Machine
+    tip: Array
+    segment: Array
+    findings: tuple[Finding, ...]
+
+    def faults(self) -> tuple[Diagnostic, ...]:
+        """One diagnostic for each check and operation that violates it, at its worst."""
+        return faults_of(self.findings, self.trajectory, self.segment)
+
+    def column(self, name: str) -> Array:
+        """Margins of one check by pose, (N,), in the units inside; to colour the tips by."""
+        margins = {finding.subject.name: finding.margin for finding in self.findings}
+        if name not in margins:
+            raise ValueError(f"expected one of {', '.join(margins)}, got {name!r}")
+        return margins[name]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The report for JSON."""
+        return {
+            "format": 1,
+            "machine": self.machine.name,
+            "source": self.trajectory.source,
+            "poses": len(self.segment),
+            "blocks": len(self.trajectory),
+            "characteristic_length": self.machine.characteristic_length,
+            "checks": [self._check(finding) for finding in self.findings],
+        }
+
+    def _check(self, finding: Finding) -> dict[str, Any]:
+        subject, worst, first = finding.subject, finding.worst_row, finding.first_bad_row
+        unit, factor = SHOWN[subject.unit]
+        return {
+            "name": subject.name,
+            "code": subject.code,
+            "unit": unit,
+            "margin": float(finding.margin[worst]) * factor,
+            "proven_margin": finding.at_least * factor if math.isfinite(finding.at_least) else None,
+            "part": subject.parts[finding.part[worst]],
+            "worst": self._where(worst),
+            "first_violation": None if first is None else self._where(first),
+            "cure": None if first is None else RULES[subject.code].cure,
+        }
+
+    def _where(self, row: int) -> dict[str, Any]:
+        segment = int(self.segment[row])
+        place = self.trajectory.place(segment)
+        return {"block": segment + 1, "operation": place.operation, "line": place.line}
+
+    def text(self) -> str:
+        """The report for people: a table, and for each violation what to do."""
+        report = self.as_dict()
+        head = ("check", "least margin", "proven", "of", "worst at", "first violation at")
+        rows = [head, *(_row(check) for check in report["checks"])]
+        widths = [max(len(row[column]) for row in rows) for column in range(len(head))]
+        table = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+        cures = [f"{check['name']}: {check['cure']}" for check in report["checks"] if check["cure"]]
+        first = f"{report['source']} on {report['machine']}: {report['blocks']} blocks, {report['poses']} poses"
+        scale = f"rotation columns of the Jacobian divided by {report['characteristic_length']:g} mm"
+        return "\n".join([first, scale, "", *table, *([""] if cures else []), *cures]) + "\n"
+
+
+def _row(check: dict[str, Any]) -> tuple[str, ...]:
+    proven, first = check["proven_margin"], check["first_violation"]
+    return (
+        check["name"],
+        f"{check['margin']:.4g} {check['unit']}".rstrip(),
+        "rows only" if proven is None else f"{proven:.4g}",
+        check["part"],
+        _told(check["worst"]),
+        "none" if first is None else _told(first),
+    )
+
+
+def _told(where: dict[str, Any]) -> str:
+    operation = f"{where['operation']}, " if where["operation"] else ""
+    return f"{operation}line {where['line']}"
+
+
+def reach(
+    trajectory: Trajectory,
+    machine: Machine,
+    part: Part | None = None,
+    normal: Array | None = None,
+    least_stiffness: float = 0.0,
+) -> Reach:
+    """Check a whole trajectory.
+
+    Args:
+        trajectory: in {M}, at least one segment.
+        machine: its limits; a check whose numbers it does not state is left out.
+        part: what spindle and holder must not touch, in {M}.
+        normal: (S, 3) unit normals of the surface at the ends of the S segments, in {M}, for the stiffness.
+        least_stiffness: what the tip must have along the normals, N/mm.
+    """
+    way, segment, duration = way_of(trajectory)
+    by_pose = None if normal is None else normal[segment]
+    findings = reach_findings(machine, way, part, duration, by_pose, least_stiffness)
+    return Reach(trajectory, machine, way.tip, segment, findings)
+
+
+def way_of(trajectory: Trajectory) -> tuple[Way, Array, Array]:
+    """The way of a trajectory, the segment of each of its rows (N,), and the time at the feed of each cell (N,)."""
+    segments, tool_length = Segments.of(trajectory), trajectory.tool_length()
+    turn = np.maximum(np.maximum(norm(segments.axis_rate), segments.turn), np.abs(segments.spin_rate))
+    widest = np.maximum(segments.extent / _LONGEST_CELL, segments.extent * turn / _WIDEST_CELL)
+    cells = np.maximum(1, np.ceil(widest)).astype(np.int64)
+    width = segments.extent / cells
+    segment = np.concatenate([[0], np.repeat(np.arange(len(cells)), cells)])
+    number = np.arange(len(segment)) - 1 - (np.cumsum(cells) - cells)[segment]
+    extent = np.concatenate([[0.0], width[segment[1:]]])
+    start = np.concatenate([[0.0], number[1:] * extent[1:]])
+
+    def inside(cell: Array, share: Array) -> Pose:
+        at, u = segment[cell], start[cell] + share * extent[cell]
+        spin = segments.spin[at] + u * segments.spin_rate[at]
+        return segments.tip_at(at, u)[0], segments.axis_at(at, u)[0], spin, tool_length[at]
+
+    chunks = [np.arange(first, min(first + _CHUNK, len(segment))) for first in range(0, len(segment), _CHUNK)]
+    tip, axis, spin, length = (
+        np.concatenate(columns) for columns in zip(*(inside(rows, np.ones(len(rows))) for rows in chunks), strict=True)
+    )
+    travel, bend = _motion_of_tip(segments)
+    way = Way(
+        tip=tip,
+        axis=axis,
+        spin=spin,
+        tool_length=length,
+        travel=travel[segment] * extent,
+        bend=bend[segment] * extent**2,
+        angle=norm(segments.axis_rate)[segment] * extent,
+        spin_change=segments.spin_rate[segment] * extent,
+        inside=inside,
+    )
+    return way, segment, extent / trajectory.feed[segment]
+
+
+def _motion_of_tip(segments: Segments) -> tuple[Array, Array]:
+    """Bounds of the first and of the second derivative of the tip by path length, (S,) each."""
+    growth = np.abs(segments.growth)
+    radius = norm(segments.radius)
+    largest = radius * (1 + growth * segments.extent)
+    first = np.hypot(norm(segments.tangent), largest * segments.turn) + growth * radius
+    return first, 2 * growth * radius * segments.turn + largest * segments.turn**2
