@@ -14,6 +14,7 @@ import numpy as np
 
 from pkm_post import pipeline
 from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import Part
 from pkm_post.model import Diagnostic, Machine, Program
 from pkm_post.position import best_position
 from pkm_post.reach import Reach, reach
@@ -49,7 +50,7 @@ class Study:
 
 
 def study(
-    program: Program, machine: Machine, options: pipeline.Options, free: str = ""
+    program: Program, machine: Machine, options: pipeline.Options, free: str = "", part: Array | None = None
 ) -> tuple[Study | None, tuple[Diagnostic, ...]]:
     """Check a program on a machine.
 
@@ -58,6 +59,7 @@ def study(
         machine: geometry and limits.
         options: work offset, spin and compensation.
         free: letters of ``position.FREEDOMS`` in which the part may be moved; none leaves it where it is.
+        part: (T, 3, 3) corners of triangles in {C} that spindle and holder must not touch.
 
     Returns:
         The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
@@ -79,8 +81,14 @@ def study(
         return None, told
     if options.spin.rule is not Rule.ZERO:
         stages.append((f"spin {options.spin.rule.value}", least_shares(turned, machine)))
-    checked = reach(turned, machine)
+    checked = reach(turned, machine, _in_machine(part, turned.machine_from_work))
     return Study(checked, tuple(stages), turned.machine_from_work), (*told, *checked.faults())
+
+
+def _in_machine(triangles: Array | None, machine_from_work: Array) -> Part | None:
+    if triangles is None or not len(triangles):
+        return None
+    return Part.of(triangles @ machine_from_work[:3, :3].T + machine_from_work[:3, 3])
 
 
 def told_offset(machine_from_work: Array) -> str:

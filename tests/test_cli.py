@@ -150,3 +150,12 @@ def test_machine_list_and_check(tmp_path):
     assert checked.returncode == 0
     assert "complete" in checked.stdout
     assert pkm_post("machine", "check", "no_such_machine").returncode == 1
+
+
+def test_reach_of_a_document_tells_where_it_could_lie_better(tmp_path):
+    part = saved_job(tmp_path / "part.FCStd")
+    told = pkm_post("reach", part, "--place", "xy", "--json", *REACHED)
+    assert told.returncode == 0, told.stderr
+    (study,) = json.loads(told.stdout)
+    assert [stage["stage"] for stage in study["left"]] == ["as it is, zero torsion", "moved in x, y"]
+    assert "spindle and part" in [check["name"] for check in study["checks"]]

@@ -15,10 +15,11 @@ from pkm_post.cli.reading import add_reading, reading_from
 from pkm_post.options import add_options, options_from, tool_lengths_from
 
 if TYPE_CHECKING:
+    from pkm_post.geometry.vectors import Array
     from pkm_post.model import Diagnostic, Program
     from pkm_post.pipeline import Options
 
-    Read = tuple[Program | None, tuple[Diagnostic, ...], Options]
+    Read = tuple[Program | None, tuple[Diagnostic, ...], Options, Array | None]
 
 
 def add_commands(commands: Any) -> None:
@@ -59,9 +60,9 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     _tell(faults)
     failed = machine is None
     found = []
-    for program, told, options in _programs(namespace):
+    for program, told, options, part in _programs(namespace):
         if program is not None and machine is not None:
-            made, more = study(program, machine, options, namespace.place)
+            made, more = study(program, machine, options, namespace.place, part)
             told += more
             found += [made] if made else []
         _tell(told)
@@ -80,7 +81,7 @@ def _programs(namespace: argparse.Namespace) -> Iterator[Read]:
     for file in namespace.files:
         options, lengths = options_from(namespace), tool_lengths_from(namespace)
         if is_part_program(file):
-            yield read_to_post(file, options, lengths, reading_from(namespace))
+            yield *read_to_post(file, options, lengths, reading_from(namespace)), None
         else:
             from pkm_post.freecad_app.post_job import read_document
 

@@ -109,7 +109,9 @@ def test_each_contour_has_its_own_walls_and_its_own_diagnostic():
         for name in ("kind", "position", "tool_axis", "feed", "arc_centre", "arc_axis", "operation", "line")
     }
     twice["line"] = np.arange(1, 2 * count + 1)
-    both = replace(first, **twice, exact_stop=None, side_offset=np.tile(first.side_offset, 2), plane=None, normal=None)
+    both = replace(
+        first, **twice, exact_stop=None, side_offset=np.tile(first.side_offset, 2), plane=None, normal=None, spin=None
+    )
     assert codes(offset_contours(both)[1]) == [("N204", 5), ("N204", 5 + count)]
 
 

@@ -53,3 +53,12 @@ def test_a_job_that_cannot_be_read_is_refused(job):
     with pytest.raises(Refused) as refused:
         study_job(job)
     assert [fault.code for fault in refused.value.diagnostics] == ["M101"]
+
+
+def test_the_model_of_the_job_is_the_part(job):
+    # The box of the job is 20 mm high; with a tool of 15 mm the holder would be in it.
+    job.PostProcessorArgs = "--work-offset=0,0,250 --tool-length 1=15"
+    told = [fault for fault in study_job(job).reach.faults() if fault.code == "K117"]
+    assert told
+    job.PostProcessorArgs = "--work-offset=0,0,250 --tool-length 1=120"
+    assert "K117" not in [fault.code for fault in study_job(job).reach.faults()]
