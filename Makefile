@@ -5,11 +5,13 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format fuzz clean
+.PHONY: help demo test lint format fuzz conformance clean
 
 PYTHON ?= python3
 VENV := .venv
 FUZZ_VENV := .venv-fuzz
+CONFORMANCE := .conformance
+NPM_PACKAGES := kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 js-yaml@5.5.0
 FUZZ_SECONDS ?= 120
 OUT ?= out
 ARGS ?=
@@ -24,7 +26,7 @@ endef
 
 help: ## print this list
 	@echo "make TARGET, where TARGET is one of"
-	@sed -n 's/^\([a-z]*\):.*## /  \1\t/p' Makefile | expand -t 12
+	@sed -n 's/^\([a-z]*\):.*## /  \1\t/p' Makefile | expand -t 14
 	@echo "PKM_FREECAD=1.0 or 1.1 chooses the FreeCAD; 'tools/freecad --help' tells which one it is otherwise."
 
 demo: export PKM_MODULES = numpy matplotlib
@@ -49,9 +51,21 @@ fuzz: $(FUZZ_VENV)/made ## feed the readers of part programs with bytes (FUZZ_SE
 	@PYTHONPATH=. $(FUZZ_VENV)/bin/python fuzz/part_programs.py -max_total_time=$(FUZZ_SECONDS) \
 		-timeout=20 -rss_limit_mb=2048 -print_final_stats=1
 
+conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it
+	@$(VENV)/bin/python tests/trajectory_file/conformance.py $(CONFORMANCE)
+
 clean: ## remove what the targets left in this directory
-	rm -rf out $(VENV) $(FUZZ_VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf out $(VENV) $(FUZZ_VENV) $(CONFORMANCE) .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +
+
+# Kaitai's compiler is a package of npm; it is not needed to use or to test PKM Post, so .ci/run does without.
+$(CONFORMANCE)/made: Makefile
+	@type -P node npm >/dev/null || { echo "Node.js and npm are needed: sudo apt-get install nodejs npm" >&2; exit 1; }
+	@echo "making $(@D)"
+	@mkdir -p $(@D) && echo '*' >$(@D)/.gitignore
+	@npm install --loglevel=error --no-audit --no-fund --prefix $(@D) $(NPM_PACKAGES) || \
+		{ echo "npm could not install $(NPM_PACKAGES): is its registry reachable?" >&2; exit 1; }
+	@touch $@
 
 # A virtual environment with the packages of one dependency group of pyproject.toml.
 $(VENV)/made: GROUP = dev

@@ -199,11 +199,6 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
     _add(parser, ("--machine",))
 
 
-def add_tolerances(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the tolerances."""
-    _add(parser, ("--tip-tolerance", "--axis-tolerance"))
-
-
 def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
     for flag in flags:
         parser.add_argument(flag, **_ARGUMENTS[flag])

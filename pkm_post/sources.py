@@ -7,6 +7,7 @@ says what its tools measure. That is no fault until cutter compensation asks for
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -60,7 +61,10 @@ def read_part_program(file: Path, reading: Reading) -> Result:
         content = file.read_bytes()
     except OSError as fault:
         return None, (Diagnostic("F103", Place(str(file)), str(fault)),)
-    return SUFFIXES[file.suffix.lower()](content, str(file), reading)
+    program, diagnostics = SUFFIXES[file.suffix.lower()](content, str(file), reading)
+    if program is not None:
+        program = replace(program, source_fingerprint=hashlib.sha256(content).hexdigest())
+    return program, diagnostics
 
 
 def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:

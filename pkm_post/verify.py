@@ -15,18 +15,16 @@ from pkm_post.certificate import certify
 from pkm_post.controllers import controller_of, part_siblings
 from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion
 from pkm_post.model.diagnostics import errors
-from pkm_post.model.findings import Tolerances
 from pkm_post.report import summary
 
 
-def verify(program: Path, trajectory: Path, machine: Machine, tolerances: Tolerances) -> dict[str, Any]:
+def verify(program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
     """Certify a program that was written before.
 
     Args:
         program: the motion program, or the first of its parts.
-        trajectory: the trajectory file it was made from.
+        trajectory: the trajectory file it was made from; it says what tolerances were asked for.
         machine: the machine it was made for.
-        tolerances: what was asked for when it was posted.
 
     Returns:
         The report; its certificate holds.
@@ -38,6 +36,9 @@ def verify(program: Path, trajectory: Path, machine: Machine, tolerances: Tolera
     if planned is None:
         raise Refused(faults)
     struts = _read(program, machine)
+    tolerances = planned.tolerances
+    if tolerances is None:
+        raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
     path = planning.tool_path(planned, tolerances)
     schedule, faults = planning.plan_feed(path, planned, machine)
     if errors(faults):

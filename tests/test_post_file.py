@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """G-code and CL data are posted without FreeCAD, or refused with all that is wrong."""
 
+import hashlib
 import subprocess
 import sys
 from pathlib import Path
@@ -8,7 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pkm_post import trajectory_file
 from pkm_post.model import Refused
+from pkm_post.model.findings import Tolerances
 from pkm_post.pipeline import Options
 from pkm_post.post_file import post_file
 from pkm_post.sources import Reading
@@ -58,6 +61,41 @@ def test_g_code_and_cl_data_of_one_path_give_one_report(tmp_path):
     ]
     assert all(report["certificate"]["holds"] for report in reports)
     assert reports[0]["motion"] == reports[1]["motion"]
+
+
+CONTOUR = """\
+T1 M6 G43 H1
+G21 G90 G94 S8000 M3
+G0 X-30 Y-30 Z20
+G1 G41 X-20 Y-20 F600
+Y20
+X20
+Y-20
+X-20
+G1 G40 X-30 Y-30
+M30
+"""
+
+
+def test_a_compensated_contour_is_cut_beside_what_is_programmed(tmp_path):
+    made = posted(tmp_path, "contour.ngc", CONTOUR, reading=Reading("none", {1: 8.0}))
+    assert made.report["certificate"]["holds"]
+    (x0, y0, _), (x1, y1, _) = made.report["program"]["box_mm"]
+    assert (x1, y1) == (24.0, 24.0)
+    assert (x0, y0) == (-30.0, -30.0)
+
+
+def test_a_contour_too_narrow_for_the_tool_is_refused(tmp_path):
+    with pytest.raises(Refused) as refused:
+        posted(tmp_path, "a.ngc", CONTOUR.replace("G41", "G42"), reading=Reading("none", {1: 60.0}))
+    assert {fault.code for fault in refused.value.diagnostics} <= {"N202", "N204", "N205"}
+
+
+def test_the_trajectory_names_its_source_by_its_hash(tmp_path):
+    made = posted(tmp_path, "part.ngc", G_CODE, reading=Reading("vector"))
+    trajectory, _ = trajectory_file.read(made.program.with_suffix(".pkmt"))
+    assert trajectory.source_fingerprint == hashlib.sha256(G_CODE.encode()).hexdigest()
+    assert trajectory.tolerances == Tolerances(0.001, np.radians(0.001))
 
 
 def test_all_files_carry_the_stem(tmp_path):

@@ -56,7 +56,7 @@ def judge(machine, posted):
 
 
 def test_a_posted_program_is_verified(machine, posted):
-    report = verify(posted.program, posted.program.with_suffix(".pkmt"), machine, TOLERANCES)
+    report = verify(posted.program, posted.program.with_suffix(".pkmt"), machine)
     assert report == posted.report
 
 
@@ -114,7 +114,7 @@ def test_swapped_struts_are_found(posted, judge):
 def test_another_machine_is_found(machine, posted, change):
     other = dataclasses.replace(machine, **change)
     with pytest.raises(Refused):
-        verify(posted.program, posted.program.with_suffix(".pkmt"), other, TOLERANCES)
+        verify(posted.program, posted.program.with_suffix(".pkmt"), other)
 
 
 @pytest.mark.parametrize(
@@ -124,8 +124,16 @@ def test_another_machine_is_found(machine, posted, change):
 def test_files_that_are_something_else_are_told(machine, posted, program, trajectory, code):
     folder = posted.program.parent
     with pytest.raises(Refused) as refused:
-        verify(folder / program, folder / trajectory, machine, TOLERANCES)
+        verify(folder / program, folder / trajectory, machine)
     assert code in [fault.code for fault in refused.value.diagnostics]
+
+
+def test_a_trajectory_without_tolerances_is_refused(machine, posted, tmp_path):
+    trajectory, _ = trajectory_file.read(posted.program.with_suffix(".pkmt"))
+    trajectory_file.write(dataclasses.replace(trajectory, tolerances=None), tmp_path / "bare.pkmt")
+    with pytest.raises(Refused) as refused:
+        verify(posted.program, tmp_path / "bare.pkmt", machine)
+    assert [fault.code for fault in refused.value.diagnostics] == ["T105"]
 
 
 def test_the_command(posted, capsys, tmp_path):

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pkm_post.options import add_machine, add_tolerances, tolerances_from
+from pkm_post.options import add_machine
 
 
 def add_commands(commands: Any) -> None:
@@ -20,7 +20,6 @@ def add_commands(commands: Any) -> None:
     verifying.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
     verifying.add_argument("--json", action="store_true", help="write the whole report as JSON")
     add_machine(verifying)
-    add_tolerances(verifying)
     verifying.set_defaults(run=_verify)
 
 
@@ -35,7 +34,7 @@ def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if machine is None:
         return 1
     try:
-        report = verify(namespace.program, namespace.against, machine, tolerances_from(namespace))
+        report = verify(namespace.program, namespace.against, machine)
     except Refused as refused:
         print(refused, file=sys.stderr)
         return 1

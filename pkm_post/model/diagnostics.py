@@ -127,6 +127,7 @@ RULES: dict[str, Rule] = {
         "lean the tool there, or take a ball end mill",
     ),
     "N107": _error("an arc would not stay an arc in 3D compensation", "let the CAM system write straight moves"),
+    "N109": _error("the cutter the path was made for is not known", "give the tool with its diameter and corner"),
     "N108": _error("there are no surface normals to compensate with", "let the CAM system write normals"),
     "N111": _error(
         "a cutting move ends on no face of the model",
@@ -137,7 +138,7 @@ RULES: dict[str, Rule] = {
         "choose the face that is cut in the property Faces, or keep the path off the edge",
     ),
     "N113": _error(
-        "the surface normal turns too much from one point to the next",
+        "the surface normal or the tool axis turns too much from one point to the next",
         "put the points of the operation closer together, end the cut at the edge, or allow more as ChordTolerance",
     ),
     "N114": _error(
@@ -156,7 +157,6 @@ RULES: dict[str, Rule] = {
     ),
     "N206": _error("cutter compensation has no one plane here", "keep plane and tool axis, and arcs in the plane"),
     "K110": _warning("the feed is beyond the machine and is limited", "program a feed that the machine can run"),
-    "K111": _error("2D cutter compensation (G41, G42) is not applied yet", "let the CAM system offset the path"),
     "K112": _error("cutter compensation would leave its plane", "compensate before the path is turned or mirrored"),
     "K113": _error("two struts come too near to each other", "turn the platform about the tool axis, or move the part"),
     "K114": _error("a strut comes too near to the spindle or its platform", "tilt the tool less, or turn the platform"),
@@ -166,6 +166,7 @@ RULES: dict[str, Rule] = {
     "K118": _warning("a strut cannot keep up with the feed, and the tool will be slower", "program a lower feed"),
     "K120": _error("the tool axis is at right angles to the plane that the spin is kept to", "choose another spin"),
     "K119": _error("the machine is too compliant along the surface normal", "tilt the tool less, or move the part"),
+    "K121": _error("a strut comes too near to the part", "move or turn the part on the table"),
     # N3: paths over a surface
     "N301": _error("only closed lines along u or v can be joined to a spiral", "choose Zigzag or One way"),
     "N302": _error("there is nothing to be covered", "choose faces that have an area"),
@@ -178,9 +179,8 @@ RULES: dict[str, Rule] = {
     "N306": _warning("the surface has an edge, where the tool turns at once", "cover the faces beside it one by one"),
     "N307": _error("the path lies above the height at which the tool crosses", "raise SafeHeight and ClearanceHeight"),
     "N308": _error("no face is chosen", "add faces as base geometry"),
-    "N309": _error("a tapered tool cannot finish a surface yet", "choose a ball end, bull nose or flat end mill"),
-    "N310": _error("a value has no meaning", "correct the property"),
-    "N311": _error("the machine cannot reach the part with the tool upright", "move the part, or take another tool"),
+    "N309": _error("a value has no meaning", "correct the property"),
+    "N310": _error("the machine cannot reach the part with the tool upright", "move the part, or take another tool"),
     # G1, G2: the letters and the grammar of G-code
     "G101": _error("a character has no meaning here", "remove it, or put the text into a comment"),
     "G102": _error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),
@@ -237,18 +237,31 @@ RULES: dict[str, Rule] = {
     "L415": _warning("statements behind FINI were passed over", "remove them, or remove FINI"),
     "L416": _error("an inverse time feed needs a way to go", "give such moves a feed in mm/min"),
     "L417": _error("it is not known where the tool is", "write FROM or GOTO before"),
+    "L418": _warning(
+        "e and f do not put the corner of the cutter against its bottom and side, and were passed over",
+        "write the e and f of a corner that touches both, or leave them out",
+    ),
     # T: the binary trajectory
     "T101": _error("the file is not a trajectory file", "give a .pkmt file"),
     "T102": _error("the trajectory file has a version that this program does not know", "use a newer PKM Post"),
     "T103": _error("the trajectory file is damaged", "make it again from its source"),
     "T104": _error("the trajectory was made for another machine", "post the job again for this machine"),
+    "T105": _error("the trajectory file does not say what tolerances were asked for", "post the job again"),
     # C: the controller's program
     "C101": _error("the program has a line that is not understood", "post the job again; do not edit the program"),
-    "C102": _error("the program is larger than the controller's memory", "post fewer operations at a time"),
+    "C102": _error(
+        "the program is larger than the controller's memory and rests nowhere to be cut",
+        "post fewer operations at a time, or put a stop into the job where the tool is free",
+    ),
     "C103": _error("the line is too long for the controller", "use fewer decimals in the machine file"),
     "C104": _error(
         "an event has no code of the controller", "give it one under [controller.codes] in the machine file"
     ),
+    "C105": _error(
+        "the parts of the program do not belong together", "keep all parts of one posting together; post the job again"
+    ),
+    "C106": _error("the table has a line that is not understood", "post the job again; do not edit the table"),
+    "C107": _error("the table differs from the motion it was made from", "post the job again; do not edit the table"),
     # V: the certificate
     "V101": _error("the tool tip leaves the programmed path", "ask for a wider tolerance, or report this as a fault"),
     "V102": _error("the tool axis leaves the programmed axis", "ask for a wider tolerance, or report this as a fault"),
@@ -302,11 +315,26 @@ RULES: dict[str, Rule] = {
     "G419": _error("this cannot be done while cutter compensation is on", "switch it off before with G40"),
     "G420": _error("nothing moves in the program", "check the file"),
     "G421": _error("the length offset is not the tool's own, and the tool axis can tilt", "write the tool's own H"),
+    "G422": _error("the surface normal is not known", "write NX, NY and NZ, not all zero"),
+    "G423": _warning(
+        "the surface normal was not of unit length and was normalised", "write unit vectors with 6 decimals"
+    ),
+    "G424": _error(
+        "the tool is tilted, and X Y Z are not those of its tip",
+        "write upright words for the tool axis before TRAFOOF, G43 or G49, or TRAORI, G43.4 or G43.5 before the move",
+    ),
     # G5: writing G-code
     "G501": _error("the tool axis tilts, and this form of G-code cannot say it", "choose a form with five axes"),
     "G502": _error("the tool axis points down, and this form of G-code cannot say it", "choose vectors or a head"),
     "G503": _warning("arcs that this form of G-code cannot say are written as lines", "none is needed"),
-    "G504": _warning("surface normals cannot be said in G-code and are left out", "keep the source of the program"),
+    "G504": _warning(
+        "surface normals cannot be said in this form of G-code and are left out", "keep the source of the program"
+    ),
+    "G505": _warning(
+        "a control that moves these angles evenly swings the tool out of its way",
+        "divide the moves in the CAM system, or write the tool axis as vectors",
+    ),
+    "G506": _error("a feed is so slow that it would be written as zero", "program a feed of 0.001 a minute at least"),
     # F: files
     "F101": _error("the output cannot be written", "check the folder, its permissions and the free space"),
     "F102": _warning("the picture was not made: matplotlib is missing", "install python3-matplotlib"),

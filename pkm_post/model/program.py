@@ -65,6 +65,7 @@ class Program:
         operations: names of the operations the rows come from.
         tools: the tools used, by number.
         source: name of the file the program comes from.
+        source_fingerprint: SHA-256 of the bytes of that file, hexadecimal; empty where it is not known.
         exact_stop: (N,) whether the motion comes to rest at the end of the row (G61); none does by default.
         side_offset: (N,) radius of the 2D cutter compensation that the row is programmed with and that is not applied
             yet, mm: positive to the left of the path (G41), negative to the right (G42), 0 for none, the default.
@@ -88,6 +89,7 @@ class Program:
     operations: tuple[str, ...]
     tools: dict[int, Tool]
     source: str
+    source_fingerprint: str = ""
     exact_stop: Array = None  # type: ignore[assignment] # filled in below
     side_offset: Array = None  # type: ignore[assignment] # filled in below
     plane: Array = None  # type: ignore[assignment] # filled in below

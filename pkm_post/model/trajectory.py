@@ -15,6 +15,7 @@ import numpy as np
 from pkm_post.model.columns import RowType, freeze
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.event import Event
+from pkm_post.model.findings import Tolerances
 from pkm_post.model.program import MOTION_COLUMNS, Array
 from pkm_post.model.tool import Tool, lengths_of
 
@@ -61,6 +62,8 @@ class Trajectory:
         machine: name of the machine it was made for.
         machine_fingerprint: SHA-256 of that machine's file, hexadecimal.
         source: name of the file the program came from.
+        source_fingerprint: SHA-256 of that file, hexadecimal; empty where it is not known, the default.
+        tolerances: what was asked for when the trajectory was made; None where nothing was, the default.
     """
 
     kind: Array
@@ -88,6 +91,8 @@ class Trajectory:
     machine: str
     machine_fingerprint: str
     source: str
+    source_fingerprint: str = ""
+    tolerances: Tolerances | None = None
 
     def __post_init__(self) -> None:
         freeze(self, len(self.kind), TRAJECTORY_COLUMNS)

@@ -69,6 +69,7 @@ def place(
         machine=machine.name,
         machine_fingerprint=machine.fingerprint,
         source=program.source,
+        source_fingerprint=program.source_fingerprint,
     )
     return trajectory, faults
 

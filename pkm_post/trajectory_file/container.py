@@ -27,17 +27,26 @@ class DamageError(Exception):
         super().__init__(found)
 
 
-def load(path: Path) -> tuple[np.void, dict[str, Records]]:
-    """The header record and the tables by name.
+def bytes_of(path: Path) -> bytes:
+    """All bytes of a file; what is no trajectory file is not read beyond the header.
 
     Raises:
-        DamageError: the file cannot be opened, is of another kind or version, or is damaged.
+        DamageError: the file cannot be opened, is of another kind or version, or has another size than it says.
     """
     try:
-        content = _content(path)
+        return _content(path)
     except (OSError, ValueError) as fault:  # ValueError: no path can have this name
         raise DamageError(getattr(fault, "strerror", None) or str(fault), "T101") from fault
+
+
+def opened(content: bytes) -> tuple[np.void, dict[str, Records]]:
+    """The header record and the tables by name, of the bytes of a file.
+
+    Raises:
+        DamageError: they are of another kind or version, or damaged.
+    """
     header = _header(content)
+    _check_size(header, len(content))
     _check_header(header, content)
     _check_tables(header, len(content))
     if zlib.crc32(memoryview(content)[int(header["header_size"]) :]) != header["body_crc"]:
@@ -46,16 +55,14 @@ def load(path: Path) -> tuple[np.void, dict[str, Records]]:
 
 
 def _content(path: Path) -> bytes:
-    """All bytes of a file; what is no trajectory file is not read beyond the header."""
     if not stat.S_ISREG(path.stat().st_mode):  # opening a pipe would wait for its writer
         raise DamageError("it is not a regular file", "T101")
-    with path.open("rb") as file:
+    with path.open("rb", buffering=0) as file:  # what was in a buffer would be joined with the rest, in a copy of all
         header = _header(file.read(HEADER.itemsize))
         size = os.fstat(file.fileno()).st_size
-        if header["file_size"] != size:
-            raise DamageError(f"the file has {size} bytes, its header says {header['file_size']}")
+        _check_size(header, size)
         file.seek(0)
-        content = file.read()
+        content = file.readall()
     if len(content) != size:
         raise DamageError(f"the file changed from {size} to {len(content)} bytes while it was read")
     return content
@@ -72,6 +79,11 @@ def _header(content: bytes) -> np.void:
     if len(beginning) < HEADER.itemsize:
         raise DamageError(f"the header of {HEADER.itemsize} bytes ends after {len(beginning)}")
     return header
+
+
+def _check_size(header: np.void, size: int) -> None:
+    if header["file_size"] != size:
+        raise DamageError(f"the file has {size} bytes, its header says {header['file_size']}")
 
 
 def _check_header(header: np.void, content: bytes) -> None:

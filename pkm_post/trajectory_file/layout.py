@@ -3,8 +3,8 @@
 
 All numbers are little-endian, in mm, rad, s and mm/s. Every record is a multiple of 8 bytes and every field lies at a
 multiple of its own size, so that C reads the records as plain structs, also from a mapped file. A field that is added
-later goes to the end of its record or takes the place of reserved bytes, which are zero until then.
-[paper section 5.1]
+later goes to the end of its record or takes the place of reserved bytes, which are zero until then. The C header and
+the Kaitai description in resources/trajectory say the same once more. [paper section 5.1]
 """
 
 from __future__ import annotations
@@ -25,6 +25,9 @@ MINOR = 0
 ALIGNMENT = 8
 """Bytes; every table begins at a multiple of it."""
 
+UNITS = {"length_unit": 0.001, "angle_unit": 1.0, "time_unit": 1.0}
+"""What the header says of the units, in m, rad and s: version 1 has no others."""
+
 STRING = np.dtype([("offset", "<u8"), ("length", "<u8")], align=True)
 """A UTF-8 string: where it begins in the text table, and its bytes."""
 
@@ -39,10 +42,14 @@ TOOL = np.dtype(
         ("diameter", "<f8"),
         ("corner_radius", "<f8"),
         ("length", "<f8"),
+        ("bottom_angle", "<f8"),
+        ("side_angle", "<f8"),
     ],
     align=True,
 )
 """A tool of the trajectory, with the gauge length the trajectory was made for."""
+TOOL_COLUMNS = ("number", "diameter", "corner_radius", "length", "bottom_angle", "side_angle")
+"""The fields of a tool that are numbers of ``model.Tool``."""
 
 OPERATION = np.dtype([("name", STRING)], align=True)
 """An operation of the CAM job."""
@@ -54,30 +61,45 @@ SEGMENT = np.dtype(
     [
         ("tip", "<f8", (3,)),
         ("axis", "<f8", (3,)),
-        ("spin", "<f8"),
         ("feed", "<f8"),
+        ("length", "<f8"),
+        ("spin", "<f8"),
         ("arc_centre", "<f8", (3,)),
         ("arc_axis", "<f8", (3,)),
         ("sweep", "<f8"),
-        ("length", "<f8"),
         ("angle", "<f8"),
+        ("start_tip", "<f8", (3,)),
+        ("start_axis", "<f8", (3,)),
+        ("start_spin", "<f8"),
+        ("shift", "<f8", (3,)),
+        ("radius", "<f8", (3,)),
+        ("quarter", "<f8", (3,)),
+        ("growth", "<f8"),
+        ("axis_quarter", "<f8", (3,)),
         ("tool", "<i4"),
         ("operation", "<i4"),
         ("line", "<i4"),
         ("kind", "u1"),
         ("smooth", "u1"),
         ("exact_stop", "u1"),
-        ("reserved", "u1"),
+        ("reserved", "u1", (9,)),
     ],
     align=True,
 )
-"""A motion instruction: one row of the columns of ``model.Trajectory``."""
+"""A motion instruction: one row of the columns of ``model.Trajectory``, and of those of ``interpolation``.
+
+Five lines of 64 bytes, as processors fetch them: the first has what a way through all segments looks at.
+"""
+
+BLOCK = np.dtype([("operation", "<i4"), ("line", "<i4"), ("segment", "<u8")], align=True)
+"""A line of the source that moves the tool, and the first segment that it makes."""
 
 TABLES: dict[str, np.dtype[Any]] = {
+    "segments": np.dtype(SEGMENT),
+    "blocks": np.dtype(BLOCK),
+    "instructions": np.dtype(INSTRUCTION),
     "tools": np.dtype(TOOL),
     "operations": np.dtype(OPERATION),
-    "instructions": np.dtype(INSTRUCTION),
-    "segments": np.dtype(SEGMENT),
     "text": np.dtype("u1"),
 }
 """Records by table, in the order of the file. The text is last, as its size is not a multiple of 8."""
@@ -95,14 +117,21 @@ HEADER = np.dtype(
         ("machine", STRING),
         ("source", STRING),
         ("machine_fingerprint", "u1", (32,)),
+        ("source_fingerprint", "u1", (32,)),
+        ("length_unit", "<f8"),
+        ("angle_unit", "<f8"),
+        ("time_unit", "<f8"),
+        ("tip_tolerance", "<f8"),
+        ("axis_tolerance", "<f8"),
         ("machine_from_work", "<f8", (4, 4)),
         ("start_tip", "<f8", (3,)),
         ("start_axis", "<f8", (3,)),
         ("start_spin", "<f8"),
+        ("reserved", "u1", (16,)),
     ],
     align=True,
 )
-"""The beginning of the file. The tables follow it."""
+"""The beginning of the file. The tables follow it: 512 bytes, so that the segments begin with a line of 64."""
 
 
 def offset_of(record: np.dtype[Any], field: str) -> int:

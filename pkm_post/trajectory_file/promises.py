@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
@@ -16,12 +17,16 @@ import numpy as np
 from pkm_post.geometry import norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Event, EventKind, Kind, Tool, Trajectory
+from pkm_post.trajectory_file.parts import parts
 
 UNIT_TOLERANCE = 1e-5
 """How far an axis may be from unit length: a work offset and a symmetry may each be 1e-6 from a rotation."""
 FULL_TURN = 2 * math.pi + 1e-8
 """rad; a full turn may come out longer by the angle below which two directions count as the same."""
+FARTHEST = 1e9
+"""mm: a coordinate beyond it is none of a machine, and its square would leave no digits for the rest."""
 _LARGEST_NUMBER = 2**31 - 1
+_FINGERPRINT = re.compile(r"[0-9a-f]{64}")
 
 SENSIBLE: dict[EventKind, Callable[[float], bool]] = {
     EventKind.TOOL_CHANGE: lambda value: value == int(value) and 0 <= value <= _LARGEST_NUMBER,
@@ -38,6 +43,7 @@ def broken_promises(trajectory: Trajectory) -> list[str]:
     with np.errstate(all="ignore"):  # the numbers may be anything
         return [
             *_of_start(trajectory),
+            *_of_origin(trajectory),
             *_first(_of_tools(trajectory.tools)),
             *_of_segments(trajectory),
             *_first(_of_events(trajectory.events, len(trajectory))),
@@ -52,16 +58,24 @@ def _first(broken: Iterable[str]) -> Iterator[str]:
 
 
 def _of_start(trajectory: Trajectory) -> Iterator[str]:
-    if not np.all(np.isfinite(trajectory.start_tip)):
-        yield "the start tip is not finite"
+    if not _is_near(trajectory.start_tip):
+        yield f"the start tip is not finite, or farther than {FARTHEST:g} mm"
     if not _is_unit(trajectory.start_axis):
         yield "the start axis is not of unit length"
     if not math.isfinite(trajectory.start_spin):
         yield "the start spin is not finite"
     if not _is_rigid(trajectory.machine_from_work):
         yield "the work offset is not a rotation and a shift"
-    if not re.fullmatch(r"[0-9a-f]{64}", trajectory.machine_fingerprint):
+
+
+def _of_origin(trajectory: Trajectory) -> Iterator[str]:
+    if not re.fullmatch(_FINGERPRINT, trajectory.machine_fingerprint):
         yield f"the fingerprint {trajectory.machine_fingerprint!r} is not 64 digits of 0-9 and a-f"
+    source, tolerances = trajectory.source_fingerprint, trajectory.tolerances
+    if source and (not re.fullmatch(_FINGERPRINT, source) or not source.strip("0")):
+        yield f"the fingerprint {source!r} of the source is not 64 digits of 0-9 and a-f, or all are 0"
+    if tolerances and not (0 < tolerances.tip < math.inf and 0 < tolerances.axis < math.inf):
+        yield f"the tolerances {tolerances.tip} mm and {tolerances.axis} rad are not both above 0"
 
 
 def _of_tools(tools: dict[int, Tool]) -> Iterator[str]:
@@ -69,16 +83,34 @@ def _of_tools(tools: dict[int, Tool]) -> Iterator[str]:
         if tool.number != number or not 0 <= number <= _LARGEST_NUMBER:
             yield f"the number of tool {number} is {tool.number}"
         for name in ("diameter", "corner_radius", "length"):
-            if not 0 <= getattr(tool, name) < math.inf:
+            if not 0 <= getattr(tool, name) <= FARTHEST:
                 yield f"the {name.replace('_', ' ')} of tool {number} is {getattr(tool, name)} mm"
+        for name in ("bottom_angle", "side_angle"):
+            if not abs(getattr(tool, name)) < math.pi / 2:
+                yield f"the {name.replace('_', ' ')} of tool {number} is {getattr(tool, name)} rad"
 
 
 def _of_segments(trajectory: Trajectory) -> Iterator[str]:
-    for what, broken in _segment_rules(trajectory).items():
-        rows = np.flatnonzero(broken)
-        if len(rows):
-            more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
-            yield f"segment {rows[0]}{more}: the {what}"
+    yield from in_segments((begin, _segment_rules(part)) for begin, part in parts(trajectory))
+
+
+def in_segments(found: Iterable[tuple[int, dict[str, Array]]]) -> Iterator[str]:
+    """Name the first segment for each thing that is wrong, and how many more there are.
+
+    Args:
+        found: by part, the index of its first segment and, by what is wrong, the segments where it is.
+    """
+    firsts: dict[str, int] = {}
+    counts: Counter[str] = Counter()
+    for begin, rules in found:
+        for what, broken in rules.items():
+            rows = np.flatnonzero(broken)
+            if len(rows):
+                firsts.setdefault(what, begin + int(rows[0]))
+                counts[what] += len(rows)
+    for what, first in firsts.items():
+        more = f" and {counts[what] - 1} more" if counts[what] > 1 else ""
+        yield f"segment {first}{more}: the {what}"
 
 
 def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
@@ -88,11 +120,11 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
     stands = (length == 0) & (angle == 0) & (trajectory.spin == trajectory.spin_before())
     return {
         "kind is unknown": ~np.isin(trajectory.kind, list(Kind)),
-        "tip is not finite": ~np.isfinite(trajectory.tip).all(axis=1),
+        f"tip is not finite, or farther than {FARTHEST:g} mm": ~_is_near(trajectory.tip),
         "axis is not of unit length": ~_is_unit(trajectory.axis),
         "spin is not finite": ~np.isfinite(trajectory.spin),
         "feed is not a finite number above 0": ~(np.isfinite(trajectory.feed) & (trajectory.feed > 0)),
-        "arc centre is not finite": arc & ~np.isfinite(trajectory.arc_centre).all(axis=1),
+        f"arc centre is not finite, or farther than {FARTHEST:g} mm": arc & ~_is_near(trajectory.arc_centre),
         "arc centre is not NaN, although it is no arc": ~arc & ~np.isnan(trajectory.arc_centre).all(axis=1),
         "arc axis is not of unit length": arc & ~_is_unit(trajectory.arc_axis),
         "arc axis is not NaN, although it is no arc": ~arc & ~np.isnan(trajectory.arc_axis).all(axis=1),
@@ -121,6 +153,12 @@ def _of_events(events: tuple[Event, ...], segments: int) -> Iterator[str]:
 
 def _within(values: Array, least: float, most: float) -> Array:
     return (values >= least) & (values <= most)
+
+
+def _is_near(points: Array) -> Array:
+    """Whether (..., 3) points are where machines are, (...)."""
+    near: Array = norm(points) <= FARTHEST
+    return near
 
 
 def _is_unit(vectors: Array) -> Array:

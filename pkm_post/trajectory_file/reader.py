@@ -2,21 +2,26 @@
 """Reader: a trajectory file enters, the ``model.Trajectory`` that was written leaves, equal bit for bit.
 
 Or what is wrong with the file. The container is checked first, then the strings and numbers that have no place in a
-``Trajectory``, then what every trajectory promises.
+``Trajectory``, then what every trajectory promises, then what was computed in advance: the trajectory that is returned
+does not have it, but another player would go by it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pkm_post.model import Diagnostic, Event, EventKind, Place, Tool, Trajectory
+from pkm_post.model.findings import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
-from pkm_post.trajectory_file.container import DamageError, load
-from pkm_post.trajectory_file.layout import Records
-from pkm_post.trajectory_file.promises import broken_promises
+from pkm_post.trajectory_file.container import DamageError, bytes_of, opened
+from pkm_post.trajectory_file.interpolation import blocks, strayed
+from pkm_post.trajectory_file.layout import TOOL_COLUMNS, UNITS, Records
+from pkm_post.trajectory_file.parts import parts
+from pkm_post.trajectory_file.promises import broken_promises, in_segments
 
 
 def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
@@ -29,18 +34,46 @@ def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
         The trajectory, or None when the file has a fault; and the faults found: T101 for a file of another kind,
         T102 for an unknown version, T103 for damage.
     """
-    place = Place(str(path))
     try:
-        trajectory = _trajectory(*load(path))
+        content = bytes_of(path)
+    except DamageError as damage:
+        return None, (Diagnostic(damage.code, Place(str(path)), str(damage)),)
+    return decode(content, str(path))
+
+
+def decode(content: bytes, file: str) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+    """The same of the bytes of a file.
+
+    Args:
+        content: all of them.
+        file: what diagnostics call it.
+    """
+    place = Place(file)
+    try:
+        header, tables = opened(content)
+        trajectory = _trajectory(header, tables)
     except DamageError as damage:
         return None, (Diagnostic(damage.code, place, str(damage)),)
-    broken = broken_promises(trajectory)
+    broken = broken_promises(trajectory) or [*_broken_advance(trajectory, tables)]
     if broken:
         return None, tuple(Diagnostic("T103", place, words) for words in broken)
     return trajectory, ()
 
 
+def _broken_advance(trajectory: Trajectory, tables: dict[str, Records]) -> Iterator[str]:
+    """What of the data computed in advance does not follow from the trajectory."""
+    records = tables["segments"]
+    found = ((begin, strayed(part, records[begin : begin + len(part)])) for begin, part in parts(trajectory))
+    for words in in_segments(found):
+        yield f"{words} does not follow from the rest"
+    if not np.array_equal(blocks(trajectory), tables["blocks"]):
+        yield "the table blocks does not have the first segment of every line"
+
+
 def _trajectory(header: np.void, tables: dict[str, Records]) -> Trajectory:
+    for name, unit in UNITS.items():
+        if header[name] != unit:
+            raise DamageError(f"the {name.replace('_', ' ')} is {header[name]}, expected {unit}")
     operations, tools = tables["operations"], tables["tools"]
     ends = [np.array([header["machine"], header["source"]]), operations["name"], tools["name"]]
     machine, source, *names = _strings(np.concatenate(ends), tables["text"])
@@ -56,7 +89,13 @@ def _trajectory(header: np.void, tables: dict[str, Records]) -> Trajectory:
         machine=machine,
         machine_fingerprint=header["machine_fingerprint"].tobytes().hex(),
         source=source,
+        source_fingerprint=header["source_fingerprint"].tobytes().hex() if header["source_fingerprint"].any() else "",
+        tolerances=_tolerances(float(header["tip_tolerance"]), float(header["axis_tolerance"])),
     )
+
+
+def _tolerances(tip: float, axis: float) -> Tolerances | None:
+    return None if tip == axis == 0 else Tolerances(tip, axis)
 
 
 def _strings(places: Records, text: Records) -> list[str]:
@@ -98,8 +137,7 @@ def _tools(tools: Records, names: list[str]) -> dict[int, Tool]:
     numbers = tools["number"]
     if np.any(numbers[1:] <= numbers[:-1]):
         raise DamageError("the numbers of the tools do not ascend")
-    columns = (tools[name].tolist() for name in ("number", "diameter", "corner_radius", "length"))
-    return {
-        number: Tool(number, name, diameter, corner_radius, length)
-        for name, number, diameter, corner_radius, length in zip(names, *columns, strict=True)
-    }
+    columns = {name: tools[name].tolist() for name in TOOL_COLUMNS}
+    rows = zip(*columns.values(), strict=True)
+    found = (Tool(name=name, **dict(zip(columns, row, strict=True))) for name, row in zip(names, rows, strict=True))
+    return {tool.number: tool for tool in found}

@@ -2,20 +2,24 @@
 """Writer: a ``model.Trajectory`` enters, a trajectory file leaves; the same trajectory gives the same bytes.
 
 The tables follow the header without gaps in the order of ``layout.TABLES``; tools are sorted by number. The strings
-stand in the text table in the order machine, source, operations, tools.
+stand in the text table in the order machine, source, operations, tools. Segments are encoded and written part by part,
+so that the writer needs little memory beside the trajectory; the header, with the sum of all bytes, is written last.
 """
 
 from __future__ import annotations
 
 import zlib
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
 from pkm_post.files import staged
-from pkm_post.model import Event, Trajectory
+from pkm_post.model import Event, Tool, Trajectory
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
+from pkm_post.trajectory_file.interpolation import blocks, interpolation, missed
 from pkm_post.trajectory_file.layout import (
     HEADER,
     INSTRUCTION,
@@ -25,10 +29,14 @@ from pkm_post.trajectory_file.layout import (
     OPERATION,
     SEGMENT,
     STRING,
+    TABLES,
     TOOL,
+    TOOL_COLUMNS,
+    UNITS,
     Records,
 )
-from pkm_post.trajectory_file.promises import broken_promises
+from pkm_post.trajectory_file.parts import parts
+from pkm_post.trajectory_file.promises import broken_promises, in_segments
 
 
 def write(trajectory: Trajectory, path: Path) -> None:
@@ -45,43 +53,93 @@ def write(trajectory: Trajectory, path: Path) -> None:
     broken = broken_promises(trajectory)
     if broken:
         raise ValueError(f"expected a trajectory that can be read back, got {'; '.join(broken)}")
-    header, tables = _encoded(trajectory)
+    strings = _Strings.of(trajectory)
     with staged(path.parent) as folder, (folder / path.name).open("wb") as file:
+        file.write(bytes(HEADER.itemsize))
+        header = _header(trajectory, strings)
+        _write_tables(file, header, trajectory, strings)
+        header["header_crc"] = zlib.crc32(header.tobytes())  # the field itself counts as zero
+        file.seek(0)
         file.write(header.tobytes())
-        for records in tables.values():
-            file.write(_bytes(records))
 
 
-def _encoded(trajectory: Trajectory) -> tuple[Records, dict[str, Records]]:
-    """The header, as one record, and the tables by name in the order of the file."""
-    tools = [trajectory.tools[number] for number in sorted(trajectory.tools)]
-    names = [trajectory.machine, trajectory.source, *trajectory.operations, *(tool.name for tool in tools)]
-    strings, text = _string_table(names)
-    first_tool = 2 + len(trajectory.operations)
+@dataclass(frozen=True)
+class _Strings:
+    """Where the strings stand in the text table, each (n,) of ``layout.STRING``, and the bytes of all of them."""
 
-    tool_table = np.zeros(len(tools), TOOL)
-    for column in ("number", "diameter", "corner_radius", "length"):
-        tool_table[column] = [getattr(tool, column) for tool in tools]
-    tool_table["name"] = strings[first_tool:]
-    operation_table = np.zeros(len(trajectory.operations), OPERATION)
-    operation_table["name"] = strings[2:first_tool]
-    tables = {
-        "tools": tool_table,
-        "operations": operation_table,
-        "instructions": _instructions(trajectory.events),
-        "segments": _segments(trajectory),
-        "text": np.frombuffer(text, np.uint8),
+    machine_and_source: Records
+    operations: Records
+    tools: Records
+    text: bytes
+
+    @classmethod
+    def of(cls, trajectory: Trajectory) -> _Strings:
+        tools = [tool.name for tool in _tools_by_number(trajectory)]
+        names = [trajectory.machine, trajectory.source, *trajectory.operations, *tools]
+        encoded = [name.encode("utf-8") for name in names]
+        places = np.zeros(len(encoded), STRING)
+        places["length"] = [len(name) for name in encoded]
+        places["offset"] = np.cumsum(places["length"]) - places["length"]
+        first_tool = 2 + len(trajectory.operations)
+        return cls(places[:2], places[2:first_tool], places[first_tool:], b"".join(encoded))
+
+
+def _tools_by_number(trajectory: Trajectory) -> list[Tool]:
+    return [trajectory.tools[number] for number in sorted(trajectory.tools)]
+
+
+def _header(trajectory: Trajectory, strings: _Strings) -> Records:
+    """The header without sizes and checksums of the tables."""
+    header: Records = np.zeros((), HEADER)
+    header["magic"], header["major"], header["minor"], header["header_size"] = MAGIC, MAJOR, MINOR, HEADER.itemsize
+    header["machine"], header["source"] = strings.machine_and_source
+    for name in ("machine_fingerprint", "source_fingerprint"):
+        digits = bytes.fromhex(getattr(trajectory, name))
+        header[name] = np.frombuffer(digits or bytes(32), np.uint8)
+    for name, unit in UNITS.items():
+        header[name] = unit
+    if trajectory.tolerances:
+        header["tip_tolerance"], header["axis_tolerance"] = trajectory.tolerances.tip, trajectory.tolerances.axis
+    for name in ("machine_from_work", "start_tip", "start_axis", "start_spin"):
+        header[name] = getattr(trajectory, name)
+    return header
+
+
+def _write_tables(file: BinaryIO, header: Records, trajectory: Trajectory, strings: _Strings) -> None:
+    """Write the tables behind the header, and enter in it where they are and the sum of their bytes."""
+    tables: dict[str, Iterable[Records]] = {
+        "segments": (_segments(begin, part) for begin, part in parts(trajectory)),
+        "blocks": (blocks(trajectory) for _ in range(1)),  # not before the segments are done with
+        "instructions": [_instructions(trajectory.events)],
+        "tools": [_tools(_tools_by_number(trajectory), strings.tools)],
+        "operations": [_operations(strings.operations)],
+        "text": [np.frombuffer(strings.text, np.uint8)],
     }
-    return _header(trajectory, strings, tables), tables
+    end, checksum = HEADER.itemsize, 0
+    for name, record in TABLES.items():
+        count = 0
+        for records in tables[name]:
+            data = records.view(np.uint8).data
+            file.write(data)
+            checksum = zlib.crc32(data, checksum)
+            count += len(records)
+        header[name] = (end, count, record.itemsize)
+        end += count * record.itemsize
+    header["file_size"], header["body_crc"] = end, checksum
 
 
-def _string_table(names: Iterable[str]) -> tuple[Records, bytes]:
-    """Where each string stands, and the bytes of all of them."""
-    encoded = [name.encode("utf-8") for name in names]
-    strings = np.zeros(len(encoded), STRING)
-    strings["length"] = [len(name) for name in encoded]
-    strings["offset"] = np.cumsum(strings["length"]) - strings["length"]
-    return strings, b"".join(encoded)
+def _tools(tools: list[Tool], names: Records) -> Records:
+    table = np.zeros(len(tools), TOOL)
+    for column in TOOL_COLUMNS:
+        table[column] = [getattr(tool, column) for tool in tools]
+    table["name"] = names
+    return table
+
+
+def _operations(names: Records) -> Records:
+    table = np.zeros(len(names), OPERATION)
+    table["name"] = names
+    return table
 
 
 def _instructions(events: tuple[Event, ...]) -> Records:
@@ -91,30 +149,14 @@ def _instructions(events: tuple[Event, ...]) -> Records:
     return table
 
 
-def _segments(trajectory: Trajectory) -> Records:
+def _segments(begin: int, trajectory: Trajectory) -> Records:
+    """The records of a part; ``begin`` is the index of its first segment in the whole."""
     table = np.zeros(len(trajectory), SEGMENT)
     for column in TRAJECTORY_COLUMNS:
         table[column] = getattr(trajectory, column)
+    columns = interpolation(trajectory)
+    for words in in_segments([(begin, missed(trajectory, columns))]):
+        raise ValueError(f"expected segments that end where they say, got {words} does not follow from the rest")
+    for column, values in columns.items():
+        table[column] = values
     return table
-
-
-def _header(trajectory: Trajectory, strings: Records, tables: dict[str, Records]) -> Records:
-    """The header of the tables, with all sizes and checksums."""
-    header: Records = np.zeros((), HEADER)
-    header["magic"], header["major"], header["minor"], header["header_size"] = MAGIC, MAJOR, MINOR, HEADER.itemsize
-    header["machine"], header["source"] = strings[0], strings[1]
-    header["machine_fingerprint"] = np.frombuffer(bytes.fromhex(trajectory.machine_fingerprint), np.uint8)
-    for name in ("machine_from_work", "start_tip", "start_axis", "start_spin"):
-        header[name] = getattr(trajectory, name)
-    end, checksum = HEADER.itemsize, 0
-    for name, records in tables.items():
-        header[name] = (end, len(records), records.itemsize)
-        end, checksum = end + records.nbytes, zlib.crc32(_bytes(records), checksum)
-    header["file_size"], header["body_crc"] = end, checksum
-    header["header_crc"] = zlib.crc32(header.tobytes())  # the field itself counts as zero
-    return header
-
-
-def _bytes(records: Records) -> memoryview:
-    """The records as bytes, without a copy."""
-    return records.view(np.uint8).data

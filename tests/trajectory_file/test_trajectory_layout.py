@@ -14,8 +14,9 @@ from trajectories import random_trajectory
 from pkm_post.model import EventKind, Kind
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
 from pkm_post.trajectory_file import layout, write
+from pkm_post.trajectory_file.interpolation import interpolation
 
-RECORDS = ("HEADER", "TABLE", "STRING", "TOOL", "OPERATION", "INSTRUCTION", "SEGMENT")
+RECORDS = ("HEADER", "TABLE", "STRING", "TOOL", "OPERATION", "INSTRUCTION", "SEGMENT", "BLOCK")
 DOCUMENT = (Path(__file__).parents[2] / "docs" / "trajectory-format.md").read_text(encoding="utf-8")
 HEADING = re.compile(r"^### (\w+), (\d+) bytes$", re.MULTILINE)
 FIELD = re.compile(r"^\| (\d+) \| `(\S+)` \| `(\w+)` \| (.+?) \| (.*?) ?\|$", re.MULTILINE)
@@ -61,7 +62,7 @@ def test_document_states_every_field_as_the_layout_has_it(name):
 
 def test_every_field_has_a_unit_and_a_meaning():
     rows = [row for _, text in sections().values() for row in FIELD.findall(text)]
-    assert {unit for *_, unit, _ in rows} == {"-", "byte", "mm", "rad", "mm/s", "see below"}
+    assert {unit for *_, unit, _ in rows} == {"-", "byte", "m", "mm", "rad", "s", "mm/s", "see below"}
     assert all(len(meaning) > 10 or field == "reserved" for _, _, field, _, meaning in rows)
 
 
@@ -112,14 +113,15 @@ def test_records_have_no_gaps_and_whole_words(name):
     assert sum(dtype.itemsize for dtype, *_ in record.fields.values()) == record.itemsize
 
 
-def test_a_segment_has_every_column_of_the_model_with_all_its_bits():
+def test_a_segment_has_every_column_of_the_model_with_all_its_bits_and_what_is_computed_of_them():
     columns = {
         name: (np.dtype(np.uint8 if dtype is np.bool_ else dtype), shape)
         for name, (dtype, shape) in TRAJECTORY_COLUMNS.items()
     }
     in_record = {name: (dtype, shape) for name, (_, dtype, shape) in fields(layout.SEGMENT).items()}
-    assert in_record.pop("reserved") == (np.dtype(np.uint8), ())
-    assert in_record == columns
+    assert in_record.pop("reserved") == (np.dtype(np.uint8), (9,))
+    computed = interpolation(random_trajectory(1))
+    assert in_record == columns | {name: (column.dtype, column.shape[1:]) for name, column in computed.items()}
 
 
 def test_the_document_is_enough_to_read_a_file(tmp_path):

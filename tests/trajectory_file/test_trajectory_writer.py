@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from machines import example
 from programs import ON_PALLET, cone, square_with_arc
-from trajectories import everything, random_trajectory
+from trajectories import everything, fitted, random_trajectory
 
 from pkm_post.model import Event, EventKind, Tool
+from pkm_post.model.findings import Tolerances
 from pkm_post.placement import place
 from pkm_post.trajectory_file import read, write
 from pkm_post.trajectory_file.promises import SENSIBLE
@@ -71,6 +72,7 @@ def with_row(trajectory, column, row, value):
 BAD_SEGMENTS = [
     ("kind", 3, "kind is unknown"),
     ("tip", np.inf, "tip is not finite"),
+    ("tip", -1.1e9, "tip is not finite, or farther"),
     ("axis", [0, 0, 0.999], "axis is not of unit length"),
     ("axis", np.nan, "axis is not of unit length"),
     ("axis", 1e300, "axis is not of unit length"),
@@ -132,6 +134,11 @@ BAD_REST = {
     "the number of tool 1 is 2, and 1 more": {
         "tools": {1: Tool(2, "mill", 6.0, 0.0, 100.0), -3: Tool(-3, "mill", 6.0, 0.0, 100.0)}
     },
+    "the fingerprint 'abc' of the source is not": {"source_fingerprint": "abc"},
+    "of the source is not 64 digits of 0-9 and a-f, or all are 0": {"source_fingerprint": "0" * 64},
+    "the tolerances 0.0 mm and 0.1 rad are not both": {"tolerances": Tolerances(0.0, 0.1)},
+    "the tolerances 0.1 mm and nan rad are not both": {"tolerances": Tolerances(0.1, np.nan)},
+    "the bottom angle of tool 1 is nan rad": {"tools": {1: Tool(1, "mill", 6.0, 0.0, 9.0, np.nan)}},
     "surrogates not allowed": {"source": "part\udcff.FCStd"},
 }
 
@@ -146,14 +153,28 @@ def test_a_file_that_could_not_be_read_is_not_written(tmp_path, found, change):
 @pytest.mark.parametrize("moving", ["length", "angle", "spin", None])
 def test_a_segment_moves_tip_axis_or_spin(tmp_path, moving):
     trajectory = random_trajectory(9)
-    for column, value in (("length", 0), ("angle", 0), ("spin", trajectory.spin[3])):
-        if column != moving:
-            trajectory = with_row(trajectory, column, 4, value)
+    for name, column, value in (
+        ("length", "length", 0),
+        ("angle", "axis", trajectory.axis[3]),
+        ("spin", "spin", trajectory.spin[3]),
+    ):
+        if name != moving:
+            trajectory = fitted(with_row(trajectory, column, 4, value))
     if moving:
         assert everything(read_back(trajectory, tmp_path / "part.pkmt")) == everything(trajectory)
     else:
         with pytest.raises(ValueError, match="segment 4: the tip, the axis and the spin all stand"):
             write(trajectory, tmp_path / "part.pkmt")
+
+
+@pytest.mark.parametrize(("column", "on_arc", "what"), [("sweep", True, "tip"), ("angle", False, "axis")])
+def test_a_segment_ends_where_it_says(tmp_path, column, on_arc, what):
+    trajectory = random_trajectory(10)
+    row = int(np.flatnonzero((trajectory.kind == 2) == on_arc)[-1])
+    wrong = with_row(trajectory, column, row, getattr(trajectory, column)[row] / 2)
+    with pytest.raises(ValueError, match=f"segment {row}: the {what} does not follow from the rest"):
+        write(wrong, tmp_path / "part.pkmt")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_every_kind_of_event_has_its_values():

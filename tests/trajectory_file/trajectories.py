@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Trajectories for the tests of their file: any values the format allows, not a way that a machine could go."""
+"""Trajectories for the tests of their file: random ones of any values the format allows, and some that are placed."""
+
+import dataclasses
 
 import numpy as np
+from machines import example
+from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
-from pkm_post.geometry import unit
+from pkm_post.geometry import angle_between, arc_sweep, unit
 from pkm_post.model import Event, EventKind, Kind, Tool, Trajectory
+from pkm_post.model.findings import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
+from pkm_post.placement import place
 
 NAMES = ("", "Finish", "Schlichten – Kegel ⌀12", "精加工", "🛠 rough\nsecond line\0end", "x" * 300)
 VALUES = {
@@ -57,34 +63,80 @@ def random_columns(rng, count, tools, operations):
     }
 
 
+def random_tool(rng, number, name):
+    return Tool(number, name, *rng.uniform(0, 100, 3).tolist(), *rng.uniform(-1.5, 1.5, 2).tolist())
+
+
 def random_trajectory(seed, count=20, events=6) -> Trajectory:
+    """Not a way that a machine could go: it leaps, and lengths are anything. But segments end where they say."""
     rng = np.random.default_rng(seed)
     numbers = rng.permutation([0, 3, 12, 2**31 - 1]).tolist()
     names = iter(NAMES[index] for index in rng.integers(len(NAMES), size=9))
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = rotation(rng), rng.normal(size=3)
-    return Trajectory(
-        **random_columns(rng, count, numbers, 3),
-        start_tip=rng.normal(size=3),
-        start_axis=directions(rng, 1)[0],
-        start_spin=float(rng.normal()),
-        events=random_events(rng, count, events),
-        operations=(next(names), next(names), next(names)),
-        tools={number: Tool(number, next(names), *rng.uniform(0, 100, 3).tolist()) for number in numbers},
-        machine_from_work=pose,
-        machine=next(names),
-        machine_fingerprint=rng.bytes(32).hex(),
-        source=next(names),
+    return fitted(
+        Trajectory(
+            **random_columns(rng, count, numbers, 3),
+            start_tip=rng.normal(size=3),
+            start_axis=directions(rng, 1)[0],
+            start_spin=float(rng.normal()),
+            events=random_events(rng, count, events),
+            operations=(next(names), next(names), next(names)),
+            tools={number: random_tool(rng, number, next(names)) for number in numbers},
+            machine_from_work=pose,
+            machine=next(names),
+            machine_fingerprint=rng.bytes(32).hex(),
+            source=next(names),
+            source_fingerprint=rng.bytes(32).hex() if seed % 3 else "",
+            tolerances=Tolerances(*rng.uniform(1e-4, 1, 2).tolist()) if seed % 2 else None,
+        )
     )
+
+
+def fitted(trajectory) -> Trajectory:
+    """The same with the sweeps and angles that lead to the ends."""
+    start, arc, sweep = trajectory.tip_before(), trajectory.kind == Kind.ARC, np.zeros(len(trajectory))
+    way = start[arc], trajectory.tip[arc], trajectory.arc_centre[arc], trajectory.arc_axis[arc]
+    sweep[arc] = arc_sweep(*way)
+    angle = angle_between(trajectory.axis_before(), trajectory.axis)
+    return dataclasses.replace(trajectory, sweep=sweep, angle=angle)
 
 
 def everything(trajectory):
     """The content of a trajectory as something that can be compared with ==, floats by their bits."""
     arrays = (*TRAJECTORY_COLUMNS, "start_tip", "start_axis", "machine_from_work")
-    plain = ("events", "operations", "tools", "machine", "machine_fingerprint", "source")
+    plain = ("events", "operations", "tools", "machine", "machine_fingerprint", "source", "source_fingerprint")
     return {
         **{name: (getattr(trajectory, name).dtype, getattr(trajectory, name).tobytes()) for name in arrays},
         **{name: getattr(trajectory, name) for name in plain},
         "values of events": np.array([event.value for event in trajectory.events], float).tobytes(),
         "start_spin": trajectory.start_spin.hex(),
+        "tolerances": trajectory.tolerances,
     }
+
+
+def two_tools():
+    """Two lines with a tool change between them, to a tool that is 30 mm longer; the axis is tilted there."""
+    axis = np.array([[0, 0, 1], [0.6, 0, 0.8], [0.6, 0, 0.8], [0, 0, 1]])
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.TOOL_CHANGE, 2))
+    longer = dataclasses.replace(BALL, number=2, length=BALL.length + 30)
+    tools = {1: BALL, 2: longer}
+    return program([[0, 0, 60], [5, 0, 50], [9, 0, 50], [9, 9, 60]], axis, events=events, tools=tools)
+
+
+def spiral():
+    """A helix whose radius grows from 10 to 10.001 mm while the tool axis turns."""
+    kind = [Kind.RAPID, Kind.ARC]
+    centre, turn = np.full((2, 3), np.nan), np.full((2, 3), np.nan)
+    centre[1], turn[1] = [0, 0, 70], [0, 0, 1]
+    axis = np.array([[0, 0, 1], [0, 0.6, 0.8]])
+    return program([[10, 0, 40], [0, -10.001, 33]], axis, kind=kind, centre=centre, turn=turn)
+
+
+PROGRAMS = (cone, square_with_arc, two_tools, spiral)
+
+
+def placed(made) -> Trajectory:
+    """The trajectory of a program on the example machine, with a spin that turns steadily."""
+    trajectory, _ = place(made(), example(), ON_PALLET)
+    return dataclasses.replace(trajectory, spin=np.linspace(0.1, 2, len(trajectory)))

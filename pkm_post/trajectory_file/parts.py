@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parts: a long trajectory as short ones in turn, so that work on its columns takes little memory.
+
+Enters: a trajectory of N segments. Leaves: trajectories of at most ``SEGMENTS``, each starting where the one before
+ends. Their columns are views of those that came in.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from pkm_post.model import Trajectory
+from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
+
+SEGMENTS = 1 << 13
+"""How many are worked on at a time: some megabytes of records, which stay in the cache of the processor."""
+
+
+def parts(trajectory: Trajectory) -> Iterator[tuple[int, Trajectory]]:
+    """The parts in order, each with the index of its first segment; events and names are those of the whole."""
+    for begin in range(0, len(trajectory), SEGMENTS):
+        rows = slice(begin, begin + SEGMENTS)
+        columns = {name: getattr(trajectory, name)[rows] for name in TRAJECTORY_COLUMNS}
+        yield begin, dataclasses.replace(trajectory, **columns, **_start(trajectory, begin))
+
+
+def _start(trajectory: Trajectory, row: int) -> dict[str, Any]:
+    """The pose before a segment; a change of the tool moves the tip, as in ``Trajectory.tip_before``."""
+    if not row:
+        return {}
+    last = row - 1
+    longer = _tool_length(trajectory, row) - _tool_length(trajectory, last)
+    axis = trajectory.axis[last]
+    return {
+        "start_tip": trajectory.tip[last] - longer * axis,
+        "start_axis": axis,
+        "start_spin": float(trajectory.spin[last]),
+    }
+
+
+def _tool_length(trajectory: Trajectory, row: int) -> float:
+    """Gauge length in mm; that of a tool which is not in the table is not known."""
+    tool = trajectory.tools.get(int(trajectory.tool[row]))
+    return tool.length if tool else math.nan
