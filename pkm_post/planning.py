@@ -91,7 +91,7 @@ def _bounded(machine: Machine, poses: Poses) -> tuple[Bounded, ...]:
             each=True,
             jerk=machine.strut_jerk,
         ),
-        Bounded(poses.tip_1, poses.tip_2, np.inf, machine.tip_acceleration, each=False),
+        Bounded(poses.tip_1, poses.tip_2, np.inf, machine.tip_acceleration, each=False, jerk=machine.tip_jerk),
         Bounded(poses.axis_1, poses.axis_2, machine.axis_speed, np.inf, each=False),
     )
 

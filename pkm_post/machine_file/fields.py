@@ -94,6 +94,7 @@ FIELDS: tuple[Field, ...] = (
     Field("tool_path.rapid_speed", forms.POSITIVE, units.SPEED, attribute="rapid_speed"),
     Field("tool_path.feed_speed", forms.POSITIVE, units.SPEED, attribute="feed_speed"),
     Field("tool_path.tip_acceleration", forms.POSITIVE, units.ACCELERATION, attribute="tip_acceleration"),
+    Field("tool_path.tip_jerk", forms.POSITIVE, units.JERK, default=None, attribute="tip_jerk"),
     Field("tool_path.axis_speed", forms.POSITIVE, units.TURNING_RATE, attribute="axis_speed"),
     Field("spindle.speed", forms.POSITIVE, units.SPINDLE_SPEED, attribute="spindle_speed"),
     Field("spindle.least_speed", forms.NOT_NEGATIVE, units.SPINDLE_SPEED, default=0.0, attribute="spindle_least_speed"),

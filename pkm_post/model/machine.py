@@ -89,6 +89,7 @@ class Machine:
         work_offsets: for each name (G54, ...) the (4, 4) pose of {C} in {M}.
         controller: settings of the controller, as the machine file has them.
         strut_jerk: highest third rate of strut length, mm/s^3; infinite when no limit is stated.
+        tip_jerk: highest third rate of the place of the tool tip, mm/s^3; infinite when no limit is stated.
         length_offset: (6,) mm by which the joints of each strut are farther apart than its controller counts.
         base_joint_kind: ``"universal"`` or ``"spherical"``.
         platform_joint_kind: ``"universal"`` or ``"spherical"``.
@@ -139,6 +140,7 @@ class Machine:
     work_offsets: dict[str, Array]
     controller: dict[str, Any]
     strut_jerk: float = math.inf
+    tip_jerk: float = math.inf
     length_offset: Array = field(default_factory=lambda: np.zeros(6))
     base_joint_kind: str = "universal"
     platform_joint_kind: str = "spherical"

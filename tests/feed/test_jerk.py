@@ -9,9 +9,10 @@ from machines import example
 from programs import ON_PALLET, cone, program
 
 from pkm_post import planning
-from pkm_post.feed import Ceilings, for_jerk, speed_profile, stations
+from pkm_post.feed import Ceilings, by_time, for_jerk, speed_profile, stations
 from pkm_post.feed.course import Course
 from pkm_post.feed.jerk import _least_of_covers
+from pkm_post.kinematics import strut_rates
 from pkm_post.model import Event, EventKind
 from pkm_post.model.findings import Tolerances
 from pkm_post.placement.place import place
@@ -40,12 +41,8 @@ JOBS = pytest.mark.parametrize("made", [cone(80, turns=0.5), square_wave()], ids
 
 def strut_jerks(machine, path, schedule, step=1e-4):
     """Third differences of the strut lengths over a tenth of a millisecond, (N, 6)."""
-    from pkm_post.kinematics import strut_rates
-
     time = np.arange(0, schedule.rests_ms[-1] / 1000, step)
     s, speed, acceleration = schedule.at(time)
-    from pkm_post.feed import by_time
-
     _, _, second = strut_rates(machine, by_time(path.at(s), speed, acceleration))
     return np.diff(second, axis=0) / step
 
@@ -54,6 +51,19 @@ def strut_jerks(machine, path, schedule, step=1e-4):
 def test_the_jerk_of_every_strut_keeps_its_limit(made):
     machine, path, schedule = planned(made)
     assert np.abs(strut_jerks(machine, path, schedule)).max() <= JERK
+
+
+@JOBS
+def test_the_jerk_of_the_tip_keeps_its_limit(made):
+    machine = dataclasses.replace(example(), tip_jerk=5e4)
+    trajectory, _ = place(made, machine, ON_PALLET)
+    path = planning.tool_path(trajectory, Tolerances(1e-2, 1e-3))
+    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    step = 1e-4
+    time = np.arange(0, schedule.rests_ms[-1] / 1000, step)
+    s, speed, acceleration = schedule.at(time)
+    jerk = np.linalg.norm(np.diff(by_time(path.at(s), speed, acceleration).tip_2, axis=0), axis=1) / step
+    assert jerk.max() <= machine.tip_jerk
 
 
 @JOBS
