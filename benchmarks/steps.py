@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How many points a program has: intervals chosen by error, beside fixed ones.
+
+    python3 benchmarks/steps.py out/tapered_column.pkmt [--machine example_6tps]
+
+Enters: a trajectory file, as ``make demo`` writes one. Leaves: for intervals by error and for fixed ones of some
+lengths the number of points, and how far the controller's cubics between them take tip and axis off the planned
+motion; the rounding of corners is not in it.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from pkm_post import planning, trajectory_file  # noqa: E402 - the path comes first
+from pkm_post.feed import by_time  # noqa: E402
+from pkm_post.kinematics import stray  # noqa: E402
+from pkm_post.machine_file import machine_named  # noqa: E402
+
+FIXED_MS = (1, 2, 5, 10)
+SHARES = np.sort(np.arange(1, 10) * (np.sqrt(5) - 1) / 2 % 1)
+CHUNK = 4096
+
+
+def told(name, time_ms, path, schedule, machine):
+    """One line of the table."""
+    tip = axis = 0.0
+
+    def poses_at(ms):
+        s, speed, acceleration = schedule.at(ms / 1000)
+        return by_time(path.at(s), speed, acceleration)
+
+    for first in range(0, len(time_ms) - 1, CHUNK):
+        start, end = time_ms[first : first + CHUNK], time_ms[first + 1 : first + CHUNK + 1]
+        start = start[: len(end)]
+        inner = poses_at((start[:, None] + (end - start)[:, None] * SHARES).ravel())
+        found = stray(machine, poses_at(start), poses_at(end), inner, (end - start) / 1000, SHARES)
+        tip, axis = max(tip, found.tip.max()), max(axis, found.axis.max())
+    print(f"{name:<12}{len(time_ms):>9} points   tip {tip:.6f} mm   axis {np.degrees(axis):.6f} degrees", flush=True)
+
+
+def main():
+    """Compare."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("trajectory", type=Path)
+    parser.add_argument("--machine", default="example_6tps")
+    chosen = parser.parse_args()
+    trajectory, faults = trajectory_file.read(chosen.trajectory)
+    machine, machine_faults = machine_named(chosen.machine)
+    if trajectory is None or machine is None:
+        sys.exit("\n".join(map(str, (*faults, *machine_faults))))
+    path = planning.tool_path(trajectory, trajectory.tolerances)
+    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    motion = planning.interpolate(path, schedule, trajectory.events, machine, trajectory.tolerances)
+    told("by error", motion.time_ms, path, schedule, machine)
+    for step in FIXED_MS:
+        fixed = np.unique(np.concatenate([np.arange(0, schedule.rests_ms[-1], step), schedule.rests_ms]))
+        told(f"{step} ms", fixed, path, schedule, machine)
+
+
+if __name__ == "__main__":
+    main()
