@@ -136,6 +136,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
         operations=("",),
         tools=_tools(settings.tools, options),
         source=blocks.source,
+        source_fingerprint="",
     )
 
 

@@ -5,7 +5,6 @@ import argparse
 import dataclasses
 import re
 
-import numpy as np
 import pytest
 from programs import cone
 
@@ -14,12 +13,9 @@ from pkm_post.controllers.halstreamer import chord_error
 from pkm_post.controllers.motion_csv import read_table
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Event, EventKind, Refused
-from pkm_post.model.findings import Tolerances
 from pkm_post.options import add_options, options_from
 from pkm_post.pipeline import LINUXCNC, Options, post
 from pkm_post.verify import verify
-
-TOLERANCES = Tolerances(0.001, np.radians(0.001))
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +39,7 @@ def test_a_job_is_posted_and_verified_for_every_kind(machine, tmp_path, kind):
     posted = post(job(), other, tmp_path / f"job{controller.SUFFIX}")
     assert posted.report["certificate"]["holds"]
     assert f"job{controller.SETUP_SUFFIX}" in {path.name for path in posted.files}
-    assert verify(posted.program, posted.program.with_suffix(".pkmt"), other, TOLERANCES) == posted.report
+    assert verify(posted.program, posted.program.with_suffix(".pkmt"), other) == posted.report
 
 
 @pytest.mark.parametrize("kind", CONTROLLERS)
@@ -79,7 +75,7 @@ def test_a_program_larger_than_the_memory_is_certified_in_parts(machine, in_part
 
 def test_a_program_in_parts_is_verified_from_its_first(in_parts):
     small, posted = in_parts
-    assert verify(posted.program, posted.program.with_suffix(".pkmt"), small, TOLERANCES) == posted.report
+    assert verify(posted.program, posted.program.with_suffix(".pkmt"), small) == posted.report
 
 
 def test_a_part_that_is_missing_or_another_is_found(in_parts, tmp_path):
@@ -95,14 +91,14 @@ def test_a_part_that_is_missing_or_another_is_found(in_parts, tmp_path):
     ):
         spoil()
         with pytest.raises(Refused) as refused:
-            verify(first, trajectory, small, TOLERANCES)
+            verify(first, trajectory, small)
         assert code in [fault.code for fault in refused.value.diagnostics]
 
 
 def test_a_later_part_alone_is_not_the_program(in_parts):
     small, posted = in_parts
     with pytest.raises(Refused) as refused:
-        verify(posted.program.with_name("job-part2.pmc"), posted.program.with_suffix(".pkmt"), small, TOLERANCES)
+        verify(posted.program.with_name("job-part2.pmc"), posted.program.with_suffix(".pkmt"), small)
     assert "C105" in [fault.code for fault in refused.value.diagnostics]
 
 
