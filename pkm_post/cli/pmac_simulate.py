@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command ``pmac simulate``: a simulated Turbo PMAC to connect to, until it is interrupted."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pkm_post.pmac_simulator import Controller, Server
+
+LOWEST_SPEED, HIGHEST_SPEED = 0.01, 100.0
+HIGHEST_PORT = 65_535
+
+
+def add_action(actions: Any) -> None:
+    """Add the action to those of the command ``pmac``."""
+    simulate = actions.add_parser("simulate", help="be a Turbo PMAC with six motors, for tests and training")
+    door = simulate.add_mutually_exclusive_group(required=True)
+    door.add_argument("--pty", action="store_true", help="be connected to a pseudo terminal, as to a serial port")
+    door.add_argument("--tcp", type=_port, metavar="PORT", help="listen at this port of this computer; 0 takes any")
+    simulate.add_argument("--setup", type=Path, metavar="FILE", help="lines of a set-up file to carry out first")
+    simulate.add_argument("--speed", type=_speed, default=1.0, help="simulated seconds in a second (1)")
+    simulate.add_argument("--memory", type=_words, metavar="WORDS", help="memory for programs, in 48-bit words")
+    simulate.set_defaults(run=_simulate)
+
+
+def _port(text: str) -> int:
+    if not (text.isdecimal() and int(text) <= HIGHEST_PORT):
+        raise argparse.ArgumentTypeError(f"expected a port from 0 to {HIGHEST_PORT}, got {text!r}")
+    return int(text)
+
+
+def _words(text: str) -> int:
+    from pkm_post.pmac_simulator.settings import LEAST_MEMORY
+
+    if not (text.isdecimal() and int(text) >= LEAST_MEMORY):
+        raise argparse.ArgumentTypeError(f"expected {LEAST_MEMORY} words or more, got {text!r}")
+    return int(text)
+
+
+def _speed(text: str) -> float:
+    try:
+        speed = float(text)
+    except ValueError:
+        speed = 0.0
+    if not LOWEST_SPEED <= speed <= HIGHEST_SPEED:
+        raise argparse.ArgumentTypeError(f"expected a number from {LOWEST_SPEED} to {HIGHEST_SPEED}, got {text!r}")
+    return speed
+
+
+def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.pmac_simulator import Controller, Server, Settings
+
+    controller = Controller(Settings(memory_words=namespace.memory) if namespace.memory else Settings())
+    if namespace.setup and not _set_up(controller, namespace.setup):
+        return 1
+    server = Server(controller, namespace.speed)
+    try:
+        address = f"serial:{server.add_pty()}" if namespace.pty else f"tcp:127.0.0.1:{server.add_tcp(namespace.tcp)}"
+    except OSError as fault:
+        print(f"no connection can be offered: {fault}", file=sys.stderr)
+        server.close()
+        return 1
+    print(f"A simulated Turbo PMAC is at {address}; Ctrl-C ends it.", flush=True)
+    serve(server, lambda: False)
+    return 0
+
+
+def serve(server: Server, ended: Callable[[], bool]) -> None:
+    """Serve until ``ended`` says so, or until the user interrupts."""
+    try:
+        server.run(ended)
+    except KeyboardInterrupt:
+        print("ended")
+    finally:
+        server.close()
+
+
+def _set_up(controller: Controller, file: Path) -> bool:
+    """Carry out the lines of a file; tell the first that is refused."""
+    from pkm_post.pmac_simulator import MEANINGS, Line
+
+    try:
+        lines = file.read_text(encoding="ascii").splitlines()
+    except (OSError, UnicodeDecodeError) as fault:
+        print(f"{file}: {fault}", file=sys.stderr)
+        return False
+    port = Line(controller)
+    for place, text in enumerate(lines, start=1):
+        number = port.refusal(text)
+        if number:
+            print(f"{file}:{place}: ERR{number:03d}, {MEANINGS[number]}: {text}", file=sys.stderr)
+            return False
+    return True

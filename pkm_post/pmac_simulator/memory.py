@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Memory: the program buffers of the controller, which one is open and who opened it.
+
+Enters: lines of programs. Leaves: programs, rotary buffers, and the words that are free. One buffer is open at a time;
+what was opened by one port is filled and closed by that port.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pkm_post.pmac_simulator.errors import DATA, IN_USE, NO_ROOM, NOT_OPEN, CommandError
+from pkm_post.pmac_simulator.programs import Program, Rotary
+from pkm_post.pmac_simulator.statements import Statement, statements_of
+
+HIGHEST_PROGRAM = 32_767
+MOST_PROGRAMS = 224
+BRANCHES = {"N", "GOTO", "GOSUB", "CALL", "RETURN", "IF", "ELSE", "ENDIF", "WHILE", "ENDWHILE"}
+"""What a rotary buffer does not take, for it forgets the lines behind it [TurboPMAC, rotary buffers]."""
+
+
+@dataclass(frozen=True)
+class Opened:
+    """The buffer that is open: a program by its number, or all rotary buffers; and the port that opened it."""
+
+    program: int | None
+    port: object
+
+
+class Memory:
+    """All buffers of a controller.
+
+    Attributes:
+        size: words for all of them.
+        programs: fixed programs by number.
+        rotaries: rotary buffers by coordinate system.
+        gather: words set aside for gathered data.
+        opened: the open buffer.
+    """
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.programs: dict[int, Program] = {}
+        self.rotaries: dict[int, Rotary] = {}
+        self.gather = 0
+        self.opened: Opened | None = None
+
+    def free(self) -> int:
+        """Words that are free."""
+        used = sum(program.words for program in self.programs.values())
+        return self.size - self.gather - used - sum(rotary.size for rotary in self.rotaries.values())
+
+    def open_program(self, number: int, port: object) -> None:
+        """Open a fixed program; what stands in it stays.
+
+        Raises:
+            CommandError: another buffer is open, or there can be no such program.
+        """
+        if self.opened is not None:
+            raise CommandError(IN_USE)
+        if not 1 <= number <= HIGHEST_PROGRAM:
+            raise CommandError(DATA)
+        if number not in self.programs and len(self.programs) >= MOST_PROGRAMS:
+            raise CommandError(NO_ROOM)
+        self.programs.setdefault(number, Program()).reopen()
+        self.opened = Opened(number, port)
+
+    def open_rotary(self, port: object) -> None:
+        """Open the rotary buffers.
+
+        Raises:
+            CommandError: another buffer is open.
+        """
+        if self.opened is not None:
+            raise CommandError(IN_USE)
+        self.opened = Opened(None, port)
+
+    def is_open_by(self, port: object) -> bool:
+        """Whether lines of this port go into a buffer."""
+        return self.opened is not None and self.opened.port is port
+
+    def close(self, port: object) -> None:
+        """Close the buffer that this port opened; nothing when there is none.
+
+        Raises:
+            CommandError: the program that is closed has no sound structure. It is closed nevertheless.
+        """
+        if not self.is_open_by(port):
+            return
+        assert self.opened is not None
+        number, self.opened = self.opened.program, None
+        if number is not None and self.programs[number].statements:
+            self.programs[number].close()
+        elif number is not None:
+            del self.programs[number]
+
+    def clear(self, port: object, system: int) -> None:
+        """Empty the open program, or the rotary buffer of a coordinate system.
+
+        Raises:
+            CommandError: this port has no buffer open.
+        """
+        if not self.is_open_by(port):
+            raise CommandError(NOT_OPEN)
+        assert self.opened is not None
+        if self.opened.program is not None:
+            self.programs[self.opened.program] = Program()
+        elif system in self.rotaries:
+            self.rotaries[system] = Rotary(self.rotaries[system].size)
+
+    def add(self, text: str, system: int) -> None:
+        """Put a line into the open buffer.
+
+        Raises:
+            CommandError: the line is no line of a program, or there is no room for it.
+        """
+        line = statements_of(text)
+        if not line:
+            return
+        assert self.opened is not None
+        if self.opened.program is not None:
+            self._add_to_program(self.programs[self.opened.program], line)
+        else:
+            self._add_to_rotary(system, line)
+
+    def define_rotary(self, system: int, words: int) -> None:
+        """Make the rotary buffer of a coordinate system.
+
+        Raises:
+            CommandError: a buffer is open, or there is no room.
+        """
+        if self.opened is not None:
+            raise CommandError(IN_USE)
+        if words > self.free() or words < 1:
+            raise CommandError(NO_ROOM)
+        self.rotaries[system] = Rotary(words)
+
+    def _add_to_program(self, program: Program, line: tuple[Statement, ...]) -> None:
+        if sum(statement.words for statement in line) + 1 > self.free():  # one word for the return at the end
+            raise CommandError(NO_ROOM)
+        program.append(line)
+
+    def _add_to_rotary(self, system: int, line: tuple[Statement, ...]) -> None:
+        if any(statement.kind in BRANCHES for statement in line):
+            raise CommandError(DATA)
+        if system not in self.rotaries or not self.rotaries[system].append(line):
+            raise CommandError(NO_ROOM)

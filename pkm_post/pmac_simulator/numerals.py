@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Numerals: numbers as the controller keeps and prints them.
+
+A value is a 48-bit word with a mantissa of 36 bits, of which one is the sign: about 10.5 significant digits. What is
+downloaded and what is listed is rounded to that.
+"""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+
+from pkm_post.pmac_simulator.errors import DATA, CommandError
+
+MANTISSA_BITS = 35
+LARGEST_EXPONENT = 1023
+
+
+def kept(value: float) -> float:
+    """A value as it stands in a word of the controller.
+
+    Raises:
+        CommandError: it is too large for a word, or no number.
+    """
+    if not math.isfinite(value) or abs(value) >= 2.0**LARGEST_EXPONENT:
+        raise CommandError(DATA)
+    mantissa, exponent = math.frexp(value)
+    return math.ldexp(round(math.ldexp(mantissa, MANTISSA_BITS)), exponent - MANTISSA_BITS)
+
+
+def printed(value: float) -> str:
+    """The shortest plain decimal that is kept as the same word; no exponent, a digit before the point."""
+    word = kept(value)
+    for digits in range(9, 17):
+        text = f"{word:.{digits}g}"
+        if kept(float(text)) == word:
+            break
+    plain = format(Decimal(text), "f")
+    if "." in plain:
+        plain = plain.rstrip("0").rstrip(".")
+    return "0" if plain == "-0" else plain
+
+
+def hexadecimal(*words: int) -> str:
+    """Status words of 24 bits as six digits each."""
+    return "".join(f"{word & 0xFFFFFF:06X}" for word in words)
+
+
+def number_of(text: str) -> float:
+    """The value of a constant: decimal, or hexadecimal behind a dollar sign."""
+    return kept(float(int(text[1:], 16)) if text.startswith("$") else float(text))

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Profiles: moves of one motor by itself: jogs, searches for home, stops.
+
+Enters: position in counts, speed in counts/ms, limits. Leaves: position as a function of time, in pieces of constant
+acceleration. A new profile begins with the speed that the motor has.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A time of constant acceleration: p + v t + a t^2 / 2 for ``duration`` ms."""
+
+    duration: float
+    position: float
+    speed: float
+    acceleration: float
+
+    def at(self, time: float) -> float:
+        """Position at a time since the start of the piece."""
+        return self.position + time * (self.speed + 0.5 * self.acceleration * time)
+
+    def next(self, duration: float, acceleration: float) -> Piece:
+        """The piece that goes on from the end of this one."""
+        speed = self.speed + self.acceleration * self.duration
+        return Piece(duration, self.at(self.duration), speed, acceleration)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A move of one motor.
+
+    Attributes:
+        pieces: one after the other; the motor goes on resting or at constant speed behind the last.
+        goal: position where it ends; None when it does not end by itself.
+    """
+
+    pieces: tuple[Piece, ...]
+    goal: float | None
+
+    @property
+    def duration(self) -> float:
+        """How long the pieces last, ms."""
+        return sum(piece.duration for piece in self.pieces)
+
+    def at(self, time: float) -> float:
+        """Position at a time since the start."""
+        if self.goal is not None and time >= self.duration:
+            return self.goal
+        for piece in self.pieces[:-1]:
+            if time < piece.duration:
+                return piece.at(time)
+            time -= piece.duration
+        return self.pieces[-1].at(time)
+
+    def ended(self, time: float) -> bool:
+        """Whether the motor rests at the goal."""
+        return self.goal is not None and time >= self.duration
+
+
+def stop(position: float, speed: float, deceleration: float) -> Profile:
+    """Slow down to rest."""
+    duration = abs(speed) / deceleration
+    braking = Piece(duration, position, speed, -math.copysign(deceleration, speed))
+    return Profile((braking,), braking.at(duration))
+
+
+def endless(position: float, speed: float, wanted: float, acceleration: float) -> Profile:
+    """Go on at a speed until something else is asked for."""
+    change = wanted - speed
+    ramp = Piece(abs(change) / acceleration, position, speed, math.copysign(acceleration, change))
+    return Profile((ramp, ramp.next(math.inf, 0.0)), None)
+
+
+def go_to(position: float, speed: float, goal: float, limit: float, acceleration: float) -> Profile:
+    """Go to a position: come to rest first when the motor is moving, then the quickest way within both limits.
+
+    Args:
+        position: now, counts.
+        speed: now, counts/ms.
+        goal: counts.
+        limit: highest speed, counts/ms.
+        acceleration: counts/ms^2.
+    """
+    braking = stop(position, speed, acceleration)
+    assert braking.goal is not None
+    distance = goal - braking.goal
+    sign = math.copysign(1.0, distance)
+    peak = min(limit, math.sqrt(abs(distance) * acceleration))
+    ramp = peak / acceleration
+    cruise = (abs(distance) - peak * ramp) / peak if peak > 0 else 0.0
+    speeding = Piece(ramp, braking.goal, 0.0, sign * acceleration)
+    steady = Piece(cruise, speeding.at(ramp), sign * peak, 0.0)
+    slowing = Piece(ramp, steady.at(cruise), sign * peak, -sign * acceleration)
+    return Profile((*braking.pieces, speeding, steady, slowing), goal)
