@@ -11,8 +11,9 @@ import shlex
 from typing import Any
 
 from pkm_post import pipeline
-from pkm_post.freecad_app.arguments import POST_PROCESSOR, job_arguments
+from pkm_post.freecad_app.arguments import POST_PROCESSORS, own_arguments
 from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.freecad_app.post_job import at_fixture
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Refused
@@ -23,7 +24,7 @@ _WORK_OFFSET = "--work-offset"
 
 
 def study_job(job: Any, free: str = "") -> Study:
-    """Check a job on its machine, as its arguments say it.
+    """Check a job on its machine, as its arguments say it, with its model as the part.
 
     Args:
         job: the CAM job, a document object; its document is recomputed.
@@ -33,13 +34,13 @@ def study_job(job: Any, free: str = "") -> Study:
         Refused: the job cannot be read or placed. That it cannot be followed is told by the study.
     """
     job.Document.recompute()
-    chosen = job_arguments(job, job.PostProcessorArgs if job.PostProcessor == POST_PROCESSOR else "")
+    chosen = own_arguments(job)
     machine, faults = machine_named(chosen.machine)
     program, told = read_job(job, tool_lengths_from(chosen))
     if machine is None or program is None:
         raise Refused((*faults, *told))
     options: pipeline.Options = at_fixture(options_from(chosen), job)
-    found, told = study(program, machine, options, free)
+    found, told = study(program, machine, options, free, part_mesh(job))
     if found is None:
         raise Refused(told)
     return found
@@ -49,7 +50,7 @@ def place_job(job: Any, free: str = "xyzc") -> Study:
     """Give a job the work offset that leaves its machine most room.
 
     Args:
-        job: the CAM job, for PKM Post's post-processor.
+        job: the CAM job, for a post-processor of PKM Post.
         free: letters of x, y, z and c in which the part may be moved.
 
     Raises:
@@ -58,8 +59,9 @@ def place_job(job: Any, free: str = "xyzc") -> Study:
     """
     if set(free) - set("xyzc"):
         raise ValueError(f"free: expected letters of 'xyzc', got {free!r}")
-    if job.PostProcessor != POST_PROCESSOR:
-        raise ValueError(f"expected a job for {POST_PROCESSOR}, got one for {job.PostProcessor or 'none'}")
+    if job.PostProcessor not in POST_PROCESSORS:
+        known = ", ".join(POST_PROCESSORS)
+        raise ValueError(f"expected a job for {known}, got one for {job.PostProcessor or 'none'}")
     found = study_job(job, free)
     words = shlex.split(job.PostProcessorArgs)
     if _WORK_OFFSET in words:

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine: a document object for a machine with six struts, at a pose, around the part.
+
+A machine file, a work offset and a pose in coordinates of the program enter by properties; strut lengths, margins and
+what is out of limits leave by read-only properties. The document is seen from the part: coordinates of the program are
+those of the document, and the machine stands where the work offset puts it. The work offset is that of a CAM job, if
+the object has one; otherwise a placement of its own, for the origin of the document or for an object of the model.
+Saved documents name the class by ``pkm_post.freecad_app.machine_object``: its place, its name and those of its
+properties are a file format.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+
+from pkm_post import pipeline
+from pkm_post.freecad_app.arguments import own_arguments
+from pkm_post.freecad_app.frames import matrix_of, placement_of
+from pkm_post.freecad_app.post_job import at_fixture
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import Way, reach_findings, reach_margins, strut_lengths
+from pkm_post.kinematics.way import Pose
+from pkm_post.machine_file import machine_named
+from pkm_post.model import Machine, Refused
+from pkm_post.options import options_from
+
+Row = tuple[str, str, str, str, Any]
+"""A property: its type, name, group, what is said of it, and the value it has at first."""
+
+_VIEW = "pkm_post.freecad_gui.machine_view"
+"""The view is a floor above: it is named and not imported, as in saved documents."""
+_READ_ONLY, _EDITABLE = 1, 0
+_EXAMPLE = "example_6tps"
+_M, _W, _P, _T, _R = "Machine", "Work Offset", "Pose", "Tool", "Result"
+_STRUTS = tuple(f"Strut{number}" for number in range(1, 7))
+
+PROPERTIES: tuple[Row, ...] = (
+    ("App::PropertyFile", "MachineFile", _M, "Name of a machine that comes with PKM Post, or path of a machine file",
+     ""),
+    ("App::PropertyLink", "Job", _W, "CAM job whose work offset is taken", None),
+    ("App::PropertyLinkGlobal", "Reference", _W, "Object of the model that the work offset places, if there is no job; "
+     "the origin of the document if there is none", None),
+    ("App::PropertyPlacement", "WorkOffset", _W, "Pose of the work frame on the table, in the machine frame",
+     App.Placement()),
+    ("App::PropertyVectorDistance", "Tip", _P, "Tool tip in the work frame", App.Vector()),
+    ("App::PropertyVector", "ToolAxis", _P, "From the tip towards the spindle, in the work frame", App.Vector(0, 0, 1)),
+    ("App::PropertyAngle", "Spin", _P, "Turn of the platform about the tool axis", 0.0),
+    ("App::PropertyLength", "ToolLength", _T, "Gauge length, from the spindle nose to the tip", 100.0),
+    ("App::PropertyLength", "ToolDiameter", _T, "Diameter of the cutter that is drawn", 10.0),
+    ("App::PropertyLength", "ToolCornerRadius", _T, "Its corner radius: half the diameter for a ball", 0.0),
+)  # fmt: skip
+
+RESULTS: tuple[Row, ...] = (
+    *(("App::PropertyDistance", name, _R, "Length that the controller counts", 0.0) for name in _STRUTS),
+    ("App::PropertyDistance", "StrokeMargin", _R, "What is left of the strut nearest to an end of its stroke", 0.0),
+    ("App::PropertyAngle", "JointMargin", _R, "What is left of the joint nearest to its cone", 0.0),
+    ("App::PropertyFloat", "SingularMargin", _R, "Smallest singular value above the least allowed", 0.0),
+    ("App::PropertyStringList", "OutOfLimits", _R, "What is out of limits at this pose", []),
+    ("App::PropertyPlacement", "Frame", _R, "Where the machine frame is in the document", App.Placement()),
+)
+
+
+class MachineObject:
+    """The proxy. Faults of the machine file are exceptions that FreeCAD shows at the object."""
+
+    def __init__(self, obj: Any) -> None:
+        _add_missing_properties(obj)
+        obj.Proxy = self
+
+    def execute(self, obj: Any) -> None:
+        """Compute what follows from the properties."""
+        machine = machine_of(obj)
+        _take_work_offset(obj, machine)
+        obj.Frame = placement_of(_document_from_work(obj) @ np.linalg.inv(matrix_of(obj.WorkOffset)))
+        _tell(obj, machine, pose_of(obj))
+
+    def onDocumentRestored(self, obj: Any) -> None:
+        """Give documents of older versions the properties they do not have yet."""
+        _add_missing_properties(obj)
+
+    def dumps(self) -> None:
+        """Nothing is saved beside the properties."""
+
+    def loads(self, state: object) -> None:
+        """Nothing was saved."""
+
+
+def create_machine(document: Any, machine: str = "", job: Any = None, label: str = "") -> Any:
+    """Add a machine to a document, at the pose it has at home.
+
+    Args:
+        document: gets the object.
+        machine: name or path of the machine file; if there is none, that of the job, or the example.
+        job: CAM job whose work offset is taken.
+        label: name shown to people; that of the machine if there is none.
+
+    Raises:
+        Refused: there is no such machine, or its file has faults; nothing was added.
+    """
+    name = machine or (_EXAMPLE if job is None else own_arguments(job).machine)
+    model = _machine_named(name)
+    obj = document.addObject("App::FeaturePython", "Machine")
+    MachineObject(obj)
+    obj.Label, obj.MachineFile, obj.Job = label or f"Machine {model.name}", name, job
+    offsets = model.work_offsets
+    if offsets:
+        obj.WorkOffset = placement_of(offsets.get("G54", next(iter(offsets.values()))))
+    _take_work_offset(obj, model)
+    _go_home(obj, model)
+    if App.GuiUp:
+        importlib.import_module(_VIEW).MachineView(obj.ViewObject)
+    return obj
+
+
+def machine_of(obj: Any) -> Machine:
+    """The machine that the object shows.
+
+    Raises:
+        Refused: its file is not there or has faults.
+    """
+    return _machine_named(obj.MachineFile)
+
+
+def pose_of(obj: Any) -> Pose:
+    """The pose of the object in {M}, as one row for ``kinematics``.
+
+    Raises:
+        ValueError: the tool axis has no direction.
+    """
+    machine_from_work = matrix_of(obj.WorkOffset)
+    axis = machine_from_work[:3, :3] @ np.array(obj.ToolAxis)
+    length = float(np.linalg.norm(axis))
+    if length == 0.0:
+        raise ValueError(f"{obj.Label}: expected a tool axis with a direction, got (0, 0, 0)")
+    tip = machine_from_work[:3, :3] @ np.array(obj.Tip) + machine_from_work[:3, 3]
+    spin, gauge = math.radians(obj.Spin.Value), obj.ToolLength.Value
+    return tip[None], axis[None] / length, np.array([spin]), np.array([gauge])
+
+
+def _add_missing_properties(obj: Any) -> None:
+    for kind, name, group, text, value in (*PROPERTIES, *RESULTS):
+        if not hasattr(obj, name):
+            obj.addProperty(kind, name, group, text)
+            setattr(obj, name, value)
+    for _, name, *_ in RESULTS:
+        obj.setEditorMode(name, _READ_ONLY)
+
+
+def _machine_named(name: str) -> Machine:
+    machine, faults = machine_named(name)
+    if machine is None:
+        raise Refused(faults)
+    return machine
+
+
+def _take_work_offset(obj: Any, machine: Machine) -> None:
+    """The work offset of the job, if there is one; it cannot be typed in then."""
+    obj.setEditorMode("WorkOffset", _EDITABLE if obj.Job is None else _READ_ONLY)
+    if obj.Job is None:
+        return
+    options = at_fixture(options_from(own_arguments(obj.Job)), obj.Job)
+    offset, faults = pipeline.work_offset(machine, options)
+    if offset is None:
+        raise Refused(faults)
+    obj.WorkOffset = placement_of(offset)
+
+
+def _document_from_work(obj: Any) -> Array:
+    """Where the work frame is in the document; paths of a job are in coordinates of the document."""
+    if obj.Job is not None or obj.Reference is None:
+        return np.eye(4)
+    if not hasattr(obj.Reference, "getGlobalPlacement"):
+        raise ValueError(f"{obj.Label}: expected a reference with a placement, got {obj.Reference.Label}")
+    return matrix_of(obj.Reference.getGlobalPlacement())
+
+
+def _go_home(obj: Any, machine: Machine) -> None:
+    work_from_machine = np.linalg.inv(matrix_of(obj.WorkOffset))
+    obj.Tip = App.Vector(*(work_from_machine[:3, :3] @ machine.home_tip + work_from_machine[:3, 3]))
+    obj.ToolAxis = App.Vector(*(work_from_machine[:3, :3] @ machine.home_axis))
+    obj.Spin = math.degrees(machine.home_spin)
+    if machine.rest_tool_length > 0.0:
+        obj.ToolLength = machine.rest_tool_length
+
+
+def _tell(obj: Any, machine: Machine, pose: Pose) -> None:
+    """Fill in the results."""
+    for name, length in zip(_STRUTS, strut_lengths(machine, *pose)[0], strict=True):
+        setattr(obj, name, float(length))
+    left = reach_margins(machine, *pose)
+    obj.StrokeMargin = float(min(left.shortest.min(), left.longest.min()))
+    obj.JointMargin = math.degrees(min(left.base.min(), left.platform.min()))
+    obj.SingularMargin = float(left.singular[0])
+    findings = reach_findings(machine, Way.straight(*pose))
+    bad = [finding for finding in findings if finding.margin[0] < 0.0]
+    obj.OutOfLimits = [
+        f"{finding.subject.name}: {finding.subject.tell(int(finding.part[0]), float(finding.margin[0]))}"
+        for finding in bad
+    ]

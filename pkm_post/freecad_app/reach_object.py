@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reach: a document object that says whether a machine can follow a CAM job, and where it is worst.
+
+A job and, if there is one, a machine object enter by properties. The findings of all checks leave by read-only lists,
+one entry for each check, and with them the way of the tool tip in the document with the margin of one check by point,
+to be coloured by. Saved documents name the class by ``pkm_post.freecad_app.reach_object``: its place, its name and
+those of its properties are a file format.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+
+from pkm_post.freecad_app.frames import apply
+from pkm_post.freecad_app.job_on_machine import job_on_machine
+from pkm_post.freecad_app.progress import Progress
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics.findings import SHOWN
+from pkm_post.model.diagnostics import errors
+from pkm_post.reach import Reach, reach
+
+Row = tuple[str, str, str, str, Any]
+"""A property: its type, name, group, what is said of it, and the value it has at first."""
+
+_VIEW = "pkm_post.freecad_gui.reach_view"
+"""The view is a floor above: it is named and not imported, as in saved documents."""
+_READ_ONLY, _HIDDEN = 1, 2
+_NO_RECOMPUTE = 16
+_MOST_POINTS = 100_000
+"""Of the way that is stored and drawn."""
+_C, _R, _W = "Reach", "Result", "Way"
+
+PROPERTIES: tuple[Row, ...] = (
+    ("App::PropertyLink", "Job", _C, "The CAM job that is checked", None),
+    ("App::PropertyLink", "Machine", _C, "The machine in the document; that of the job's arguments if there is none",
+     None),
+    ("App::PropertyBool", "Active", _C, "Switch this off to check no more when the job changes", True),
+    ("App::PropertyEnumeration", "ColourBy", _C, "The check that the way is coloured by", ["shortest struts"]),
+)  # fmt: skip
+RESULTS: tuple[Row, ...] = (
+    ("App::PropertyBool", "Reachable", _R, "Whether the machine can follow; where it is slower, it can", False),
+    ("App::PropertyStringList", "Checks", _R, "What was checked; the lists below have an entry for each", []),
+    ("App::PropertyStringList", "Units", _R, "Of the margins", []),
+    ("App::PropertyFloatList", "LeastMargins", _R, "Least margin; negative is out of limits", []),
+    ("App::PropertyStringList", "ProvenMargins", _R, "What is proven between the points as well", []),
+    ("App::PropertyStringList", "WorstParts", _R, "What has the least margin", []),
+    ("App::PropertyStringList", "WorstOperations", _R, "Operation in which that is", []),
+    ("App::PropertyIntegerList", "WorstLines", _R, "Number of the command in the operation", []),
+    ("App::PropertyVectorList", "WorstPoints", _R, "Where the tool tip is then", []),
+    ("App::PropertyStringList", "Violations", _R, "What is out of limits, worst of each operation", []),
+    ("App::PropertyStringList", "Report", _R, "The report for people", []),
+)
+WAY: tuple[Row, ...] = (
+    ("App::PropertyVectorList", "Points", _W, "The way of the tool tip", []),
+    ("App::PropertyFloatList", "Margins", _W, "Margin at each point, of the check that it is coloured by", []),
+)
+
+
+class ReachObject:
+    """The proxy. A job that cannot be read or placed is an exception that FreeCAD shows at the object."""
+
+    _found: tuple[Reach, Array] | None = None
+    """What was found last, and the rows of it that are stored; gone when the document is opened again."""
+
+    def __init__(self, obj: Any) -> None:
+        _add_missing_properties(obj)
+        obj.Proxy = self
+
+    def execute(self, obj: Any) -> None:
+        """Check the job, if this is wanted."""
+        if not obj.Active:
+            return
+        _clear(obj)  # should there be an error, no old result is left to be believed
+        self._found = None
+        if obj.Job is None:
+            return
+        with Progress(obj.Label, 2) as bar:
+            placed = job_on_machine(obj.Job, obj.Machine)
+            bar.step()
+            found = reach(placed.trajectory, placed.machine, placed.part)
+            bar.step()
+        _tell(obj, found)
+        self._found = found, thinned(_least_by_row(found), _MOST_POINTS)
+        _store_way(obj, *self._found)
+
+    def onChanged(self, obj: Any, name: str) -> None:
+        """Colour by another check, without checking anew."""
+        if name == "ColourBy" and self._found is not None and obj.ColourBy in obj.Checks:
+            _store_way(obj, *self._found)
+        elif name == "ColourBy" and "Restore" not in obj.State and obj.ColourBy in getattr(obj, "Checks", ()):
+            obj.touch()  # what was found has gone with the session
+
+    def onDocumentRestored(self, obj: Any) -> None:
+        """Give documents of older versions the properties they do not have yet."""
+        _add_missing_properties(obj)
+
+    def dumps(self) -> None:
+        """Nothing is saved beside the properties."""
+
+    def loads(self, state: object) -> None:
+        """Nothing was saved."""
+
+
+def create_reach(job: Any, machine: Any = None, label: str = "") -> Any:
+    """Add the checks of a job to its document.
+
+    Args:
+        job: the CAM job.
+        machine: what ``create_machine`` made; without one the arguments of the job say what it runs on.
+        label: name shown to people.
+    """
+    obj = job.Document.addObject("App::FeaturePython", "Reach")
+    ReachObject(obj)
+    obj.Label, obj.Job, obj.Machine = label or f"Reach of {job.Label}", job, machine
+    if App.GuiUp:
+        importlib.import_module(_VIEW).ReachView(obj.ViewObject)
+    return obj
+
+
+def machine_for(job: Any) -> Any:
+    """The machine object of the document that has the work offset of a job, or None."""
+    return next((item for item in job.InList if hasattr(item, "MachineFile") and item.Job == job), None)
+
+
+def thinned(margin: Array, most: int) -> Array:
+    """Rows to keep of a way, (K,) in order: those of least margin, one in each stretch, and both ends.
+
+    Args:
+        margin: (N,) margins.
+        most: how many rows there may be.
+    """
+    if len(margin) <= most:
+        return np.arange(len(margin))
+    edges = np.linspace(0, len(margin), most - 1).astype(np.int64)
+    least = np.minimum.reduceat(margin, edges[:-1])
+    stretch = np.searchsorted(edges, np.arange(len(margin)), side="right") - 1
+    here = np.flatnonzero(margin == least[np.minimum(stretch, len(least) - 1)])
+    _, first = np.unique(stretch[here], return_index=True)
+    return np.unique(np.concatenate([[0], here[first], [len(margin) - 1]]))
+
+
+def _add_missing_properties(obj: Any) -> None:
+    for kind, name, group, text, value in (*PROPERTIES, *RESULTS, *WAY):
+        if not hasattr(obj, name):
+            obj.addProperty(kind, name, group, text, _NO_RECOMPUTE if name == "ColourBy" else 0)
+            setattr(obj, name, value)
+    for rows, mode in ((RESULTS, _READ_ONLY), (WAY, _HIDDEN)):
+        for _, name, *_ in rows:
+            obj.setEditorMode(name, mode)
+
+
+def _clear(obj: Any) -> None:
+    for _, name, _, _, value in (*RESULTS, *WAY):
+        setattr(obj, name, value)
+
+
+def _least_by_row(found: Reach) -> Array:
+    """One margin of all checks to thin the way by, (N,): each by its own spread, least where it is worst."""
+    columns = [finding.margin / max(float(np.ptp(finding.margin)), 1e-9) for finding in found.findings]
+    return np.min([np.where(column < 0.0, column, column - column.min()) for column in columns], axis=0)
+
+
+def _tell(obj: Any, found: Reach) -> None:
+    """Fill in the findings."""
+    checks = found.as_dict()["checks"]
+    document_from_machine = np.linalg.inv(found.trajectory.machine_from_work)
+    worst = np.array([found.tip[finding.worst_row] for finding in found.findings])
+    faults = found.faults()
+    obj.Checks = [check["name"] for check in checks]
+    obj.Units = [SHOWN[finding.subject.unit][0] for finding in found.findings]
+    obj.LeastMargins = [check["margin"] for check in checks]
+    proven = [check["proven_margin"] for check in checks]
+    obj.ProvenMargins = ["points only" if margin is None else f"{margin:.4g}" for margin in proven]
+    obj.WorstParts = [check["part"] for check in checks]
+    obj.WorstOperations = [check["worst"]["operation"] for check in checks]
+    obj.WorstLines = [check["worst"]["line"] for check in checks]
+    obj.WorstPoints = _vectors(apply(document_from_machine, worst))
+    obj.Violations = [str(fault) for fault in faults]
+    obj.Report = found.text().splitlines()
+    obj.Reachable = not errors(faults)
+    if obj.getEnumerationsOfProperty("ColourBy") != obj.Checks:
+        chosen = str(obj.ColourBy)
+        obj.ColourBy = obj.Checks
+        obj.ColourBy = chosen if chosen in obj.Checks else obj.Checks[0]
+
+
+def _store_way(obj: Any, found: Reach, rows: Array) -> None:
+    """Store the way with the margins of the check that is asked for, in the unit that people are shown."""
+    chosen = list(obj.Checks).index(str(obj.ColourBy))
+    finding = found.findings[chosen]
+    points = apply(np.linalg.inv(found.trajectory.machine_from_work), found.tip[rows])
+    obj.Margins = []  # points and margins belong together at all times
+    obj.Points = _vectors(points)
+    obj.Margins = (finding.margin[rows] * SHOWN[finding.subject.unit][1]).tolist()
+
+
+def _vectors(points: Array) -> list[Any]:
+    return [App.Vector(*point) for point in points.tolist()]

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Lathe: bodies of revolution for the 3D view, made once and moved by transforms alone.
+
+Profiles in mm enter; Coin nodes leave. Everything that is drawn of a machine is round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from pivy import coin
+
+from pkm_post.geometry.vectors import Array
+
+Colour = tuple[float, float, float]
+"""Red, green and blue from 0 to 1."""
+
+_AROUND = 32
+_ARC_STEPS = 8
+_CREASE = 0.6
+"""rad: below it the faces of a surface are drawn as one, so that it looks round."""
+
+
+def material(colour: Colour) -> coin.SoMaterial:
+    """How a body looks."""
+    node = coin.SoMaterial()
+    node.diffuseColor = colour
+    node.specularColor = (0.08, 0.08, 0.08)
+    node.shininess = 0.3
+    return node
+
+
+def turned(profile: Array) -> coin.SoSeparator:
+    """A profile turned about z.
+
+    Args:
+        profile: (N, 2) radii and heights in mm.
+    """
+    angle = np.linspace(0.0, 2.0 * np.pi, _AROUND + 1)
+    radius, height = profile.T
+    points = np.empty((len(profile), len(angle), 3))
+    points[..., 0] = radius[:, None] * np.cos(angle)
+    points[..., 1] = radius[:, None] * np.sin(angle)
+    points[..., 2] = height[:, None]
+    hints = coin.SoShapeHints()
+    hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
+    hints.creaseAngle = _CREASE
+    coordinates, mesh = coin.SoCoordinate3(), coin.SoQuadMesh()
+    coordinates.point.setValues(0, points.size // 3, points.reshape(-1, 3).tolist())
+    mesh.verticesPerColumn, mesh.verticesPerRow = len(profile), len(angle)
+    return group(hints, coordinates, mesh)
+
+
+def cylinder(radius: float, start: float, end: float) -> coin.SoSeparator:
+    """A closed cylinder about z, between two heights."""
+    place, node = coin.SoTransform(), coin.SoCylinder()
+    place.translation = (0.0, 0.0, (start + end) / 2.0)
+    place.rotation = coin.SbRotation(coin.SbVec3f(0, 1, 0), coin.SbVec3f(0, 0, 1))  # Coin's own is about y
+    node.radius, node.height = radius, end - start
+    return group(place, node)
+
+
+def beam(start: Array, end: Array, radius: float) -> coin.SoSeparator:
+    """A cylinder from point to point, with balls for its ends."""
+    way = end - start
+    length = float(np.linalg.norm(way))
+    bar = (cylinder(radius, 0.0, length),) if length > 0.0 else ()
+    return group(pointing(start, way if length > 0.0 else (0, 0, 1)), ball(radius), *bar)
+
+
+def ball(radius: float) -> coin.SoSeparator:
+    """A sphere."""
+    node = coin.SoSphere()
+    node.radius = radius
+    return group(node)
+
+
+def cutter(diameter: float, corner_radius: float, length: float) -> coin.SoSeparator:
+    """A cutter with its tip at the origin and a straight shank of its length."""
+    radius = diameter / 2.0
+    corner = min(corner_radius, radius)
+    angle = np.linspace(0.0, np.pi / 2.0, _ARC_STEPS + 1)
+    arc = np.column_stack([radius - corner + corner * np.sin(angle), corner * (1.0 - np.cos(angle))])
+    return turned(np.vstack([(0.0, 0.0), arc, (radius, length), (0.0, length)]))
+
+
+def group(*children: coin.SoNode) -> coin.SoSeparator:
+    """Nodes whose state does not leak."""
+    separator = coin.SoSeparator()
+    for child in children:
+        separator.addChild(child)
+    return separator
+
+
+def pointing(start: Sequence[float], direction: Sequence[float]) -> coin.SoTransform:
+    """A transform that takes z to a direction and the origin to a point."""
+    node = coin.SoTransform()
+    aim(node, start, direction)
+    return node
+
+
+def aim(node: coin.SoTransform, start: Sequence[float], direction: Sequence[float]) -> None:
+    """Let a transform take z to a direction and the origin to a point."""
+    node.translation = tuple(float(value) for value in start)
+    node.rotation = coin.SbRotation(coin.SbVec3f(0, 0, 1), coin.SbVec3f(*(float(value) for value in direction)))

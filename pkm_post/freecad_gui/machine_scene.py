@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine scene: the machine as a scene graph that is built once; a pose changes transforms and colours alone.
+
+A machine and its tool enter, then poses in {M}; what is seen leaves, in mm. Joints, strut lengths and tool are true to
+the machine file. What the file does not state is drawn in proportion to it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from pivy import coin
+
+from pkm_post.freecad_gui import lathe
+from pkm_post.freecad_gui.lathe import Colour
+from pkm_post.geometry.vectors import Array, norm
+from pkm_post.kinematics import platform_joints, platform_rotation, reach_margins
+from pkm_post.kinematics.way import Pose
+from pkm_post.model import Box, Machine
+
+STEEL: Colour = (0.62, 0.65, 0.7)
+DARK: Colour = (0.25, 0.28, 0.33)
+LIGHT: Colour = (0.8, 0.82, 0.85)
+GOLD: Colour = (0.85, 0.65, 0.2)
+BAD: Colour = (0.85, 0.1, 0.1)
+
+_TUBE_SHARE = 0.95
+"""Of the shortest strut: how long its tube is drawn where the machine file does not say it."""
+
+
+class MachineScene:
+    """What is seen of a machine.
+
+    Attributes:
+        root: the node to put into a view.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self._size = float(norm(machine.platform_joints).mean())
+        self._frame, self._platform, self._tool = coin.SoMatrixTransform(), coin.SoMatrixTransform(), coin.SoSeparator()
+        self._struts = [_Strut(machine, number, self._size) for number in range(6)]
+        self.root = lathe.group(self._frame, self._base(), *(strut.root for strut in self._struts), self._moving())
+
+    def place(self, document_from_machine: Array) -> None:
+        """Put the machine where the (4, 4) matrix says."""
+        self._frame.matrix = _coin_matrix(document_from_machine)
+
+    def take_tool(self, diameter: float, corner_radius: float, length: float) -> None:
+        """Put a tool into the spindle; mm."""
+        self._tool.removeAllChildren()
+        if length > 0.0:
+            shift = coin.SoTranslation()
+            shift.translation = (0.0, 0.0, -self.machine.spindle_nose - length)
+            body = lathe.cutter(diameter or 0.1 * self._size, corner_radius, length)
+            for node in (lathe.material(GOLD), shift, body):
+                self._tool.addChild(node)
+
+    def show(self, pose: Pose) -> None:
+        """Move to a pose in {M}, one row as ``kinematics`` takes it; struts out of limits are red."""
+        tip, axis, spin, length = pose
+        joints = platform_joints(self.machine, *pose)[0]
+        matrix = np.eye(4)
+        matrix[:3, :3] = platform_rotation(axis, spin)[0]
+        matrix[:3, 3] = tip[0] + (length[0] + self.machine.spindle_nose) * axis[0]
+        self._platform.matrix = _coin_matrix(matrix)
+        left = reach_margins(self.machine, *pose)
+        least = np.min([left.shortest[0], left.longest[0], left.base[0], left.platform[0]], axis=0)
+        for strut, joint, margin in zip(self._struts, joints, least, strict=True):
+            strut.reach(joint, bad=bool(margin < 0.0))
+
+    def _base(self) -> coin.SoSeparator:
+        """What stands still: a frame through the base joints, and the boxes of the machine file."""
+        beams = _ring(self.machine.base_joints, 0.15 * self._size)
+        boxes = [_box(box) for box in self.machine.fixtures]
+        return lathe.group(lathe.material(DARK), *beams, lathe.material(LIGHT), *boxes)
+
+    def _moving(self) -> coin.SoSeparator:
+        """What moves with the platform: the bodies of the machine file, or a plate and a spindle; and the tool."""
+        machine, size = self.machine, self._size
+        shapes = [(body.radius, body.start, body.end) for body in machine.bodies]
+        shapes = shapes or [(1.05 * size, 0.0, 0.12 * size), (0.25 * size, -machine.spindle_nose, 0.6 * size)]
+        bodies = []
+        for number, (radius, start, end) in enumerate(shapes):
+            bodies += [lathe.material(LIGHT if number == 0 else DARK), lathe.cylinder(radius, start, end)]
+        ring = _ring(machine.platform_joints, 0.08 * size)
+        return lathe.group(self._platform, lathe.material(LIGHT), *ring, *bodies, self._tool)
+
+
+class _Strut:
+    """A tube that swings about its base joint, and a rod that slides in it."""
+
+    def __init__(self, machine: Machine, number: int, size: float) -> None:
+        shortest, longest = machine.strut_stroke
+        tube = machine.tube_length or _TUBE_SHARE * shortest
+        rod = machine.rod_length or min(longest - 0.8 * tube, shortest)
+        tube_radius, rod_radius = machine.tube_radius or 0.12 * size, machine.rod_radius or 0.07 * size
+        self._base = machine.base_joints[number]
+        self._swing, self._slide, self._rod = coin.SoTransform(), coin.SoTranslation(), lathe.material(LIGHT)
+        self._tube = lathe.material(STEEL)
+        inner = lathe.group(self._slide, self._rod, lathe.cylinder(rod_radius, -rod, 0.0), lathe.ball(1.7 * rod_radius))
+        outer = lathe.group(self._tube, lathe.ball(1.4 * tube_radius), lathe.cylinder(tube_radius, 0.0, tube))
+        self.root = lathe.group(self._swing, outer, inner)
+        self._was_bad = False
+
+    def reach(self, joint: Array, bad: bool) -> None:
+        """Extend to a platform joint in {M}."""
+        way = joint - self._base
+        lathe.aim(self._swing, self._base, way)
+        self._slide.translation = (0.0, 0.0, float(norm(way)))
+        if bad != self._was_bad:
+            self._tube.diffuseColor, self._rod.diffuseColor = (BAD, BAD) if bad else (STEEL, LIGHT)
+            self._was_bad = bad
+
+
+def _ring(joints: Array, radius: float) -> list[coin.SoSeparator]:
+    """A closed frame through joints."""
+    ends = np.roll(joints, -1, axis=0)
+    return [lathe.beam(start, end, radius) for start, end in zip(joints, ends, strict=True)]
+
+
+def _box(box: Box) -> coin.SoSeparator:
+    shift, cube = coin.SoTranslation(), coin.SoCube()
+    shift.translation = tuple(float(value) for value in (box.lowest + box.highest) / 2.0)
+    cube.width, cube.height, cube.depth = (float(value) for value in box.highest - box.lowest)
+    return lathe.group(shift, cube)
+
+
+def _coin_matrix(matrix: Array) -> coin.SbMatrix:
+    """Coin multiplies rows with matrices: its matrix is the transpose."""
+    return coin.SbMatrix(*(float(value) for value in matrix.T.ravel()))

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine view: how the machine of a document is seen, in the tree and in 3D.
+
+A view object enters and gets its provider. A change of the pose moves transforms; another machine file builds a new
+scene. Saved documents name this class by its module: place and name are a file format.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pivy import coin
+
+from pkm_post.freecad_app.frames import matrix_of
+from pkm_post.freecad_app.machine_object import machine_of, pose_of
+from pkm_post.freecad_gui.machine_scene import MachineScene
+from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.model import Refused
+
+_MODE = "Machine"
+_MACHINE, _TOOL = ("MachineFile",), ("ToolLength", "ToolDiameter", "ToolCornerRadius")
+_POSE = ("Tip", "ToolAxis", "Spin", "ToolLength", "WorkOffset", "Frame")
+
+
+class MachineView:
+    """Draws the machine around the part.
+
+    Attributes:
+        Object: the machine that is shown.
+        scene: what is seen of it; None while its file has faults.
+        played: whether a simulation moves it; then the pose of the properties waits.
+    """
+
+    def __init__(self, vobj: Any) -> None:
+        vobj.Proxy = self
+
+    def attach(self, vobj: Any) -> None:
+        """Make the root of the scene; called for new and for restored objects."""
+        self.Object, self.scene, self.played = vobj.Object, None, False
+        self._root = coin.SoSeparator()
+        vobj.addDisplayMode(self._root, _MODE)
+        self.refresh()
+
+    def getDisplayModes(self, _vobj: Any) -> list[str]:
+        """The one way it is shown."""
+        return [_MODE]
+
+    def getDefaultDisplayMode(self) -> str:
+        """The one way it is shown."""
+        return _MODE
+
+    def setDisplayMode(self, mode: str) -> str:
+        """The one way it is shown."""
+        return mode
+
+    def updateData(self, obj: Any, name: str) -> None:
+        """Follow a property of the object; FreeCAD calls this for each one when a document is opened as well."""
+        if name in _MACHINE or (self.scene is None and name in _POSE):
+            self.refresh()
+        elif self.scene is None or self.played:
+            return
+        elif name in (*_POSE, *_TOOL):
+            self._follow(obj, tool_too=name in _TOOL)
+
+    def refresh(self) -> None:
+        """Build the scene anew."""
+        self._root.removeAllChildren()
+        self.scene = None
+        if not all(hasattr(self.Object, name) for name in (*_MACHINE, *_TOOL, *_POSE)):
+            return  # FreeCAD restores one property after the other
+        try:
+            self.scene = MachineScene(machine_of(self.Object))
+        except Refused:
+            return  # the object itself tells what is wrong
+        self._root.addChild(self.scene.root)
+        self._follow(self.Object, tool_too=True)
+
+    def _follow(self, obj: Any, tool_too: bool) -> None:
+        if not any(obj.ToolAxis):
+            return  # there is no such pose; the object tells it
+        self.scene.place(matrix_of(obj.Frame))
+        if tool_too:
+            self.scene.take_tool(obj.ToolDiameter.Value, obj.ToolCornerRadius.Value, obj.ToolLength.Value)
+        self.scene.show(pose_of(obj))
+
+    def getIcon(self) -> str:
+        """A machine with six struts."""
+        return str(ICONS / "machine.svg")
+
+    def claimChildren(self) -> list[Any]:
+        """No children: job and reference have their own places in the tree."""
+        return []
+
+    def dumps(self) -> None:
+        """Nothing is saved."""
+
+    def loads(self, state: object) -> None:
+        """Nothing was saved."""

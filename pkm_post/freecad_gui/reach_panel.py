@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reach panel: the findings of a reach object as a table; a click on one shows where it is worst.
+
+The object enters; its way is coloured by the check that is clicked, and the operation is selected that has the worst
+point. The colouring is part of the document, so the panel is one step of undo.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.freecad_gui.workbench import ICONS
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_CONTEXT = "PKM_Reach"
+HEAD = (
+    QT_TRANSLATE_NOOP("PKM_Reach", "Check"),
+    QT_TRANSLATE_NOOP("PKM_Reach", "Least margin"),
+    QT_TRANSLATE_NOOP("PKM_Reach", "Proven"),
+    QT_TRANSLATE_NOOP("PKM_Reach", "Of"),
+    QT_TRANSLATE_NOOP("PKM_Reach", "Worst at"),
+)
+_RED = QtGui.QColor(200, 0, 0)
+
+
+class ReachPanel:
+    """The task panel."""
+
+    def __init__(self, obj: Any) -> None:
+        self.obj = obj
+        obj.Document.openTransaction(translate(_CONTEXT, "Colour by a check"))
+        self.form = QtWidgets.QWidget()
+        self.form.setWindowTitle(obj.Label)
+        self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "reach.svg")))
+        layout = QtWidgets.QVBoxLayout(self.form)
+        self.table, self.violations = _table(obj), QtWidgets.QPlainTextEdit("\n".join(obj.Violations))
+        self.violations.setReadOnly(True)
+        self.violations.setPlaceholderText(translate(_CONTEXT, "Nothing is out of limits"))
+        layout.addWidget(QtWidgets.QLabel(_verdict(obj)))
+        layout.addWidget(self.table)
+        layout.addWidget(self.violations)
+        self.table.cellClicked.connect(lambda row, _column: self.show_worst(row))
+
+    def show_worst(self, row: int) -> None:
+        """Colour by the check of a row and select the operation that has its worst point."""
+        obj = self.obj
+        obj.ColourBy = obj.Checks[row]
+        FreeCADGui.Selection.clearSelection()
+        for operation in obj.Job.Operations.Group if obj.Job else ():
+            if operation.Label == obj.WorstOperations[row]:
+                FreeCADGui.Selection.addSelection(operation)
+
+    def getStandardButtons(self) -> Any:
+        """There is nothing to accept or reject."""
+        return QtWidgets.QDialogButtonBox.StandardButton.Close
+
+    def reject(self) -> bool:
+        """Close the panel."""
+        self.obj.Document.commitTransaction()
+        FreeCADGui.getDocument(self.obj.Document.Name).resetEdit()
+        return True
+
+
+def _verdict(obj: Any) -> str:
+    if not obj.Checks:
+        return translate(_CONTEXT, "Not checked")
+    if obj.Reachable:
+        return translate(_CONTEXT, "The machine can follow the job")
+    return translate(_CONTEXT, "The machine cannot follow the job")
+
+
+def _table(obj: Any) -> QtWidgets.QTableWidget:
+    table = QtWidgets.QTableWidget(len(obj.Checks), len(HEAD))
+    table.setObjectName("PkmReachTable")
+    table.setHorizontalHeaderLabels([translate(_CONTEXT, text) for text in HEAD])
+    table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
+    table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
+    table.verticalHeader().hide()
+    columns = (
+        obj.Checks,
+        [f"{margin:.4g} {unit}".rstrip() for margin, unit in zip(obj.LeastMargins, obj.Units, strict=True)],
+        obj.ProvenMargins,
+        obj.WorstParts,
+        [f"{name}, line {line}" for name, line in zip(obj.WorstOperations, obj.WorstLines, strict=True)],
+    )
+    for column, texts in enumerate(columns):
+        for row, text in enumerate(texts):
+            item = QtWidgets.QTableWidgetItem(text)
+            if obj.LeastMargins[row] < 0.0:
+                item.setForeground(QtGui.QBrush(_RED))
+            table.setItem(row, column, item)
+    table.resizeColumnsToContents()
+    table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAsNeeded)
+    return table

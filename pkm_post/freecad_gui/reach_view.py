@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reach view: the way of the tool coloured by what is left of a check, with its legend and its worst point.
+
+A view object enters and gets its provider. Saved documents name this class by its module: place and name are a file
+format.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCADGui
+import numpy as np
+from pivy import coin
+
+from pkm_post.freecad_gui.margin_colours import OUT, colours_of, largest, legend
+from pkm_post.freecad_gui.workbench import ICONS
+
+_MODE = "Reach"
+_LINE_WIDTH, _MARK_SIZE = 3.0, 11.0
+
+
+class ReachView:
+    """Draws the way. Double click opens the findings."""
+
+    def __init__(self, vobj: Any) -> None:
+        vobj.Proxy = self
+
+    def attach(self, vobj: Any) -> None:
+        """Make the root of the scene; called for new and for restored objects."""
+        self.Object = vobj.Object
+        self._root = coin.SoSeparator()
+        vobj.addDisplayMode(self._root, _MODE)
+        self.refresh()
+
+    def getDisplayModes(self, _vobj: Any) -> list[str]:
+        """The one way it is shown."""
+        return [_MODE]
+
+    def getDefaultDisplayMode(self) -> str:
+        """The one way it is shown."""
+        return _MODE
+
+    def setDisplayMode(self, mode: str) -> str:
+        """The one way it is shown."""
+        return mode
+
+    def updateData(self, _obj: Any, name: str) -> None:
+        """Draw anew when the way has its margins: these are set last."""
+        if name in ("Margins", "Points"):
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Draw the way, if there is one."""
+        self._root.removeAllChildren()
+        obj = self.Object
+        margin = np.array(getattr(obj, "Margins", ()))
+        points = [tuple(point) for point in getattr(obj, "Points", ())]
+        if not len(margin) or len(points) != len(margin) or obj.ColourBy not in obj.Checks:
+            return
+        chosen = list(obj.Checks).index(obj.ColourBy)
+        for node in (_way(points, margin), _mark(tuple(obj.WorstPoints[chosen]), obj.LeastMargins[chosen])):
+            self._root.addChild(node)
+        shown = coin.SoType.fromName("SkipBoundingGroup")
+        corner = shown.createInstance() if shown.canCreateInstance() else coin.SoGroup()
+        corner.addChild(legend(str(obj.ColourBy), largest(margin), obj.Units[chosen]))
+        self._root.addChild(corner)
+
+    def doubleClicked(self, vobj: Any) -> bool:
+        """Open the findings."""
+        return bool(vobj.Document.setEdit(vobj, 0))
+
+    def setEdit(self, vobj: Any, _mode: int = 0) -> bool:
+        """Open the findings."""
+        from pkm_post.freecad_gui.reach_panel import ReachPanel
+
+        FreeCADGui.Control.showDialog(ReachPanel(vobj.Object))
+        return True
+
+    def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
+        """Close the findings."""
+        FreeCADGui.Control.closeDialog()
+        return True
+
+    def getIcon(self) -> str:
+        """A way with a mark."""
+        return str(ICONS / "reach.svg")
+
+    def claimChildren(self) -> list[Any]:
+        """No children: job and machine have their own places in the tree."""
+        return []
+
+    def dumps(self) -> None:
+        """Nothing is saved."""
+
+    def loads(self, state: object) -> None:
+        """Nothing was saved."""
+
+
+def _way(points: list[tuple[float, ...]], margin: Any) -> coin.SoSeparator:
+    separator, light, style = coin.SoSeparator(), coin.SoLightModel(), coin.SoDrawStyle()
+    light.model, style.lineWidth = coin.SoLightModel.BASE_COLOR, _LINE_WIDTH
+    colour, binding = coin.SoBaseColor(), coin.SoMaterialBinding()
+    colour.rgb.setValues(0, len(margin), colours_of(margin).tolist())
+    binding.value = coin.SoMaterialBinding.PER_VERTEX_INDEXED
+    coordinates, lines = coin.SoCoordinate3(), coin.SoIndexedLineSet()
+    coordinates.point.setValues(0, len(points), points)
+    lines.coordIndex.setValues(0, len(points) + 1, [*range(len(points)), -1])
+    for child in (light, style, colour, binding, coordinates, lines):
+        separator.addChild(child)
+    return separator
+
+
+def _mark(point: tuple[float, ...], margin: float) -> coin.SoSeparator:
+    """The point with the least margin, seen through the part as well."""
+    separator, light, colour, style = coin.SoAnnotation(), coin.SoLightModel(), coin.SoBaseColor(), coin.SoDrawStyle()
+    light.model, style.pointSize = coin.SoLightModel.BASE_COLOR, _MARK_SIZE
+    colour.rgb = OUT if margin < 0.0 else (0.1, 0.2, 0.8)
+    coordinates, node = coin.SoCoordinate3(), coin.SoPointSet()
+    coordinates.point.setValues(0, 1, [point])
+    for child in (light, colour, style, coordinates, node):
+        separator.addChild(child)
+    return separator

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Strut plot: lengths and speeds of the six struts over time, with a cursor; a click goes there.
+
+A simulation enters. The curves are drawn once for each size of the widget, from the least and largest value in each
+column of pixels, so that neither long motions nor the moving cursor cost anything.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import FreeCAD
+import numpy as np
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.geometry.vectors import Array
+
+translate = FreeCAD.Qt.translate
+
+_COLOURS = ("#3465a4", "#cc0000", "#4e9a06", "#f57900", "#75507b", "#8f5902")
+_MARGIN_LEFT, _MARGIN, _GAP = 64, 6, 18
+_CURSOR, _LIMIT = "#204a87", "#a40000"
+
+
+class StrutPlot(QtWidgets.QWidget):
+    """The widget.
+
+    Args:
+        simulation: what is drawn.
+        go_to: takes a time in s when the user clicks there.
+    """
+
+    def __init__(self, simulation: Simulation, go_to: Callable[[float], None]) -> None:
+        super().__init__()
+        self._simulation, self._go_to = simulation, go_to
+        self._seconds = 0.0
+        self._curves: Any = None
+        self.setMinimumSize(260, 150)
+
+    def show_time(self, seconds: float) -> None:
+        """Move the cursor."""
+        self._seconds = seconds
+        self.update()
+
+    def resizeEvent(self, _event: Any) -> None:
+        """The curves are those of another size."""
+        self._curves = None
+
+    def mousePressEvent(self, event: Any) -> None:
+        """Go to where the click is."""
+        position = event.position().x() if hasattr(event, "position") else event.x()
+        share = (position - _MARGIN_LEFT) / max(self._width(), 1)
+        self._go_to(min(max(share, 0.0), 1.0) * self._simulation.duration)
+
+    def paintEvent(self, _event: Any) -> None:
+        """Curves and cursor."""
+        if self._curves is None:
+            self._curves = self._drawn()
+        painter = QtGui.QPainter(self)
+        painter.drawPixmap(0, 0, self._curves)
+        painter.setPen(QtGui.QPen(QtGui.QColor(_CURSOR), 2))
+        x = _MARGIN_LEFT + round(self._seconds / max(self._simulation.duration, 1e-9) * (self._width() - 1))
+        painter.drawLine(x, _GAP, x, self.height() - _MARGIN)
+        painter.end()
+
+    def _width(self) -> int:
+        return max(self.width() - _MARGIN_LEFT - _MARGIN, 2)
+
+    def _drawn(self) -> Any:
+        pixmap = QtGui.QPixmap(self.size())
+        pixmap.fill(QtGui.QColor("white"))
+        painter = QtGui.QPainter(pixmap)
+        height = (self.height() - 2 * _GAP - _MARGIN) // 2
+        lengths, speeds = self._simulation.envelope(self._width())
+        machine = self._simulation.machine
+        limits = machine.strut_stroke, (-machine.strut_speed, machine.strut_speed)
+        titles = translate("PKM_Simulate", "Lengths in mm"), translate("PKM_Simulate", "Speeds in mm/s")
+        for number, (values, ends, title) in enumerate(zip((lengths, speeds), limits, titles, strict=True)):
+            top = _GAP + number * (height + _GAP)
+            area = QtCore.QRect(_MARGIN_LEFT, top, self._width(), height)
+            _draw_curves(painter, area, values, ends, title)
+        painter.end()
+        return pixmap
+
+
+def _draw_curves(painter: Any, area: Any, values: Array, limits: tuple[float, float], title: str) -> None:
+    """One diagram: frame, title, limits as far as they are near, a curve for each strut."""
+    low, high = float(values.min()), float(values.max())
+    room = 0.05 * (high - low) or 1.0
+    low, high = low - room, high + room
+    painter.setPen(QtGui.QPen(QtGui.QColor("#888a85")))
+    painter.drawRect(area)
+    painter.setPen(QtGui.QPen(QtGui.QColor("black")))
+    painter.drawText(area.left(), area.top() - 4, title)
+    right = QtCore.Qt.AlignmentFlag.AlignRight
+    for text, y in ((f"{high:.5g}", area.top()), (f"{low:.5g}", area.bottom() - 14)):
+        painter.drawText(QtCore.QRect(0, y, _MARGIN_LEFT - 6, 16), right, text)
+    scale = area.height() / (high - low)
+    for limit in limits:
+        if low < limit < high:
+            painter.setPen(QtGui.QPen(QtGui.QColor(_LIMIT), 1, QtCore.Qt.PenStyle.DashLine))
+            y = round(area.bottom() - (limit - low) * scale)
+            painter.drawLine(area.left(), y, area.right(), y)
+    rows = np.rint(area.bottom() - (values - low) * scale).astype(int)
+    for strut, colour in enumerate(_COLOURS):
+        painter.setPen(QtGui.QPen(QtGui.QColor(colour)))
+        least, largest = rows[0, :, strut].tolist(), rows[1, :, strut].tolist()
+        painter.drawLines([
+            QtCore.QLine(area.left() + x, y0, area.left() + x, y1)
+            for x, (y0, y1) in enumerate(zip(least, largest, strict=True))
+        ])  # fmt: skip
+        painter.drawText(area.left() + 4 + 14 * strut, area.bottom() - 4, str(strut + 1))
