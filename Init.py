@@ -1,4 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+import FreeCAD
+
 import pkm_post.freecad_app.post_hook
 
 pkm_post.freecad_app.post_hook.install()
+FreeCAD.addImportType(
+    "Part program (*.ngc *.nc *.ncl *.cls *.apt *.aptsource)",
+    "pkm_post.freecad_app.program_import",
+)

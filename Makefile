@@ -5,7 +5,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format fuzz conformance clean
+.PHONY: help demo test lint format fuzz soak conformance clean
 
 PYTHON ?= python3
 VENV := .venv
@@ -13,6 +13,7 @@ FUZZ_VENV := .venv-fuzz
 CONFORMANCE := .conformance
 NPM_PACKAGES := kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 js-yaml@5.5.0
 FUZZ_SECONDS ?= 120
+SOAK_DOWNLOADS ?= 10000
 OUT ?= out
 ARGS ?=
 
@@ -50,6 +51,9 @@ format: $(VENV)/made ## lay out the Python files and sort their imports
 fuzz: $(FUZZ_VENV)/made ## feed the readers of part programs with bytes (FUZZ_SECONDS=120)
 	@PYTHONPATH=. $(FUZZ_VENV)/bin/python fuzz/part_programs.py -max_total_time=$(FUZZ_SECONDS) \
 		-timeout=20 -rss_limit_mb=2048 -print_final_stats=1
+
+soak: $(VENV)/made ## download to the simulated PMAC over faulty links (SOAK_DOWNLOADS=10000)
+	@PYTHONPATH=. $(VENV)/bin/python tests/pmac_link/soak.py $(SOAK_DOWNLOADS)
 
 conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it
 	@$(VENV)/bin/python tests/trajectory_file/conformance.py $(CONFORMANCE)

@@ -16,14 +16,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from pkm_post import planning, trajectory_file
+from pkm_post import outputs, planning, trajectory_file
 from pkm_post.certificate import certify
 from pkm_post.compensation import OffsetOptions, compensate
-from pkm_post.controllers import TABLES, Table, controller_of, part_names
+from pkm_post.controllers import TABLES, controller_of
 from pkm_post.files import staged
-from pkm_post.gcode import Form, write
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Diagnostic, Kind, Machine, Place, Program, Refused, StrutMotion, Tool, Trajectory
+from pkm_post.model import Diagnostic, Machine, Place, Program, Refused, Tool, Trajectory
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.findings import Tolerances
 from pkm_post.placement import place
@@ -184,14 +183,14 @@ def _post(run: _Run, program: Program, machine: Machine, path: Path, options: Op
 
     with run.step("motion program") as told:
         parts = controller.program_parts(struts, settings, summary.heading(trajectory))
-        names = _write_parts(path, parts)
+        names = outputs.write_parts(path, parts)
         setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
         if setup is not None:
-            _write_parts(path.with_name(path.stem + controller.SETUP_SUFFIX), (setup,))
+            outputs.write_parts(path.with_name(path.stem + controller.SETUP_SUFFIX), (setup,))
         told.append(f"{sum(map(len, parts)) / 1e6:.1f} MB" + f" in {len(parts)} parts" * (len(parts) > 1))
 
     with run.step("certificate") as told:
-        played = run.value(controller.read_parts(_read_parts(path, names), settings))
+        played = run.value(controller.read_parts(outputs.read_parts(path, names), settings))
         certificate = run.value(certify(played, path.name, trajectory, machine, motion, tolerances))
         told.append(f"{certificate.instants} poses by forward kinematics")
 
@@ -205,60 +204,13 @@ def _post(run: _Run, program: Program, machine: Machine, path: Path, options: Op
     for name in options.also:
         with run.step(f"also {name}") as told:
             if name == LINUXCNC:
-                _write_for_linuxcnc(run, path, trajectory)
+                run.accept(outputs.write_for_linuxcnc(path, trajectory))
             else:
                 # the last line of the heading speaks of the program
-                told.append(_write_table(run, path, TABLES[name], played, summary.heading(trajectory)[:-1]))
+                found, faults = outputs.write_table(path, TABLES[name], played, summary.heading(trajectory)[:-1])
+                run.accept(faults)
+                told.append(found)
     return report
-
-
-def _write_table(run: _Run, path: Path, table: Table, played: StrutMotion, heading: list[str]) -> str:
-    """Write a table of the motion that was certified; what was found when it was read back."""
-    target = path.with_name(path.stem + table.SUFFIX)
-    names = _write_parts(target, table.texts(played, heading))
-    found, faults = table.measured(_read_parts(target, names), played)
-    run.accept(faults)
-    return found
-
-
-def _write_for_linuxcnc(run: _Run, path: Path, trajectory: Trajectory) -> None:
-    """Write the trajectory for a control that has the kinematics and plans for itself."""
-    text = run.value(write(_as_program(trajectory), Form.LINUXCNC))
-    told = "(coordinates of the machine frame, work offsets are zero; not certified)\n"
-    path.with_name(f"{path.stem}-linuxcnc.ngc").write_text(told + text, encoding="ascii", newline="\n")
-
-
-def _as_program(trajectory: Trajectory) -> Program:
-    """A trajectory as a program whose work frame is {M}."""
-    return Program(
-        kind=trajectory.kind,
-        position=trajectory.tip,
-        tool_axis=trajectory.axis,
-        spin=trajectory.spin,
-        feed=np.where(trajectory.kind == Kind.RAPID, np.nan, trajectory.feed),
-        arc_centre=trajectory.arc_centre,
-        arc_axis=trajectory.arc_axis,
-        exact_stop=trajectory.exact_stop,
-        operation=trajectory.operation,
-        line=trajectory.line,
-        events=trajectory.events,
-        operations=trajectory.operations,
-        tools=trajectory.tools,
-        source=trajectory.source,
-    )
-
-
-def _write_parts(path: Path, texts: tuple[str, ...]) -> list[str]:
-    """Write the parts of a file; their names."""
-    names = part_names(path.name, len(texts))
-    for name, text in zip(names, texts, strict=True):
-        path.with_name(name).write_text(text, encoding="ascii", newline="\n")
-    return names
-
-
-def _read_parts(path: Path, names: list[str]) -> list[tuple[str, str]]:
-    """Names and texts of the parts of a file, read back."""
-    return [(name, path.with_name(name).read_text(encoding="ascii")) for name in names]
 
 
 def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple[Trajectory | None, Findings]:

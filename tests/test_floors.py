@@ -12,9 +12,10 @@ FLOORS = {
     "model": 0, "geometry": 0, "files": 0, "grammar": 0, "pmac_simulator": 0,
     "gcode": 1, "cldata": 1, "placement": 1, "compensation": 1, "kinematics": 1, "feed": 1, "trajectory_file": 1,
     "controllers": 1, "machine_file": 1, "report": 1,
-    "spin": 2, "surface_speed": 2, "reach": 2, "position": 3, "surface_path": 2, "certificate": 2, "sources": 2, "machine_check": 2, "machine_calibration": 2,
-    "planning": 3, "pipeline": 4, "verify": 4, "check": 4, "convert": 4, "options": 5, "reach_study": 5, "post_file": 6,
-    "freecad_app": 6, "cli": 7, "freecad_gui": 7, "__main__": 8,
+    "spin": 2, "surface_speed": 2, "surface_path": 2, "reach": 2, "certificate": 2, "sources": 2, "pmac_link": 2,
+    "machine_check": 2, "machine_calibration": 2, "position": 3, "planning": 3, "outputs": 3, "pipeline": 4, "verify": 4,
+    "check": 4, "convert": 4, "options": 5, "reach_study": 5, "program_text": 5, "post_file": 6, "freecad_app": 6,
+    "cli": 7, "freecad_gui": 7, "__main__": 8,
 }  # fmt: skip
 
 DOORS = {
@@ -27,7 +28,7 @@ DOORS = {
     "pivy": ("freecad_gui/",),
     "matplotlib": ("report/",),
     "lark": ("grammar.py", "gcode/", "cldata/"),
-    "serial": ("controllers/pmac/link",),
+    "serial": ("pmac_link/links.py",),
 }
 
 MODULES = sorted(PACKAGE.rglob("*.py"))

@@ -12,11 +12,11 @@ import sys
 from collections.abc import Sequence
 
 import pkm_post
-from pkm_post.cli import machine, part_programs, post, reach_map, verify
+from pkm_post.cli import machine, part_programs, pmac, post, reach, reach_map, verify
 
 __all__ = ["main"]
 
-_OPTIONAL = ("lark",)
+_OPTIONAL = ("lark", "serial")
 """Packages that not every installation has; their doors say what to install."""
 
 
@@ -37,6 +37,6 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python3 -m pkm_post", description=pkm_post.__doc__)
     parser.add_argument("--version", action="version", version=f"PKM Post {pkm_post.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for module in (post, verify, part_programs, machine, reach_map):
+    for module in (post, verify, reach, reach_map, part_programs, machine, pmac):
         module.add_commands(commands)
     return parser

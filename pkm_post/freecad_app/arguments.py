@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arguments: the text a CAM job has for its post-processor, read as a command line.
 
-A job enters; parsed arguments leave, for ``pkm_post.options``. What is wrong with them is a fault of the job.
+A job enters; parsed arguments leave, for ``pkm_post.options``. What is wrong with them is a fault of the job. All
+post-processors of PKM Post take the same arguments, so that a job can change from one to another; some have more.
 """
 
 from __future__ import annotations
@@ -14,29 +15,76 @@ from pkm_post.freecad_app.job import document_name
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import add_options
 
-POST_PROCESSOR = "hexapod_pmac"
+PMAC, TRAJECTORY, LINUXCNC, GCODE = "hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"
+
+POST_PROCESSORS: dict[str, str] = {
+    PMAC: "Writes the motion program, with set-up file, trajectory and report beside it.",
+    TRAJECTORY: "Writes the trajectory as NAME.pkmt; the text that CAM saves names it. Reach is checked, speed is not:"
+    " nothing is certified. --also has no meaning here.",
+    LINUXCNC: "Writes X Y Z A B C for LinuxCNC's hexapod, in the machine frame. Reach is checked, speed is left to the"
+    " controller: nothing is certified. --also has no meaning here.",
+    GCODE: "Writes the program of the job as it is, in the work frame: --form and --inch say how, and all that concerns"
+    " the machine is for the check of its reach alone. --also has no meaning here.",
+}
+"""By name what each of them writes, for the help."""
+
+_MORE: dict[str, dict[str, dict[str, Any]]] = {
+    GCODE: {
+        "--form": {
+            "choices": ("vector", "AC", "BC", "linuxcnc", "3axis"),
+            "default": "vector",
+            "help": "how the tool axis is said: I J K after G43.5, rotary words of a head after G43.4, A B C of"
+            " LinuxCNC's hexapod, or not at all (default: %(default)s)",
+        },
+        "--inch": {"action": "store_true", "help": "write inches (G20)"},
+    },
+}
+"""What some of them have beside the arguments of all."""
 
 
-def job_arguments(job: Any, text: str) -> argparse.Namespace:
+def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.Namespace:
     """The arguments of a job.
 
     Args:
         job: the job, to name it in faults.
         text: its arguments, quoted as in a shell.
+        post_processor: one of ``POST_PROCESSORS``.
 
     Raises:
         Refused: they are not understood, J117.
     """
+    return parsed(text, Place(document_name(job.Document), job.Label), post_processor)
+
+
+def parsed(text: str, place: Place, post_processor: str = PMAC) -> argparse.Namespace:
+    """Arguments as people type them; ``place`` says whose they are.
+
+    Raises:
+        Refused: as ``job_arguments``.
+    """
     try:
-        return _parser().parse_args(shlex.split(text))
+        chosen = _parser(post_processor).parse_args(shlex.split(text))
+        if chosen.also and post_processor != PMAC:
+            raise ValueError(f"--also is for {PMAC} alone")
     except ValueError as fault:
-        place = Place(document_name(job.Document), job.Label)
         raise Refused([Diagnostic("J117", place, f"{fault} in {text!r}")]) from fault
+    return chosen
 
 
-def arguments_help() -> str:
+def own_arguments(job: Any) -> argparse.Namespace:
+    """The arguments that a job has for a post-processor of PKM Post; those for another one are left alone.
+
+    Raises:
+        Refused: as ``job_arguments``.
+    """
+    if job.PostProcessor in POST_PROCESSORS:
+        return job_arguments(job, job.PostProcessorArgs, job.PostProcessor)
+    return job_arguments(job, "")
+
+
+def arguments_help(post_processor: str = PMAC) -> str:
     """What the arguments are, as text."""
-    return _parser().format_help()
+    return _parser(post_processor).format_help()
 
 
 class _Parser(argparse.ArgumentParser):
@@ -46,8 +94,16 @@ class _Parser(argparse.ArgumentParser):
         raise ValueError(message)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog=POST_PROCESSOR, add_help=False, allow_abbrev=False, usage=argparse.SUPPRESS)
+def _parser(post_processor: str) -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog=post_processor,
+        description=POST_PROCESSORS[post_processor],
+        add_help=False,
+        allow_abbrev=False,
+        usage=argparse.SUPPRESS,
+    )
     parser.color = False  # Python 3.14 would colour the help if there is a terminal
     add_options(parser)
+    for flag, words in _MORE.get(post_processor, {}).items():
+        parser.add_argument(flag, **words)
     return parser

@@ -17,8 +17,10 @@ from typing import Any
 import FreeCAD as App
 
 from pkm_post import pipeline
-from pkm_post.freecad_app.arguments import POST_PROCESSOR, job_arguments
+from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.job import NO_LENGTHS, document_name, read_job
+from pkm_post.freecad_app.part_mesh import part_mesh
+from pkm_post.geometry.vectors import Array
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Diagnostic, Place, Program, Refused
 from pkm_post.options import FIXTURE_OF_THE_JOB, options_from, tool_lengths_from
@@ -49,12 +51,12 @@ def post_job(
 
 
 def post_as_the_job_says(job: Any, out: str | FilePath, log: pipeline.Log = pipeline.quiet) -> pipeline.Posted:
-    """Post a CAM job with the arguments it has for its post-processor; those for another one are left alone.
+    """Post a CAM job with the arguments it has for a post-processor of PKM Post; those for another are left alone.
 
     Raises:
         Refused: as ``post_job``, and J117 for the arguments.
     """
-    chosen = job_arguments(job, job.PostProcessorArgs if job.PostProcessor == POST_PROCESSOR else "")
+    chosen = own_arguments(job)
     return post_job(job, chosen.machine, out, options_from(chosen), tool_lengths_from(chosen), log)
 
 
@@ -91,8 +93,8 @@ def read_document(
     options: pipeline.Options,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     job_name: str | None = None,
-) -> tuple[tuple[Program | None, tuple[Diagnostic, ...], pipeline.Options], ...]:
-    """The programs of the jobs of a saved document, what was found in each, and the options for it.
+) -> tuple[tuple[Program | None, tuple[Diagnostic, ...], pipeline.Options, Array], ...]:
+    """The programs of the jobs of a saved document, what was found in each, the options for it, and its part.
 
     Raises:
         Refused: as ``post_document``.
@@ -100,7 +102,7 @@ def read_document(
     with _opened(FilePath(file)) as document:
         jobs = [find_job(document, job_name)] if job_name else find_jobs(document)
         document.recompute()
-        return tuple((*read_job(job, tool_lengths), at_fixture(options, job)) for job in jobs)
+        return tuple((*read_job(job, tool_lengths), at_fixture(options, job), part_mesh(job)) for job in jobs)
 
 
 def find_jobs(document: Any) -> list[Any]:

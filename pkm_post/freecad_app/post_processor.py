@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post-processor: what CAM calls when a job is posted with "hexapod_pmac".
+"""Post-processor: what CAM calls when a job is posted with one of the post-processors of PKM Post.
 
 CAM makes one for a job, for half a job while it is being made, and for no job at all to show a tooltip: nothing
 happens before ``export``. CAM writes the text that ``export`` gives back; the other files lie beside it already.
@@ -8,53 +8,62 @@ happens before ``export``. CAM writes the text that ``export`` gives back; the o
 from __future__ import annotations
 
 from pathlib import Path as FilePath
-from typing import Any
+from typing import Any, ClassVar
 
 import FreeCAD as App
 from Path.Post.Processor import PostProcessor
 
-TOOLTIP = "Certified motion programs for hexapod machine tools with six telescopic struts and a Turbo PMAC controller"
+TOOLTIPS: dict[str, str] = {
+    "hexapod_pmac": "Certified motion programs for hexapod machine tools with six telescopic struts and a Turbo PMAC"
+    " controller",
+    "hexapod_trajectory": "Binary trajectories (.pkmt) for hexapod machine tools: tool tips and tool axes in the"
+    " machine frame",
+    "hexapod_linuxcnc": "G-code with X Y Z A B C for hexapod machine tools that LinuxCNC moves",
+    "hexapod_gcode": "G-code with tool axes as vectors or as angles of a head, before it is made into the motion of a"
+    " hexapod",
+}
+"""What each is for, by name. CAM asks for it while it starts, so nothing else is imported for it."""
 
 
-class HexapodPmac(PostProcessor):
-    """Posts a CAM job by way of ``pkm_post.pipeline``."""
+class HexapodPost(PostProcessor):
+    """Posts a CAM job as ``pkm_post.freecad_app.post_outputs`` says. A subclass has a name and nothing else."""
+
+    name: ClassVar[str]
 
     def __init__(self, job: Any) -> None:
-        super().__init__(job, tooltip=TOOLTIP, tooltipargs="", units="G21")
+        super().__init__(job, tooltip=self.tooltip, tooltipargs="", units="G21")
 
     @property
     def tooltip(self) -> str:
         """What the post-processor is for."""
-        return TOOLTIP
+        return TOOLTIPS[self.name]
 
     @property
     def tooltipArgs(self) -> str:
         """What its arguments are."""
         from pkm_post.freecad_app.arguments import arguments_help
 
-        return arguments_help()
+        return arguments_help(self.name)
 
     def export(self) -> list[tuple[str, str]]:
-        """The text of the motion program; trajectory, set-up file and report are written beside its place.
+        """The text for CAM to write; what is no text is written beside its place.
 
         Raises:
             Refused: the job cannot be posted; CAM writes nothing then.
         """
         from pkm_post.freecad_app.arguments import job_arguments
-        from pkm_post.freecad_app.post_job import post_to
+        from pkm_post.freecad_app.post_outputs import OUTPUTS
         from pkm_post.model import Refused
-        from pkm_post.options import options_from, tool_lengths_from
 
         try:
-            chosen = job_arguments(self._job, self._job.PostProcessorArgs)
-            options, lengths = options_from(chosen), tool_lengths_from(chosen)
-            posted = post_to(_program_path(self._job), self._job, chosen.machine, options, lengths, print)
+            chosen = job_arguments(self._job, self._job.PostProcessorArgs, self.name)
+            text, diagnostics = OUTPUTS[self.name](self._job, chosen, _program_path(self._job))
         except Refused as refused:
             _tell(refused)
             raise
-        for diagnostic in posted.diagnostics:
+        for diagnostic in diagnostics:
             App.Console.PrintWarning(f"{diagnostic}\n")
-        return [("allitems", posted.program.read_text(encoding="ascii"))]
+        return [("allitems", text)]
 
 
 def _program_path(job: Any) -> FilePath:

@@ -31,6 +31,7 @@ class Command:
         tip: what it does, in a sentence.
         selectable: whether an object can be its subject.
         action: does it to the object selected.
+        alone: whether it can be done without a selection as well; the action gets None then.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Command:
     tip: str
     selectable: Callable[[FreeCAD.DocumentObject], bool]
     action: Callable[[FreeCAD.DocumentObject], None]
+    alone: bool = False
 
     def GetResources(self) -> dict[str, str]:
         """Texts and icon."""
@@ -49,14 +51,16 @@ class Command:
         }
 
     def IsActive(self) -> bool:
-        """Whether exactly one object is selected that the command is for."""
+        """Whether exactly one object is selected that the command is for, or none if it needs none."""
         selected = FreeCADGui.Selection.getSelection()
+        if self.alone and not selected:
+            return FreeCAD.ActiveDocument is not None
         return len(selected) == 1 and self.selectable(selected[0])
 
     def Activated(self) -> None:
         """Run the command; on a fault everything is as before."""
-        subject = FreeCADGui.Selection.getSelection()[0]
-        document = subject.Document
+        subject = next(iter(FreeCADGui.Selection.getSelection()), None)
+        document = subject.Document if subject else FreeCAD.ActiveDocument
         document.openTransaction(self.text)
         try:
             self.action(subject)
@@ -67,6 +71,19 @@ class Command:
         document.recompute()
 
 
+@dataclass(frozen=True)
+class WindowCommand(Command):
+    """A command that opens a window: it needs no document and changes none. Its action gets what is selected."""
+
+    def IsActive(self) -> bool:
+        """Always."""
+        return True
+
+    def Activated(self) -> None:
+        """Open the window."""
+        self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
+
+
 def is_job(item: FreeCAD.DocumentObject) -> bool:
     """Whether an object is a CAM job."""
     return hasattr(item, "Operations") and hasattr(item, "PostProcessor")
@@ -74,7 +91,8 @@ def is_job(item: FreeCAD.DocumentObject) -> bool:
 
 def is_operation(item: FreeCAD.DocumentObject) -> bool:
     """Whether an object is an operation of a CAM job; tool controllers have paths, too."""
-    return item.isDerivedFrom("Path::Feature") and not is_job(item) and not hasattr(item, "ToolNumber")
+    others = is_job(item) or hasattr(item, "ToolNumber") or hasattr(item, "AxisWords")  # part programs
+    return item.isDerivedFrom("Path::Feature") and not others
 
 
 def _do(module: str, call: str, operation: FreeCAD.DocumentObject) -> None:
@@ -117,6 +135,40 @@ def _finish(item: FreeCAD.DocumentObject) -> None:
     QtCore.QTimer.singleShot(0, lambda: made.ViewObject.Document.setEdit(made.ViewObject, 0))
 
 
+def _machine(job: FreeCAD.DocumentObject | None) -> None:
+    """Add a machine to the document, for the selected job if there is one."""
+    module = "pkm_post.freecad_app.machine_object"
+    FreeCADGui.addModule(module)
+    document = FreeCAD.ActiveDocument if job is None else job.Document
+    subject = f"FreeCAD.getDocument({document.Name!r})"
+    chosen = "" if job is None else f", job={subject}.getObject({job.Name!r})"
+    FreeCADGui.doCommand(f"{module}.create_machine({subject}{chosen})")
+
+
+def _reach(job: FreeCAD.DocumentObject) -> None:
+    """Add the checks of a job, on its machine in the document if there is one."""
+    from pkm_post.freecad_app.reach_object import machine_for
+
+    module, machine = "pkm_post.freecad_app.reach_object", machine_for(job)
+    FreeCADGui.addModule(module)
+    document = f"FreeCAD.getDocument({job.Document.Name!r})"
+    chosen = "" if machine is None else f", machine={document}.getObject({machine.Name!r})"
+    FreeCADGui.doCommand(f"{module}.create_reach({document}.getObject({job.Name!r}){chosen})")
+
+
+def _simulate(job: FreeCAD.DocumentObject) -> None:
+    """Plan the motion of a job and open the player, or tell why there is none."""
+    from pkm_post.freecad_app.reach_object import machine_for
+    from pkm_post.freecad_gui.player import play
+    from pkm_post.model import Refused
+
+    try:
+        play(job, machine_for(job))
+    except Refused as refused:
+        title = translate("PKM_Simulate", "Simulate")
+        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, str(refused))
+
+
 def _post(job: FreeCAD.DocumentObject) -> None:
     """Post beside the document and show what was made, or why nothing was."""
     from pkm_post.freecad_app.post_job import post_as_the_job_says
@@ -130,6 +182,13 @@ def _post(job: FreeCAD.DocumentObject) -> None:
         return
     written = "\n".join(str(path) for path in posted.files)
     QtWidgets.QMessageBox.information(window, title, translate("PKM_Post", "Certified and written:") + "\n" + written)
+
+
+def _edit(item: FreeCAD.DocumentObject | None) -> None:
+    """Open the editor, with the part program that is selected."""
+    from pkm_post.freecad_gui.editor import open_editor
+
+    open_editor(item)
 
 
 COMMANDS = (
@@ -169,6 +228,39 @@ COMMANDS = (
         ),
         lambda item: _job_of(item) is not None,
         _finish,
+    ),
+    Command(
+        "PKM_Machine",
+        "machine.svg",
+        QT_TRANSLATE_NOOP("PKM_Machine", "Machine"),
+        QT_TRANSLATE_NOOP("PKM_Machine", "Add the machine around the part, with the work offset of the selected job"),
+        is_job,
+        _machine,
+        alone=True,
+    ),
+    Command(
+        "PKM_Reach",
+        "reach.svg",
+        QT_TRANSLATE_NOOP("PKM_Reach", "Reach"),
+        QT_TRANSLATE_NOOP("PKM_Reach", "Check whether the machine can follow the selected job, and colour its way"),
+        is_job,
+        _reach,
+    ),
+    Command(
+        "PKM_Simulate",
+        "simulate.svg",
+        QT_TRANSLATE_NOOP("PKM_Simulate", "Simulate"),
+        QT_TRANSLATE_NOOP("PKM_Simulate", "Play the planned motion of the selected job on its machine"),
+        is_job,
+        _simulate,
+    ),
+    WindowCommand(
+        "PKM_Editor",
+        "program.svg",
+        QT_TRANSLATE_NOOP("PKM_Editor", "Program editor"),
+        QT_TRANSLATE_NOOP("PKM_Editor", "Edit G-code or CL data, with its faults told while it is typed"),
+        lambda item: True,
+        _edit,
     ),
     Command(
         "PKM_Post",

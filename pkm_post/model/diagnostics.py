@@ -84,6 +84,7 @@ RULES: dict[str, Rule] = {
     "J117": _error("the job's options are not understood", "correct the arguments of the post-processor"),
     "J118": _warning("the tool axis was not of unit length and was normalised", "write unit vectors with 6 decimals"),
     "J119": _error("a move is not a finite number", "regenerate the operation"),
+    "J120": _warning("an operation of CAM cannot hold all that the part program says", "post the part program itself"),
     # M: the machine file
     "M101": _error("the machine file cannot be read", "check the path; python3 -m pkm_post machine list shows presets"),
     "M102": _error("the machine file is not valid TOML", "correct it at the place shown"),

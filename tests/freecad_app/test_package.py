@@ -8,6 +8,7 @@ import FreeCAD as App
 import pytest
 
 import pkm_post
+from pkm_post.freecad_app.arguments import POST_PROCESSORS
 
 ROOT = FilePath(__file__).resolve().parents[2]
 PACKAGE = App.Metadata(str(ROOT / "package.xml"))
@@ -30,8 +31,9 @@ def test_class_of_the_workbench_exists():
 
 
 def test_post_processors_are_where_newer_versions_of_freecad_look():
-    (post_processor,) = PACKAGE.Content["Postprocessor"]
-    assert (ROOT / post_processor.Subdirectory / f"{post_processor.Name}_post.py").is_file()
+    named = [ROOT / each.Subdirectory / f"{each.Name}_post.py" for each in PACKAGE.Content["Postprocessor"]]
+    assert sorted(named) == sorted((ROOT / "postprocessors").glob("*.py"))
+    assert [each.Name for each in PACKAGE.Content["Postprocessor"]] == list(POST_PROCESSORS)
 
 
 def test_dependencies():
@@ -45,6 +47,6 @@ def test_licence_and_icons_are_there():
         assert (ROOT / path).is_file()
 
 
-@pytest.mark.parametrize("name", ["pkm_post.svg", "mirror.svg", "rotate.svg"])
+@pytest.mark.parametrize("name", ["pkm_post.svg", "mirror.svg", "rotate.svg", "program.svg"])
 def test_icon_is_svg(name):
     assert "<svg" in (ROOT / "resources" / "icons" / name).read_text(encoding="utf-8")

@@ -13,12 +13,14 @@ from Path.Post.Processor import PostProcessor, PostProcessorFactory
 from pkm_post.freecad_app import post_hook
 
 NAME = "hexapod_pmac"
+NAMES = ["hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"]
 
 
-def test_cam_lists_the_post_processor_once():
-    assert Path.Preferences.allAvailablePostProcessors().count(NAME) == 1
-    assert NAME in Path.Preferences.allEnabledPostProcessors()
-    assert PostProcessor.exists(NAME)
+@pytest.mark.parametrize("name", NAMES)
+def test_cam_lists_each_post_processor_once(name):
+    assert Path.Preferences.allAvailablePostProcessors().count(name) == 1
+    assert name in Path.Preferences.allEnabledPostProcessors()
+    assert PostProcessor.exists(name)
 
 
 def test_installing_again_changes_nothing():
@@ -39,12 +41,14 @@ def test_stock_post_processors_are_still_there():
 
 def test_no_file_in_the_folder_hides_the_package():
     names = [path.name for path in (ROOT / "postprocessors").glob("*.py")]
-    assert names == [f"{NAME}_post.py"]
+    assert sorted(names) == sorted(f"{name}_post.py" for name in NAMES)
 
 
-def test_factory_makes_it_without_a_job():
-    post = PostProcessorFactory.get_post_processor(None, NAME)
+@pytest.mark.parametrize("name", NAMES)
+def test_factory_makes_it_without_a_job(name):
+    post = PostProcessorFactory.get_post_processor(None, name)
     assert "hexapod" in post.tooltip
+    assert ("--form" in post.tooltipArgs) == (name == "hexapod_gcode")
     for flag in ("--machine", "--work-offset", "--tip-tolerance", "--axis-tolerance", "--tool-length"):
         assert flag in post.tooltipArgs
     assert "\x1b" not in post.tooltipArgs

@@ -11,6 +11,7 @@ import os
 import sys
 import time
 import traceback
+from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
@@ -20,6 +21,7 @@ sys.path[:0] = [os.path.dirname(os.path.dirname(os.path.abspath(__file__)))]
 sys.path[:0] = [os.path.join(sys.path[0], "freecad_app")]
 
 RESULT, SCREENSHOT = os.environ["PKM_RESULT"], os.environ["PKM_SCREENSHOT"]
+FOLDER = os.path.dirname(SCREENSHOT)
 STEPS = []
 
 
@@ -221,6 +223,283 @@ def escape_stops_a_long_computation():
 
 
 @step
+def machine_from_its_button():
+    from cam_jobs import ARC, FIVE_AXIS, add_operation, new_job
+
+    document = FreeCAD.newDocument("hexapod")
+    job = new_job(document)
+    job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--work-offset=0,0,250"
+    add_operation(job, ARC, "Arcs")
+    add_operation(job, FIVE_AXIS, "Tilted")
+    document.UndoMode = 1
+    FreeCADGui.Selection.clearSelection()
+    alone = FreeCADGui.Command.get("PKM_Machine").isActive()
+    select(job)
+    FreeCADGui.runCommand("PKM_Machine", 0)
+    settle()
+    document.undo()
+    undone = document.getObject("Machine") is None
+    select(job)
+    FreeCADGui.runCommand("PKM_Machine", 0)
+    settle()
+    machine = document.getObject("Machine")
+    view, tops = machine.ViewObject.Proxy, []
+    for height in (20, 120):
+        machine.Tip = FreeCAD.Vector(0, 0, height)
+        document.recompute()
+        tops.append(_highest(view.scene._platform))
+    told = {
+        "alone": alone,
+        "undone": undone,
+        "job": machine.Job.Name,
+        "icon": os.path.basename(view.getIcon()),
+        "moved": tops[1] - tops[0],
+        "out_of_limits": list(machine.OutOfLimits),
+    }
+    machine.Tip = FreeCAD.Vector(600, 0, -300)
+    document.recompute()
+    told["red"] = [tuple(strut._rod.diffuseColor[0].getValue()) for strut in view.scene._struts]
+    machine.MachineFile = "no_such_machine"
+    told["scene_without_machine"] = view.scene is not None
+    machine.MachineFile, machine.Tip = "example_6tps", FreeCAD.Vector(0, 0, 60)
+    document.recompute()
+    told["scene"] = view.scene is not None
+    return told
+
+
+def _highest(transform):
+    """The height of the platform in the machine, out of the scene graph."""
+    return transform.matrix.getValue().getValue()[3][2]
+
+
+@step
+def reach_from_its_button():
+    document = FreeCAD.getDocument("hexapod")
+    select(document.getObject("Job"))
+    FreeCADGui.runCommand("PKM_Reach", 0)
+    settle()
+    found = document.getObject("Reach")
+    view = found.ViewObject.Proxy
+    told = {"machine": found.Machine.Name, "reachable": found.Reachable, "nodes": view._root.getNumChildren()}
+    view.doubleClicked(found.ViewObject)
+    settle()
+    (table,) = FreeCADGui.getMainWindow().findChildren(QtWidgets.QTableWidget, "PkmReachTable")
+    row = list(found.Checks).index("base joints")
+    table.cellClicked.emit(row, 0)
+    settle()
+    told |= {
+        "rows": [table.item(line, 0).text() for line in range(table.rowCount())] == list(found.Checks),
+        "colour_by": found.ColourBy,
+        "selected": [item.Label for item in FreeCADGui.Selection.getSelection()] == [found.WorstOperations[row]],
+    }
+    found.Machine.ViewObject.Visibility = False
+    told["saved"] = _picture("reach.png")
+    found.Machine.ViewObject.Visibility = True
+    FreeCADGui.getDocument("hexapod").resetEdit()
+    settle()
+    told["panel_is_left_open"] = bool(FreeCADGui.Control.activeDialog())
+    document.undo()
+    told["after_undo"] = found.ColourBy
+    return told
+
+
+@step
+def simulation_from_its_button():
+    document = FreeCAD.getDocument("hexapod")
+    machine = document.getObject("Machine")
+    before = machine.ViewObject.Proxy.scene._platform.matrix.getValue().getValue()
+    select(document.getObject("Job"))
+    FreeCADGui.runCommand("PKM_Simulate", 0)
+    settle()
+    player = _player()
+    told = {"duration": player.simulation.duration, "told": player.told.text()}
+    player.factor.setCurrentText("2x")
+    player.toggle()
+    until = time.monotonic() + 1.0
+    while time.monotonic() < until:
+        settle()
+    player.toggle()
+    told["played"] = player.seconds
+    player.step()
+    told["stepped"] = player.simulation.next_block(told["played"]) == player.seconds
+    player.slider.setValue(4000)
+    told["scrubbed"] = player.seconds
+    tip = player.simulation.pose_at([4.0])[0][0]
+    told["machine_is_there"] = bool(abs(tip[2] + 120 + 80 - _highest(machine.ViewObject.Proxy.scene._platform)) < 1.0)
+    os.mkdir(f"{FOLDER}/frames")
+    player.factor.setCurrentText("10x")
+    player.write_pictures(Path(FOLDER) / "frames", per_second=2, width=320, height=240)
+    told["pictures"] = sorted(os.listdir(f"{FOLDER}/frames"))
+    document.getObject("Reach").ViewObject.Visibility = False
+    told["saved"] = _picture("simulation.png")
+    player.close()
+    settle()
+    after = machine.ViewObject.Proxy.scene._platform.matrix.getValue().getValue()
+    told["machine_is_back"] = after == before
+    select(document.getObject("Job"))
+    FreeCADGui.runCommand("PKM_Simulate", 0)
+    document.removeObject("Machine")
+    settle()
+    told["closed_with_its_machine"] = _player() is None
+    document.getObject("Job").PostProcessorArgs = "--work-offset=500,0,200"
+    select(document.getObject("Job"))
+    FreeCADGui.runCommand("PKM_Simulate", 0)
+    player = _player()
+    player.advance(1e6)
+    told["problem"], told["stopped_at"] = player.problem.text, player.seconds == player.problem.time
+    FreeCAD.closeDocument("hexapod")
+    settle()
+    told["closed_with_its_document"] = _player() is None
+    FreeCAD.setActiveDocument("gui")
+    return told
+
+
+def _picture(name):
+    """Look at everything that is visible, from the corner, and keep a picture of the window."""
+    FreeCADGui.activeView().viewIsometric()
+    FreeCADGui.SendMsgToActiveView("ViewFit")
+    settle()
+    return QtGui.QGuiApplication.primaryScreen().grabWindow(0).save(f"{FOLDER}/{name}")
+
+
+def _player():
+    return FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
+
+
+def until(condition, seconds=20):
+    """Let the window work until something is so; whether it is."""
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        QtWidgets.QApplication.processEvents()
+        time.sleep(0.01)
+    return condition()
+
+
+PROGRAM = """G21 G90 G17
+T1 M6
+S9000 M3
+G0 X0 Y0 Z30
+G1 Z5 F600
+G1 X10 Y4 F900
+G2 X20 Y4 I5 J0
+G0 Z30
+M2
+"""
+
+
+def _editor():
+    from pkm_post.freecad_gui.editor import open_editor
+
+    return open_editor()
+
+
+def _findings(editor):
+    until(lambda: not editor.body.checker.busy())
+    return [editor.body.findings.item(row).text() for row in range(editor.body.findings.count())]
+
+
+@step
+def program_is_opened_and_its_editor_shows_a_block():
+    file = os.path.join(os.path.dirname(RESULT), "program.ngc")
+    with open(file, "w", encoding="ascii") as stream:
+        stream.write(PROGRAM)
+    FreeCADGui.loadFile(file, "pkm_post.freecad_app.program_import")
+    (obj,) = FreeCAD.ActiveDocument.Objects
+    before = obj.ViewObject.RootNode.getNumChildren()
+    select(obj)
+    FreeCADGui.runCommand("PKM_Editor", 0)
+    editor = _editor()
+    findings = _findings(editor)
+    editor.body.text.jump(7)
+    FreeCADGui.SendMsgToActiveView("ViewFit")
+    settle()
+    drawn = obj.ViewObject.RootNode.getNumChildren() - before
+    coloured = [block.layout().formats() for block, _ in editor.body.text.lines_in_sight()]
+    picture = os.path.join(os.path.dirname(SCREENSHOT), "editor.png")
+    QtGui.QGuiApplication.primaryScreen().grabWindow(0).save(picture)
+    return {
+        "moves": len([each for each in obj.Path.Commands if each.Name.startswith("G")]),
+        "view": type(obj.ViewObject.Proxy).__name__,
+        "title": editor.windowTitle(),
+        "findings": findings,
+        "size": editor.body.size.text(),
+        "drawn": drawn,
+        "coloured": sum(map(bool, coloured)),
+        "points": editor.body._shown._places.point.getNum(),
+    }
+
+
+@step
+def editor_finds_planted_errors_while_they_are_typed():
+    editor = _editor()
+    editor.body.text.replace_text(PROGRAM.replace("X10 Y4", "X1..5 Y4").replace("G0 Z30\nM2", "G0 Q\nM2"))
+    findings = _findings(editor)
+    underlined = [each.cursor.selectedText() for each in editor.body.text.extraSelections()[1:]]
+    editor.body.findings.itemClicked.emit(editor.body.findings.item(1))
+    jumped = editor.body.text.current_line()
+    editor.body.text.undo()
+    return {"findings": findings, "underlined": underlined, "jumped": jumped, "after_undo": _findings(editor)}
+
+
+@step
+def editor_replaces_renumbers_and_saves():
+    (obj,) = FreeCAD.ActiveDocument.Objects
+    editor = _editor()
+    bar = editor.body.find_bar
+    bar.begin()
+    bar.wanted.setText("y4")
+    found = [bar.find_next() and editor.body.text.current_line() for _ in range(3)]
+    bar.instead.setText("Y8")
+    replaced = bar.replace_all()
+    editor.body.renumber()
+    title = editor.windowTitle()
+    saved = editor.save()
+    with open(obj.File, encoding="ascii") as stream:
+        text = stream.read()
+    ys = sorted({each.Parameters["Y"] for each in obj.Path.Commands if "Y" in each.Parameters})
+    bar.hide()
+    return {"found": found, "replaced": replaced, "title": title, "saved": saved, "text": text, "ys": ys}
+
+
+@step
+def editor_colours_the_lines_in_sight_of_a_large_file():
+    editor = _editor()
+    before, large = editor.body.file, editor.body.file.with_name("large.apt")
+    large.write_text("UNITS/MM\nFEDRAT/600,MMPM\n" + "GOTO/1,2,3\n" * 19998, encoding="ascii")
+    editor.open_file(large)
+    last = editor.body.text.document().findBlockByNumber(19999)
+    until(lambda: editor.body.text.document().firstBlock().layout().formats())
+    out_of_sight = len(last.layout().formats())
+    editor.body.text.jump(20000)
+    until(lambda: last.layout().formats())
+    in_sight = len(last.layout().formats())
+    until(lambda: not editor.body.checker.busy())
+    told = {"out_of_sight": out_of_sight, "in_sight": in_sight, "size": editor.body.size.text()}
+    told["back"] = editor.open_file(before)
+    return told
+
+
+@step
+def editor_decodes_and_posts():
+    editor, program = _editor(), FreeCAD.ActiveDocument
+    FreeCAD.setActiveDocument("gui")
+    before = len(FreeCAD.getDocument("gui").getObject("Job").Operations.Group)
+    operation = editor.decode()
+    told = [operation.Label, len(FreeCAD.getDocument("gui").getObject("Job").Operations.Group) - before]
+    FreeCAD.getDocument("gui").undo()
+    told.append(len(FreeCAD.getDocument("gui").getObject("Job").Operations.Group) - before)
+    messages, ended = [], []
+    editor.posting.ended.connect(lambda: ended.append(True))
+    QtCore.QTimer.singleShot(0, lambda: _close_message(messages))
+    editor.posting.post(editor.body.file, "none", "--work-offset=0,0,250 --tool-length 1=120")
+    until(lambda: ended, 60)
+    files = sorted(name for name in os.listdir(editor.body.file.parent) if name.startswith("program"))
+    FreeCAD.closeDocument(program.Name)
+    editor.hide()
+    return {"decoded": told, "messages": messages, "files": files}
+
+
+@step
 def cam_menu_has_the_commands():
     FreeCADGui.activateWorkbench("CAMWorkbench")
     settle()
@@ -276,6 +555,17 @@ def _close_message(told):
         box.accept()
     else:
         QtCore.QTimer.singleShot(50, lambda: _close_message(told))
+
+
+@step
+def report_view_has_no_traceback():
+    views = [view for view in FreeCADGui.getMainWindow().findChildren(QtWidgets.QTextEdit) if _is_report(view)]
+    told = "\n".join(view.toPlainText() for view in views)
+    return {"views": len(views), "tracebacks": told.count("Traceback"), "end": told[-2000:]}
+
+
+def _is_report(view):
+    return view.metaObject().className() == "Gui::DockWnd::ReportOutput"
 
 
 @step

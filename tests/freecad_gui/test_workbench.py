@@ -39,6 +39,10 @@ def test_workbench_has_its_commands(session):
         "Rotate operation",
         "Normal Compensation",
         "Surface Finish (5-axis)",
+        "Machine",
+        "Reach",
+        "Simulate",
+        "Program editor",
         "Post to a hexapod",
     ]
     assert all(found["icons"])
@@ -91,6 +95,76 @@ def test_escape_stops_a_long_computation_in_a_recompute_and_outside(session):
         assert 20 <= int(told.split()[-1]) < 100
 
 
+def test_machine_is_made_for_a_job_and_moves_with_its_pose(session):
+    found = session["found"]["machine_from_its_button"]
+    assert (found["alone"], found["undone"]) == (True, True)
+    assert (found["job"], found["icon"], found["out_of_limits"]) == ("Job", "machine.svg", [])
+    assert found["moved"] == pytest.approx(100.0, abs=1e-3)  # Coin counts in single precision
+    assert any(red > 0.8 and green < 0.2 for red, green, _ in found["red"])
+    assert (found["scene_without_machine"], found["scene"]) == (False, True)
+
+
+def test_reach_is_coloured_and_its_panel_shows_where(session):
+    found = session["found"]["reach_from_its_button"]
+    assert (found["machine"], found["reachable"], found["nodes"]) == ("Machine", True, 3)
+    assert (found["rows"], found["colour_by"], found["selected"]) == (True, "base joints", True)
+    assert not found["panel_is_left_open"]
+    assert found["after_undo"] == "shortest struts"
+    assert (session["picture"].with_name("reach.png")).stat().st_size > 20_000
+
+
+def test_simulation_plays_steps_scrubs_and_stops_at_problems(session):
+    found = session["found"]["simulation_from_its_button"]
+    assert "Arcs, line" in found["told"]
+    assert 0.5 < found["played"] <= found["duration"]
+    assert found["stepped"]
+    assert found["scrubbed"] == 4.0
+    assert found["machine_is_there"]
+    assert found["pictures"][:2] == ["frame_00001.png", "frame_00002.png"]
+    assert found["machine_is_back"]
+    assert "joint" in found["problem"] or "strut" in found["problem"]
+    assert found["stopped_at"]
+    assert (found["closed_with_its_machine"], found["closed_with_its_document"]) == (True, True)
+
+
+def test_program_is_opened_with_its_path_and_the_block_under_the_cursor(session):
+    found = session["found"]["program_is_opened_and_its_editor_shows_a_block"]
+    assert (found["moves"], found["view"], found["title"]) == (5, "ProgramView", "program.ngc - PKM Post")
+    assert (found["findings"], found["coloured"]) == ([], 9)  # an empty line has no colour
+    # mm: down 25, hypot(10, 4) along, half a circle of radius 5, up 25
+    assert found["size"] == "5 blocks, 1 arcs, 76.5 mm"
+    assert (found["drawn"], found["points"]) == (1, 61)  # half a turn in steps of 3 degrees
+    assert session["picture"].with_name("editor.png").stat().st_size > 20_000
+
+
+def test_editor_finds_planted_errors(session):
+    found = session["found"]["editor_finds_planted_errors_while_they_are_typed"]
+    assert [text.split()[:2] for text in found["findings"]] == [["6:5", "G102"], ["8:4", "G201"]]
+    assert found["underlined"] == ["1..5", "Q"]
+    assert (found["jumped"], found["after_undo"]) == (8, [])
+
+
+def test_editor_replaces_renumbers_and_saves(session):
+    found = session["found"]["editor_replaces_renumbers_and_saves"]
+    assert found["found"] == [6, 7, 6]
+    assert (found["replaced"], found["title"], found["saved"]) == (2, "program.ngc * - PKM Post", True)
+    assert found["text"].startswith("N10 G21 G90 G17\nN20 T1 M6\n")
+    assert found["ys"] == [0.0, 8.0]
+
+
+def test_editor_colours_only_the_lines_in_sight(session):
+    found = session["found"]["editor_colours_the_lines_in_sight_of_a_large_file"]
+    assert (found["out_of_sight"], found["in_sight"]) == (0, 7)  # GOTO / 1 , 2 , 3
+    assert (found["size"], found["back"]) == ("19998 blocks, 0 arcs, 0.0 mm", True)
+
+
+def test_editor_decodes_into_a_job_and_posts(session):
+    found = session["found"]["editor_decodes_and_posts"]
+    assert found["decoded"] == ["program", 1, 0]
+    assert {"program.pmc", "program.pkmt", "program-report.json"} <= set(found["files"])
+    assert "program.pmc" in found["messages"][0]
+
+
 def test_cam_menu_has_the_commands(session):
     assert session["found"]["cam_menu_has_the_commands"]["has"] == [True, True, True]
 
@@ -106,6 +180,11 @@ def test_refused_job_is_told_and_leaves_nothing(session):
     found = session["found"]["refused_job_is_told_and_leaves_nothing"]
     assert found["files"] == []
     assert "J105" in found["told"][0]
+
+
+def test_report_view_has_no_traceback(session):
+    found = session["found"]["report_view_has_no_traceback"]
+    assert (found["views"], found["tracebacks"]) == (1, 0), found["end"]
 
 
 def test_window_is_drawn(session):

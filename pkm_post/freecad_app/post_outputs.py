@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Post outputs: what the post-processors write for a CAM job.
+
+A job, its parsed arguments and the place where CAM is going to write enter; the text for that place leaves, and the
+diagnostics. Files that are no text lie beside that place then. Whatever is wrong is told together and nothing is
+written.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path as FilePath
+from typing import Any, TypeVar
+
+from pkm_post import outputs, pipeline, trajectory_file
+from pkm_post.files import staged
+from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
+from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.post_job import at_fixture, post_to
+from pkm_post.gcode import Form, write
+from pkm_post.machine_file import machine_named
+from pkm_post.model import Diagnostic, Place, Refused, Trajectory
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.findings import Tolerances
+from pkm_post.options import options_from, tool_lengths_from
+from pkm_post.reach import reach
+
+T = TypeVar("T")
+Findings = tuple[Diagnostic, ...]
+Written = tuple[str, Findings]
+"""The text for CAM, and warnings."""
+
+
+def _motion_program(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
+    """The motion program; trajectory, set-up file and report are written beside it."""
+    posted = post_to(path, job, chosen.machine, options_from(chosen), tool_lengths_from(chosen), print)
+    return posted.program.read_text(encoding="ascii"), posted.diagnostics
+
+
+def _trajectory(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
+    """A few lines about the trajectory, which is written beside them: CAM can write no bytes."""
+    trajectory, found = _reachable(job, chosen)
+    target = path.with_suffix(".pkmt")
+    try:
+        with staged(target.parent) as folder:
+            stored = folder / target.name
+            tolerances = Tolerances(options_from(chosen).tip_tolerance, options_from(chosen).axis_tolerance)
+            trajectory_file.write(replace(trajectory, tolerances=tolerances), stored)
+            _value(trajectory_file.read(stored), found)
+    except OSError as fault:
+        raise Refused([*found, Diagnostic("F101", Place(str(target)), str(fault))]) from fault
+    lines = (
+        f"trajectory: {target.name}",
+        f"machine: {chosen.machine}",
+        f"segments: {len(trajectory)}",
+        "reach checked, motion not planned, not certified",
+    )
+    return "".join(f"({ascii(line)[1:-1].translate(_NO_PARENTHESES)})\n" for line in lines), found
+
+
+_NO_PARENTHESES = str.maketrans("()", "[]")
+"""A comment of G-code cannot hold a comment."""
+
+
+def _linuxcnc(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
+    """G-code for LinuxCNC's hexapod."""
+    trajectory, found = _reachable(job, chosen)
+    return _value(outputs.linuxcnc_text(trajectory), found)
+
+
+def _gcode(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
+    """The program of the job as G-code."""
+    job.Document.recompute()
+    program, found = _value(read_job(job, tool_lengths_from(chosen)))
+    return _value(write(program, Form(chosen.form), inch=chosen.inch), found)
+
+
+OUTPUTS: dict[str, Callable[[Any, argparse.Namespace, FilePath], Written]] = {
+    PMAC: _motion_program,
+    TRAJECTORY: _trajectory,
+    LINUXCNC: _linuxcnc,
+    GCODE: _gcode,
+}
+"""By post-processor what it writes: from the job, its arguments and the place of the text."""
+
+
+def _reachable(job: Any, chosen: argparse.Namespace) -> tuple[Trajectory, Findings]:
+    """The trajectory of a job, which its machine can follow, and the warnings."""
+    job.Document.recompute()
+    machine, machine_faults = machine_named(chosen.machine)
+    program, job_faults = read_job(job, tool_lengths_from(chosen))
+    found = (*machine_faults, *job_faults)
+    if machine is None or program is None or errors(found):
+        raise Refused(found)
+    options = at_fixture(options_from(chosen), job)
+    trajectory, found = _value(pipeline.trajectory_of(program, machine, options), found)
+    return _value((trajectory, reach(trajectory, machine).faults()), found)
+
+
+def _value(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:
+    """The value of a step, and all that was found so far.
+
+    Raises:
+        Refused: there is no value, or an error.
+    """
+    value, told = result
+    if value is None or errors(told):
+        raise Refused((*found, *told))
+    return value, (*found, *told)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Program import: what FreeCAD calls when a part program is opened, or dropped on its window.
+
+The name of a file enters; a program object in a new document or in one that is open leaves. ``Init.py`` names this
+module and the suffixes.
+"""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path as FilePath
+from typing import Any
+
+import FreeCAD as App
+
+from pkm_post.freecad_app.program_object import create_program
+
+
+def open(filename: str) -> Any:  # noqa: A001 - FreeCAD wants this name
+    """Show a part program in a new document."""
+    document = App.newDocument(FilePath(filename).stem)
+    insert(filename, document.Name)
+    return document
+
+
+def insert(filename: str, docname: str) -> None:
+    """Add a part program to a document, which is made when there is none of that name."""
+    document = App.getDocument(docname) if docname in App.listDocuments() else App.newDocument(docname)
+    document.openTransaction(f"Import {FilePath(filename).name}")
+    create_program(document, filename)
+    document.commitTransaction()
+    if App.GuiUp:
+        importlib.import_module("FreeCADGui").SendMsgToActiveView("ViewFit")

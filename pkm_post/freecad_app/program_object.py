@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Program object: a part program, G-code or CL data, as an object of a FreeCAD document.
+
+The path of a file enters by the property ``File``; the ``Path`` of the tool tip leaves, cutter compensation applied,
+and by the property ``Found`` what was found in reading. The file stays the program of record: it is read again whenever
+the object is computed. ``decode`` makes an operation of a CAM job of it. Saved documents name the class by
+``pkm_post.freecad_app.program_object``: its place, its name and those of its properties are a file format.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import types
+from collections.abc import Iterator
+from pathlib import Path as FilePath
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+import Path
+import Path.Op.Custom
+from PathScripts import PathUtils
+
+from pkm_post.compensation import OffsetOptions, compensate
+from pkm_post.freecad_app.commands import commands_of
+from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
+from pkm_post.model.diagnostics import Severity
+from pkm_post.sources import AXIS_WORDS, SUFFIXES, Reading, is_part_program, read_part_program
+
+Findings = tuple[Diagnostic, ...]
+
+_VIEW = "pkm_post.freecad_gui.program_view"
+"""The view is a floor above: it is named and not imported, as in saved documents."""
+
+_G = "Program"
+_PROPERTIES: tuple[tuple[str, str, str, str, Any], ...] = (
+    ("App::PropertyFile", "File", _G, "The part program, G-code or CL data", ""),
+    ("App::PropertyEnumeration", "AxisWords", _G, "How G-code says the tool axis", list(AXIS_WORDS)),
+    ("App::PropertyStringList", "Found", _G, "What was found in reading the file", []),
+)
+
+
+class PartProgram:
+    """A part program. CAM draws its path; it is posted from its file, or from a job that it is decoded into."""
+
+    def __init__(self, obj: Any) -> None:
+        _add_missing_properties(obj)
+        obj.Proxy = self
+
+    def execute(self, obj: Any) -> None:
+        """Read the file: FreeCAD calls this when a property has changed. A faulty file has no path, and says why."""
+        obj.Path = Path.Path()
+        program, found = read_program(obj)
+        obj.Found = [str(each) for each in found]
+        _tell(found)
+        if program is not None:
+            obj.Path = Path.Path(commands_of(program))
+
+    def onDocumentRestored(self, obj: Any) -> None:
+        """Give documents of older versions the properties they do not have yet."""
+        _add_missing_properties(obj)
+
+    def dumps(self) -> None:
+        """Nothing is saved beside the properties."""
+
+    def loads(self, state: object) -> None:
+        """Nothing was saved."""
+
+
+def is_program(item: Any) -> bool:
+    """Whether a document object is a part program."""
+    return hasattr(item, "AxisWords") and hasattr(item, "Found")
+
+
+def create_program(document: Any, file: str | FilePath, axis_words: str = "none") -> Any:
+    """Add a part program to a document.
+
+    Args:
+        document: where to; it is recomputed, and what is found in the file is shown in the report view.
+        file: G-code or CL data.
+        axis_words: how G-code says the tool axis, a key of ``AXIS_WORDS``.
+    """
+    path = FilePath(file).absolute()
+    obj = document.addObject("Path::FeaturePython", "PkmProgram")
+    PartProgram(obj)
+    obj.File, obj.AxisWords, obj.Label = str(path), axis_words, path.name
+    if App.GuiUp:
+        importlib.import_module(_VIEW).ProgramView(obj.ViewObject)
+    document.recompute()
+    return obj
+
+
+def read_program(obj: Any) -> tuple[Program | None, Findings]:
+    """The program of an object with cutter compensation applied, or None, and what was found."""
+    file = FilePath(obj.File)
+    if not is_part_program(file):
+        return None, (Diagnostic("F103", Place(str(file)), f"its name ends with none of {', '.join(SUFFIXES)}"),)
+    program, found = read_part_program(file, Reading(obj.AxisWords))
+    if program is None:
+        return None, found
+    compensated, told = compensate(program, OffsetOptions(), {})
+    return compensated, (*found, *told)
+
+
+def decode(obj: Any, job: Any) -> Any:
+    """Make a part program an operation of a CAM job.
+
+    The operation holds the commands as they are now, and does not follow the file. Its tool controller is that with
+    the number of the first tool of the program.
+
+    Args:
+        obj: the part program.
+        job: the job, which gets a Custom operation.
+
+    Raises:
+        Refused: the program is faulty, or the job has not its tool; the job is as it was.
+    """
+    program, found = read_program(obj)
+    if program is None:
+        raise Refused(found)
+    controller = _first_controller(program, job)
+    commands = commands_of(program)
+    first = next((index for index, each in enumerate(commands) if each.Name == "M6"), None)
+    if first is not None:  # the job calls the tool of the controller by itself
+        del commands[first]
+    _tell(_left_out(program))
+    with _choosing(controller):
+        operation = Path.Op.Custom.Create("Decoded", parentJob=job)
+    operation.Label = FilePath(obj.File).stem
+    operation.ToolController = controller
+    operation.Gcode = [command.toGCode() for command in commands]
+    job.Document.recompute()
+    return operation
+
+
+def _first_controller(program: Program, job: Any) -> Any:
+    """The tool controller for what comes first in a program; the first one if it calls no tool."""
+    called = next((event.value for event in program.events if event.kind is EventKind.TOOL_CHANGE), None)
+    fitting = [each for each in job.Tools.Group if called in (None, each.ToolNumber)]
+    if not fitting:
+        known = ", ".join(f"T{each.ToolNumber}" for each in job.Tools.Group)
+        found = f"the program calls T{called:g}, {job.Label} has {known or 'no tools'}"
+        raise Refused([Diagnostic("J112", Place(program.source), found)])
+    return fitting[0]
+
+
+@contextlib.contextmanager
+def _choosing(controller: Any) -> Iterator[None]:
+    """Let CAM take a tool controller: with several it asks, and without a window it has nobody to ask and fails."""
+    before = PathUtils.UserInput
+    PathUtils.UserInput = types.SimpleNamespace(selectedToolController=lambda: controller)
+    try:
+        yield
+    finally:
+        PathUtils.UserInput = before
+
+
+def _left_out(program: Program) -> Findings:
+    """What commands of CAM cannot say."""
+    rows = {
+        "exact stops": program.exact_stop,
+        "surface normals": np.isfinite(program.normal).all(axis=1),
+        "turns of the platform": np.isfinite(program.spin),
+    }
+    counts = {name: int(np.count_nonzero(column)) for name, column in rows.items()}
+    return tuple(
+        Diagnostic("J120", Place(program.source), f"{name} of {count} moves") for name, count in counts.items() if count
+    )
+
+
+def _tell(found: Findings) -> None:
+    """Show what was found in the report view."""
+    for each in found:
+        show = App.Console.PrintError if each.severity is Severity.ERROR else App.Console.PrintWarning
+        show(f"{each}\n")
+
+
+def _add_missing_properties(obj: Any) -> None:
+    for kind, name, group, text, value in _PROPERTIES:
+        if not hasattr(obj, name):
+            obj.addProperty(kind, name, group, text)
+            setattr(obj, name, value)
+    obj.setEditorMode("Found", 1)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Body: the text of a part program with all that is told of it while it is typed.
+
+A text, the name of its file and the axis words enter; the faults, what the program holds, and the block under the
+cursor on the path of its program object are shown.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import FreeCAD
+from PySide import QtWidgets
+
+from pkm_post.freecad_gui.editor import linked
+from pkm_post.freecad_gui.editor.checker import Checker
+from pkm_post.freecad_gui.editor.find_bar import FindBar
+from pkm_post.freecad_gui.editor.findings import Findings, marks_of
+from pkm_post.freecad_gui.editor.shown_block import ShownBlock
+from pkm_post.freecad_gui.editor.text_view import TextView
+from pkm_post.model import Program
+from pkm_post.program_text import CheckedText, Language, language_of, renumbered, ways_of_line
+from pkm_post.sources import AXIS_WORDS, Reading
+
+translate = FreeCAD.Qt.translate
+
+_NEW = "new.ngc"
+"""The name of a text without a file: it is taken for G-code."""
+
+
+class Body(QtWidgets.QWidget):
+    """The text and what is told of it.
+
+    Attributes:
+        file: where the text comes from; None for a new one.
+        program: what the text means, for as long as that is known.
+    """
+
+    def __init__(self, parent: QtWidgets.QWidget) -> None:
+        super().__init__(parent)
+        self.file: Path | None = None
+        self.program: Program | None = None
+        self._shown = ShownBlock()
+        self.text, self.findings, self.size = TextView(self), Findings(self), QtWidgets.QLabel(self)
+        self.find_bar = FindBar(self.text, self)
+        self.axis_words = QtWidgets.QComboBox(self)
+        self.axis_words.addItems(list(AXIS_WORDS))
+        self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.find_bar, self.text, self.size, self.findings):
+            layout.addWidget(widget)
+        self.checker = Checker(self._text_to_check, self)
+        self.checker.checked.connect(self._tell)
+        self.checker.missing.connect(self.size.setText)
+        self.findings.chosen.connect(self._jump)
+        self.text.textChanged.connect(self._changed)
+        self.text.cursorPositionChanged.connect(self._show_block)
+        self.axis_words.currentTextChanged.connect(self._read_otherwise)
+
+    def name(self) -> str:
+        """The name of the file, or the one that stands in for it."""
+        return str(self.file or _NEW)
+
+    def language(self) -> Language:
+        """What the text is written in."""
+        return language_of(self.name())
+
+    def set_file(self, file: Path | None) -> None:
+        """The text is that of this file from now on."""
+        self.file = file
+        obj = linked.object_of(file)
+        if obj is not None:
+            self.axis_words.setCurrentText(obj.AxisWords)
+        self.text.set_language(self.language())
+        self.checker.request()
+
+    def follow(self) -> None:
+        """The file was written: let its object read it again."""
+        obj = linked.object_of(self.file)
+        if obj is not None:
+            linked.bring_up_to_date(obj, self.axis_words.currentText())
+
+    def renumber(self) -> None:
+        """Give each block a line number; CL data has none."""
+        if self.language() is Language.GCODE:
+            line = self.text.current_line()
+            self.text.replace_text(renumbered(self.text.toPlainText()))
+            self.text.jump(line)
+
+    def _text_to_check(self) -> tuple[str, str, Reading]:
+        return self.text.toPlainText(), self.name(), Reading(self.axis_words.currentText())
+
+    def _changed(self) -> None:
+        self.program = None
+        self._show_block()
+        self.checker.request()
+
+    def _read_otherwise(self, axis_words: str) -> None:
+        self.checker.request()
+        obj = linked.object_of(self.file)
+        if obj is not None and obj.AxisWords != axis_words:
+            linked.bring_up_to_date(obj, axis_words)
+
+    def _tell(self, checked: CheckedText) -> None:
+        self.program, size = checked.program, checked.size
+        self.findings.show_all(checked.diagnostics)
+        lines = self.text.toPlainText().split("\n")
+        self.text.set_marks(marks_of(checked.diagnostics, lines, self.language()))
+        self.size.setText("" if size is None else f"{size.blocks} blocks, {size.arcs} arcs, {size.length:.1f} mm")
+        self._show_block()
+
+    def _jump(self, line: int, column: int) -> None:
+        self.text.jump(line, column)
+        self.text.setFocus()
+
+    def _show_block(self) -> None:
+        ways = [] if self.program is None else ways_of_line(self.program, self.text.current_line())
+        self._shown.show(linked.scene_of(linked.object_of(self.file)), ways)

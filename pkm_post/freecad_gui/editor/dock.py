@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Dock: the editor of part programs as a window beside the 3D view, one for each main window.
+
+A file, or the file of a program object, enters; it leaves as it was edited, decoded into a job, or posted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.files import staged
+from pkm_post.freecad_app.program_object import is_program
+from pkm_post.freecad_gui.editor import linked
+from pkm_post.freecad_gui.editor.body import Body
+from pkm_post.freecad_gui.editor.posting import Posting
+from pkm_post.model import Refused
+from pkm_post.program_text import Content
+from pkm_post.sources import SUFFIXES, is_part_program
+
+translate = FreeCAD.Qt.translate
+
+NAME = "PKM_Editor"
+
+
+class ProgramEditor(QtWidgets.QDockWidget):
+    """The editor.
+
+    Attributes:
+        body: the text and what is told of it.
+        posting: makes motion programs.
+    """
+
+    def __init__(self, window: QtWidgets.QMainWindow) -> None:
+        super().__init__(window)
+        self.setObjectName(NAME)
+        self._content = Content()
+        inside = QtWidgets.QWidget(self)
+        self.body, self.posting = Body(inside), Posting(self)
+        layout = QtWidgets.QVBoxLayout(inside)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self._tool_bar(inside))
+        layout.addWidget(self.body)
+        self.setWidget(inside)
+        self._document = self.body.text.document()
+        self._document.modificationChanged.connect(self._name_window)
+        window.installEventFilter(self)
+        self._name_window()
+
+    def _tool_bar(self, parent: QtWidgets.QWidget) -> QtWidgets.QToolBar:
+        bar, keys = QtWidgets.QToolBar(parent), QtGui.QKeySequence.StandardKey
+        find, renumber = self.body.find_bar.begin, self.body.renumber
+        rows: tuple[tuple[str, str, Any, Callable[[], Any]], ...] = (
+            (translate(NAME, "Open"), translate(NAME, "Open a part program"), keys.Open, self.ask_and_open),
+            (translate(NAME, "Save"), translate(NAME, "Save the part program"), keys.Save, self.save),
+            (translate(NAME, "Save as"), translate(NAME, "Save under another name"), None, self.save_as),
+            (translate(NAME, "Find"), translate(NAME, "Find and replace"), keys.Find, find),
+            (translate(NAME, "Renumber"), translate(NAME, "Give each block a line number"), None, renumber),
+            (translate(NAME, "Decode"), translate(NAME, "Make it an operation of a CAM job"), None, self.decode),
+            (translate(NAME, "Post"), translate(NAME, "Write a certified motion program"), None, self.post),
+        )
+        for text, tip, key, call in rows:
+            action = bar.addAction(text)
+            action.setToolTip(tip)
+            if key is not None:
+                action.setShortcut(QtGui.QKeySequence(key))
+                action.setShortcutContext(QtCore.Qt.ShortcutContext.WidgetWithChildrenShortcut)
+                self.addAction(action)
+            action.triggered.connect(lambda checked=False, call=call: call())
+        bar.addWidget(self.body.axis_words)
+        return bar
+
+    def ask_and_open(self) -> None:
+        """Open a file that the user chooses."""
+        name = QtWidgets.QFileDialog.getOpenFileName(self, translate(NAME, "Open"), self._folder(), _name_filter())[0]
+        if name:
+            self.open_file(Path(name))
+
+    def open_file(self, file: Path) -> bool:
+        """Edit a file; whether it is open then."""
+        if not self._may_leave():
+            return False
+        try:
+            self._content = Content.of(file.read_bytes())
+        except OSError as fault:
+            QtWidgets.QMessageBox.warning(self, translate(NAME, "Open"), str(fault))
+            return False
+        self.body.text.setPlainText(self._content.text)
+        self.body.set_file(file.absolute())
+        self._document.setModified(False)
+        self._name_window()
+        return True
+
+    def save(self) -> bool:
+        """Write the text to its file, and let its object follow; whether it is written."""
+        return self.save_as() if self.body.file is None else self._write(self.body.file)
+
+    def save_as(self) -> bool:
+        """Write the text to a file that the user chooses; whether it is written."""
+        name = QtWidgets.QFileDialog.getSaveFileName(self, translate(NAME, "Save"), self._folder(), _name_filter())[0]
+        if not name:
+            return False
+        return self._write(Path(name) if is_part_program(Path(name)) else Path(f"{name}.ngc"))
+
+    def _write(self, file: Path) -> bool:
+        try:
+            with staged(file.parent) as folder:
+                (folder / file.name).write_bytes(self._content.written(self.body.text.toPlainText()))
+        except OSError as fault:
+            QtWidgets.QMessageBox.warning(self, translate(NAME, "Save"), str(fault))
+            return False
+        if file != self.body.file:
+            self.body.set_file(file.absolute())
+        self._document.setModified(False)
+        self._name_window()
+        self.body.follow()
+        return True
+
+    def decode(self) -> Any:
+        """Make the program an operation of a CAM job; the operation, or None when that was not possible."""
+        title = translate(NAME, "Decode into a job")
+        job = linked.chosen_job(self, title)
+        if job is None:
+            QtWidgets.QMessageBox.warning(self, title, translate(NAME, "No CAM job of the active document was chosen."))
+        elif self._saved():
+            try:
+                return linked.decode_file(self.body.file, self.body.axis_words.currentText(), job)
+            except Refused as refused:
+                QtWidgets.QMessageBox.warning(self, title, str(refused))
+        return None
+
+    def post(self) -> None:
+        """Write a certified motion program beside the file."""
+        if self._saved():
+            self.posting.ask_and_post(self.body.file, self.body.axis_words.currentText())
+
+    def eventFilter(self, watched: QtCore.QObject, event: QtCore.QEvent) -> bool:
+        """Called by Qt: FreeCAD does not end while changes would be lost."""
+        if event.type() == QtCore.QEvent.Type.Close and watched is self.parent() and not self._may_leave():
+            event.ignore()
+            return True
+        return False
+
+    def _saved(self) -> bool:
+        is_saved = self.body.file is not None and not self._document.isModified()
+        return is_saved or self.save()
+
+    def _may_leave(self) -> bool:
+        """Whether the text is saved or may be lost."""
+        if not self._document.isModified():
+            return True
+        buttons = QtWidgets.QMessageBox.StandardButton
+        question = translate(NAME, "Save the changes of the part program?")
+        choice = buttons.Save | buttons.Discard | buttons.Cancel
+        answer = QtWidgets.QMessageBox.question(self, self.windowTitle(), question, choice)
+        return self.save() if answer == buttons.Save else answer == buttons.Discard
+
+    def _folder(self) -> str:
+        return str(self.body.file.parent) if self.body.file else ""
+
+    def _name_window(self, *changed: bool) -> None:
+        star = " *" if self._document.isModified() else ""
+        self.setWindowTitle(f"{Path(self.body.name()).name}{star} - PKM Post")
+
+
+def open_editor(item: Any = None) -> ProgramEditor:
+    """Show the editor of the main window, with the file of a program object if one is given."""
+    window = FreeCADGui.getMainWindow()
+    editor = window.findChild(QtWidgets.QDockWidget, NAME)
+    if editor is None:
+        editor = ProgramEditor(window)
+        window.addDockWidget(QtCore.Qt.DockWidgetArea.RightDockWidgetArea, editor)
+    editor.show()
+    editor.raise_()
+    if item is not None and is_program(item) and editor.body.file != Path(item.File):
+        editor.open_file(Path(item.File))
+    return editor
+
+
+def _name_filter() -> str:
+    return f"{translate(NAME, 'Part programs')} ({' '.join(f'*{suffix}' for suffix in SUFFIXES)})"

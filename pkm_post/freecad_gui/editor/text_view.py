@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Text view: the text of a part program with line numbers, colours and underlines.
+
+Only the lines in sight are coloured, when they come into sight: a program of 100,000 lines opens at once, and a key
+costs the colours of one line. A block remembers in its user state for which of its revisions it was coloured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.program_text import Colour, Language, spans
+
+LIGHT: dict[Colour, str] = {
+    Colour.COMMENT: "#5c6b5c",
+    Colour.KEYWORD: "#8f2a8f",
+    Colour.WORD: "#204a87",
+    Colour.NUMBER: "#2e3436",
+    Colour.LINE_NUMBER: "#8a8d88",
+    Colour.FUNCTION: "#8f2a8f",
+    Colour.PARAMETER: "#8f5902",
+    Colour.OPERATOR: "#a40000",
+    Colour.TEXT: "#3f7a05",
+}
+DARK: dict[Colour, str] = {
+    Colour.COMMENT: "#93a693",
+    Colour.KEYWORD: "#d69bd6",
+    Colour.WORD: "#8fb8e8",
+    Colour.NUMBER: "#eeeeec",
+    Colour.LINE_NUMBER: "#888a85",
+    Colour.FUNCTION: "#d69bd6",
+    Colour.PARAMETER: "#e9b96e",
+    Colour.OPERATOR: "#f0908c",
+    Colour.TEXT: "#a3d977",
+}
+"""Colours of the parts of a line, on a light ground and on a dark one."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What is underlined: characters ``start`` to ``end`` of a line, from 0."""
+
+    line: int
+    start: int
+    end: int
+    is_error: bool
+
+
+class TextView(QtWidgets.QPlainTextEdit):
+    """The text. Its margin is a widget of its own that paints what the text tells it."""
+
+    def __init__(self, parent: QtWidgets.QWidget) -> None:
+        super().__init__(parent)
+        self.setFont(QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont))
+        self.setLineWrapMode(QtWidgets.QPlainTextEdit.LineWrapMode.NoWrap)
+        self._language = Language.GCODE
+        self._marks: tuple[Mark, ...] = ()
+        self._margin = _Margin(self)
+        self._colouring = QtCore.QTimer(self)
+        self._colouring.setSingleShot(True)
+        self._colouring.timeout.connect(self._colour_lines_in_sight)
+        self.blockCountChanged.connect(self._fit_margin)
+        self.updateRequest.connect(self._follow)
+        self.cursorPositionChanged.connect(self._select_extra)
+        self._fit_margin()
+
+    def set_language(self, language: Language) -> None:
+        """Colour as this language."""
+        self._language = language
+        self._colouring.start()
+
+    def set_marks(self, marks: Sequence[Mark]) -> None:
+        """Underline these."""
+        self._marks = tuple(marks)
+        self._select_extra()
+
+    def current_line(self) -> int:
+        """The line of the cursor, from 1."""
+        return self.textCursor().blockNumber() + 1
+
+    def jump(self, line: int, column: int = 1) -> None:
+        """Put the cursor to a line and column, both from 1, into the middle of the view."""
+        block = self.document().findBlockByNumber(line - 1)
+        if block.isValid():
+            cursor = QtGui.QTextCursor(block)
+            cursor.setPosition(block.position() + min(max(column - 1, 0), block.length() - 1))
+            self.setTextCursor(cursor)
+            self.centerCursor()
+
+    def replace_text(self, text: str) -> None:
+        """Put another text in the place of all; one undo takes it back."""
+        cursor = QtGui.QTextCursor(self.document())
+        cursor.select(QtGui.QTextCursor.SelectionType.Document)
+        cursor.insertText(text)
+
+    def resizeEvent(self, event: QtGui.QResizeEvent) -> None:
+        """Called by Qt: the margin goes along."""
+        super().resizeEvent(event)
+        inside = self.contentsRect()
+        self._margin.setGeometry(inside.left(), inside.top(), self._margin.wanted_width(), inside.height())
+
+    def lines_in_sight(self) -> Iterator[tuple[QtGui.QTextBlock, float]]:
+        """The blocks in sight, each with the height of its top."""
+        block, offset = self.firstVisibleBlock(), self.contentOffset()
+        while block.isValid():
+            top = self.blockBoundingGeometry(block).translated(offset).top()
+            if top > self.viewport().height():
+                return
+            yield block, top
+            block = block.next()
+
+    def is_dark(self) -> bool:
+        """Whether the ground is dark."""
+        return self.palette().color(QtGui.QPalette.ColorRole.Base).lightness() < 128
+
+    def _fit_margin(self, count: int = 0) -> None:
+        self.setViewportMargins(self._margin.wanted_width(), 0, 0, 0)
+
+    def _follow(self, changed: QtCore.QRect, scrolled: int) -> None:
+        self._margin.update()
+        self._colouring.start()
+
+    def _colour_lines_in_sight(self) -> None:
+        formats = _formats(self.is_dark())
+        for block, _ in self.lines_in_sight():
+            state = 2 * block.revision() + (self._language is Language.CLDATA)
+            if block.userState() != state:
+                block.setUserState(state)
+                block.layout().setFormats([
+                    _range(span.start, span.end, formats[span.colour]) for span in spans(block.text(), self._language)
+                ])  # fmt: skip
+                self.document().markContentsDirty(block.position(), block.length())
+
+    def _select_extra(self) -> None:
+        """Ground of the line of the cursor, and the underlines."""
+        here = QtWidgets.QTextEdit.ExtraSelection()
+        here.format.setBackground(QtGui.QColor("#333b33" if self.is_dark() else "#eef3ee"))
+        here.format.setProperty(QtGui.QTextFormat.Property.FullWidthSelection, True)
+        here.cursor = self.textCursor()
+        here.cursor.clearSelection()
+        self.setExtraSelections([here, *(self._underline(mark) for mark in self._marks)])
+
+    def _underline(self, mark: Mark) -> QtWidgets.QTextEdit.ExtraSelection:
+        selection = QtWidgets.QTextEdit.ExtraSelection()
+        selection.format.setUnderlineStyle(QtGui.QTextCharFormat.UnderlineStyle.WaveUnderline)
+        selection.format.setUnderlineColor(QtGui.QColor("#cc0000" if mark.is_error else "#c4a000"))
+        block = self.document().findBlockByNumber(mark.line)
+        selection.cursor = QtGui.QTextCursor(block)
+        last = block.length() - 1
+        selection.cursor.setPosition(block.position() + min(mark.start, last))
+        selection.cursor.setPosition(block.position() + min(mark.end, last), QtGui.QTextCursor.MoveMode.KeepAnchor)
+        return selection
+
+
+class _Margin(QtWidgets.QWidget):
+    """The line numbers."""
+
+    def __init__(self, text: TextView) -> None:
+        super().__init__(text)
+        self._text = text
+
+    def wanted_width(self) -> int:
+        """As wide as the largest number needs."""
+        digits = len(str(self._text.blockCount()))
+        return self._text.fontMetrics().horizontalAdvance("9") * (max(digits, 3) + 1) + 6
+
+    def paintEvent(self, event: QtGui.QPaintEvent) -> None:
+        """Called by Qt: paint the numbers of the lines in sight."""
+        painter, metrics = QtGui.QPainter(self), self._text.fontMetrics()
+        painter.setFont(self._text.font())
+        painter.fillRect(event.rect(), QtGui.QColor("#2b2f2b" if self._text.is_dark() else "#f0f0ee"))
+        painter.setPen(QtGui.QColor("#888a85"))
+        width = self.width() - 6
+        for block, top in self._text.lines_in_sight():
+            place = QtCore.QRect(0, int(top), width, metrics.height())
+            painter.drawText(place, int(QtCore.Qt.AlignmentFlag.AlignRight), str(block.blockNumber() + 1))
+        painter.end()
+
+
+def _formats(dark: bool) -> dict[Colour, QtGui.QTextCharFormat]:
+    """The format of each colour."""
+    made = {}
+    for colour, name in (DARK if dark else LIGHT).items():
+        made[colour] = QtGui.QTextCharFormat()
+        made[colour].setForeground(QtGui.QColor(name))
+        made[colour].setFontItalic(colour is Colour.COMMENT)
+    return made
+
+
+def _range(start: int, end: int, text_format: QtGui.QTextCharFormat) -> QtGui.QTextLayout.FormatRange:
+    made = QtGui.QTextLayout.FormatRange()
+    made.start, made.length, made.format = start, end - start, text_format
+    return made

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Outputs: what is written beside a motion program, and files that come in parts.
+
+Texts enter and are written next to each other; a certified motion becomes a table, a trajectory becomes a program for
+LinuxCNC. Nothing here is certified but what is read back and measured.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from pkm_post.controllers import Table, part_names
+from pkm_post.gcode import Form, write
+from pkm_post.model import Diagnostic, Kind, Program, StrutMotion, Trajectory
+
+Findings = tuple[Diagnostic, ...]
+
+
+def write_parts(path: Path, texts: tuple[str, ...]) -> list[str]:
+    """Write the parts of a file; their names."""
+    names = part_names(path.name, len(texts))
+    for name, text in zip(names, texts, strict=True):
+        path.with_name(name).write_text(text, encoding="ascii", newline="\n")
+    return names
+
+
+def read_parts(path: Path, names: list[str]) -> list[tuple[str, str]]:
+    """Names and texts of the parts of a file, read back."""
+    return [(name, path.with_name(name).read_text(encoding="ascii")) for name in names]
+
+
+def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str]) -> tuple[str, Findings]:
+    """Write a table of a motion; what was found when it was read back and measured.
+
+    Args:
+        path: of the motion program; the table takes its stem.
+        table: the kind of table.
+        played: the motion that was certified.
+        heading: lines that say where it comes from.
+    """
+    target = path.with_name(path.stem + table.SUFFIX)
+    names = write_parts(target, table.texts(played, heading))
+    return table.measured(read_parts(target, names), played)
+
+
+def write_for_linuxcnc(path: Path, trajectory: Trajectory) -> Findings:
+    """Write the trajectory for a control that has the kinematics and plans for itself."""
+    text, found = linuxcnc_text(trajectory)
+    if text is not None:
+        path.with_name(f"{path.stem}-linuxcnc.ngc").write_text(text, encoding="ascii", newline="\n")
+    return found
+
+
+def linuxcnc_text(trajectory: Trajectory) -> tuple[str | None, Findings]:
+    """The trajectory as G-code for LinuxCNC's hexapod: X Y Z A B C in {M}, or what stands against it."""
+    text, found = write(_as_program(trajectory), Form.LINUXCNC)
+    told = "(coordinates of the machine frame, work offsets are zero; not certified)\n"
+    return (None if text is None else told + text), found
+
+
+def _as_program(trajectory: Trajectory) -> Program:
+    """A trajectory as a program whose work frame is {M}."""
+    return Program(
+        kind=trajectory.kind,
+        position=trajectory.tip,
+        tool_axis=trajectory.axis,
+        spin=trajectory.spin,
+        feed=np.where(trajectory.kind == Kind.RAPID, np.nan, trajectory.feed),
+        arc_centre=trajectory.arc_centre,
+        arc_axis=trajectory.arc_axis,
+        exact_stop=trajectory.exact_stop,
+        operation=trajectory.operation,
+        line=trajectory.line,
+        events=trajectory.events,
+        operations=trajectory.operations,
+        tools=trajectory.tools,
+        source=trajectory.source,
+    )

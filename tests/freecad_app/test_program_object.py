@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Part programs as document objects: opened, faulty, saved, decoded into a job, posted from there."""
+
+import FreeCAD as App
+import numpy as np
+import pytest
+from another_freecad import printed_by
+from cam_jobs import add_tool_controller, moves, new_job, reopened
+
+from pkm_post.freecad_app import program_import
+from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.program_object import create_program, decode, is_program, read_program
+from pkm_post.model import Refused
+
+GCODE = """G21 G90 G17
+T1 M6
+S9000 M3
+G0 X0 Y0 Z30
+G1 Z5 F600
+G1 X10 Y4 F900
+G2 X20 Y4 I5 J0
+G0 Z30
+M2
+"""
+CLDATA = """PARTNO bracket
+UNITS/MM
+LOADTL/1
+SPINDL/RPM,9000,CLW
+RAPID
+GOTO/0,0,30,0,0,1
+FEDRAT/600,MMPM
+GOTO/0,0,5,0,0.28,0.96
+GOTO/10,4,5,0.28,0,0.96
+FINI
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "part.ngc"
+    path.write_text(GCODE)
+    return path
+
+
+def written(folder, name, text):
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("suffix", ["ngc", "nc"])
+def test_gcode_is_opened_in_a_document_of_its_own(tmp_path, suffix):
+    document = program_import.open(str(written(tmp_path, f"part.{suffix}", GCODE)))
+    (obj,) = document.Objects
+    assert is_program(obj)
+    assert (obj.Label, obj.Found) == (f"part.{suffix}", [])
+    cuts = [(name, words) for name, words in moves(obj) if name[0] == "G"]
+    assert [name for name, _ in cuts] == ["G0", "G1", "G1", "G2", "G0"]
+    assert cuts[-1][1] == {"X": 20, "Y": 4, "Z": 30}
+    App.closeDocument(document.Name)
+
+
+@pytest.mark.parametrize("suffix", ["ncl", "cls", "apt", "aptsource"])
+def test_cl_data_is_inserted_into_a_document(document, tmp_path, suffix):
+    program_import.insert(str(written(tmp_path, f"part.{suffix}", CLDATA)), document.Name)
+    (obj,) = document.Objects
+    assert [words["K"] for name, words in moves(obj) if name == "G1"] == pytest.approx([0.96, 0.96])
+
+
+def test_faulty_file_has_no_path_and_says_why(document, tmp_path):
+    obj = create_program(document, written(tmp_path, "part.ngc", "G21\nG0 X0 Y0 Z0\nG1 X1..5 F100\n"))
+    assert obj.Path.Commands == []
+    assert ["line 3" in text and "G102" in text for text in obj.Found] == [True]
+
+
+def test_file_that_is_gone_or_has_another_suffix(document, file):
+    obj = create_program(document, file)
+    assert obj.Path.Commands
+    file.unlink()
+    obj.touch()
+    document.recompute()
+    assert (obj.Path.Commands, "F103" in obj.Found[0]) == ([], True)
+    obj.File = str(file.with_suffix(".txt"))
+    document.recompute()
+    assert ".aptsource" in obj.Found[0]
+
+
+def test_object_follows_its_file_and_its_axis_words(document, file):
+    obj = create_program(document, file)
+    leaning = GCODE.replace("G17", "G17 G43.5 H1").replace("X10 Y4", "X10 Y4 I0 J0.6 K0.8")
+    file.write_text(leaning.replace("G2 X20 Y4 I5 J0", "G1 X20 I0 J0 K1"))
+    obj.touch()
+    document.recompute()
+    assert (obj.Path.Commands, obj.Found != []) == ([], True)
+    obj.AxisWords = "vector"
+    document.recompute()
+    assert obj.Found == []
+    assert [words["J"] for name, words in moves(obj) if name == "G1"] == pytest.approx([0, 0.6, 0])
+
+
+def test_saved_document_keeps_the_path_without_the_file(document, file, tmp_path):
+    obj = create_program(document, file)
+    before, name = moves(obj), obj.Name
+    file.unlink()
+    again = reopened(document, tmp_path / "program.FCStd").getObject(name)
+    assert type(again.Proxy).__name__ == "PartProgram"
+    assert [name for name, _ in moves(again)] == [name for name, _ in before]
+
+
+def test_decoded_into_a_job_it_is_the_same_program(document, file):
+    obj, job = create_program(document, file), new_job(document)
+    wanted, _ = read_program(obj)
+    operation = decode(obj, job)
+    assert (operation.Label, operation.ToolController) == ("part", job.Tools.Group[0])
+    program, faults = read_job(job)
+    assert faults == ()
+    assert program.position == pytest.approx(wanted.position, abs=1e-6)  # mm, the decimals of FreeCAD
+    assert np.array_equal(program.kind, wanted.kind)
+    assert program.feed == pytest.approx(wanted.feed, abs=1e-6, nan_ok=True)
+    tools = [event for event in program.events if event.kind.name == "TOOL_CHANGE"]
+    assert [(event.row, event.value) for event in tools] == [(0, 1.0)]
+
+
+def test_decoded_with_the_controller_of_its_tool(document, tmp_path):
+    obj, job = create_program(document, written(tmp_path, "a.ngc", GCODE.replace("T1", "T7"))), new_job(document)
+    with pytest.raises(Refused) as refused:
+        decode(obj, job)
+    assert [fault.code for fault in refused.value.diagnostics] == ["J112"]
+    assert job.Operations.Group == []
+    controller = add_tool_controller(job, 7)
+    assert decode(obj, job).ToolController == controller
+
+
+def test_what_an_operation_cannot_say_is_told(document, tmp_path, monkeypatch):
+    told = []
+    monkeypatch.setattr("pkm_post.freecad_app.program_object._tell", told.extend)
+    obj = create_program(document, written(tmp_path, "a.ngc", GCODE.replace("G17", "G17 G61")))
+    decode(obj, new_job(document))
+    assert [each.code for each in told] == ["J120"]
+    assert "exact stops" in told[0].found
+
+
+def test_faulty_program_is_not_decoded(document, tmp_path):
+    obj = create_program(document, written(tmp_path, "a.ngc", "G1 X1\n"))
+    with pytest.raises(Refused):
+        decode(obj, new_job(document))
+
+
+_TYPES = """
+import FreeCAD
+names = {suffix: FreeCAD.getImportType(suffix) for suffix in ("ngc", "nc", "ncl", "cls", "apt", "aptsource")}
+print("types:", all("pkm_post.freecad_app.program_import" in modules for modules in names.values()))
+"""
+
+
+def test_freecad_knows_the_suffixes(tmp_path):
+    script = tmp_path / "types.py"
+    script.write_text(_TYPES)
+    assert "types: True" in printed_by(script)
