@@ -93,7 +93,7 @@ class Program:
             first: word of the program at which the listing starts.
             words: how many words of the program are listed; None for all.
         """
-        ends = [*self.line_starts[1:], len(self.statements)]
+        ends = [*self.line_starts, len(self.statements)][1:]
         told, place = [], 0
         for start, end in zip(self.line_starts, ends, strict=True):
             line = self.statements[start:end]

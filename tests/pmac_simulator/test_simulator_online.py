@@ -180,3 +180,9 @@ def test_the_same_commands_at_the_same_times_give_the_same_positions():
         return pmac.controller.motors.actual.tobytes()
 
     assert played() == played()
+
+
+def test_an_open_program_without_lines_lists_nothing():
+    machine = make()
+    machine.lines("OPEN PROG 5\nCLEAR")
+    assert machine.say("LIST PROG 5") == ""

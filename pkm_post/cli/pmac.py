@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The commands ``pmac``: a program into a Turbo PMAC, started, watched and stopped.
+
+Exit code 0 when it was done, 1 when controller, machine or link did not allow it; then the last lines on the standard
+error say why.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pkm_post.cli import pmac_simulate
+from pkm_post.cli.pmac_actions import ACTIONS, JobTarget, Target
+
+if TYPE_CHECKING:
+    from pkm_post.model import Diagnostic
+    from pkm_post.pmac_link.ports import Port
+
+Value = TypeVar("Value")
+
+
+def add_commands(commands: Any) -> None:
+    """Add the command ``pmac`` with its actions to a parser."""
+    pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC, or simulate one")
+    actions = pmac.add_subparsers(required=True, metavar="ACTION")
+    for name, (action, text, needs) in ACTIONS.items():
+        parser = actions.add_parser(name, help=text)
+        _add_port(parser)
+        parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
+        if "program" in needs:
+            parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+        _add_own(parser, name)
+        parser.set_defaults(run=_run, action=action, clears="clears" in needs)
+    pmac_simulate.add_action(actions)
+
+
+def _add_port(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.pmac_link.links import PARITIES
+
+    parser.add_argument("--port", required=True, type=_port, metavar="PORT", help="serial:DEVICE or tcp:HOST[:PORT]")
+    parser.add_argument("--baud", type=int, default=38400, help="of a serial line (%(default)s)")
+    parser.add_argument("--parity", choices=PARITIES, default="none", help="of a serial line (%(default)s)")
+    parser.add_argument("--rtscts", action="store_true", help="the serial line has RTS and CTS")
+    parser.add_argument("--patience", type=_positive, default=2.0, metavar="S", help="longest silence (%(default)s)")
+
+
+def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
+    if name == "run":
+        near = "how far each strut may be from the first point (%(default)s)"
+        parser.add_argument("--near", type=_positive, default=1.0, metavar="MM", help=near)
+    elif name == "abort":
+        parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
+    elif name == "monitor":
+        parser.add_argument("--tool-length", type=_positive, metavar="MM", help="gauge length (that of the rest pose)")
+        parser.add_argument(
+            "--rate", type=_positive, default=10.0, metavar="HZ", help="readings per second (%(default)s)"
+        )
+        parser.add_argument("--seconds", type=_positive, metavar="S", help="how long (until Ctrl-C)")
+
+
+def _port(text: str) -> Port:
+    from pkm_post.pmac_link.ports import port_named
+
+    try:
+        return port_named(text)
+    except ValueError as fault:
+        raise argparse.ArgumentTypeError(str(fault)) from None
+
+
+def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.pmac_link.faults import PmacError
+    from pkm_post.pmac_link.session import Leftover, Session
+
+    logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
+    target = None if namespace.machine is None else _target(namespace)
+    if target is None and namespace.machine is not None:
+        return 1
+    port = replace(namespace.port, baud=namespace.baud, parity=namespace.parity, handshake=namespace.rtscts)
+    session = Session(port, namespace.patience, leftover=Leftover.CLEAR if namespace.clears else Leftover.REFUSE)
+    try:
+        with session:
+            for note in session.notes:
+                print(note, file=sys.stderr)
+            return int(namespace.action(session, target, namespace))
+    except PmacError as fault:
+        print(fault, file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("interrupted; the controller goes on with what it does", file=sys.stderr)
+        return 1
+
+
+def _target(namespace: argparse.Namespace) -> Target | None:
+    """Machine and program that were named; None when they are not in order, which is told."""
+    from pkm_post.controllers.pmac import settings_of
+    from pkm_post.machine_file import machine_named
+    from pkm_post.pmac_link.job import read_job
+
+    machine = _told(*machine_named(namespace.machine))
+    if machine is None:
+        return None
+    settings = _told(*settings_of(machine))
+    if settings is None:
+        return None
+    if "program" not in namespace:
+        return Target(machine, settings)
+    try:
+        text = namespace.program.read_text(encoding="ascii")
+    except (OSError, UnicodeDecodeError) as fault:
+        print(f"{namespace.program}: {fault}", file=sys.stderr)
+        return None
+    job = _told(*read_job(text, settings, namespace.program.name))
+    return None if job is None else JobTarget(machine, settings, job)
+
+
+def _told(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
+    """The value, after its faults were told."""
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    return value
+
+
+def _positive(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
+    if not 0 < number < math.inf:
+        raise argparse.ArgumentTypeError(f"expected a number above zero, got {text!r}")
+    return number

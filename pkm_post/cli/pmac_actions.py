@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the actions of the command ``pmac`` do with a controller that answers; each returns its exit code."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pkm_post.controllers.pmac import Settings
+    from pkm_post.model import Machine
+    from pkm_post.pmac_link.job import Job
+    from pkm_post.pmac_link.session import Session
+    from pkm_post.pmac_link.status import Status
+
+    Action = Callable[[Session, Any, argparse.Namespace], int]
+
+_IDENTITY = ("TYPE", "VER", "CID", "SIZE", "I42", "I68")
+_CLEAR_SCREEN = "\x1b[H\x1b[J"
+
+
+@dataclass(frozen=True)
+class Target:
+    """The machine that was named.
+
+    Attributes:
+        machine: the machine.
+        settings: of its controller.
+    """
+
+    machine: Machine
+    settings: Settings
+
+
+@dataclass(frozen=True)
+class JobTarget(Target):
+    """A machine and a program for it.
+
+    Attributes:
+        job: the program file.
+    """
+
+    job: Job
+
+
+def probe(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
+    """Say what controller answers; raise what is not set up for the machine."""
+    from pkm_post.pmac_link.faults import RefusedError
+    from pkm_post.pmac_link.ready import check_setup
+
+    for query in _IDENTITY:
+        try:
+            print(f"{query}: {' '.join(session.ask(query))}")
+        except RefusedError as refused:
+            print(f"{query}: {refused}")
+    if target is not None:
+        check_setup(session, target.settings, target.machine.strut_stroke)
+        print(f"set up for {target.machine.name}")
+    return 0
+
+
+def download(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
+    """Load the program, list it back and compare."""
+    from pkm_post.pmac_link.download import download
+    from pkm_post.pmac_link.ready import check_setup
+
+    check_setup(session, target.settings, target.machine.strut_stroke)
+    loaded = download(session, target.job.program, _show_progress if sys.stderr.isatty() else _no_progress)
+    print(f"program {loaded.program}: {loaded.lines} lines, listed back as sent, SHA-256 {loaded.digest}")
+    return 0
+
+
+def _show_progress(done: int, lines: int) -> None:
+    print(f"\r{done} of {lines} lines", end="\n" if done == lines else "", file=sys.stderr, flush=True)
+
+
+def _no_progress(done: int, lines: int) -> None:
+    """Nothing is told where nobody looks."""
+
+
+def start(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
+    """Start the program from its beginning."""
+    from pkm_post.pmac_link import operate
+    from pkm_post.pmac_link.ready import check_setup
+
+    check_setup(session, target.settings, target.machine.strut_stroke)
+    job = target.job
+    return _tell(operate.run(session, target.settings, job.program, job.first, namespace.near))
+
+
+def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:
+    """Slow the program down to rest."""
+    from pkm_post.pmac_link import operate
+
+    return _tell(operate.hold(session, target.settings))
+
+
+def resume(session: Session, target: Target, namespace: argparse.Namespace) -> int:
+    """Go on after a hold."""
+    from pkm_post.pmac_link import operate
+
+    return _tell(operate.resume(session, target.settings))
+
+
+def abort(session: Session, target: Target, namespace: argparse.Namespace) -> int:
+    """End the program."""
+    from pkm_post.pmac_link import operate
+
+    return _tell(operate.abort(session, target.settings, namespace.at_once))
+
+
+def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:
+    """Tell the state once."""
+    from pkm_post.pmac_link.status import read_status
+
+    return _tell(read_status(session, target.settings))
+
+
+def _tell(status: Status) -> int:
+    from pkm_post.pmac_link.readout import state_text
+
+    print(state_text(status))
+    return 0
+
+
+def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> int:
+    """Tell pose and state until the user ends it."""
+    from pkm_post.pmac_link.readout import Readout, pose_text, state_text
+    from pkm_post.pmac_link.status import read_status
+
+    length = namespace.tool_length
+    readout = Readout(target.machine, target.machine.rest_tool_length if length is None else length)
+    before = _CLEAR_SCREEN if sys.stdout.isatty() else ""
+    began = due = time.monotonic()
+    try:
+        while namespace.seconds is None or due - began <= namespace.seconds:
+            status = read_status(session, target.settings)
+            print(f"{before}{pose_text(readout.pose(status))}\n{state_text(status)}\n", flush=True)
+            due = max(due + 1 / namespace.rate, time.monotonic())
+            time.sleep(max(due - time.monotonic(), 0))
+    except KeyboardInterrupt:
+        pass  # this is how the user ends it
+    return 0
+
+
+def terminal(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
+    """Send each line once: nobody knows which of them only ask."""
+    from pkm_post.pmac_link.faults import PmacError
+
+    for line in sys.stdin:
+        if not line.strip():
+            continue
+        try:
+            print("\n".join(session.order(line.strip())) or "done", flush=True)
+        except (PmacError, ValueError) as fault:
+            print(fault, flush=True)
+    return 0
+
+
+ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
+    "probe": (probe, "say what controller answers, and whether it is set up for the machine", ()),
+    "download": (download, "load a program, list it back and compare", ("machine", "program", "clears")),
+    "run": (start, "start a program that is loaded, from its beginning", ("machine", "program")),
+    "hold": (hold, "slow the program down to rest, on its path", ("machine", "clears")),
+    "resume": (resume, "go on after a hold", ("machine",)),
+    "abort": (abort, "end the program: hold, then abort", ("machine", "clears")),
+    "status": (status, "struts, following errors and faults in words", ("machine",)),
+    "monitor": (monitor, "the same with the pose of the tool, again and again", ("machine",)),
+    "terminal": (terminal, "send lines of the standard input, each once", ()),
+}
+"""For each action what it does, in words, and what it needs: a machine or a program that is named, or the right to
+clear a program buffer that is open. To stop is more urgent than to load."""

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faults: what can go wrong between this program and a controller, by whose fault it is.
+
+The controller's refusal carries its number and meaning. A lost link is another thing, and a set command of which
+nobody knows whether it was carried out is a third: it must never be sent again without asking for the state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+MEANINGS: dict[int, str] = {
+    1: "not allowed while a program runs",
+    2: "the password is missing",
+    3: "not understood, or wrong data",
+    4: "illegal character, or a parity or framing error on the line",
+    5: "no program buffer is open",
+    6: "the buffer has no room",
+    7: "another buffer is in use",
+    8: "error of the auxiliary communication",
+    9: "the structure of the program is wrong",
+    10: "a motor is on both of its limits",
+    11: "the previous move has not ended",
+    12: "a motor is in open loop",
+    13: "a motor is not activated",
+    14: "the coordinate system has no motors",
+    15: "the coordinate system points to no valid program, or a buffer is open",
+    16: "the running program is not properly structured",
+    17: "motors are not where the program was stopped",
+    18: "the phase reference of a motor is missing",
+    19: "positions may not be changed while moves are stored",
+}
+"""What ERR001 to ERR019 mean."""
+
+
+def meaning(number: int | None) -> str:
+    """An error of the controller in words, with its number."""
+    if number is None:
+        return "an error without a number"
+    return f"ERR{number:03d}, {MEANINGS.get(number, 'which has no known meaning')}"
+
+
+class PmacError(Exception):
+    """Anything that went wrong between this program and the controller."""
+
+
+class RefusedError(PmacError):
+    """The controller refused a command and did not carry it out.
+
+    Attributes:
+        command: what was sent.
+        number: of the error, None when the controller gave none.
+    """
+
+    def __init__(self, command: str, number: int | None) -> None:
+        super().__init__(f"the controller refused {command!r}: {meaning(number)}")
+        self.command, self.number = command, number
+
+
+class LinkLostError(PmacError):
+    """The link was cut, or what came over it made no sense and asking again did not help."""
+
+
+class OutcomeUnknownError(LinkLostError):
+    """The link failed after a set command left: whether it was carried out is unknown.
+
+    Attributes:
+        command: what was sent.
+    """
+
+    def __init__(self, command: str, why: str) -> None:
+        super().__init__(f"whether the controller carried out {command!r} is unknown: {why}")
+        self.command = command
+
+
+class NotReadyError(PmacError):
+    """The controller or the machine is not as it has to be, so nothing was begun.
+
+    Attributes:
+        reasons: what is not as it has to be, each in words.
+    """
+
+    def __init__(self, reasons: Sequence[str]) -> None:
+        super().__init__("\n".join(reasons))
+        self.reasons = tuple(reasons)
+
+
+class DownloadError(PmacError):
+    """A program could not be brought into the controller.
+
+    Attributes:
+        cleared: whether the controller has shown since that nothing is left under the number of the program.
+    """
+
+    def __init__(self, why: str, cleared: bool) -> None:
+        left = (
+            "nothing is left under its number"
+            if cleared
+            else "WHAT IS LEFT OF IT IN THE CONTROLLER IS UNKNOWN: do not run it, download it again"
+        )
+        super().__init__(f"{why}; {left}")
+        self.cleared = cleared
+
+
+class CancelledError(PmacError):
+    """The user stopped it."""

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Job: a program file, read as the controller would read it before a byte of it is sent.
+
+Enters: the text of a program or of one part of it, and the settings it was written for. Leaves: its lines and its first
+point in mm, or what is wrong with it.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from pkm_post.controllers.pmac import Settings, read_program
+from pkm_post.model import Diagnostic
+from pkm_post.pmac_link.listing import Program, program_of
+from pkm_post.pmac_link.status import Array
+
+_COMMENT = re.compile(r"^;.*$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Job:
+    """A program that can be sent.
+
+    Attributes:
+        program: what goes into the controller.
+        first: (6,) strut lengths at its first point, mm.
+    """
+
+    program: Program
+    first: Array
+
+
+def read_job(text: str, settings: Settings, file: str) -> tuple[Job | None, tuple[Diagnostic, ...]]:
+    """Read a program file.
+
+    Args:
+        text: of the file. A part of a larger program is read by itself.
+        settings: of the machine's controller.
+        file: its name, for the diagnostics.
+    """
+    # What a part says of the others is in its comments; they are not sent, so they are not read either.
+    motion, faults = read_program(_COMMENT.sub(";", text), settings, file)
+    if motion is None:
+        return None, faults
+    return Job(program_of(text), motion.length[0]), faults

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Links: what carries bytes between this computer and a controller. This is the package's door to pyserial.
+
+Enters and leaves: bytes. Reading and writing have deadlines; a link that is gone raises ``LinkLostError``.
+"""
+
+from __future__ import annotations
+
+import socket
+from typing import TYPE_CHECKING, Protocol
+
+from pkm_post.pmac_link.faults import LinkLostError
+
+if TYPE_CHECKING:
+    import serial
+
+PARITIES = {"none": "N", "odd": "O", "even": "E"}
+# FreeCAD leaves SIGPIPE at its default: writing to a socket that the peer has closed would end the process.
+_WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
+_CHUNK = 1 << 16
+
+
+class Link(Protocol):
+    """A connection that carries bytes."""
+
+    def read(self, timeout: float) -> bytes:
+        """What has come; empty when nothing came within ``timeout`` seconds.
+
+        Raises:
+            LinkLostError: the link is cut.
+        """
+
+    def write(self, data: bytes) -> None:
+        """Send bytes.
+
+        Raises:
+            LinkLostError: the link is cut, or takes no bytes.
+        """
+
+    def restart(self) -> None:
+        """Begin anew: connect again where that makes sense, and forget bytes that have come.
+
+        Raises:
+            LinkLostError: it does not come back.
+        """
+
+    def close(self) -> None:
+        """Close it; more than once does no harm."""
+
+
+class TcpLink:
+    """A TCP connection."""
+
+    def __init__(self, host: str, number: int, timeout: float) -> None:
+        """Make a link, not yet connected.
+
+        Args:
+            host: name or address.
+            number: of the TCP port.
+            timeout: seconds to connect, and to send.
+        """
+        self._host, self._number, self._timeout = host, number, timeout
+        self._socket: socket.socket | None = None
+
+    def read(self, timeout: float) -> bytes:
+        """As ``Link``."""
+        connection = self._connection()
+        connection.settimeout(max(timeout, 1e-3))
+        try:
+            data = connection.recv(_CHUNK)
+        except TimeoutError:
+            return b""
+        except OSError as fault:
+            raise LinkLostError(f"{self._host}: {fault}") from fault
+        if not data:
+            raise LinkLostError(f"{self._host} closed the connection")
+        return data
+
+    def write(self, data: bytes) -> None:
+        """As ``Link``."""
+        connection = self._connection()
+        connection.settimeout(self._timeout)
+        try:
+            connection.sendall(data, _WITHOUT_SIGNAL)
+        except OSError as fault:
+            raise LinkLostError(f"{self._host}: {fault or 'takes no bytes'}") from fault
+
+    def restart(self) -> None:
+        """As ``Link``."""
+        self.close()
+        try:
+            self._socket = socket.create_connection((self._host, self._number), self._timeout)
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        except OSError as fault:
+            raise LinkLostError(f"{self._host}, port {self._number}: {fault}") from fault
+
+    def close(self) -> None:
+        """As ``Link``."""
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+
+    def _connection(self) -> socket.socket:
+        if self._socket is None:
+            raise LinkLostError(f"{self._host} is not connected")
+        return self._socket
+
+
+class SerialLink:
+    """A serial line."""
+
+    def __init__(self, device: str, baud: int, parity: str, handshake: bool, timeout: float) -> None:
+        """Make a link, not yet open.
+
+        Args:
+            device: name of the line.
+            baud: bits per second.
+            parity: a key of ``PARITIES``.
+            handshake: whether the line has RTS and CTS.
+            timeout: seconds to send.
+        """
+        self._device, self._baud, self._parity = device, baud, PARITIES[parity]
+        self._handshake, self._timeout = handshake, timeout
+        self._line: serial.Serial | None = None
+
+    def read(self, timeout: float) -> bytes:
+        """As ``Link``."""
+        line = self._open_line()
+        try:
+            line.timeout = max(timeout, 1e-3)
+            first = line.read(1)
+            return first + line.read(line.in_waiting) if first else b""
+        except (OSError, TypeError) as fault:  # pyserial: a line that is closed meanwhile is a TypeError
+            raise self._lost(fault) from fault
+
+    def write(self, data: bytes) -> None:
+        """As ``Link``."""
+        line = self._open_line()
+        try:
+            line.write(data)
+        except OSError as fault:
+            raise self._lost(fault) from fault
+
+    def restart(self) -> None:
+        """As ``Link``; the line is opened again only after it was lost."""
+        try:
+            if self._line is None:
+                self._line = self._opened()
+            self._line.reset_input_buffer()
+        except (OSError, _terminal_error()) as fault:
+            raise self._lost(fault) from fault
+
+    def close(self) -> None:
+        """As ``Link``."""
+        if self._line is not None:
+            self._line.close()
+            self._line = None
+
+    def _open_line(self) -> serial.Serial:
+        if self._line is None:
+            raise LinkLostError(f"{self._device} is not open")
+        return self._line
+
+    def _lost(self, fault: Exception) -> LinkLostError:
+        self.close()
+        return LinkLostError(f"{self._device}: {fault}")
+
+    def _opened(self) -> serial.Serial:
+        """The line, open.
+
+        Raises:
+            ImportError: pyserial is not installed.
+            OSError: there is no such line, or it is another's.
+        """
+        try:
+            import serial
+        except ImportError as missing:
+            raise ImportError(
+                "a serial line needs pyserial: python3 -m pip install pyserial", name="serial"
+            ) from missing
+        return serial.Serial(
+            self._device,
+            self._baud,
+            parity=self._parity,
+            rtscts=self._handshake,
+            write_timeout=self._timeout,
+            exclusive=True,
+        )
+
+
+def _terminal_error() -> type[Exception]:
+    """What the system raises for a line that is gone; Windows has OSError for it."""
+    try:
+        import termios
+    except ImportError:
+        return OSError
+    return termios.error

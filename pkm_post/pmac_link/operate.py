@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Operate: run, hold, resume and abort a program. Each is sent once; then the controller is asked what it does.
+
+``Q`` is not offered: it would end a program at a knot where the struts run. A stop is ``H`` first, which slows the
+time base down along the path, then ``A``, which stops each strut by itself.
+
+Enters: a session, settings, a program. Leaves: the state that was reached.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from pkm_post.controllers.pmac import Settings
+from pkm_post.pmac_link.download import listing_of
+from pkm_post.pmac_link.faults import LinkLostError, NotReadyError, OutcomeUnknownError, PmacError
+from pkm_post.pmac_link.listing import Program
+from pkm_post.pmac_link.ready import NEAR_MM, check_start
+from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.status import Array, Status, read_status
+
+REPEATS = 3
+"""How often a stop is sent while the controller shows that it does not stop."""
+HOLD_S = 5.0
+"""Seconds in which a hold has to bring the struts to rest."""
+_POLL_S = 0.02
+
+
+def run(session: Session, settings: Settings, program: Program, first: Array, near: float = NEAR_MM) -> Status:
+    """Start a program from its beginning.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        program: what has to be in the controller; it is listed and compared again.
+        first: (6,) strut lengths of its first point, mm.
+        near: how far each strut may be from it, mm.
+
+    Raises:
+        NotReadyError: the program is not there as it was written, or the machine is not ready.
+        OutcomeUnknownError: the link failed at the start and the controller does not show that the program runs.
+    """
+    there = listing_of(session, program)
+    if not there.same:
+        raise NotReadyError([f"program {program.number} in the controller is another one: {there.difference}"])
+    check_start(read_status(session, settings), first, near)
+    try:
+        session.order(f"&{settings.coordinate_system}B{program.number}R")
+    except OutcomeUnknownError:
+        status = read_status(session, settings)
+        if not status.running:
+            raise
+        return status
+    return read_status(session, settings)
+
+
+def hold(session: Session, settings: Settings) -> Status:
+    """Slow the program down to rest, on its path."""
+    return _stop(session, settings, "H", lambda status: status.held or not status.running)
+
+
+def resume(session: Session, settings: Settings) -> Status:
+    """Go on with a program that is held.
+
+    Raises:
+        NotReadyError: no program is held, or something is wrong.
+        OutcomeUnknownError: the link failed, and the program may go on or be held.
+    """
+    status = read_status(session, settings)
+    reasons = list(status.words())
+    if not status.held:
+        reasons.append("no program is held; R would start one")
+    if reasons:
+        raise NotReadyError(reasons)
+    session.order(f"&{settings.coordinate_system}R")
+    return read_status(session, settings)
+
+
+def abort(
+    session: Session,
+    settings: Settings,
+    at_once: bool = False,
+    clock: Callable[[], float] = time.monotonic,
+    sleep: Callable[[float], None] = time.sleep,
+) -> Status:
+    """End a program: held first, so that the struts stay on the path, then aborted.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        at_once: without the hold: each strut stops on its own ramp, off the path.
+        clock: seconds of a clock that only grows.
+        sleep: waits so many seconds of it.
+    """
+    if not at_once:
+        status = hold(session, settings)
+        until = clock() + HOLD_S
+        while not status.standing and clock() < until:
+            sleep(_POLL_S)
+            status = read_status(session, settings)
+    return _stop(session, settings, "A", lambda status: not status.running)
+
+
+def _stop(session: Session, settings: Settings, order: str, stopped: Callable[[Status], bool]) -> Status:
+    """Send a stop until the controller shows it: sending one twice does no harm, for it does not stop less."""
+    lost: LinkLostError | None = None
+    for _ in range(REPEATS):
+        try:
+            session.order(f"&{settings.coordinate_system}{order}")
+        except LinkLostError as fault:
+            lost = fault
+        status = read_status(session, settings)
+        if stopped(status):
+            return status
+    raise PmacError(
+        f"the controller does not stop after {order}, sent {REPEATS} times: USE THE EMERGENCY STOP"
+    ) from lost

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Readout: where the tool is, from the six strut lengths that the controller tells.
+
+Enters: a machine, the gauge length of its tool, states of the controller. Leaves: tip in mm, axis and spin by forward
+kinematics, each from the pose before it, and lines of text.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.kinematics.forward import newton
+from pkm_post.kinematics.orientation import platform_rotation
+from pkm_post.model import Machine
+from pkm_post.pmac_link.status import MOTORS, Array, Status
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where the tool is.
+
+    Attributes:
+        tip: (3,) in {M}, mm.
+        axis: (3,) unit tool axis in {M}, from the tip towards the spindle.
+    """
+
+    tip: Array
+    axis: Array
+
+
+class Readout:
+    """Poses one after the other."""
+
+    def __init__(self, machine: Machine, tool_length: float) -> None:
+        """Begin at the home of the machine.
+
+        Args:
+            machine: the geometry.
+            tool_length: gauge length of the tool in the spindle, mm.
+        """
+        self._machine, self._tool = machine, np.array([tool_length])
+        self._home = self._tip, self._rotation = (
+            np.array([machine.home_tip]),
+            platform_rotation(np.array([machine.home_axis]), np.array([machine.home_spin])),
+        )
+
+    def pose(self, status: Status) -> Pose | None:
+        """The pose of the lengths that nearest fits the one before; None when there is none near."""
+        for tip, rotation in ((self._tip, self._rotation), self._home):
+            found = newton(self._machine, status.length[None], self._tool, tip, rotation)
+            if found.converged[0]:
+                self._tip, self._rotation = found.tip, found.rotation
+                return Pose(found.tip[0], found.axis[0])
+        return None
+
+
+def pose_text(pose: Pose | None) -> str:
+    """Where the tool is, for a terminal."""
+    if pose is None:
+        return "tool: no pose has these strut lengths"
+    tilt = np.degrees(np.arccos(np.clip(pose.axis[2], -1, 1)))
+    x, y, z = pose.tip
+    i, j, k = pose.axis
+    return f"tip X{x:.3f} Y{y:.3f} Z{z:.3f} mm, axis I{i:.5f} J{j:.5f} K{k:.5f}, {tilt:.3f} deg from upright"
+
+
+def state_text(status: Status) -> str:
+    """Struts, program and faults, for a terminal."""
+    rows = [
+        f"strut {motor}: {length:10.4f} mm, following error {error:8.4f} mm{'' if bits.has('homed') else ', NOT HOMED'}"
+        for motor, length, error, bits in zip(MOTORS, status.length, status.following_error, status.motors, strict=True)
+    ]
+    return "\n".join([*rows, f"{_activity(status)}, override {status.override:g} %", *status.words()])
+
+
+def _activity(status: Status) -> str:
+    if not status.running:
+        return "no program runs"
+    return "a program is held" if status.held else "a program runs"

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Status: positions, following errors and status bits of the six motors, asked in one line and told in words.
+
+Enters: a session. Leaves: counts, bits, and what they mean. Bits are counted from the least significant one of all
+hexadecimal digits of an answer.  [TurboPMAC, #n?, &n??]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from pkm_post.controllers.pmac import Settings
+from pkm_post.pmac_link.faults import LinkLostError
+from pkm_post.pmac_link.session import Session
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+MOTORS = range(1, 7)
+
+
+@dataclass(frozen=True)
+class Bits:
+    """Status bits of a motor or a coordinate system.
+
+    Attributes:
+        value: the bits.
+    """
+
+    value: int
+
+    DIGITS: ClassVar[int]
+    PLACES: ClassVar[Mapping[str, int]]
+    TOLD: ClassVar[Mapping[str, str]] = {}
+    """Bits that are worth a word when they are set."""
+
+    def has(self, name: str) -> bool:
+        """Whether a bit is set."""
+        return bool(self.value >> self.PLACES[name] & 1)
+
+    def words(self) -> tuple[str, ...]:
+        """What is wrong, in words."""
+        return tuple(text for name, text in self.TOLD.items() if self.has(name))
+
+
+class MotorBits(Bits):
+    """Two words of 24 bits: ``#n?``."""
+
+    DIGITS = 12
+    PLACES = {
+        "activated": 47, "negative_limit": 46, "positive_limit": 45, "amplifier_enabled": 43, "open_loop": 42,
+        "standing": 37, "homing": 34, "assigned": 15, "stopped_on_limit": 11, "homed": 10, "amplifier_fault": 3,
+        "fatal_following_error": 2, "warning_following_error": 1, "in_position": 0,
+    }  # fmt: skip
+    TOLD = {
+        "negative_limit": "on its lower limit",
+        "positive_limit": "on its upper limit",
+        "stopped_on_limit": "stopped on a limit",
+        "open_loop": "in open loop",
+        "homing": "searching its home",
+        "amplifier_fault": "amplifier fault",
+        "fatal_following_error": "following error too large, switched off",
+        "warning_following_error": "following error at its warning limit",
+    }
+
+
+class SystemBits(Bits):
+    """Three words of 24 bits: ``&n??``."""
+
+    DIGITS = 18
+    PLACES = {
+        "running": 48, "held": 47, "runtime_error": 46, "amplifier_fault": 44, "fatal_following_error": 43,
+        "warning_following_error": 42, "in_position": 41, "limit": 1,
+    }  # fmt: skip
+    TOLD = {
+        "runtime_error": "the program ended with an error",
+        "amplifier_fault": "an amplifier has a fault",
+        "fatal_following_error": "a following error was too large",
+        "limit": "a limit was met",
+    }
+
+
+@dataclass(frozen=True)
+class Status:
+    """The state of the six struts and of their coordinate system.
+
+    Attributes:
+        motors: for each strut its bits.
+        system: bits of the coordinate system.
+        override: time base in %; 0 while held.
+        length: (6,) strut lengths, mm.
+        following_error: (6,) commanded less actual length, mm.
+    """
+
+    motors: tuple[MotorBits, ...]
+    system: SystemBits
+    override: float
+    length: Array
+    following_error: Array
+
+    @property
+    def running(self) -> bool:
+        """Whether a program runs, or is held."""
+        return self.system.has("running")
+
+    @property
+    def held(self) -> bool:
+        """Whether a program waits in a feed hold, or slows down to it."""
+        return self.running and (self.system.has("held") or self.override == 0)
+
+    @property
+    def standing(self) -> bool:
+        """Whether no strut is commanded to move."""
+        return all(motor.has("standing") for motor in self.motors)
+
+    def words(self) -> tuple[str, ...]:
+        """What is wrong, in words, strut by strut."""
+        own = [
+            f"strut {number}: {word}"
+            for number, motor in zip(MOTORS, self.motors, strict=True)
+            for word in motor.words()
+        ]
+        return (*own, *self.system.words())
+
+
+def read_status(session: Session, settings: Settings) -> Status:
+    """Ask for everything in one line, so that it belongs together.
+
+    Raises:
+        LinkLostError: the answer makes no sense.
+    """
+    system = f"&{settings.coordinate_system}"
+    query = " ".join(f"#{motor}? #{motor}P #{motor}F" for motor in MOTORS) + f" {system}?? {system}%"
+    told = session.ask(query)
+    try:
+        return _status(told, settings)
+    except ValueError as fault:
+        raise LinkLostError(f"{query!r}: {fault}") from None
+
+
+def _status(told: tuple[str, ...], settings: Settings) -> Status:
+    if len(told) != 20:
+        raise ValueError(f"expected 20 lines, got {len(told)}")
+    motors = tuple(MotorBits(_hexadecimal(line, MotorBits.DIGITS)) for line in told[0:18:3])
+    counts = np.array([[float(line) for line in told[column:18:3]] for column in (1, 2)])
+    length = counts[0] / settings.counts_per_mm + np.array(settings.zero_length)
+    system = SystemBits(_hexadecimal(told[18], SystemBits.DIGITS))
+    return Status(motors, system, float(told[19]), length, counts[1] / settings.counts_per_mm)
+
+
+def _hexadecimal(text: str, digits: int) -> int:
+    text = text.strip().lstrip("$")
+    if len(text) != digits:
+        raise ValueError(f"expected {digits} hexadecimal digits, got {text!r}")
+    return int(text, 16)

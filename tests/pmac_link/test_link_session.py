@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A session with the simulated controller: handshake, queries asked again, sets never."""
+
+import pytest
+from rig import Wire, controller, listed
+
+from pkm_post.pmac_link.download import listing_of
+from pkm_post.pmac_link.faults import LinkLostError, NotReadyError, OutcomeUnknownError, RefusedError
+from pkm_post.pmac_link.listing import Program
+from pkm_post.pmac_link.session import ATTEMPTS, Leftover
+from pkm_post.pmac_simulator import Line
+
+
+@pytest.fixture(params=["serial", "tcp"])
+def wire(request):
+    return Wire(controller(), request.param)
+
+
+@pytest.mark.parametrize("handshake", range(4))
+@pytest.mark.parametrize("sums", range(2))
+@pytest.mark.parametrize("errors", range(4))
+def test_any_handshake_is_brought_into_step(wire, handshake, sums, errors):
+    assert not wire.line.refusal(f"I3={handshake} I4={sums} I6={errors} I9=0")
+    with wire.session() as session:
+        assert session.ask("I3 I6 I9") == ("2", "1", "3")
+
+
+def test_answers_and_refusals(wire):
+    with wire.session() as session:
+        session.order("P1=25 P2=50")
+        assert session.ask("P1 P2") == ("25", "50")
+        with pytest.raises(RefusedError, match="ERR003, not understood") as refused:
+            session.order("FOO")
+        assert (refused.value.number, refused.value.command) == (3, "FOO")
+        assert session.ask("P1") == ("25",)
+
+
+def lose(wire, when):
+    """Let the controller's bytes get lost from the moment on when ``when`` is in what was sent."""
+
+    def fault(data, out):
+        return data if out or when not in wire.sent else b""
+
+    wire.fault = fault
+
+
+def test_a_query_is_asked_again_and_then_given_up(wire):
+    with wire.session() as session:
+        wire.sent.clear()
+        lose(wire, b"P77")
+        with pytest.raises(LinkLostError):
+            session.ask("P77")
+    assert wire.now < 60
+
+
+def test_a_query_survives_an_answer_that_got_lost(wire):
+    with wire.session() as session:
+        count = [0]
+
+        def fault(data, out):
+            count[0] += not out
+            return b"" if not out and count[0] == 2 else data
+
+        wire.fault = fault
+        assert session.ask("P1") == ("0",)
+
+
+@pytest.mark.parametrize("kind", ["serial", "tcp"])
+def test_a_set_whose_answer_is_lost_is_not_sent_again(kind):
+    wire = Wire(controller(), kind)
+    session = wire.session()
+    session.open()
+    gone = [False]
+
+    def fault(data, out):
+        if not out and wire.controller.variables.setting(68) == 7 and not gone[0]:
+            gone[0] = True
+            return b""
+        return data
+
+    wire.fault = fault
+    with pytest.raises(OutcomeUnknownError, match="I68=7"):
+        session.order("I68=7")
+    assert gone[0] and wire.sent.count(b"I68=7") == 1
+    assert session.ask("I68") == ("7",)  # the state tells, and the session is in step again
+
+
+def test_a_query_is_asked_so_often_and_no_more():
+    wire = Wire(controller(), "tcp")
+    with wire.session() as session:
+        wire.fault = lambda data, out: b"" if not out and b"P77" in wire.sent[-11:] else data
+        with pytest.raises(LinkLostError, match="P77"):
+            session.ask("P77")
+    assert wire.sent.count(b"P77") == ATTEMPTS
+
+
+def test_a_buffer_that_was_left_open_is_made_empty(wire):
+    for line in ("OPEN PROG 10", "CLEAR", "ABS", "LINEAR"):
+        assert not wire.line.refusal(line)
+    with wire.session() as session:
+        assert "was made empty" in session.notes[0]
+        assert listing_of(session, Program(10, ())).same
+
+
+def test_a_buffer_that_is_open_is_not_everybodys_to_clear(wire):
+    for line in ("OPEN PROG 10", "CLEAR", "ABS"):
+        assert not wire.line.refusal(line)
+    with pytest.raises(NotReadyError, match="a program buffer is open"):
+        wire.session(leftover=Leftover.REFUSE).open()
+    assert not wire.line.refusal("LINEAR")
+    assert wire.line.refusal("CLOSE") == 0
+    assert [line for line in listed(wire.controller) if line != "RETURN"] == ["ABS", "LINEAR"]
+    with wire.session(leftover=Leftover.REFUSE) as session:
+        assert session.ask("I3") == ("2",)
+
+
+def test_a_buffer_that_another_port_has_open_is_left_alone(wire):
+    other = Line(wire.controller)
+    for line in ("OPEN PROG 10", "CLEAR", "ABS"):
+        assert not other.refusal(line)
+    with wire.session() as session:
+        assert "another port" in session.notes[0]
+    assert not other.refusal("LINEAR")
+
+
+def test_no_controller(wire):
+    wire.fault = lambda data, out: b""
+    with pytest.raises(LinkLostError, match="no controller that can be understood"):
+        wire.session().open()
+    assert wire.now < 60
+
+
+def test_what_programs_say_is_kept():
+    wire = Wire(controller())
+    with wire.session() as session:
+        wire.fault = lambda data, out: data if out or data[:1] != b"0" else b"\x02HELLO\r" + data
+        assert session.ask("P1") == ("0",)
+        assert session.messages == ["HELLO"]

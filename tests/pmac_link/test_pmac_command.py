@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The commands ``pmac`` against a simulated controller behind a TCP port and behind a pseudo terminal."""
+
+import io
+import threading
+
+import numpy as np
+import pytest
+
+from pkm_post.cli import main
+from pkm_post.controllers.pmac import program_text, settings_of, setup_text
+from pkm_post.machine_file import machine_named
+from pkm_post.model import StrutMotion
+from pkm_post.pmac_simulator import Controller, Server
+
+MACHINE = "example_6tps"
+
+
+@pytest.fixture(scope="module")
+def machine():
+    return machine_named(MACHINE)[0]
+
+
+@pytest.fixture(scope="module")
+def job(machine, tmp_path_factory):
+    """All struts 10 mm longer and back, in a minute."""
+    settings, _ = settings_of(machine)
+    time_ms = np.arange(0, 60_001, 200)
+    turn = 2 * np.pi * time_ms / 60_000
+    length = settings.zero_length + 5 * (1 - np.cos(turn))[:, None]
+    speed = (np.pi / 6 * np.sin(turn))[:, None] * np.ones(6)
+    speed[[0, -1]] = 0.0
+    file = tmp_path_factory.mktemp("job") / "job.pmc"
+    file.write_text(program_text(StrutMotion(time_ms, length, speed, ()), settings, ["job"]))
+    return file
+
+
+@pytest.fixture(params=["tcp", "serial"])
+def simulator(request, machine):
+    """A controller that serves in a thread, and the name of its port."""
+    made = Controller()
+    made.load(setup_text(settings_of(machine)[0], "test", machine.strut_stroke).splitlines())
+    server, ended = Server(made), threading.Event()
+    port = f"tcp:127.0.0.1:{server.add_tcp(0)}" if request.param == "tcp" else f"serial:{server.add_pty()}"
+    thread = threading.Thread(target=server.run, args=(ended.is_set,))
+    thread.start()
+    yield made, port
+    ended.set()
+    thread.join()
+    server.close()
+
+
+def pmac(action, port, *arguments, machine=MACHINE):
+    return main(["pmac", action, "--port", port, *(["--machine", machine] if machine else []), *map(str, arguments)])
+
+
+def typed(monkeypatch, port, *lines):
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n".join(lines) + "\n"))
+    assert pmac("terminal", port, machine=None) == 0
+
+
+def test_from_the_first_word_to_the_end_of_a_job(simulator, job, capsys, monkeypatch):
+    made, port = simulator
+    assert pmac("probe", port) == 0
+    assert "set up for Example 6-TPS" in capsys.readouterr().out
+    assert pmac("download", port, job) == 0
+    assert "listed back as sent, SHA-256" in capsys.readouterr().out
+    assert pmac("run", port, job) == 1
+    assert "strut 1: not homed" in capsys.readouterr().err and not made.runs_program()
+    typed(monkeypatch, port, "", *(f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)), "P1=25", "P1", "FOO")
+    assert capsys.readouterr().out.endswith(
+        "done\n25\nthe controller refused 'FOO': ERR003, not understood, or wrong data\n"
+    )
+    assert pmac("run", port, job) == 0
+    assert "a program runs" in capsys.readouterr().out
+    assert pmac("hold", port) == 0 and pmac("resume", port) == 0
+    assert pmac("abort", port) == 0 and not made.runs_program()
+    capsys.readouterr()
+    assert pmac("status", port) == 0
+    assert "strut 6:" in (told := capsys.readouterr().out) and "no program runs" in told
+
+
+def test_the_readout(simulator, capsys):
+    _, port = simulator
+    assert pmac("monitor", port, "--seconds", 0.2) == 0
+    told = capsys.readouterr().out
+    # The motors stand where the lengths are those of home_tip with the tool of the rest pose, rounded to 0.1 um.
+    assert "Z300.000 mm, axis I0.00000 J" in told.replace("-0.", "0.") and "0.000 deg from upright" in told
+
+
+def test_another_set_up_is_not_loaded_into(simulator, job, capsys, monkeypatch):
+    made, port = simulator
+    typed(monkeypatch, port, "I5190=60000")
+    assert pmac("download", port, job) == 1
+    assert "I5190: expected 1000" in capsys.readouterr().err
+    assert 10 not in made.memory.programs
+
+
+def test_a_program_that_is_none(simulator, tmp_path, capsys):
+    _, port = simulator
+    file = tmp_path / "none.pmc"
+    file.write_text("CLOSE\nQ\n")
+    assert pmac("download", port, file) == 1
+    assert "none.pmc: line 2:" in capsys.readouterr().err
+    assert pmac("download", port, tmp_path / "missing.pmc") == 1
+    assert pmac("status", port, machine="nothing") == 1
+
+
+def test_nobody_there(capsys, job):
+    assert pmac("status", "tcp:127.0.0.1:1") == 1
+    assert "no controller that can be understood" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [["--port", "usb:1"], [], ["--port", "tcp:h", "--patience", "0"]])
+def test_arguments_without_sense(arguments):
+    with pytest.raises(SystemExit) as refused:
+        main(["pmac", "status", "--machine", MACHINE, *arguments])
+    assert refused.value.code == 2
