@@ -13,8 +13,8 @@ FLOORS = {
     "gcode": 1, "cldata": 1, "placement": 1, "compensation": 1, "kinematics": 1, "feed": 1, "trajectory_file": 1,
     "controllers": 1, "machine_file": 1, "report": 1,
     "spin": 2, "surface_speed": 2, "surface_path": 2, "reach": 2, "certificate": 2, "sources": 2, "pmac_link": 2,
-    "machine_check": 2, "machine_calibration": 2, "position": 3, "planning": 3, "outputs": 3, "pipeline": 4, "verify": 4,
-    "check": 4, "convert": 4, "options": 5, "reach_study": 5, "program_text": 5, "post_file": 6, "freecad_app": 6,
+    "machine_check": 2, "machine_calibration": 2, "position": 3, "planning": 3, "outputs": 3, "pipeline": 4,
+    "verify": 4, "check": 4, "convert": 4, "options": 5, "reach_study": 5, "program_text": 5, "post_file": 6, "freecad_app": 6,
     "cli": 7, "freecad_gui": 7, "__main__": 8,
 }  # fmt: skip
 
