@@ -8,15 +8,19 @@ import pytest
 
 PACKAGE = Path(__file__).parents[1] / "pkm_post"
 
-FLOORS = {
-    "model": 0, "geometry": 0, "files": 0, "grammar": 0, "pmac_simulator": 0,
-    "gcode": 1, "cldata": 1, "placement": 1, "compensation": 1, "kinematics": 1, "feed": 1, "trajectory_file": 1,
-    "controllers": 1, "machine_file": 1, "report": 1,
-    "spin": 2, "surface_speed": 2, "surface_path": 2, "reach": 2, "certificate": 2, "sources": 2, "pmac_link": 2,
-    "machine_check": 2, "machine_calibration": 2, "position": 3, "planning": 3, "outputs": 3, "pipeline": 4,
-    "verify": 4, "check": 4, "convert": 4, "options": 5, "reach_study": 5, "program_text": 5, "post_file": 6, "freecad_app": 6,
-    "cli": 7, "freecad_gui": 7, "__main__": 8,
-}  # fmt: skip
+BY_FLOOR = (
+    "model geometry files grammar pmac_simulator",
+    "gcode cldata placement compensation kinematics feed trajectory_file controllers machine_file report",
+    "spin surface_speed surface_path reach certificate sources pmac_link machine_check machine_calibration",
+    "position planning outputs",
+    "pipeline verify check convert",
+    "options reach_study program_text",
+    "post_file freecad_app",
+    "cli freecad_gui",
+    "__main__",
+)
+"""Rooms from the ground floor upwards."""
+FLOORS = {room: floor for floor, rooms in enumerate(BY_FLOOR) for room in rooms.split()}
 
 DOORS = {
     "FreeCAD": ("freecad_app/", "freecad_gui/"),
