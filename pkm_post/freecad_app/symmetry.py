@@ -20,7 +20,7 @@ from PathScripts import PathUtils
 from pkm_post.freecad_app.derived_operation import BASE_AND_ACTIVE, DerivedOperation, Row
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Program
-from pkm_post.placement import mirror, rotation, transform
+from pkm_post.placement import joined, mirror, rotation, transform
 
 _VIEW = "pkm_post.freecad_gui.symmetry_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
@@ -35,19 +35,34 @@ _ROTATION: tuple[Row, ...] = (
     ("App::PropertyVectorDistance", "Point", "Symmetry", "A point of the axis", App.Vector()),
     ("App::PropertyVector", "Axis", "Symmetry", "Direction of the axis", App.Vector(0, 0, 1)),
     ("App::PropertyAngle", "Angle", "Symmetry", "Angle of the turn, right-handed about the axis", 180.0),
+    ("App::PropertyInteger", "Copies", "Symmetry", "Number of copies, each turned by Angle against the one before", 1),
+    (
+        "App::PropertyFloatList",
+        "Angles",
+        "Symmetry",
+        "Angles of the copies in degrees, instead of the two",
+        [],
+    ),
 )
 
 
 class _SymmetricOperation(DerivedOperation):
-    """What the copies have in common: a matrix takes the base to the copy."""
+    """What the copies have in common: a matrix takes the base to each of them."""
 
     @abc.abstractmethod
-    def matrix(self, obj: Any) -> Array:
-        """The (4, 4) matrix that takes the base to the copy."""
+    def matrices(self, obj: Any) -> list[Array]:
+        """The (4, 4) matrices that take the base to its copies, in their order."""
 
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-        """The copy."""
-        return transform(program, self.matrix(obj))
+        """The copies, one after the other."""
+        copies, told = [], list[Diagnostic]()
+        for matrix in self.matrices(obj):
+            copy, faults = transform(program, matrix)
+            told += faults
+            if copy is None:
+                return None, tuple(told)
+            copies.append(copy)
+        return joined(copies), tuple(told)
 
 
 class MirroredOperation(_SymmetricOperation):
@@ -55,19 +70,22 @@ class MirroredOperation(_SymmetricOperation):
 
     properties = _MIRROR
 
-    def matrix(self, obj: Any) -> Array:
+    def matrices(self, obj: Any) -> list[Array]:
         """The reflection in the plane."""
-        return mirror(obj.Point, obj.Normal)
+        return [mirror(obj.Point, obj.Normal)]
 
 
 class RotatedOperation(_SymmetricOperation):
-    """A copy that is turned about an axis."""
+    """Copies that are turned about an axis."""
 
     properties = _ROTATION
 
-    def matrix(self, obj: Any) -> Array:
-        """The turn about the axis."""
-        return rotation(obj.Point, obj.Axis, math.radians(obj.Angle.Value))
+    def matrices(self, obj: Any) -> list[Array]:
+        """The turns about the axis."""
+        if obj.Copies < 1:
+            raise ValueError(f"Copies: expected 1 or more, got {obj.Copies}")
+        angles = list(obj.Angles) or [number * obj.Angle.Value for number in range(1, obj.Copies + 1)]
+        return [rotation(obj.Point, obj.Axis, math.radians(angle)) for angle in angles]
 
 
 def create_mirror(

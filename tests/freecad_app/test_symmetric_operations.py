@@ -56,6 +56,47 @@ def test_turn_about_an_axis(base):
     assert_copied(copy, base, HALF_TURN, shift=(10, 0, 0))
 
 
+def turned(base, degrees):
+    return [[axis @ turn for axis in poses(base)] for turn in (rotation_matrix(angle) for angle in degrees)]
+
+
+def rotation_matrix(degrees):
+    cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.array([[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]])
+
+
+@pytest.mark.parametrize(
+    ("copies", "angles", "found"),
+    [(3, [], [72, 144, 216]), (1, [10, -35.5], [10, -35.5]), (1, [], [72])],
+    ids=["by number", "by list", "one"],
+)
+def test_several_turns_stand_one_after_the_other(base, copies, angles, found):
+    copy = create_rotation(base, (0, 0, 1), np.radians(72))
+    copy.Copies, copy.Angles = copies, angles
+    recomputed(copy)
+    tips, axes = (np.concatenate(parts) for parts in zip(*turned(base, found), strict=True))
+    np.testing.assert_allclose(poses(copy)[0], tips, atol=SIX_DECIMALS)
+    np.testing.assert_allclose(poses(copy)[1], axes, atol=SIX_DECIMALS)
+
+
+def test_turns_of_a_mirror_image(base):
+    mirrored = recomputed(create_mirror(base, (0, 1, 0)))
+    copy = create_rotation(mirrored, (0, 0, 1), np.radians(90))
+    copy.Copies = 3
+    recomputed(copy)
+    tips = np.concatenate([tip for tip, _ in turned(mirrored, [90, 180, 270])])
+    np.testing.assert_allclose(poses(copy)[0], tips, atol=SIX_DECIMALS)
+
+
+def test_a_number_of_copies_below_one_is_told_at_the_object(base):
+    copy = create_rotation(base, (0, 0, 1), np.pi)
+    copy.Copies = 0
+    copy.Document.recompute()
+    assert not copy.isValid()
+    assert "Copies: expected 1 or more" in copy.getStatusString()
+    assert not copy.Path.Commands
+
+
 def test_points_of_an_arc(job):
     base = add_operation(job, ARC)
     copy = recomputed(create_mirror(base, (1, 0, 0)))
