@@ -175,7 +175,7 @@ def test_wrong_arguments_are_the_callers_fault():
         rotation([0, 0, 0], [0, 0, 0], 1.0)
 
 
-# The signs by which x, y and z are mirrored, the plane, and what becomes of a tool on the left: domain rule "G41 and
+# The signs by which x, y and z are mirrored, the plane, and what becomes of a tool on the left: the rule "G41 and
 # G42 swap when exactly one of the two axes of the plane is mirrored".
 @pytest.mark.parametrize(
     ("signs", "plane", "side"),
