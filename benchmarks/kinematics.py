@@ -34,7 +34,7 @@ from pkm_post.kinematics import (  # noqa: E402 - the path comes first
     scaled_jacobian,
     strut_lengths,
 )
-from pkm_post.kinematics.checks import smallest_singular_value  # noqa: E402
+from pkm_post.kinematics.margins import smallest_singular_value  # noqa: E402
 from pkm_post.machine_file import find_machine, read_machine  # noqa: E402
 
 REPEATS = 7
@@ -274,9 +274,11 @@ def main():
         print(f"{'step':34} {'poses/s':>12} {'C, poses/s':>12} {'ratio':>7}")
         for name, ours, loop in table:
             rate = chosen.poses / seconds(ours)
-            rate_in_c = "" if loop is None else f"{chosen.poses / seconds(loop):12,.0f}"
-            ratio = "" if loop is None else f"{rate / float(rate_in_c.replace(',', '')):7.2f}"
-            print(f"{name:34} {rate:12,.0f} {rate_in_c:>12} {ratio:>7}")
+            print(f"{name:34} {rate:12,.0f}", end="")
+            if loop is not None:
+                rate_in_c = chosen.poses / seconds(loop)
+                print(f" {rate_in_c:12,.0f} {rate / rate_in_c:7.2f}", end="")
+            print()
     checks(machine, chosen.path)
     memory(machine, chosen.many)
 

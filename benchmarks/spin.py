@@ -22,7 +22,7 @@ from programs import program  # noqa: E402 - the path comes first
 from pkm_post.machine_file import machine_named  # noqa: E402
 from pkm_post.placement import place  # noqa: E402
 from pkm_post.position import best_position  # noqa: E402
-from pkm_post.spin import OBJECTIVES, Policy, Rule, optimise  # noqa: E402
+from pkm_post.spin import OBJECTIVES, Policy, Rule, least_shares, optimise  # noqa: E402
 
 
 def path(poses):
@@ -36,10 +36,10 @@ def path(poses):
     return machine, place(program(position, axis), machine, offset)[0]
 
 
-def told(name, begin, before, after):
+def told(name, seconds, before, after):
     """One line of the table: seconds, and the shares of stroke, joints and distance to singular poses."""
     shares = " -> ".join(" ".join(f"{share:.3f}" for share in left) for left in (before, after))
-    print(f"{name:<22}{time.perf_counter() - begin:7.2f} s   {shares}", flush=True)
+    print(f"{name:<22}{seconds:7.2f} s   {shares}", flush=True)
 
 
 def main():
@@ -51,10 +51,11 @@ def main():
     for objective in OBJECTIVES:
         begin = time.perf_counter()
         found = optimise(trajectory, machine, Policy(Rule.OPTIMISED, objective=objective))
-        told(f"spin, {objective}", begin, found.before, found.after)
+        seconds = time.perf_counter() - begin
+        told(f"spin, {objective}", seconds, least_shares(trajectory, machine), least_shares(found, machine))
     begin = time.perf_counter()
     position = best_position(trajectory, machine)
-    told("position", begin, position.before, position.after)
+    told("position", time.perf_counter() - begin, position.before, position.after)
 
 
 if __name__ == "__main__":

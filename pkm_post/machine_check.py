@@ -54,17 +54,17 @@ def at_home(machine: Machine) -> Home:
     """Put the machine at home."""
     spin, tool_length = np.array([machine.home_spin]), np.array([machine.rest_tool_length])
     pose = machine.home_tip[None], machine.home_axis[None], spin, tool_length
+    way = Way.straight(*pose)
     values = np.linalg.svd(scaled_jacobian(machine, *pose)[0], compute_uv=False)
     stiffness = None
     if machine.strut_stiffness is not None and values[-1] > _SINGULAR:
-        same = tuple(np.repeat(column, 3, axis=0) for column in pose)
-        stiffness = stiffness_along(machine, (same[0], same[1], same[2], same[3]), np.eye(3))
+        stiffness = stiffness_along(machine, way.rows(np.zeros(3, dtype=np.intp)), np.eye(3))
     return Home(
         lengths=strut_lengths(machine, *pose)[0],
         singular_values=values,
         turning_rate=float(machine.strut_speed / norm(jacobian_of_tip(machine, *pose)[0, :, 3:]).max()),
         stiffness=stiffness,
-        findings=reach_findings(machine, Way.straight(*pose)),
+        findings=reach_findings(machine, way),
     )
 
 

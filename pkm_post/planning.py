@@ -13,9 +13,9 @@ from pkm_post.feed import (
     Bounded,
     Ceilings,
     Schedule,
-    Stations,
     ToolPath,
     by_time,
+    cell_times,
     for_jerk,
     knots,
     limits,
@@ -63,14 +63,18 @@ def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple
     ceilings = Ceilings(marks.s, marks.rest, square, along)
     if not any(np.isfinite(item.jerk) for item in bounded):
         return Schedule.of(marks, marks.s, marks.rest, speed_profile(marks.s, square, along)), faults
-    plans = (_averaged(marks, for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS)
-    return min(plans, key=lambda plan: plan.rests_ms[-1]), faults
+    _, window_ms, course = min(
+        (_averaged(for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS), key=lambda tried: tried[0]
+    )
+    return Schedule.of(marks, *course, window_ms), faults
 
 
-def _averaged(marks: Stations, ceilings: Ceilings, window_ms: int) -> Schedule:
-    """The schedule under ceilings that were made for a window."""
+def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Array, Array, Array]]:
+    """How long the motion takes under ceilings that were made for a window, s; the window; and its course."""
     square = speed_profile(ceilings.s, ceilings.square, ceilings.along)
-    return Schedule.of(marks, ceilings.s, ceilings.rest, square, window_ms)
+    runs = int(ceilings.rest.sum()) - 1
+    duration = float(cell_times(ceilings.s, square).sum()) + runs * window_ms / 1000
+    return duration, window_ms, (ceilings.s, ceilings.rest, square)
 
 
 def _feed_at(path: ToolPath, segment: Array, u: Array) -> Array:

@@ -18,7 +18,7 @@ from pkm_post.kinematics import Part
 from pkm_post.model import Diagnostic, Machine, Program
 from pkm_post.position import best_position
 from pkm_post.reach import Reach, reach
-from pkm_post.spin import ZERO_TORSION, Rule, least_shares, with_spin
+from pkm_post.spin import ZERO_TORSION, Rule, least_shares
 
 _LABELS = ("stroke", "joints", "from singular")
 
@@ -64,25 +64,25 @@ def study(
     Returns:
         The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
     """
-    placed, told = pipeline.trajectory_of(program, machine, replace(options, spin=ZERO_TORSION))
+    untwisted = replace(options, spin=ZERO_TORSION)
+    placed, told = pipeline.trajectory_of(program, machine, untwisted)
     if placed is None:
         return None, told
     stages = [("as it is, zero torsion", least_shares(placed, machine))]
     if free:
-        found = best_position(placed, machine, free)
-        moved = replace(options, work_offset=found.machine_from_work, spin=ZERO_TORSION)
-        placed, told = pipeline.trajectory_of(program, machine, moved)
+        offset = best_position(placed, machine, free).machine_from_work
+        untwisted, options = replace(untwisted, work_offset=offset), replace(options, work_offset=offset)
+        placed, told = pipeline.trajectory_of(program, machine, untwisted)
         if placed is None:
             return None, told
         stages.append((f"moved in {', '.join(free)}", least_shares(placed, machine)))
-    turned, faults = with_spin(placed, machine, options.spin)
-    told += faults
-    if turned is None:
-        return None, told
     if options.spin.rule is not Rule.ZERO:
-        stages.append((f"spin {options.spin.rule.value}", least_shares(turned, machine)))
-    checked = reach(turned, machine, _in_machine(part, turned.machine_from_work))
-    return Study(checked, tuple(stages), turned.machine_from_work), (*told, *checked.faults())
+        placed, told = pipeline.trajectory_of(program, machine, options)
+        if placed is None:
+            return None, told
+        stages.append((f"spin {options.spin.rule.value}", least_shares(placed, machine)))
+    checked = reach(placed, machine, _in_machine(part, placed.machine_from_work))
+    return Study(checked, tuple(stages), placed.machine_from_work), (*told, *checked.faults())
 
 
 def _in_machine(triangles: Array | None, machine_from_work: Array) -> Part | None:

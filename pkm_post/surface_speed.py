@@ -65,8 +65,8 @@ def with_surface_speed(
     number = np.cumsum(np.diff(cut.astype(np.int8), prepend=0) == 1) - 1
     count = np.bincount(number[turning], minlength=int(number.max(initial=-1)) + 1)
     mean = np.bincount(number[turning], diameter[turning], len(count)) / np.maximum(count, 1)
-    by_cut = np.clip(60 * wanted.speed / (math.pi * np.where(count > 0, mean, np.inf)), *limits)
-    revolutions = np.where(turning, np.rint(by_cut)[number] * np.sign(np.nan_to_num(spindle)), np.nan)
+    by_cut = np.clip(np.rint(60 * wanted.speed / (math.pi * np.where(count > 0, mean, np.inf))), *limits)
+    revolutions = np.where(turning, by_cut[number] * np.sign(np.nan_to_num(spindle)), np.nan)
     return _with_speeds(program, revolutions, spindle, wanted), ()
 
 
@@ -90,19 +90,20 @@ def _in_force(program: Program, kind: EventKind) -> Array:
 def _with_speeds(program: Program, revolutions: Array, before: Array, wanted: SurfaceSpeed) -> Program:
     """The program with the speeds of its cutting rows; where they are NaN, what was programmed stays."""
     changed = ~np.isnan(revolutions)
-    rows = np.flatnonzero(changed & np.append(True, program.kind[:-1] == Kind.RAPID))
+    begins = set(np.flatnonzero(changed & np.append(True, program.kind[:-1] == Kind.RAPID)).tolist())
     # A spindle that is switched on keeps its place; its speed is that of the first cut that follows.
     events = [_switched_on(event, revolutions) for event in program.events]
     state = {event.row: event.value for event in events if event.kind is EventKind.SPINDLE}
     value = np.nan
-    for row in sorted({*rows.tolist(), *state}):
+    for row in sorted({*begins, *state}):
         value = state.get(row, value)
-        if row in rows and value != revolutions[row]:
+        if row in begins and value != revolutions[row]:
             value = float(revolutions[row])
             events.append(Event(row, EventKind.SPINDLE, value))
     feed = program.feed
     if wanted.keep_chip_load:
-        feed = np.where(changed, program.feed * np.abs(revolutions) / np.abs(before), program.feed)
+        scale = np.divide(np.abs(revolutions), np.abs(before), out=np.ones(len(program)), where=changed)
+        feed = program.feed * scale
     return replace(program, feed=feed, events=tuple(sorted(events, key=lambda event: event.row)))
 
 

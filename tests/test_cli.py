@@ -152,6 +152,14 @@ def test_machine_list_and_check(tmp_path):
     assert pkm_post("machine", "check", "no_such_machine").returncode == 1
 
 
+def test_reach_of_what_is_no_document_is_refused(tmp_path):
+    (tmp_path / "part.FCStd").write_text("no document")
+    told = pkm_post("reach", tmp_path / "part.FCStd")
+    assert told.returncode == 1
+    assert "error J101" in told.stderr
+    assert "Traceback" not in told.stderr
+
+
 def test_reach_of_a_document_tells_where_it_could_lie_better(tmp_path):
     part = saved_job(tmp_path / "part.FCStd")
     told = pkm_post("reach", part, "--place", "xy", "--json", *REACHED)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from pkm_post import trajectory_file
+from pkm_post.cli import main
 from pkm_post.model import Refused
 from pkm_post.model.findings import Tolerances
 from pkm_post.pipeline import Options
@@ -130,6 +131,15 @@ def test_faults_of_machine_and_file_are_told_together(tmp_path):
     with pytest.raises(Refused) as refused:
         post_file(tmp_path / "a.cls", "no_such_machine", tmp_path)
     assert [fault.code for fault in refused.value.diagnostics] == ["M101", "L402"]
+
+
+def test_files_of_one_name_do_not_overwrite_each_others_results(tmp_path, capsys):
+    for suffix in ("ngc", "cls"):
+        (tmp_path / f"part.{suffix}").write_text(CL_DATA)
+    files = [str(tmp_path / "part.ngc"), str(tmp_path / "part.cls")]
+    assert main(["post", *files, "--out", str(tmp_path / "out")]) == 2
+    assert "several files would be posted as part" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):

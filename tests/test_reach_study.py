@@ -2,6 +2,7 @@
 """The study of reach: what it says of a program, what moving and turning give, and the command."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -54,6 +55,14 @@ def test_every_choice_is_told_with_what_it_leaves(machine):
     for name, _ in found.stages:
         assert name in found.text()
     assert [stage["stage"] for stage in found.as_dict()["left"]] == [name for name, _ in found.stages]
+
+
+def test_the_spin_of_the_program_is_what_is_checked(machine):
+    made = replace(cone(20), spin=np.full(20, 0.3))
+    found, _ = study(made, machine, Options(work_offset=ON_PALLET, spin=Policy(Rule.FILE)))
+    assert found.reach.trajectory.spin == pytest.approx(np.full(len(found.reach.trajectory), 0.3))
+    assert [name for name, _ in found.stages] == ["as it is, zero torsion", "spin file"]
+    assert not np.array_equal(found.stages[0][1], found.stages[1][1])
 
 
 def test_a_work_offset_is_told_as_the_option_takes_it():

@@ -67,6 +67,20 @@ def test_the_spindle_keeps_its_limits_and_its_sense():
     assert speeds(made) == [(0, -4000), (8, 0)]
 
 
+def test_a_limit_that_is_no_whole_number_is_kept():
+    made, _ = with_surface_speed(two_cuts(), SurfaceSpeed(1.0), (1000.6, 4000.0))
+    assert speeds(made)[0] == (0, 1000.6)
+
+
+def test_the_chip_load_of_a_cut_without_spindle_stays():
+    made = dataclasses.replace(
+        two_cuts(), events=(Event(0, EventKind.TOOL_CHANGE, 1), Event(5, EventKind.SPINDLE, 5000))
+    )
+    slow, _ = with_surface_speed(made, SurfaceSpeed(100.0, keep_chip_load=True), WIDE)
+    assert (slow.feed[1:3] == made.feed[1:3]).all()
+    assert (slow.feed[5:7] < made.feed[5:7]).all()
+
+
 def test_the_chip_load_is_kept():
     normals = [[0.5, 0.0, np.sqrt(0.75)], [1.0, 0.0, 0.0]]
     before = two_cuts(normals)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,6 +34,10 @@ def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.model import Refused
     from pkm_post.sources import is_part_program
 
+    twice = [stem for stem, count in Counter(file.stem for file in namespace.files).items() if count > 1]
+    if twice:
+        print(f"several files would be posted as {', '.join(twice)}: post them to different folders", file=sys.stderr)
+        return 2
     if not is_inside() and not all(map(is_part_program, namespace.files)):
         return run_inside(arguments)
     for file in namespace.files:

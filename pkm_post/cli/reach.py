@@ -50,6 +50,7 @@ def _freedoms(text: str) -> str:
 
 def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.machine_file import machine_named
+    from pkm_post.model import Refused
     from pkm_post.model.diagnostics import errors
     from pkm_post.reach_study import study
     from pkm_post.sources import is_part_program
@@ -60,13 +61,19 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     _tell(faults)
     failed = machine is None
     found = []
-    for program, told, options, part in _programs(namespace):
-        if program is not None and machine is not None:
-            made, more = study(program, machine, options, namespace.place, part)
-            told += more
-            found += [made] if made else []
-        _tell(told)
-        failed |= bool(errors(told))
+    for file in namespace.files:
+        try:
+            programs = list(_programs(file, namespace))
+        except Refused as refused:
+            programs, failed = [], True
+            _tell(refused.diagnostics)
+        for program, told, options, part in programs:
+            if program is not None and machine is not None:
+                made, more = study(program, machine, options, namespace.place, part)
+                told += more
+                found += [made] if made else []
+            _tell(told)
+            failed |= bool(errors(told))
     if namespace.json:
         print(json.dumps([made.as_dict() for made in found], indent=2))
     else:
@@ -74,18 +81,18 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     return int(failed)
 
 
-def _programs(namespace: argparse.Namespace) -> Iterator[Read]:
+def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Read]:
+    """The programs of a file: that of a part program, or those of the jobs of a document."""
     from pkm_post.post_file import read_to_post
     from pkm_post.sources import is_part_program
 
-    for file in namespace.files:
-        options, lengths = options_from(namespace), tool_lengths_from(namespace)
-        if is_part_program(file):
-            yield *read_to_post(file, options, lengths, reading_from(namespace)), None
-        else:
-            from pkm_post.freecad_app.post_job import read_document
+    options, lengths = options_from(namespace), tool_lengths_from(namespace)
+    if is_part_program(file):
+        yield *read_to_post(file, options, lengths, reading_from(namespace)), None
+    else:
+        from pkm_post.freecad_app.post_job import read_document
 
-            yield from read_document(file, options, lengths, namespace.job)
+        yield from read_document(file, options, lengths, namespace.job)
 
 
 def _tell(diagnostics: Sequence[Diagnostic]) -> None:

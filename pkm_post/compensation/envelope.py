@@ -18,11 +18,7 @@ from numpy.typing import ArrayLike
 from pkm_post.compensation.cutter import Cutter
 from pkm_post.compensation.sweep import Sweep
 from pkm_post.geometry import norm, unit
-from pkm_post.geometry.cells import cells
 from pkm_post.geometry.vectors import Array
-
-_POINTS_PER_CELL = 100
-_ITERATIONS = 40
 
 
 @dataclass(frozen=True)
@@ -73,10 +69,11 @@ def stock_left(
         cutter: the cutter; one of unknown height reaches as far as the points do.
         points: (N, 3) points of the surface, mm.
         normals: (N, 3) normals there, out of the material, of any length.
-        tolerance: how much too large a value may be, mm.
+        tolerance: how far the line may be from the boundary of the swept volume at the value, mm; the value is off by
+            more where the line runs in at a slant.
         reach: material left of more than this is not measured, mm.
-        progress: told the share that is done, now and then, from 0 to 1 for each of a few rounds; what it raises stops
-            the work.
+        progress: told the share that is done, now and then, from 0 to 1 for each round of steps; what it raises
+            stops the work.
 
     Raises:
         ValueError: tips and axes, or points and normals, are not of one shape (M, 3); a vector has no direction;
@@ -90,33 +87,27 @@ def stock_left(
         return StockLeft(np.zeros(0), np.zeros(0, dtype=np.int64))
     everything = np.vstack([tip, start])
     sweep = Sweep.of(tip, axis, cutter, reach, float(norm(np.ptp(everything, axis=0))) + reach)
+    return _entries(sweep, start, normal, tolerance / 2.0, progress)
+
+
+def _entries(
+    sweep: Sweep, start: Array, normal: Array, enough: float, progress: Callable[[float], Any] | None
+) -> StockLeft:
+    """Where the lines through the points along their normals enter the swept volume.
+
+    There is an end to the steps: all but the last one are longer than ``enough``, and those of one point all have one
+    sense. None leads out of the volume again, and none is too long by more than ``enough``.
+    """
     left, row = np.zeros(len(start)), np.full(len(start), -1, dtype=np.int64)
     open_rows = np.arange(len(start))
-    for _ in range(_ITERATIONS):
+    while len(open_rows):
         reached = start[open_rows] + left[open_rows, None] * normal[open_rows]
-        step, nearest = _distances(sweep, reached, tolerance / 2.0, progress)
+        step, row[open_rows] = sweep.distances(reached, enough, progress)
         left[open_rows] += step
-        row[open_rows] = nearest
-        beyond = left[open_rows] > reach
+        beyond = left[open_rows] > sweep.within
         left[open_rows[beyond]], row[open_rows[beyond]] = np.inf, -1
-        open_rows = open_rows[~beyond & (np.abs(step) > tolerance / 2.0)]
-        if not len(open_rows):
-            break
+        open_rows = open_rows[~beyond & (np.abs(step) > enough)]
     return StockLeft(left, row)
-
-
-def _distances(
-    sweep: Sweep, points: Array, tolerance: float, progress: Callable[[float], Any] | None
-) -> tuple[Array, Array]:
-    """Signed distances (N,) to the swept volume and rows (N,), cell by cell."""
-    distance, row = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
-    done = 0
-    for rows in cells(points, _POINTS_PER_CELL):
-        distance[rows], row[rows] = sweep.distances(points[rows], tolerance)
-        done += len(rows)
-        if progress is not None:
-            progress(done / len(points))
-    return distance, row
 
 
 def _pair(names: str, positions: ArrayLike, directions: ArrayLike) -> tuple[Array, Array]:

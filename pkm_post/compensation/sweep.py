@@ -9,7 +9,9 @@ than a known way, and seen from a cutter that does not turn, the distance to it 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +26,9 @@ _BLOCK = 16
 
 _STEP = 0.25
 """Longest step between two poses, in radii of the cutter."""
+
+_POINTS_PER_CELL = 100
+"""Points for which far blocks are passed over together, about."""
 
 _POINTS_TOGETHER = 6
 """Points of a cell whose near steps are looked for together, about."""
@@ -80,16 +85,30 @@ class Sweep:
         bend = reach * turned**2 / 8.0 + moved * turned / 4.0
         return cls(tip, axis, np.minimum(before + 1, rows - 1), moved + reach * turned, bend, profile, within)
 
-    def distances(self, points: Array, tolerance: float) -> tuple[Array, Array]:
-        """Signed distances of the points of one cell to the swept volume, and the rows that come nearest.
+    def distances(
+        self, points: Array, tolerance: float, progress: Callable[[float], Any] | None = None
+    ) -> tuple[Array, Array]:
+        """Signed distances of points to the swept volume, and the rows of the path that come nearest.
 
         Args:
-            points: (N, 3) points near to each other, mm.
+            points: (N, 3) points, mm.
             tolerance: how much too large a distance may be, mm.
+            progress: told the share that is done, now and then, from 0 to 1; what it raises stops the work.
 
         Returns:
             Distances (N,), infinite or too large where nothing comes within reach, and rows of the path (N,).
         """
+        best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
+        done = 0
+        for rows in cells(points, _POINTS_PER_CELL):
+            best[rows], row[rows] = self._in_cell(points[rows], tolerance)
+            done += len(rows)
+            if progress is not None:
+                progress(done / len(points))
+        return best, row
+
+    def _in_cell(self, points: Array, tolerance: float) -> tuple[Array, Array]:
+        """The distances and rows of points near to each other."""
         best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
         near_all = self._near_steps(points)
         for rows in cells(points, _POINTS_TOGETHER) if len(near_all) else []:

@@ -4,7 +4,7 @@
 from pkm_post.feed.jerk import Ceilings, for_jerk
 from pkm_post.feed.knots import knots
 from pkm_post.feed.limits import PLANNED_SHARE, Bounded, limits
-from pkm_post.feed.profile import speed_profile
+from pkm_post.feed.profile import cell_times, speed_profile
 from pkm_post.feed.schedule import Schedule, by_time
 from pkm_post.feed.segments import Segments
 from pkm_post.feed.stations import Stations, stations
@@ -19,6 +19,7 @@ __all__ = [
     "Stations",
     "ToolPath",
     "by_time",
+    "cell_times",
     "for_jerk",
     "knots",
     "limits",

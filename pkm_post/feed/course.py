@@ -51,37 +51,36 @@ class Course:
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
         """Path length, speed and acceleration at the times given, (N,) each."""
-        cell, since = self._cell(time)
+        _, _, s, speed, acceleration = self._state(time)
+        return s, speed, acceleration
+
+    def mean(self, time: Array, window: float) -> tuple[Array, Array, Array]:
+        """Means of path length, speed and acceleration over a window about the times given, (N,) each."""
+        s1, v1, way1 = self._summed_at(time + window / 2)
+        s0, v0, way0 = self._summed_at(time - window / 2)
+        speed = (s1 - s0) / window
+        speed[speed < _STANDSTILL] = 0.0
+        return ((way1 - way0) / window).astype(np.float64), speed, (v1 - v0) / window
+
+    def _state(self, time: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """The cell each time lies in, how long it has been in it, path length, speed and acceleration."""
+        cell = np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(self.time) - 2)
+        since = time - self.time[cell]
         v0, v1 = self.speed[cell], self.speed[cell + 1]
         s0, s1 = self.s[cell], self.s[cell + 1]
         acceleration = np.divide(v1**2 - v0**2, 2 * (s1 - s0), out=np.zeros(len(cell)), where=s1 > s0)
         s = s0 + since * (v0 + since * acceleration / 2)
         arrived = time >= self.time[cell + 1]  # exactly at rest in the end
         speed = np.where(arrived, v1, np.maximum(v0 + since * acceleration, 0.0))
-        return np.clip(s, s0, s1), speed, acceleration
+        return cell, since, np.clip(s, s0, s1), speed, acceleration
 
-    def mean(self, time: Array, window: float) -> tuple[Array, Array, Array]:
-        """Means of path length, speed and acceleration over a window about the times given, (N,) each."""
-        after, before = self.at(time + window / 2), self.at(time - window / 2)
-        way = self._integral(time + window / 2) - self._integral(time - window / 2)
-        speed = (after[0] - before[0]) / window
-        speed[speed < _STANDSTILL] = 0.0
-        return (way / window).astype(np.float64), speed, (after[1] - before[1]) / window
-
-    def _cell(self, time: Array) -> tuple[Array, Array]:
-        """The cell each time lies in, and how long it has been in it."""
-        cell = np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(self.time) - 2)
-        return cell, time - self.time[cell]
-
-    def _integral(self, time: Array) -> Array:
-        """Path length summed up over time, (N,), with more digits than a double where there are more."""
-        cell, since = self._cell(time)
-        s, _, acceleration = self.at(time)
-        speed = self.speed[cell]
-        within = since * (self.s[cell] + since * (speed / 2 + since * acceleration / 6))
+    def _summed_at(self, time: Array) -> tuple[Array, Array, Array]:
+        """Path length, speed, and path length summed up over time, with more digits than a double where there are."""
+        cell, since, s, speed, acceleration = self._state(time)
+        inside = since * (self.s[cell] + since * (self.speed[cell] / 2 + since * acceleration / 6))
         # Beyond the last place the course stands still.
-        over = np.maximum(since - (self.time[cell + 1] - self.time[cell]), 0.0)
-        return self._summed[cell] + np.where(over > 0, self._summed[cell + 1] - self._summed[cell] + over * s, within)
+        over = np.maximum(time - self.time[cell + 1], 0.0)
+        return s, speed, np.where(over > 0, self._summed[cell + 1] + over * s, self._summed[cell] + inside)
 
     @functools.cached_property
     def _summed(self) -> Array:

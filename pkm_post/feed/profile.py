@@ -13,6 +13,18 @@ import numpy as np
 from pkm_post.geometry.vectors import Array
 
 
+def cell_times(s: Array, square: Array) -> Array:
+    """How long each cell takes, (M - 1,) s: with v^2 straight from place to place, 2 ds / (v0 + v1).
+
+    Args:
+        s: (M,) path lengths, not decreasing.
+        square: (M,) speed squared.
+    """
+    speed = np.sqrt(square)
+    times: Array = 2 * np.diff(s) / (speed[1:] + speed[:-1])
+    return times
+
+
 def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
     """Highest speed squared at every station, (M,); between stations it is linear in s.
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.feed.course import Course
+from pkm_post.feed.profile import cell_times
 from pkm_post.feed.stations import Stations
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Poses
@@ -82,8 +83,7 @@ class Schedule:
 
 def _stretched(s: Array, rest: Array, square: Array, window_ms: int) -> tuple[Course, Array]:
     """The course from rest to rest in whole milliseconds, with a window of time at each rest; and the rests."""
-    speed = np.sqrt(square)
-    duration = 2 * np.diff(s) / (speed[1:] + speed[:-1])
+    speed, duration = np.sqrt(square), cell_times(s, square)
     run = np.cumsum(rest)[:-1] - 1
     elapsed = np.bincount(run, duration)
     whole_ms = np.ceil(1000 * elapsed).astype(np.int64)

@@ -12,6 +12,7 @@ import shlex
 from typing import Any, NoReturn
 
 from pkm_post.freecad_app.job import document_name
+from pkm_post.gcode import Form
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import add_options
 
@@ -31,8 +32,8 @@ POST_PROCESSORS: dict[str, str] = {
 _MORE: dict[str, dict[str, dict[str, Any]]] = {
     GCODE: {
         "--form": {
-            "choices": ("vector", "AC", "BC", "linuxcnc", "3axis"),
-            "default": "vector",
+            "choices": tuple(form.value for form in Form),
+            "default": Form.VECTOR.value,
             "help": "how the tool axis is said: I J K after G43.5, rotary words of a head after G43.4, A B C of"
             " LinuxCNC's hexapod, or not at all (default: %(default)s)",
         },

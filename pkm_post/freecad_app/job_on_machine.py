@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job on a machine: a CAM job as a trajectory in the machine frame {M}, for all that looks at it there.
+"""Job on a machine: a CAM job with its machine, and as a trajectory in the machine frame {M}, to be looked at there.
 
 A job enters, with the arguments of its post-processor, and a machine object if there is one: its machine file and its
 work offset go before those of the arguments then. The document is not recomputed: document objects ask for this while
@@ -8,6 +8,7 @@ it is.
 
 from __future__ import annotations
 
+import argparse
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,28 +21,69 @@ from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.freecad_app.post_job import at_fixture
 from pkm_post.kinematics import Part
 from pkm_post.machine_file import machine_named
-from pkm_post.model import Diagnostic, Machine, Refused, Trajectory
+from pkm_post.model import Diagnostic, Machine, Program, Refused, Trajectory
+from pkm_post.model.diagnostics import errors
 from pkm_post.model.findings import Tolerances
 from pkm_post.options import options_from, tool_lengths_from
 
 
 @dataclass(frozen=True)
+class JobAndMachine:
+    """A job before it is placed.
+
+    Attributes:
+        program: of the job, in {C}.
+        machine: that it runs on.
+        options: that it is placed by.
+        diagnostics: warnings.
+    """
+
+    program: Program
+    machine: Machine
+    options: pipeline.Options
+    diagnostics: tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True)
 class JobOnMachine:
-    """What was asked for.
+    """A job where it is driven. Warnings are told when it is posted.
 
     Attributes:
         trajectory: of the job, in {M}, with its spin.
         machine: that it runs on.
         part: the model of the job in {M}; None if it has no faces.
         tolerances: for rounded corners.
-        diagnostics: warnings.
     """
 
     trajectory: Trajectory
     machine: Machine
     part: Part | None
     tolerances: Tolerances
-    diagnostics: tuple[Diagnostic, ...]
+
+
+def job_and_machine(job: Any, chosen: argparse.Namespace, machine_object: Any = None) -> JobAndMachine:
+    """Read a job and its machine; what is wrong with either is told together.
+
+    Args:
+        job: the CAM job, recomputed.
+        chosen: its arguments.
+        machine_object: what ``create_machine`` made; without one the arguments say it all.
+
+    Raises:
+        Refused: the job cannot be read, or there is no such machine.
+    """
+    options = at_fixture(options_from(chosen), job)
+    found: tuple[Diagnostic, ...] = ()
+    if machine_object is None:
+        machine, found = machine_named(chosen.machine)
+    else:
+        machine = machine_of(machine_object)
+        options = replace(options, work_offset=matrix_of(machine_object.Frame.inverse()))
+    program, told = read_job(job, tool_lengths_from(chosen))
+    found += told
+    if machine is None or program is None or errors(found):
+        raise Refused(found)
+    return JobAndMachine(program, machine, options, found)
 
 
 def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
@@ -54,23 +96,11 @@ def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
     Raises:
         Refused: the job cannot be read or placed.
     """
-    chosen = own_arguments(job)
-    options = at_fixture(options_from(chosen), job)
-    found: tuple[Diagnostic, ...] = ()
-    if machine_object is None:
-        machine, found = machine_named(chosen.machine)
-    else:
-        machine = machine_of(machine_object)
-        options = replace(options, work_offset=matrix_of(machine_object.Frame.inverse()))
-    program, told = read_job(job, tool_lengths_from(chosen))
-    found += told
-    if machine is None or program is None:
-        raise Refused(found)
-    trajectory, told = pipeline.trajectory_of(program, machine, options)
-    found += told
+    read = job_and_machine(job, own_arguments(job), machine_object)
+    trajectory, told = pipeline.trajectory_of(read.program, read.machine, read.options)
     if trajectory is None:
-        raise Refused(found)
+        raise Refused((*read.diagnostics, *told))
     triangles = part_mesh(job)
     corners = apply(trajectory.machine_from_work, triangles.reshape(-1, 3)).reshape(-1, 3, 3)
-    tolerances = Tolerances(options.tip_tolerance, options.axis_tolerance)
-    return JobOnMachine(trajectory, machine, Part.of(corners) if len(corners) else None, tolerances, found)
+    tolerances = Tolerances(read.options.tip_tolerance, read.options.axis_tolerance)
+    return JobOnMachine(trajectory, read.machine, Part.of(corners) if len(corners) else None, tolerances)

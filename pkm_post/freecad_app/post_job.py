@@ -19,6 +19,7 @@ import FreeCAD as App
 from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.job import NO_LENGTHS, document_name, read_job
+from pkm_post.freecad_app.kinds import is_job
 from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.geometry.vectors import Array
 from pkm_post.machine_file import machine_named
@@ -111,7 +112,7 @@ def find_jobs(document: Any) -> list[Any]:
     Raises:
         Refused: there is none, J102.
     """
-    jobs = [item for item in document.Objects if hasattr(item, "PostProcessor") and hasattr(item, "Operations")]
+    jobs = [item for item in document.Objects if is_job(item)]
     if not jobs:
         raise Refused([Diagnostic("J102", Place(document_name(document)), "no job in the document")])
     return jobs

@@ -18,9 +18,9 @@ from pkm_post import outputs, pipeline, trajectory_file
 from pkm_post.files import staged
 from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
 from pkm_post.freecad_app.job import read_job
-from pkm_post.freecad_app.post_job import at_fixture, post_to
+from pkm_post.freecad_app.job_on_machine import job_and_machine
+from pkm_post.freecad_app.post_job import post_to
 from pkm_post.gcode import Form, write
-from pkm_post.machine_file import machine_named
 from pkm_post.model import Diagnostic, Place, Refused, Trajectory
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.findings import Tolerances
@@ -42,11 +42,11 @@ def _motion_program(job: Any, chosen: argparse.Namespace, path: FilePath) -> Wri
 def _trajectory(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
     """A few lines about the trajectory, which is written beside them: CAM can write no bytes."""
     trajectory, found = _reachable(job, chosen)
-    target = path.with_suffix(".pkmt")
+    target, options = path.with_suffix(".pkmt"), options_from(chosen)
     try:
         with staged(target.parent) as folder:
             stored = folder / target.name
-            tolerances = Tolerances(options_from(chosen).tip_tolerance, options_from(chosen).axis_tolerance)
+            tolerances = Tolerances(options.tip_tolerance, options.axis_tolerance)
             trajectory_file.write(replace(trajectory, tolerances=tolerances), stored)
             _value(trajectory_file.read(stored), found)
     except OSError as fault:
@@ -89,14 +89,9 @@ OUTPUTS: dict[str, Callable[[Any, argparse.Namespace, FilePath], Written]] = {
 def _reachable(job: Any, chosen: argparse.Namespace) -> tuple[Trajectory, Findings]:
     """The trajectory of a job, which its machine can follow, and the warnings."""
     job.Document.recompute()
-    machine, machine_faults = machine_named(chosen.machine)
-    program, job_faults = read_job(job, tool_lengths_from(chosen))
-    found = (*machine_faults, *job_faults)
-    if machine is None or program is None or errors(found):
-        raise Refused(found)
-    options = at_fixture(options_from(chosen), job)
-    trajectory, found = _value(pipeline.trajectory_of(program, machine, options), found)
-    return _value((trajectory, reach(trajectory, machine).faults()), found)
+    read = job_and_machine(job, chosen)
+    trajectory, found = _value(pipeline.trajectory_of(read.program, read.machine, read.options), read.diagnostics)
+    return _value((trajectory, reach(trajectory, read.machine).faults()), found)
 
 
 def _value(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:

@@ -68,11 +68,6 @@ class PartProgram:
         """Nothing was saved."""
 
 
-def is_program(item: Any) -> bool:
-    """Whether a document object is a part program."""
-    return hasattr(item, "AxisWords") and hasattr(item, "Found")
-
-
 def create_program(document: Any, file: str | FilePath, axis_words: str = "none") -> Any:
     """Add a part program to a document.
 

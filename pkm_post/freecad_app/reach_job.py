@@ -10,14 +10,10 @@ from __future__ import annotations
 import shlex
 from typing import Any
 
-from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import POST_PROCESSORS, own_arguments
-from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.job_on_machine import job_and_machine
 from pkm_post.freecad_app.part_mesh import part_mesh
-from pkm_post.freecad_app.post_job import at_fixture
-from pkm_post.machine_file import machine_named
 from pkm_post.model import Refused
-from pkm_post.options import options_from, tool_lengths_from
 from pkm_post.reach_study import Study, study, told_offset
 
 _WORK_OFFSET = "--work-offset"
@@ -34,15 +30,10 @@ def study_job(job: Any, free: str = "") -> Study:
         Refused: the job cannot be read or placed. That it cannot be followed is told by the study.
     """
     job.Document.recompute()
-    chosen = own_arguments(job)
-    machine, faults = machine_named(chosen.machine)
-    program, told = read_job(job, tool_lengths_from(chosen))
-    if machine is None or program is None:
-        raise Refused((*faults, *told))
-    options: pipeline.Options = at_fixture(options_from(chosen), job)
-    found, told = study(program, machine, options, free, part_mesh(job))
+    read = job_and_machine(job, own_arguments(job))
+    found, told = study(read.program, read.machine, read.options, free, part_mesh(job))
     if found is None:
-        raise Refused(told)
+        raise Refused((*read.diagnostics, *told))
     return found
 
 

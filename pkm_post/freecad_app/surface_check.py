@@ -21,14 +21,12 @@ from pkm_post.compensation.envelope import stock_left
 from pkm_post.compensation.sweep import Sweep
 from pkm_post.freecad_app.face_surface import face_surface
 from pkm_post.geometry import norm
-from pkm_post.geometry.cells import cells
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Program
 
 _FEWEST = 3
 _NEAR = 0.1
 """mm: points that are farther from the cutter are not gouged, whatever their distance."""
-_POINTS_PER_CELL = 25
 
 
 @dataclass(frozen=True)
@@ -91,13 +89,7 @@ def _distances(
     """Signed distances of points to all that the cutter sweeps, (N,), negative inside, infinite where it is far."""
     extent = float(norm(np.ptp(np.vstack([program.position, points]), axis=0)))
     sweep = Sweep.of(program.position, program.tool_axis, cutter, _NEAR, extent)
-    distance = np.empty(len(points))
-    done = 0
-    for rows in cells(points, _POINTS_PER_CELL):
-        distance[rows], _ = sweep.distances(points[rows], tolerance)
-        done += len(rows)
-        progress(done / len(points))
-    return distance
+    return sweep.distances(points, tolerance, progress)[0]
 
 
 def _samples(face: Any, flipped: bool, spacing: float) -> tuple[Array, Array]:

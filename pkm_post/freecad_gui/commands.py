@@ -14,6 +14,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtWidgets
 
+from pkm_post.freecad_app.kinds import is_job, is_operation
 from pkm_post.freecad_gui.workbench import ICONS
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -82,17 +83,6 @@ class WindowCommand(Command):
     def Activated(self) -> None:
         """Open the window."""
         self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
-
-
-def is_job(item: FreeCAD.DocumentObject) -> bool:
-    """Whether an object is a CAM job."""
-    return hasattr(item, "Operations") and hasattr(item, "PostProcessor")
-
-
-def is_operation(item: FreeCAD.DocumentObject) -> bool:
-    """Whether an object is an operation of a CAM job; tool controllers have paths, too."""
-    others = is_job(item) or hasattr(item, "ToolNumber") or hasattr(item, "AxisWords")  # part programs
-    return item.isDerivedFrom("Path::Feature") and not others
 
 
 def _do(module: str, call: str, operation: FreeCAD.DocumentObject) -> None:

@@ -9,49 +9,30 @@ from __future__ import annotations
 
 from typing import Any
 
-from pivy import coin
-
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.machine_object import machine_of, pose_of
 from pkm_post.freecad_gui.machine_scene import MachineScene
-from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.freecad_gui.views import DrawnView
 from pkm_post.model import Refused
 
-_MODE = "Machine"
 _MACHINE, _TOOL = ("MachineFile",), ("ToolLength", "ToolDiameter", "ToolCornerRadius")
 _POSE = ("Tip", "ToolAxis", "Spin", "ToolLength", "WorkOffset", "Frame")
 
 
-class MachineView:
+class MachineView(DrawnView):
     """Draws the machine around the part.
 
     Attributes:
-        Object: the machine that is shown.
         scene: what is seen of it; None while its file has faults.
         played: whether a simulation moves it; then the pose of the properties waits.
     """
 
-    def __init__(self, vobj: Any) -> None:
-        vobj.Proxy = self
+    icon, mode = "machine.svg", "Machine"
 
     def attach(self, vobj: Any) -> None:
-        """Make the root of the scene; called for new and for restored objects."""
-        self.Object, self.scene, self.played = vobj.Object, None, False
-        self._root = coin.SoSeparator()
-        vobj.addDisplayMode(self._root, _MODE)
-        self.refresh()
-
-    def getDisplayModes(self, _vobj: Any) -> list[str]:
-        """The one way it is shown."""
-        return [_MODE]
-
-    def getDefaultDisplayMode(self) -> str:
-        """The one way it is shown."""
-        return _MODE
-
-    def setDisplayMode(self, mode: str) -> str:
-        """The one way it is shown."""
-        return mode
+        """Begin without a scene; called for new and for restored objects."""
+        self.scene, self.played = None, False
+        super().attach(vobj)
 
     def updateData(self, obj: Any, name: str) -> None:
         """Follow a property of the object; FreeCAD calls this for each one when a document is opened as well."""
@@ -82,17 +63,3 @@ class MachineView:
         if tool_too:
             self.scene.take_tool(obj.ToolDiameter.Value, obj.ToolCornerRadius.Value, obj.ToolLength.Value)
         self.scene.show(pose_of(obj))
-
-    def getIcon(self) -> str:
-        """A machine with six struts."""
-        return str(ICONS / "machine.svg")
-
-    def claimChildren(self) -> list[Any]:
-        """No children: job and reference have their own places in the tree."""
-        return []
-
-    def dumps(self) -> None:
-        """Nothing is saved."""
-
-    def loads(self, state: object) -> None:
-        """Nothing was saved."""

@@ -7,32 +7,16 @@ format.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
-ICONS = Path(__file__).parents[2] / "resources" / "icons"
+from pkm_post.freecad_gui.views import View
 
 
-class NormalCompensationView:
+class NormalCompensationView(View):
     """The icon of the dress-up, and its base as its child. That the base goes back is up to the object itself."""
 
-    def __init__(self, vobj: Any) -> None:
-        vobj.Proxy = self
-
-    def attach(self, vobj: Any) -> None:
-        """Remember the object that is shown; called for new and for restored ones."""
-        self.Object = vobj.Object
-
-    def getIcon(self) -> str:
-        """A cutter on a curved surface."""
-        return str(ICONS / "normal_compensation.svg")
+    icon = "normal_compensation.svg"
 
     def claimChildren(self) -> list[Any]:
         """The operation below."""
         return [] if self.Object.Base is None else [self.Object.Base]
-
-    def dumps(self) -> None:
-        """Nothing is saved."""
-
-    def loads(self, state: object) -> None:
-        """Nothing was saved."""

@@ -7,25 +7,15 @@ format.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
-ICONS = Path(__file__).parents[2] / "resources" / "icons"
+from pkm_post.freecad_gui.views import View
 
 
-class ProgramView:
+class ProgramView(View):
     """The icon of a part program, and the way to its editor."""
 
-    def __init__(self, vobj: Any) -> None:
-        vobj.Proxy = self
-
-    def attach(self, vobj: Any) -> None:
-        """Remember the object that is shown; called for new and for restored ones."""
-        self.Object = vobj.Object
-
-    def getIcon(self) -> str:
-        """A sheet with lines."""
-        return str(ICONS / "program.svg")
+    icon = "program.svg"
 
     def doubleClicked(self, vobj: Any) -> bool:
         """Called by FreeCAD: open the editor."""
@@ -33,13 +23,3 @@ class ProgramView:
 
         open_editor(vobj.Object)
         return True
-
-    def claimChildren(self) -> list[Any]:
-        """No children."""
-        return []
-
-    def dumps(self) -> None:
-        """Nothing is saved."""
-
-    def loads(self, state: object) -> None:
-        """Nothing was saved."""

@@ -14,36 +14,15 @@ import numpy as np
 from pivy import coin
 
 from pkm_post.freecad_gui.margin_colours import OUT, colours_of, largest, legend
-from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.freecad_gui.views import DrawnView
 
-_MODE = "Reach"
 _LINE_WIDTH, _MARK_SIZE = 3.0, 11.0
 
 
-class ReachView:
+class ReachView(DrawnView):
     """Draws the way. Double click opens the findings."""
 
-    def __init__(self, vobj: Any) -> None:
-        vobj.Proxy = self
-
-    def attach(self, vobj: Any) -> None:
-        """Make the root of the scene; called for new and for restored objects."""
-        self.Object = vobj.Object
-        self._root = coin.SoSeparator()
-        vobj.addDisplayMode(self._root, _MODE)
-        self.refresh()
-
-    def getDisplayModes(self, _vobj: Any) -> list[str]:
-        """The one way it is shown."""
-        return [_MODE]
-
-    def getDefaultDisplayMode(self) -> str:
-        """The one way it is shown."""
-        return _MODE
-
-    def setDisplayMode(self, mode: str) -> str:
-        """The one way it is shown."""
-        return mode
+    icon, mode = "reach.svg", "Reach"
 
     def updateData(self, _obj: Any, name: str) -> None:
         """Draw anew when the way has its margins: these are set last."""
@@ -81,20 +60,6 @@ class ReachView:
         """Close the findings."""
         FreeCADGui.Control.closeDialog()
         return True
-
-    def getIcon(self) -> str:
-        """A way with a mark."""
-        return str(ICONS / "reach.svg")
-
-    def claimChildren(self) -> list[Any]:
-        """No children: job and machine have their own places in the tree."""
-        return []
-
-    def dumps(self) -> None:
-        """Nothing is saved."""
-
-    def loads(self, state: object) -> None:
-        """Nothing was saved."""
 
 
 def _way(points: list[tuple[float, ...]], margin: Any) -> coin.SoSeparator:

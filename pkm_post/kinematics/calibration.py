@@ -18,9 +18,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry.vectors import Array, norm, unit
-from pkm_post.kinematics.inverse import strut_vectors
+from pkm_post.kinematics.inverse import counted_lengths, strut_vectors
 from pkm_post.kinematics.orientation import platform_rotation
-from pkm_post.kinematics.screw import screw_correction, screw_gradient
+from pkm_post.kinematics.screw import screw_gradient
 from pkm_post.model import Machine
 from pkm_post.model.columns import freeze
 
@@ -138,8 +138,7 @@ def _missing(machine: Machine, measured: Measured) -> Array:
     """Counted lengths less those that the machine would count, (N, 6)."""
     struts = strut_vectors(machine, *measured.pose)
     distance, rotation = norm(struts), platform_rotation(measured.axis, measured.spin)
-    counted = distance + screw_correction(struts / distance[..., None], rotation, machine) - machine.length_offset
-    return measured.lengths - counted
+    return measured.lengths - counted_lengths(machine, distance, struts / distance[..., None], rotation)
 
 
 def _moved(machine: Machine, step: Array) -> Machine:
@@ -157,7 +156,7 @@ def _scaled(machine: Machine, measured: Measured) -> tuple[tuple[Array, Array, A
     rows = identification_rows(machine, measured)
     scale = np.linalg.norm(rows, axis=1)
     scale[scale == 0.0] = 1.0
-    # rows of zeros, so that fewer poses than parameters have seven singular values as well
+    # Rows of zeros, so that fewer poses than parameters have seven singular values as well
     rows = np.pad(rows / scale[:, None, :], ((0, 0), (0, max(0, len(PARAMETERS) - len(measured))), (0, 0)))
     left, values, right = np.linalg.svd(rows, full_matrices=False)
     return (left[:, : len(measured)], values, right), scale

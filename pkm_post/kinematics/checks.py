@@ -24,6 +24,8 @@ ANGLE = 1e-4
 """rad, the same for angles, about 0.006 degrees."""
 SINGULAR = 1e-4
 """The same for singular values."""
+_WELL_CONDITIONED = 0.1
+"""Singular values this far above the limit need not be computed for every row."""
 
 STRUTS = tuple(str(strut) for strut in range(1, 7))
 _SCREW_SLOPE = 4.0
@@ -108,29 +110,3 @@ def singularity_check(machine: Machine, way: Way, shortest: float) -> Check:
     by_turn = float(np.sqrt(np.sum(swing_by_turn**2 + ((1 + swing_by_turn) * arm) ** 2)))
     told = f"smallest singular value below {least:g} by {{by:.4f}}"
     return Check("singular poses", "K105", "", ("",), told, margins, by_travel, by_turn, SINGULAR, _WELL_CONDITIONED)
-
-
-_WELL_CONDITIONED = 0.1
-"""Singular values this far above the limit need not be computed for every row."""
-
-
-def smallest_singular_value(jacobian: Array, determinant: Array, limit: float) -> Array:
-    """Smallest singular values, (N,); where that cannot be below the limit, a lower bound of it that is cheap.
-
-    |det J| is the product of the singular values and |J|^2 the sum of their squares. The product of five of them is
-    largest when they are equal, so the sixth is at least |det J| / (|J|^2 / 5)^(5/2). Where that does not decide, it
-    is at least 1 / |J^-1|, and where that does not either, it is computed.
-    """
-    square = np.einsum("nij,nij->n", jacobian, jacobian)
-    bound = np.abs(determinant) / (square / 5) ** 2.5
-    near = np.flatnonzero(bound < limit)
-    regular = near[np.abs(determinant[near]) > _REGULAR]
-    inverse = np.linalg.inv(jacobian[regular])
-    bound[regular] = 1 / np.sqrt(np.einsum("nij,nij->n", inverse, inverse))
-    near = near[bound[near] < limit]
-    bound[near] = np.linalg.svd(jacobian[near], compute_uv=False)[:, -1]
-    return bound
-
-
-_REGULAR = 1e-6
-"""Determinants above it belong to Jacobians whose inverse has at least ten correct digits."""

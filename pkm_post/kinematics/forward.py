@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry.vectors import Array, norm
-from pkm_post.kinematics.jacobian import linearise
+from pkm_post.kinematics.jacobian import linearise, solve_regular
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.model import Machine
 
@@ -99,7 +99,7 @@ def _newton(
             tip[closed], rotation[closed], converged[closed] = at[done], turned[done], True
         if done.all():
             return
-        step, regular = _solve(jacobian, residual)
+        step, regular = solve_regular(jacobian, residual)
         keep = ~done & regular
         if not keep.all():
             rows, at, turned, wanted, tool = rows[keep], at[keep], turned[keep], wanted[keep], tool[keep]
@@ -108,17 +108,6 @@ def _newton(
             return
         at = at + step[:, :3]
         turned = _rotation_of(step[:, 3:]) @ turned
-
-
-def _solve(jacobian: Array, residual: Array) -> tuple[Array, Array]:
-    """Newton steps (N, 6), and which rows have one: an exactly singular Jacobian has none."""
-    try:
-        return np.linalg.solve(jacobian, residual[..., None])[..., 0], np.ones(len(residual), dtype=bool)
-    except np.linalg.LinAlgError:
-        regular = np.abs(np.linalg.det(jacobian)) > 0
-        step = np.zeros_like(residual)
-        step[regular] = np.linalg.solve(jacobian[regular], residual[regular][..., None])[..., 0]
-        return step, regular
 
 
 def _rotation_of(vector: Array) -> Array:

@@ -72,3 +72,14 @@ def moments(along: Array, arm: Array) -> Array:
     np.subtract(z * u, x * w, out=rows[..., 4])
     np.subtract(x * v, y * u, out=rows[..., 5])
     return rows
+
+
+def solve_regular(matrices: Array, right: Array) -> tuple[Array, Array]:
+    """Solutions x of A x = b, (N, 6), and which rows have one, (N,): an exactly singular matrix has none, but zeros."""
+    try:
+        return np.linalg.solve(matrices, right[..., None])[..., 0], np.ones(len(right), dtype=bool)
+    except np.linalg.LinAlgError:
+        regular = np.abs(np.linalg.det(matrices)) > 0
+        solutions = np.zeros_like(right)
+        solutions[regular] = np.linalg.solve(matrices[regular], right[regular][..., None])[..., 0]
+        return solutions, regular

@@ -12,12 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics.checks import smallest_singular_value, swing
+from pkm_post.kinematics.checks import swing
 from pkm_post.kinematics.placed import Placed
 from pkm_post.model import Machine
 
 _CHUNK = 4096
 """Poses per pass: the working arrays of one pass stay in the processor's cache."""
+_REGULAR = 1e-6
+"""Determinants above it belong to Jacobians whose inverse has at least ten correct digits."""
 
 
 @dataclass(frozen=True)
@@ -67,3 +69,21 @@ def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length
         smallest_singular_value(jacobian, determinant, machine.least_singular_value),
         np.sign(determinant),
     )
+
+
+def smallest_singular_value(jacobian: Array, determinant: Array, limit: float) -> Array:
+    """Smallest singular values, (N,); where that cannot be below the limit, a lower bound of it that is cheap.
+
+    |det J| is the product of the singular values and |J|^2 the sum of their squares. The product of five of them is
+    largest when they are equal, so the sixth is at least |det J| / (|J|^2 / 5)^(5/2). Where that does not decide, it
+    is at least 1 / |J^-1|, and where that does not either, it is computed.
+    """
+    square = np.einsum("nij,nij->n", jacobian, jacobian)
+    bound = np.abs(determinant) / (square / 5) ** 2.5
+    near = np.flatnonzero(bound < limit)
+    regular = near[np.abs(determinant[near]) > _REGULAR]
+    inverse = np.linalg.inv(jacobian[regular])
+    bound[regular] = 1 / np.sqrt(np.einsum("nij,nij->n", inverse, inverse))
+    near = near[bound[near] < limit]
+    bound[near] = np.linalg.svd(jacobian[near], compute_uv=False)[:, -1]
+    return bound

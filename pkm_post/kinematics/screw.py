@@ -12,8 +12,7 @@ the strut. The twist is the angle from one to the other about u:
     delta = atan2(S, C),  S = u . (b x a),  C = b . a - (b . u)(a . u),  dl = lead delta / (2 pi)
 
 genhexkins writes asin for the same angle; both agree while the twist is less than a right angle, and machine files are
-held to that in the rest pose. A strut with a spherical joint needs a key, and one
-with a key has a lead of zero here.
+held to that in the rest pose. A strut with a spherical joint needs a key, and one with a key has a lead of zero here.
 [genhexkins, StrutLengthCorrection]
 """
 

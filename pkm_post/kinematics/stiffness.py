@@ -13,7 +13,7 @@ import numpy as np
 
 from pkm_post.geometry.vectors import Array, norm
 from pkm_post.kinematics.inverse import strut_vectors
-from pkm_post.kinematics.jacobian import jacobian_of_tip
+from pkm_post.kinematics.jacobian import jacobian_of_tip, solve_regular
 from pkm_post.kinematics.way import Pose
 from pkm_post.model import Machine
 
@@ -33,7 +33,7 @@ def strut_compliance(machine: Machine, distance: Array) -> Array:
 
 
 def stiffness_along(machine: Machine, pose: Pose, normal: Array) -> Array:
-    """Stiffness of the tip along unit normals, (N,) in N/mm; zero at singular poses that let it go.
+    """Stiffness of the tip along unit normals, (N,) in N/mm; zero at exactly singular poses.
 
     Args:
         machine: with ``strut_stiffness``.
@@ -51,6 +51,6 @@ def _stiffness(machine: Machine, pose: tuple[Array, ...], normal: Array) -> Arra
     tip, axis, spin, tool_length = pose
     jacobian = jacobian_of_tip(machine, tip, axis, spin, tool_length)
     wrench = np.concatenate([normal, np.zeros_like(normal)], axis=1)
-    force = np.linalg.solve(jacobian.transpose(0, 2, 1), wrench[..., None])[..., 0]
+    force, held = solve_regular(jacobian.transpose(0, 2, 1), wrench)
     gives = strut_compliance(machine, norm(strut_vectors(machine, tip, axis, spin, tool_length)))
-    return 1.0 / np.sum(force**2 * gives, axis=1)
+    return np.divide(1.0, np.sum(force**2 * gives, axis=1), out=np.zeros(len(normal)), where=held)

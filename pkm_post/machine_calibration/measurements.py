@@ -37,7 +37,10 @@ def read_measurements(path: Path) -> tuple[Measured | None, tuple[Diagnostic, ..
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as fault:
         return None, (Diagnostic("M201", Place(str(path)), getattr(fault, "strerror", None) or str(fault)),)
-    rows = list(_rows(text))
+    try:
+        rows = list(_rows(text))
+    except csv.Error as fault:
+        return None, (Diagnostic("M202", Place(str(path)), str(fault)),)
     if not rows:
         return None, (Diagnostic("M202", Place(str(path)), f"expected a line {','.join(COLUMNS)} and rows below it"),)
     (line, head), *rows = rows
@@ -54,8 +57,9 @@ def read_measurements(path: Path) -> tuple[Measured | None, tuple[Diagnostic, ..
 
 def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
     """The lines that say something, with their numbers from 1."""
-    for line, cells in enumerate(csv.reader(text.splitlines()), start=1):
-        cells = [cell.strip() for cell in cells]
+    # Line by line, as a quotation mark without its partner would swallow the lines below it.
+    for line, row in enumerate(text.splitlines(), start=1):
+        cells = [cell.strip() for cell in next(csv.reader([row]), [])]
         if any(cells) and not cells[0].startswith("#"):
             yield line, cells
 

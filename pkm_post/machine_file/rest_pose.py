@@ -22,7 +22,7 @@ Check = Callable[[Values], Iterator[tuple[str, str]]]
 COINCIDENT = 1e-3
 """Joint centres nearer than this (mm) give a strut no direction."""
 CONE_TOLERANCE = 1e-9
-_SIDES = ("base", "platform")
+SIDES = ("base", "platform")
 POSE = ("base.joints", "platform.joints", "platform.spindle_nose", "joints.rest_pose", "joints.rest_tool_length")
 
 
@@ -43,8 +43,7 @@ def rest_axes(values: Values) -> tuple[Array, Array]:
     Returns:
         (6, 3) unit axes of the base joints in {M}, and (6, 3) of the platform joints in {T}.
     """
-    struts = rest_struts(values)
-    along = struts / np.linalg.norm(struts, axis=1, keepdims=True)
+    along = rest_struts(values) / rest_distances(values)[:, None]
     base, platform = values["joints.base_rest"], values["joints.platform_rest"]
     return (along if base is None else base), (-along if platform is None else platform)
 
@@ -72,7 +71,7 @@ def _rest_lengths(values: Values) -> Array:
     length = rest_distances(values)
     if values.get("struts.length_offset") is not None:
         length = length - values["struts.length_offset"]
-    if values.get("struts.screw_lead") and all(values.get(f"joints.{side}_axes") is not None for side in _SIDES):
+    if values.get("struts.screw_lead") and all(values.get(f"joints.{side}_axes") is not None for side in SIDES):
         length = length + values["struts.screw_lead"] * rest_twists(values)[0] / (2.0 * np.pi)
     return length
 
@@ -94,9 +93,8 @@ def _outside_stroke(values: Values) -> Iterator[tuple[str, str]]:
 
 def _outside_cone(side: str, sign: float) -> Check:
     def check(values: Values) -> Iterator[tuple[str, str]]:
-        struts = rest_struts(values)
-        length = np.linalg.norm(struts, axis=1)
-        along = sign * struts / np.maximum(length, COINCIDENT)[:, None]
+        length = rest_distances(values)
+        along = sign * rest_struts(values) / np.maximum(length, COINCIDENT)[:, None]
         swing = np.arccos(np.clip((along * values[f"joints.{side}_rest"]).sum(axis=1), -1.0, 1.0))
         cone = values[f"joints.{side}_cone"]
         if joints := np.flatnonzero((length >= COINCIDENT) & (swing > cone + CONE_TOLERANCE)).tolist():

@@ -10,11 +10,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pkm_post.machine_file.rest_pose import COINCIDENT, POSE, Check, Values, each, rest_distances, rest_twists
+from pkm_post.machine_file.rest_pose import COINCIDENT, POSE, SIDES, Check, Values, each, rest_distances, rest_twists
 
 _LEAST_ACROSS = 1e-6
 """Least sine of the angle between a strut and the fixed axis of its joint; below, the second axis has no direction."""
-_SIDES = ("base", "platform")
 
 
 def _partner(stated: str, partner: str) -> tuple[tuple[str, ...], Check]:
@@ -46,7 +45,7 @@ def _gap(values: Values) -> Iterator[tuple[str, str]]:
 def _screw_without_axes(values: Values) -> Iterator[tuple[str, str]]:
     if values["struts.screw_lead"] == 0.0:
         return
-    for side in _SIDES:
+    for side in SIDES:
         if values[f"joints.{side}_kind"] != "universal":
             yield f"joints.{side}_kind", "a screw that turns with its strut needs universal joints at both ends"
         if _is_left_out(values, f"joints.{side}_axes"):
@@ -57,7 +56,7 @@ def _screw_twisted_at_rest(values: Values) -> Iterator[tuple[str, str]]:
     if values["struts.screw_lead"] == 0.0 or np.any(rest_distances(values) < COINCIDENT):
         return
     twist, across = rest_twists(values)
-    for side, sine in zip(_SIDES, across, strict=True):
+    for side, sine in zip(SIDES, across, strict=True):
         if struts := np.flatnonzero(sine < _LEAST_ACROSS).tolist():
             yield f"joints.{side}_axes", each(struts, "in the rest pose strut {} is parallel to its axis", twist)
     far = np.abs(twist) >= np.pi / 2.0

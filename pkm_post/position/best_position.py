@@ -24,7 +24,6 @@ from pkm_post.spin.shares import STROKE, score, shares
 FREEDOMS = "xyzabc"
 """Shifts along and turns about the axes of {M} through the middle of the job, by letter."""
 
-_EVERY_NODE = 1.0
 _FIRST_STEP = np.array([80.0, 80.0, 80.0, *np.radians([10.0, 10.0, 30.0])])
 _LAST_STEP = np.array([0.1, 0.1, 0.1, *np.radians([0.02, 0.02, 0.02])])
 _FIRST_POSES = 40
@@ -92,6 +91,7 @@ def best_position(
     every, weights = np.arange(len(job.tip)), weights or {STROKE: 1.0}
     chosen = np.array([letter in free for letter in FREEDOMS])
     move, active = np.zeros(6), _first_poses(job)
+    # Whether or not the rounds suffice, what is told of the result is measured at every pose.
     for _ in range(_ROUNDS):
 
         def worst(moves: Array, rows: Array = active) -> Array:
@@ -112,12 +112,11 @@ def best_position(
 
 
 def _job(trajectory: Trajectory, machine: Machine) -> _Job:
-    samples = Samples.of(trajectory, _EVERY_NODE)
+    samples = Samples.of(trajectory)
     rows = samples.s >= samples.row_s[0]
     tip = samples.tip[rows]
-    spin = np.interp(samples.s, samples.row_s, trajectory.spin)[rows]
     middle = (tip.min(axis=0) + tip.max(axis=0)) / 2
-    return _Job(machine, middle, tip, samples.axis[rows], spin, samples.tool_length[rows])
+    return _Job(machine, middle, tip, samples.axis[rows], samples.spin[rows], samples.tool_length[rows])
 
 
 def _first_poses(job: _Job) -> Array:

@@ -2,14 +2,13 @@
 """Spin: the turn of the platform about the tool axis, which cuts nothing and moves every strut."""
 
 from pkm_post.spin.apply import with_spin
-from pkm_post.spin.optimise import Optimised, least_shares, optimise
+from pkm_post.spin.optimise import least_shares, optimise
 from pkm_post.spin.policy import OBJECTIVES, ZERO_TORSION, Policy, Rule
 from pkm_post.spin.rules import spin_in_plane
 
 __all__ = [
     "OBJECTIVES",
     "ZERO_TORSION",
-    "Optimised",
     "Policy",
     "Rule",
     "least_shares",

@@ -29,7 +29,7 @@ def with_spin(
     if policy.rule is Rule.FILE:
         return trajectory, ()
     if policy.rule is Rule.OPTIMISED:
-        return optimise(replace(trajectory, spin=np.zeros(len(trajectory))), machine, policy).trajectory, ()
+        return optimise(replace(trajectory, spin=np.zeros(len(trajectory))), machine, policy), ()
     if policy.rule is Rule.ZERO:
         return replace(trajectory, spin=np.zeros(len(trajectory))), ()
     spin = spin_in_plane(trajectory.axis, policy.heading, of_y=policy.rule is Rule.Y_IN_PLANE)

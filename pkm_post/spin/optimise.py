@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Optimise: the spin along a whole path that leaves the machine most room.
 
-A trajectory enters; the same with another spin leaves, with what is left of stroke, joint cones and distance to
-singular poses before and after. First the worst place of the path is made as good as it can be, then the spin is turned
-no more than that needs. The search is coarse first and is refined about its result. [Merlet2000]
+A trajectory enters; the same with another spin leaves. First the worst place of the path is made as good as it can be,
+then the spin is turned no more than that needs. The search is coarse first and is refined about its result.
+[Merlet2000]
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,27 +23,11 @@ from pkm_post.spin.shares import score, shares
 _REFINEMENT = 4
 """Each search has steps this much finer than the one before, and looks as far as one step of that."""
 _REFINEMENTS = 2
-_EVERY_NODE = 1.0
 _BLOCK = 1 << 16
 """Poses per pass, samples times candidates: what is in memory at a time."""
 
 
-@dataclass(frozen=True)
-class Optimised:
-    """What the search found.
-
-    Attributes:
-        trajectory: with the spin found.
-        before: (3,) least shares of stroke, joints and distance to singular poses along the path as it came.
-        after: (3,) the same with the spin found.
-    """
-
-    trajectory: Trajectory
-    before: Array
-    after: Array
-
-
-def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Optimised:
+def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Trajectory:
     """Search for the spin.
 
     Args:
@@ -51,55 +35,54 @@ def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Optimi
         machine: geometry and limits.
         policy: what to make as large as possible, and how far and how fast the spin may turn.
     """
-    samples = Samples.of(trajectory, policy.step / policy.rate)
-    home = trajectory.start_spin
-    extent = np.diff(samples.node_s, prepend=0.0)
-    course = np.full(len(extent), home)
+    samples, home = Samples.of(trajectory), trajectory.start_spin
+    node_s = samples.row_s[_nodes(samples.row_s, policy.step / policy.rate)]
+    extent = np.diff(node_s, prepend=0.0)
+    course = np.full(len(node_s), home)
     step, count = policy.step, max(1, math.floor(policy.widest / policy.step))
     for _ in range(1 + _REFINEMENTS):
         candidates = course[:, None] + step * np.arange(-count, count + 1)
         np.clip(candidates, home - policy.widest, home + policy.widest, out=candidates)
-        scores = _scores(samples, machine, policy, candidates)
+        scores = _scores(samples, node_s, machine, policy, candidates)
         best = best_course(candidates, scores, home, policy.rate * extent, extent)
         course = candidates[np.arange(len(course)), best]
         step, count = step / _REFINEMENT, _REFINEMENT
-    nodes = np.concatenate([[0.0], samples.node_s]), np.concatenate([[home], course])
-    return Optimised(
-        trajectory=replace(trajectory, spin=np.interp(samples.row_s, *nodes)),
-        before=_least(samples, machine, _spin_at(samples, trajectory)),
-        after=_least(samples, machine, np.interp(samples.s, *nodes)),
-    )
+    spin = np.interp(samples.row_s, np.append(0.0, node_s), np.append(home, course))
+    return replace(trajectory, spin=spin)
 
 
 def least_shares(trajectory: Trajectory, machine: Machine) -> Array:
     """What is left at the worst places of a trajectory, (3,): stroke, joints, distance to singular poses."""
-    samples = Samples.of(trajectory, _EVERY_NODE)
-    return _least(samples, machine, _spin_at(samples, trajectory))
+    samples = Samples.of(trajectory)
+    left = shares(machine, samples.tip, samples.axis, samples.spin, samples.tool_length)
+    return np.asarray(left.min(axis=0))
 
 
-def _scores(samples: Samples, machine: Machine, policy: Policy, candidates: Array) -> Array:
-    """How good each candidate is at each node, (K, M): the worst of the samples next to it."""
+def _nodes(row_s: Array, least: float) -> list[int]:
+    """Segments whose ends are nodes: each the first one that is far enough from the node before, and the last."""
+    nodes, at, last = [], 0.0, len(row_s) - 1
+    while at + least < row_s[-1]:
+        nodes.append(min(int(np.searchsorted(row_s, at + least)), last))
+        at = row_s[nodes[-1]]
+    if not nodes or nodes[-1] != last:
+        nodes[-1:] = [last]
+    return nodes
+
+
+def _scores(samples: Samples, node_s: Array, machine: Machine, policy: Policy, candidates: Array) -> Array:
+    """How good each candidate is at each node, (K, M): the worst of the samples that are nearest to it."""
+    halfway = (np.append(0.0, node_s[:-1]) + node_s) / 2
+    # What is nearest to the start of the path has the spin of the start.
+    chosen = np.flatnonzero(samples.s >= halfway[0])
+    node = np.searchsorted(halfway, samples.s[chosen], side="right") - 1
     choices = candidates.shape[1]
-    chosen_by = np.flatnonzero(samples.node >= 0)
-    scores = np.empty((len(chosen_by), choices))
+    scores = np.empty((len(chosen), choices))
     block = max(1, _BLOCK // choices)
-    for first in range(0, len(chosen_by), block):
-        rows = chosen_by[first : first + block]
+    for first in range(0, len(chosen), block):
+        rows = chosen[first : first + block]
         tip, axis, length = (
             np.repeat(column[rows], choices, axis=0) for column in (samples.tip, samples.axis, samples.tool_length)
         )
-        left = shares(machine, tip, axis, candidates[samples.node[rows]].ravel(), length)
+        left = shares(machine, tip, axis, candidates[node[first : first + block]].ravel(), length)
         scores[first : first + block] = score(left, policy.weights).reshape(-1, choices)
-    starts = np.searchsorted(samples.node[chosen_by], np.arange(len(candidates)))
-    return np.asarray(np.minimum.reduceat(scores, starts, axis=0))
-
-
-def _spin_at(samples: Samples, trajectory: Trajectory) -> Array:
-    s = np.concatenate([[0.0], samples.row_s])
-    return np.interp(samples.s, s, np.concatenate([[trajectory.start_spin], trajectory.spin]))
-
-
-def _least(samples: Samples, machine: Machine, spin: Array) -> Array:
-    found = shares(machine, samples.tip, samples.axis, spin, samples.tool_length)
-    least: Array = found.min(axis=0)
-    return least
+    return np.asarray(np.minimum.reduceat(scores, np.searchsorted(node, np.arange(len(node_s))), axis=0))

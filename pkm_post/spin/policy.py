@@ -6,7 +6,7 @@ from __future__ import annotations
 import enum
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from pkm_post.spin.shares import JOINTS, SINGULAR, STROKE
@@ -57,14 +57,17 @@ class Policy:
     rate: float = math.radians(0.5)
     widest: float = math.radians(40.0)
     step: float = math.radians(2.0)
-    weights: Mapping[int, float] = field(init=False)
 
     def __post_init__(self) -> None:
         if self.objective not in OBJECTIVES:
             raise ValueError(f"objective: expected one of {', '.join(OBJECTIVES)}, got {self.objective!r}")
         if not (self.rate > 0 and self.widest > 0 and self.step > 0):
             raise ValueError(f"expected rate, widest and step above 0, got {self.rate}, {self.widest}, {self.step}")
-        object.__setattr__(self, "weights", OBJECTIVES[self.objective])
+
+    @property
+    def weights(self) -> Mapping[int, float]:
+        """The shares that count, by column, with their weights."""
+        return OBJECTIVES[self.objective]
 
 
 ZERO_TORSION = Policy()

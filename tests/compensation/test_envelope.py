@@ -69,6 +69,17 @@ def test_flat_end_that_turns_on_the_spot_cuts_with_bottom_and_side():
     assert found.left == pytest.approx(np.maximum(bottom, side), abs=1e-4)
 
 
+@pytest.mark.parametrize("gap", [0.1, -0.1], ids=["left", "gouge"])
+@pytest.mark.parametrize("degrees", [30.0, 5.0, 2.0])
+def test_line_that_meets_a_flank_at_a_slant_is_followed_to_it(degrees, gap):
+    # The flank is at y = 5. Two degrees from it a step is a thirtieth of what is left of the way.
+    slant = np.radians(degrees)
+    tips = [[-20.0, 0.0, -5.0], [20.0, 0.0, -5.0]]
+    normals = [[0.0, -np.sin(slant), np.cos(slant)]]
+    found = stock_left(tips, upright(2), ALL["flat"], [[0.0, 5.0 + gap, 0.0]], normals, reach=10.0, tolerance=TOLERANCE)
+    assert found.left * np.sin(slant) == pytest.approx([gap], abs=TOLERANCE)
+
+
 def first_entry(profile, tips, axes, point, normal, reach):
     """The least way along the normal to the cutter in any of the poses, by steps and then by halving."""
 

@@ -4,12 +4,11 @@
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from time_optimal_paths import LIMITS, PATHS, stations_of
 
 from pkm_post import planning
-from pkm_post.feed import limits, speed_profile
+from pkm_post.feed import cell_times, limits, speed_profile
 
 SHORTEST = json.loads((Path(__file__).parents[1] / "data" / "time_optimal.json").read_text(encoding="ascii"))
 FACTOR = 1.7
@@ -26,7 +25,6 @@ def test_the_plan_is_no_faster_and_not_much_slower_than_the_optimum(name, limits
     feed = planning._feed_at(path, marks.segment, marks.u)
     square, along = limits(feed, planning._bounded(machine, poses))
     square[marks.rest] = 0.0
-    speed = np.sqrt(speed_profile(marks.s, square, along))
-    time = float(np.sum(2 * np.diff(marks.s) / (speed[1:] + speed[:-1])))
+    time = float(cell_times(marks.s, speed_profile(marks.s, square, along)).sum())
     shortest = SHORTEST[f"{name}, {limits_name}"]
     assert shortest * (1 - OPTIMUM_DIGITS) <= time <= FACTOR * shortest

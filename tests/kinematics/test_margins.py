@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+"""Margins of single poses against limits, lengths and decomposed Jacobians."""
+
 import dataclasses
 
 import numpy as np
 import pytest
 from machines import direction, example, random_poses
 
-from pkm_post.kinematics import reach_margins, scaled_jacobian, strut_lengths
-from pkm_post.kinematics.checks import smallest_singular_value
+from pkm_post.kinematics import reach_margins, scaled_jacobian, strut_lengths, strut_vectors
+from pkm_post.kinematics.margins import smallest_singular_value
 
 
 def test_margins_are_the_distances_to_the_limits():
@@ -46,8 +48,6 @@ def test_a_path_through_a_singular_pose_is_negative_behind_it():
 def test_swing_is_measured_from_the_rest_axes(tilt, base, platform):
     machine = example()
     upright = np.array([[0.0, 0, 200]]), np.array([[0.0, 0, 1]]), np.zeros(1), np.array([120.0])
-    from pkm_post.kinematics import strut_vectors
-
     struts = strut_vectors(machine, *upright)[0]
     rest = struts / np.linalg.norm(struts, axis=1)[:, None]
     machine = dataclasses.replace(machine, base_rest=rest, platform_rest=-rest)

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 from machines import example, random_poses
-from ways import upright
+from ways import LENGTH, upright
 
 from pkm_post.geometry import unit
 from pkm_post.kinematics import jacobian_of_tip, stiffness_along, strut_vectors
@@ -37,6 +37,13 @@ def test_compliance_is_that_of_the_whole_matrix():
     compliance = np.linalg.inv(jacobian.transpose(0, 2, 1) @ (each[..., None] * jacobian))[:, :3, :3]
     expected = 1 / np.einsum("ni,nij,nj->n", normal, compliance, normal)
     np.testing.assert_allclose(stiffness_along(machine, pose, normal), expected, rtol=1e-9)
+
+
+def test_a_platform_in_the_plane_of_the_base_joints_has_no_stiffness():
+    # All struts are level there: exactly nothing holds the tip up, and poses beside it are as they were.
+    level = 1400.0 - 80 - LENGTH
+    found = stiffness_along(stiff(), upright([[0.0, 0, level], [0.0, 0, 200]]), np.tile([0.0, 0, 1], (2, 1)))
+    assert found.tolist() == [0.0, *stiffness_along(stiff(), upright([[0.0, 0, 200]]), np.array([[0.0, 0, 1]]))]
 
 
 def test_chunks_do_not_show():

@@ -45,6 +45,8 @@ def test_axes_of_four_decimals_are_made_units(tmp_path):
         (f"{HEAD}\n{ROW}\n{ROW[2:]}\n", 3, "expected 14 numbers, got 13"),
         (f"{HEAD}\n{ROW.replace('802', 'far')}\n", 2, "l2: expected a number, got 'far'"),
         (f"{HEAD}\n{ROW.replace('802', 'nan')}\n", 2, "l2: expected a number, got 'nan'"),
+        (f'{HEAD}\n"{ROW}\n{ROW}\n', 2, "expected 14 numbers, got 1"),
+        (f"{HEAD}\n{'1' * 200_000}\n", 0, "field larger"),
         (f"{HEAD}\n{ROW.replace('802', '1e7')}\n", 2, "l2: expected a number, got '1e7'"),
         (f"{HEAD}\n{ROW.replace('802', '-802')}\n", 2, "l2: expected a length above 0"),
         (f"{HEAD}\n{ROW.replace(',0,0,1,', ',0,0,2,')}\n", 2, "expected a vector of length 1, got 2.0000"),

@@ -24,7 +24,7 @@ def shifted(by):
 
 
 def least_shares(trajectory, machine):
-    samples = Samples.of(trajectory, 1.0)
+    samples = Samples.of(trajectory)
     cut = samples.s >= samples.row_s[0]
     pose = samples.tip[cut], samples.axis[cut], np.zeros(cut.sum()), samples.tool_length[cut]
     return shares(machine, *pose).min(axis=0)

@@ -15,7 +15,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.files import staged
-from pkm_post.freecad_app.program_object import is_program
+from pkm_post.freecad_app.kinds import is_program
 from pkm_post.freecad_gui.editor import linked
 from pkm_post.freecad_gui.editor.body import Body
 from pkm_post.freecad_gui.editor.posting import Posting

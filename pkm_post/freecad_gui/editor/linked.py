@@ -12,7 +12,8 @@ from typing import Any
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.freecad_app.program_object import create_program, decode, is_program
+from pkm_post.freecad_app.kinds import is_job, is_program
+from pkm_post.freecad_app.program_object import create_program, decode
 
 
 def object_of(file: Path | None) -> Any:
@@ -42,7 +43,7 @@ def jobs() -> list[Any]:
     """The CAM jobs of the active document."""
     document = FreeCAD.ActiveDocument
     items = document.Objects if document is not None else []
-    return [item for item in items if hasattr(item, "Operations") and hasattr(item, "PostProcessor")]
+    return [item for item in items if is_job(item)]
 
 
 def chosen_job(parent: QtWidgets.QWidget, title: str) -> Any:

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Kinds: what an object of a document is, told by the properties that it has.
+
+An object enters, yes or no leaves. Nothing of CAM is imported: commands ask this in every workbench.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def is_job(item: Any) -> bool:
+    """Whether an object is a CAM job."""
+    return hasattr(item, "Operations") and hasattr(item, "PostProcessor")
+
+
+def is_program(item: Any) -> bool:
+    """Whether an object is a part program."""
+    return hasattr(item, "AxisWords") and hasattr(item, "Found")
+
+
+def is_operation(item: Any) -> bool:
+    """Whether an object is an operation of a CAM job; tool controllers have paths, too."""
+    others = is_job(item) or is_program(item) or hasattr(item, "ToolNumber")
+    return item.isDerivedFrom("Path::Feature") and not others
