@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs a scene in a FreeCAD with a window, under Xvfb."""
+
+import functools
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ADDON = Path(__file__).parents[2]
+
+
+class Scene:
+    """What a scene left.
+
+    Attributes:
+        folder: its files.
+        found: what each of its steps returned, by name.
+    """
+
+    def __init__(self, folder, found):
+        self.folder, self.found = folder, found
+
+    def __getitem__(self, name):
+        return self.found[name]
+
+    def drew(self, name):
+        """Whether a picture of a window with something in it was kept."""
+        return (self.folder / name).stat().st_size > 20_000
+
+
+@pytest.fixture(scope="session")
+def scene(tmp_path_factory):
+    """Runs a scene by its name, once for all tests; no step of it may end in an exception."""
+
+    @functools.cache
+    def run(name):
+        folder = tmp_path_factory.mktemp(name)
+        window = shutil.which("freecad") or shutil.which("FreeCAD")
+        assert window and shutil.which("xvfb-run"), "FreeCAD's window program and xvfb-run are needed"
+        script = Path(__file__).with_name(f"scene_{name}.py")
+        command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", window, "-M", str(ADDON), str(script)]
+        told = {"env": os.environ | {"PKM_FOLDER": str(folder)}, "capture_output": True, "text": True}
+        ran = subprocess.run(command, timeout=180, check=False, **told)
+        result = folder / "result.json"
+        assert result.exists(), ran.stdout + ran.stderr
+        found = json.loads(result.read_text())
+        report = found.pop("report view")
+        assert [step["exception"] for step in found.values() if "exception" in step] == []
+        assert "Traceback" not in ran.stdout + ran.stderr + report, ran.stdout + ran.stderr + report
+        return Scene(folder, found)
+
+    return run

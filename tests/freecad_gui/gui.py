@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the scenes share: steps in a FreeCAD with a window, and what they found as JSON.
+
+A scene is a script that FreeCAD runs in its window: functions marked as steps, and a call of ``main``. An exception in
+a step is its result, and the others still run. The environment names the folder for what is written (PKM_FOLDER), since
+FreeCAD would open files that its command line names. The last thing a scene tells is what stands in the Report view.
+"""
+
+import json
+import os
+import sys
+import time
+import traceback
+from pathlib import Path
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtGui, QtWidgets
+
+FOLDER = Path(os.environ["PKM_FOLDER"])
+STEPS = []
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "freecad_app"))
+
+
+def step(function):
+    """Mark a function as a step; steps run in their order, and return what is written as JSON."""
+    STEPS.append(function)
+    return function
+
+
+def select(item, *names):
+    """Select one object, or some of its faces, and nothing else."""
+    FreeCADGui.Selection.clearSelection()
+    for name in names or ("",):
+        FreeCADGui.Selection.addSelection(item, name)
+
+
+def press(command, item=None):
+    """Run a command of the workbench as its button does, with this object selected."""
+    if item is not None:
+        select(item)
+    FreeCADGui.runCommand(command, 0)
+    settle()
+
+
+def settle():
+    """Let the window do what is due."""
+    for _ in range(20):
+        QtWidgets.QApplication.processEvents()
+
+
+def until(condition, seconds=20):
+    """Let the window work until something is so; whether it is."""
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        QtWidgets.QApplication.processEvents()
+        time.sleep(0.01)
+    return condition()
+
+
+def picture(name):
+    """Keep a picture of the whole screen; whether it could be saved."""
+    settle()
+    return QtGui.QGuiApplication.primaryScreen().grabWindow(0).save(str(FOLDER / name))
+
+
+def picture_of_all(name):
+    """Look at everything that is visible, from the corner, and keep a picture."""
+    FreeCADGui.activeView().viewIsometric()
+    FreeCADGui.SendMsgToActiveView("ViewFit")
+    return picture(name)
+
+
+def answer(told):
+    """Read the message box that will open, and close it."""
+    QtCore.QTimer.singleShot(0, lambda: _close_message(told))
+
+
+def _close_message(told):
+    box = QtWidgets.QApplication.activeModalWidget()
+    if isinstance(box, QtWidgets.QMessageBox):
+        told.append(box.text())
+        box.accept()
+    else:
+        QtCore.QTimer.singleShot(50, lambda: _close_message(told))
+
+
+def new_document(name):
+    """A document with undo, and a CAM job for a hexapod with one operation."""
+    from cam_jobs import add_operation, new_job
+
+    document = FreeCAD.newDocument(name)
+    job = new_job(document)
+    job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--work-offset=0,0,250"
+    add_operation(job)
+    document.UndoMode = 1
+    return document
+
+
+def main():
+    """Run the steps of the scene when the window stands, then end FreeCAD."""
+    QtCore.QTimer.singleShot(1500, _run)
+
+
+def _run():
+    results = {}
+    for function in STEPS:
+        try:
+            results[function.__name__] = function()
+        except Exception:
+            results[function.__name__] = {"exception": traceback.format_exc()}
+    results["report view"] = _report_view()
+    (FOLDER / "result.json").write_text(json.dumps(results, indent=1), encoding="utf-8")
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
+
+
+def _report_view():
+    views = FreeCADGui.getMainWindow().findChildren(QtWidgets.QTextEdit)
+    (report,) = [view for view in views if view.metaObject().className() == "Gui::DockWnd::ReportOutput"]
+    return report.toPlainText()

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine, Reach and the player from their buttons."""
+
+import os
+import time
+
+import FreeCAD
+import FreeCADGui
+from gui import FOLDER, main, picture_of_all, press, settle, step
+from PySide import QtWidgets
+
+
+@step
+def machine_from_its_button():
+    from cam_jobs import ARC, FIVE_AXIS, add_operation, new_job
+
+    document = FreeCAD.newDocument("hexapod")
+    job = new_job(document)
+    job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--work-offset=0,0,250"
+    add_operation(job, ARC, "Arcs")
+    add_operation(job, FIVE_AXIS, "Tilted")
+    document.UndoMode = 1
+    FreeCADGui.Selection.clearSelection()
+    alone = FreeCADGui.Command.get("PKM_Machine").isActive()
+    press("PKM_Machine", job)
+    document.undo()
+    undone = document.getObject("Machine") is None
+    press("PKM_Machine", job)
+    machine = document.getObject("Machine")
+    view, tops = machine.ViewObject.Proxy, []
+    for height in (20, 120):
+        machine.Tip = FreeCAD.Vector(0, 0, height)
+        document.recompute()
+        tops.append(_highest(view.scene._platform))
+    told = {
+        "alone": alone,
+        "undone": undone,
+        "job": machine.Job.Name,
+        "icon": os.path.basename(view.getIcon()),
+        "moved": tops[1] - tops[0],
+        "out_of_limits": list(machine.OutOfLimits),
+    }
+    machine.Tip = FreeCAD.Vector(600, 0, -300)
+    document.recompute()
+    told["red"] = [tuple(strut._rod.diffuseColor[0].getValue()) for strut in view.scene._struts]
+    machine.MachineFile = "no_such_machine"
+    told["scene_without_machine"] = view.scene is not None
+    machine.MachineFile, machine.Tip = "example_6tps", FreeCAD.Vector(0, 0, 60)
+    document.recompute()
+    told["scene"] = view.scene is not None
+    return told
+
+
+def _highest(transform):
+    """The height of the platform in the machine, out of the scene graph."""
+    return transform.matrix.getValue().getValue()[3][2]
+
+
+@step
+def reach_from_its_button():
+    document = FreeCAD.getDocument("hexapod")
+    press("PKM_Reach", document.getObject("Job"))
+    found = document.getObject("Reach")
+    view = found.ViewObject.Proxy
+    told = {"machine": found.Machine.Name, "reachable": found.Reachable, "nodes": view._root.getNumChildren()}
+    view.doubleClicked(found.ViewObject)
+    settle()
+    (table,) = FreeCADGui.getMainWindow().findChildren(QtWidgets.QTableWidget, "PkmReachTable")
+    row = list(found.Checks).index("base joints")
+    table.cellClicked.emit(row, 0)
+    settle()
+    told |= {
+        "rows": [table.item(line, 0).text() for line in range(table.rowCount())] == list(found.Checks),
+        "colour_by": found.ColourBy,
+        "selected": [item.Label for item in FreeCADGui.Selection.getSelection()] == [found.WorstOperations[row]],
+    }
+    found.Machine.ViewObject.Visibility = False
+    told["saved"] = picture_of_all("reach.png")
+    found.Machine.ViewObject.Visibility = True
+    FreeCADGui.getDocument("hexapod").resetEdit()
+    settle()
+    told["panel_is_left_open"] = bool(FreeCADGui.Control.activeDialog())
+    document.undo()
+    told["after_undo"] = found.ColourBy
+    return told
+
+
+@step
+def simulation_from_its_button():
+    document = FreeCAD.getDocument("hexapod")
+    machine = document.getObject("Machine")
+    before = machine.ViewObject.Proxy.scene._platform.matrix.getValue().getValue()
+    press("PKM_Simulate", document.getObject("Job"))
+    player = _player()
+    told = {"duration": player.simulation.duration, "told": player.told.text()}
+    player.factor.setCurrentText("2x")
+    player.toggle()
+    until = time.monotonic() + 1.0
+    while time.monotonic() < until:
+        settle()
+    player.toggle()
+    told["played"] = player.seconds
+    player.step()
+    told["stepped"] = player.simulation.next_block(told["played"]) == player.seconds
+    player.slider.setValue(4000)
+    told["scrubbed"] = player.seconds
+    tip = player.simulation.pose_at([4.0])[0][0]
+    told["machine_is_there"] = bool(abs(tip[2] + 120 + 80 - _highest(machine.ViewObject.Proxy.scene._platform)) < 1.0)
+    frames = FOLDER / "frames"
+    frames.mkdir()
+    player.factor.setCurrentText("10x")
+    player.write_pictures(frames, per_second=2, width=320, height=240)
+    told["pictures"] = sorted(os.listdir(frames))
+    document.getObject("Reach").ViewObject.Visibility = False
+    told["saved"] = picture_of_all("simulation.png")
+    player.close()
+    settle()
+    after = machine.ViewObject.Proxy.scene._platform.matrix.getValue().getValue()
+    told["machine_is_back"] = after == before
+    press("PKM_Simulate", document.getObject("Job"))
+    document.removeObject("Machine")
+    settle()
+    told["closed_with_its_machine"] = _player() is None
+    document.getObject("Job").PostProcessorArgs = "--work-offset=500,0,200"
+    press("PKM_Simulate", document.getObject("Job"))
+    player = _player()
+    player.advance(1e6)
+    told["problem"], told["stopped_at"] = player.problem.text, player.seconds == player.problem.time
+    FreeCAD.closeDocument("hexapod")
+    settle()
+    told["closed_with_its_document"] = _player() is None
+    return told
+
+
+def _player():
+    return FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
+
+
+main()

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Operations from their buttons: symmetry, Normal Compensation, Surface Finish; Escape stops what takes long."""
+
+import os
+import time
+
+import FreeCAD
+import FreeCADGui
+from gui import main, new_document, press, select, settle, step
+from PySide import QtCore, QtGui
+
+
+@step
+def mirror_and_rotate_from_their_buttons():
+    document = new_document("gui")
+    for command in ("PKM_Mirror", "PKM_Rotate"):
+        press(command, document.getObject("Custom"))
+    made = document.getObject("Job").Operations.Group[1:]
+    return {
+        "labels": [item.Label for item in made],
+        "views": [type(item.ViewObject.Proxy).__name__ for item in made],
+        "icons": [os.path.basename(item.ViewObject.Proxy.getIcon()) for item in made],
+        "moves": [len(item.Path.Commands) for item in made],
+    }
+
+
+@step
+def undo_takes_one_step_back():
+    document = FreeCAD.getDocument("gui")
+    before = len(document.getObject("Job").Operations.Group)
+    document.undo()
+    document.recompute()
+    return {"before": before, "after": len(document.getObject("Job").Operations.Group)}
+
+
+@step
+def normal_compensation_from_its_button():
+    from cam_jobs import add_operation, new_job
+
+    document = FreeCAD.newDocument("contacts")
+    add_operation(new_job(document), ["G0 X5 Y5 Z40", "G1 Z20 F10", "G1 X15", "G0 Z40"])
+    base = document.getObject("Custom")
+    press("PKM_NormalCompensation", base)
+    (dressup,) = document.getObject("Job").Operations.Group
+    view = dressup.ViewObject.Proxy
+    made = {
+        "view": type(view).__name__,
+        "icon": os.path.basename(view.getIcon()),
+        "children": [child.Name for child in view.claimChildren()],
+        "moves": len([command for command in dressup.Path.Commands if command.Name in ("G0", "G1")]),
+        "base_is_shown": base.ViewObject.Visibility,
+    }
+    document.removeObject(dressup.Name)
+    made["given_back"] = [item.Name for item in document.getObject("Job").Operations.Group]
+    made["base_is_shown_again"] = base.ViewObject.Visibility
+    FreeCAD.closeDocument("contacts")
+    return made
+
+
+@step
+def surface_finish_from_its_button():
+    import Part
+    import Path.Main.Gui.Job
+
+    document = FreeCAD.newDocument("finish")
+    stock = document.addObject("Part::Feature", "Block")
+    stock.Shape = Part.makeBox(20, 20, 20)
+    document.recompute()
+    Path.Main.Gui.Job.Create([stock.Name], None, openTaskPanel=False)
+    job = document.getObject("Job")
+    controller = job.Tools.Group[0]
+    controller.HorizFeed = controller.VertFeed = "600 mm/min"
+    document.UndoMode = 1
+    active = {}
+    for name, item in (("job", job), ("face", stock), ("controller", controller)):
+        select(item)
+        active[name] = FreeCADGui.Command.get("PKM_SurfaceFinish").isActive()
+    select(stock, "Face6")
+    press("PKM_SurfaceFinish")
+    (operation,) = job.Operations.Group
+    view = operation.ViewObject.Proxy
+    told = {
+        "active": active,
+        "view": type(view).__name__,
+        "icon": os.path.basename(view.getIcon()),
+        "faces": [name for _, names in operation.Base for name in names],
+        "valid": operation.isValid(),
+        "panel_is_open": view.panel is not None,
+    }
+    told["stepover_shown"] = _change_stepover(view.panel, 2.0)
+    view.panel.accept()
+    document.recompute()
+    told["accepted"], told["passes"] = operation.Stepover.Value, operation.PassCount
+    operation.ViewObject.Document.setEdit(operation.ViewObject, 0)
+    settle()
+    _change_stepover(view.panel, 5.0)
+    view.panel.reject()
+    settle()
+    told["rejected"], told["panel_is_left_open"] = operation.Stepover.Value, FreeCADGui.Control.activeDialog()
+    while document.UndoCount and job.Operations.Group:
+        document.undo()
+    told["after_undo"] = len(job.Operations.Group)
+    FreeCAD.closeDocument("finish")
+    return told
+
+
+def _change_stepover(panel, to):
+    """What the page shows for the stepover, before it is set to another one."""
+    page = panel.featurePages[-1]
+    field = page.form.fields["Stepover"]
+    shown = field.property("rawValue")
+    field.setProperty("rawValue", to)
+    page.pageGetFields()
+    return shown
+
+
+@step
+def escape_stops_a_long_computation():
+    from pkm_post.freecad_app.progress import Progress, Stopped
+
+    class Patient:
+        """Computes for as long as nobody presses Escape, a minute at most."""
+
+        def execute(self, item):
+            item.Label2 = ""
+            try:
+                with Progress("Waiting", 6000) as progress:
+                    for number in range(6000):
+                        if number == 20:
+                            window, key = FreeCADGui.getMainWindow(), QtCore.Qt.Key.Key_Escape
+                            pressed = QtCore.QEvent.Type.KeyPress, key, QtCore.Qt.KeyboardModifier.NoModifier
+                            QtCore.QCoreApplication.postEvent(window, QtGui.QKeyEvent(*pressed))
+                        time.sleep(0.01)
+                        progress.step()
+            except Stopped as stopped:
+                item.Label2 = f"{stopped}, step {number}"
+
+    document = FreeCAD.newDocument("waiting")
+    item = document.addObject("App::FeaturePython", "Patient")
+    item.Proxy = Patient()
+    document.recompute()
+    inside = item.Label2
+    item.Proxy.execute(item)
+    told = {"inside a recompute": inside, "alone": item.Label2}
+    FreeCAD.closeDocument("waiting")
+    return told
+
+
+main()

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The workbench in the window: its buttons, its place in CAM's menu, what its commands are for."""
+
+import FreeCADGui
+from gui import main, new_document, picture, select, settle, step
+from PySide import QtWidgets
+
+
+@step
+def workbench_has_its_commands():
+    FreeCADGui.activateWorkbench("PkmPostWorkbench")
+    settle()
+    window = FreeCADGui.getMainWindow()
+    bars = [bar for bar in window.findChildren(QtWidgets.QToolBar) if bar.windowTitle() == "PKM Post"]
+    actions = [action for bar in bars for action in bar.actions()]
+    return {
+        "listed": "PkmPostWorkbench" in FreeCADGui.listWorkbenches(),
+        "buttons": [action.text() for action in actions],
+        "icons": [not action.icon().isNull() for action in actions],
+    }
+
+
+@step
+def commands_know_what_they_are_for():
+    document = new_document("gui")
+    job, operation = document.getObject("Job"), document.getObject("Custom")
+    active = {}
+    for name, item in (("job", job), ("operation", operation), ("controller", job.Tools.Group[0])):
+        select(item)
+        active[name] = [FreeCADGui.Command.get(f"PKM_{c}").isActive() for c in ("Mirror", "Rotate", "Post")]
+    return active
+
+
+@step
+def cam_menu_has_the_commands():
+    FreeCADGui.activateWorkbench("CAMWorkbench")
+    settle()
+    texts = []
+    for action in FreeCADGui.getMainWindow().menuBar().actions():
+        if action.menu():
+            texts += [item.text().replace("&", "") for item in _all_actions(action.menu())]
+    return {"has": [text in texts for text in ("Mirror operation", "Rotate operation", "Post to a hexapod")]}
+
+
+def _all_actions(menu):
+    for action in menu.actions():
+        yield action
+        if action.menu():
+            yield from _all_actions(action.menu())
+
+
+@step
+def window_is_drawn():
+    FreeCADGui.activateWorkbench("PkmPostWorkbench")
+    FreeCADGui.SendMsgToActiveView("ViewFit")
+    return {"saved": picture("window.png")}
+
+
+main()
