@@ -23,6 +23,9 @@ LOOPBACK = "127.0.0.1"
 PERIOD_S = 0.005
 LONGEST_LAPSE_S = 0.25
 """A computer that cannot keep up, or slept, does not make the motors jump: simulated time falls behind."""
+LONGEST_TURN_S = 0.02
+"""Clients are not kept waiting longer than this while simulated time passes."""
+SLICE_MS = 20.0
 PIECE = 4096
 
 
@@ -100,7 +103,7 @@ class Server:
         while not ended():
             ready = self._selector.select(PERIOD_S)
             now = time.monotonic()
-            self._controller.advance(1000 * self._speed * min(now - before, LONGEST_LAPSE_S))
+            self._pass(1000 * self._speed * min(now - before, LONGEST_LAPSE_S))
             before = now
             for key, _ in ready:
                 key.data()
@@ -108,6 +111,13 @@ class Server:
                 channel.unsent += line.said()
             for source, channel in list(self._channels.items()):
                 self._send(source, channel)
+
+    def _pass(self, ms: float) -> None:
+        """Let simulated time pass; what does not fit into a turn is lost."""
+        end = time.monotonic() + LONGEST_TURN_S
+        while ms > 0.0 and time.monotonic() < end:
+            self._controller.advance(min(ms, SLICE_MS))
+            ms -= SLICE_MS
 
     def close(self) -> None:
         """Close all doors."""

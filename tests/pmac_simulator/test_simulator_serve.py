@@ -91,6 +91,30 @@ def test_a_client_that_does_not_read_does_not_stop_the_others(serving):
         assert ask(other, "I3=2 P2=5") == b"\x06"
 
 
+def test_time_that_the_computer_cannot_keep_up_with_keeps_no_client_waiting():
+    controller, lapses, over = Controller(), [], threading.Event()
+
+    def advance(ms):
+        lapses.append(ms)
+        time.sleep(0.01)  # far slower than the time that is asked for
+
+    controller.advance = advance
+    server = Server(controller, speed=1e6)
+    port = server.add_tcp(0)
+    thread = threading.Thread(target=server.run, args=(over.is_set,))
+    thread.start()
+    try:
+        with connected(port) as connection:
+            before = len(lapses)
+            assert ask(connection, "I3=2 P2=5") == b"\x06"
+            # one turn until the request is seen and one on the way, of two or three lapses each
+            assert len(lapses) - before < 20
+    finally:
+        over.set()
+        thread.join(DEADLINE_S)
+        server.close()
+
+
 def test_a_port_that_is_taken_is_told(serving):
     server, start = serving
     port = server.add_tcp(0)
