@@ -4,30 +4,25 @@
     python3 tests/oracles/gcode_rs274.py [PROGRAMS]    how many to compare
     python3 tests/oracles/gcode_rs274.py --golden      writes tests/data/gcode_rs274.json
 
-Needs rs274 (Debian: linuxcnc-uspace), numpy and lark. rs274 says the moves in program coordinates and in the program's
-units; here they are taken to machine coordinates in mm: local offset, rotation, work offset, length offset.
+Needs rs274 (Debian: linuxcnc-uspace), numpy and lark.
 """
 
 import json
-import random
 import re
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 GOLDEN = ROOT / "tests" / "data" / "gcode_rs274.json"
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "gcode")]
+sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
 
-LENGTHS = {1: 10.0, 2: 25.5, 3: 40.0}
-CALL = re.compile(r"^\s*\d+ N(\S+)\s+(\w+)\((.*)\)\s*$")
+from random_gcode import program  # noqa: E402 - the path comes first
+from rs274_moves import INCH, LENGTHS, rs274  # noqa: E402
+
 PRINTED = 5e-5
 """rs274 prints four decimals, in the units of the program."""
-INCH = 25.4
-
 
 BLOCKS = (
     "G2 X10.02 Y10 I0 J10",
@@ -113,146 +108,6 @@ BLOCKS = (
 
 def after_a_move(block):
     return f"N1 G21 G90 F100 G0 X0 Y0 Z0\nN2 {block}\nN3 M2\n"
-
-
-def rs274(text):
-    """Points in mm, (n, 3), with the kind (0 rapid, 1 line, 2 arc), feed in mm/min and arc centre of each, or None."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder)
-        (path / "part.ngc").write_text(text)
-        (path / "var").write_text("")
-        # The table is in inches whatever the machine is.
-        rows = [f"T{n} P{n} Z{length / INCH:.9f} D{n / INCH:.9f} ;\n" for n, length in LENGTHS.items()]
-        (path / "tools").write_text("".join(rows))
-        command = ["rs274", "-t", path / "tools", "-v", path / "var", "-g", path / "part.ngc"]
-        run = subprocess.run(command, capture_output=True, text=True, check=False)
-    return moves(run.stdout) if run.returncode == 0 else None
-
-
-def moves(output):
-    """The moves in the output of rs274, without those that stay in place."""
-    local, origin, tool, angle, scale, plane, feed = np.zeros(3), np.zeros(3), np.zeros(3), 0.0, 1.0, 1, 0.0
-    found = []
-    for line in output.splitlines():
-        match = CALL.match(line)
-        if not match:
-            continue
-        _, name, text = match.groups()
-        if name == "USE_LENGTH_UNITS":
-            now = INCH if "INCHES" in text else 1.0
-            scale = now
-            continue
-        if name == "SELECT_PLANE":
-            plane = {"XY": 1, "YZ": 2, "XZ": 3}[text.split("_")[-1]]
-            continue
-        values = [float(number) for number in re.findall(r"-?\d+\.\d+|-?\d+", text)]
-        if name == "SET_G92_OFFSET":
-            local = np.array(values[:3]) * scale
-        elif name == "SET_G5X_OFFSET":
-            origin = np.array(values[1:4]) * scale
-        elif name == "SET_XY_ROTATION":
-            angle = np.radians(values[0])
-        elif name == "USE_TOOL_LENGTH_OFFSET":
-            tool = np.array(values[:3]) * scale
-        elif name == "SET_FEED_RATE":
-            feed = values[0] * scale
-        if name not in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED"):
-            continue
-        cosine, sine = np.cos(angle), np.sin(angle)
-        turn = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
-
-        def machine(point, turn=turn, local=local, origin=origin, tool=tool):
-            return turn @ (point + local) + origin + tool
-
-        centre = None
-        if name == "ARC_FEED":
-            axes = {1: (0, 1, 2), 2: (1, 2, 0), 3: (2, 0, 1)}[plane]
-            point, middle = np.zeros(3), np.zeros(3)
-            point[list(axes)] = values[0] * scale, values[1] * scale, values[5] * scale
-            middle[list(axes)] = values[2] * scale, values[3] * scale, values[5] * scale
-            across = np.eye(3)[axes[2]]
-            centre = [machine(middle).tolist(), (turn @ across * np.sign(values[4])).tolist(), abs(int(values[4]))]
-        else:
-            point = np.array(values[:3]) * scale
-        place = machine(point)
-        kind = ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED").index(name)
-        found.append((kind, place.tolist(), None if kind == 0 else feed, centre))
-    return found
-
-
-def program(seed):
-    """A program of moves, arcs, cycles and offsets in a fixed order of chance."""
-    chance = random.Random(seed)
-    # When an angle is set with G10 L2 while G92 is in force, rs274 loses the place of the tool.
-    local = chance.random() < 0.5
-    lines = ["G21 G90 G94 G17 G40 G49 G54 G98 F300 S1000 M3", "G0 X1 Y2 Z30"]
-
-    def number(low, high):
-        return f"{chance.uniform(low, high):.3f}"
-
-    def words(letters, low=-30, high=30):
-        chosen = [letter for letter in letters if chance.random() < 0.6] or [letters[0]]
-        return " ".join(letter + number(low, high) for letter in chosen)
-
-    def arc():
-        plane, (first, second, third), (i, j) = chance.choice((
-            ("G17", "XYZ", "IJ"), ("G18", "ZXY", "KI"), ("G19", "YZX", "JK"),
-        ))  # fmt: skip
-        sense = chance.choice(("G2", "G3"))
-        helix = f" {third}{number(-3, 3)}" if chance.random() < 0.5 else ""
-        if chance.random() < 0.4:
-            dx, dy = chance.uniform(-9, 9), chance.uniform(-9, 9)
-            radius = chance.choice((-1, 1)) * (np.hypot(dx, dy) / 2 + chance.uniform(0.01, 9))
-            return [f"{plane} G91", f"{sense} {first}{dx:.3f} {second}{dy:.3f}{helix} R{radius:.3f}", "G90 G17"]
-        radius, begin, end = chance.uniform(1, 9), chance.uniform(0, 6), chance.uniform(0, 6)
-        ends = [radius * (np.cos(end) - np.cos(begin)), radius * (np.sin(end) - np.sin(begin))]
-        turns = chance.choice(("", "", " P2", " P3"))
-        full = chance.random() < 0.2
-        end = "" if full else f" {first}{ends[0]:.4f} {second}{ends[1]:.4f}"
-        centre = f" {i}{-radius * np.cos(begin):.4f} {j}{-radius * np.sin(begin):.4f}"
-        return [f"{plane} G91", f"{sense}{end}{helix}{centre}{turns}", "G90 G17"]
-
-    def cycle():
-        code = chance.choice(("G73", "G81", "G82", "G83", "G84", "G85", "G86", "G89"))
-        extra = {"G73": " Q2.5", "G83": " Q3.1"}.get(code, "" if code in ("G81", "G85") else " P0.5")
-        plane, depth, across = chance.choice((("G17", "Z", "XY"), ("G18", "Y", "XZ"), ("G19", "X", "YZ")))
-        if code == "G84":
-            # The rs274 at hand swaps the coordinates of its feeds in the other planes.
-            plane, depth, across = "G17", "Z", "XY"
-        block = f"{plane} {chance.choice(('G98', 'G99'))} {code} {words(across)} {depth}-9.2 R{number(-5, 8)}{extra}"
-        out = [block + chance.choice(("", " L2")), words(across), f"{words(across)} {depth}-11", "G80 G17"]
-        if chance.random() < 0.3:
-            out = [
-                f"{plane} G91 {code} {words(across)} {depth}-{number(5, 9)} R-{number(0, 3)}{extra} L3",
-                "G80 G90 G17",
-            ]
-        return out
-
-    def feed():
-        block = f"G93 G1 {words('XYZ')} F{number(1, 9)}"
-        return [block, f"G94 F{number(100, 900)}"]
-
-    choices = (
-        lambda: [f"{chance.choice(('G0', 'G1'))} {words('XYZ')}"],
-        lambda: [f"G1 {words('XYZ')} F{number(50, 900)}", words("XYZ"), words("XYZ")],
-        lambda: ["G91", f"G1 {words('XYZ', -5, 5)}", words("XYZ", -5, 5), "G90"],
-        lambda: ["G20", f"G1 {words('XYZ', -1, 1)} F{number(5, 30)}", f"X{number(-1, 1)}", "G21"],
-        arc,
-        arc,
-        cycle,
-        feed,
-        lambda: [f"{chance.choice(('G92', 'G52'))} {words('XYZ')}" if local else "G92.1"],
-        lambda: [chance.choice(("G92.1", "G92.2", "G92.3"))],
-        lambda: [f"G10 L2 P{chance.randint(1, 3)} {words('XYZ')}" + ("" if local else f" R{number(-60, 60)}")],
-        lambda: [f"G10 L20 P{chance.randint(0, 3)} {words('XYZ')}"],
-        lambda: [chance.choice(("G54", "G55", "G56", "G59.3"))],
-        lambda: [chance.choice(("G43 H1", "G43 H2", "G43.2 H3", "G49", f"G43.1 Z{number(0, 9)}"))],
-        lambda: [f"G53 {chance.choice(('G0', 'G1'))} X{number(-9, 9)} Y{number(-9, 9)} Z{number(0, 9)}"],
-        lambda: [chance.choice(("G28", "G28 Z5", "G28.1", "G30", "G30 X1 Y2", "G30.1"))],
-    )
-    for _ in range(25):
-        lines += chance.choice(choices)()
-    return "\n".join([*(f"N{n} {line}" for n, line in enumerate(lines, 1)), "M2", ""])
 
 
 def options():

@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from gcode_rs274 import rs274
+from rs274_moves import rs274
 
 ROOT = Path(__file__).resolve().parents[2]
 GOLDEN = ROOT / "tests" / "data" / "side_rs274.json"
