@@ -22,6 +22,9 @@ from pkm_post.placement import transform
 Row = tuple[str, str, str, str, Any]
 """A property: its type, name, group, what is said of it, and the value it has at first."""
 
+_READ_ONLY = 1
+"""Editor mode of a property that people may read and not set."""
+
 BASE_AND_ACTIVE: tuple[Row, ...] = (
     ("App::PropertyLink", "Base", "Path", "The operation that this one is made from", None),
     ("App::PropertyBool", "Active", "Path", "Switch this off to leave the operation out of the program", True),
@@ -29,19 +32,27 @@ BASE_AND_ACTIVE: tuple[Row, ...] = (
 
 
 class DerivedOperation(abc.ABC):
-    """What such objects have in common. CAM needs no more of an operation than its properties and its path."""
+    """What such objects have in common. CAM needs no more of an operation than its properties and its path.
+
+    Attributes:
+        properties: what people set.
+        results: what ``derive`` sets, for people to read.
+    """
 
     properties: tuple[Row, ...] = ()
+    results: tuple[Row, ...] = ()
 
     def __init__(self, obj: Any) -> None:
         self._add_missing_properties(obj)
         obj.Proxy = self
 
     def _add_missing_properties(self, obj: Any) -> None:
-        for kind, name, group, text, value in self.properties:
+        for kind, name, group, text, value in (*self.properties, *self.results):
             if not hasattr(obj, name):
                 obj.addProperty(kind, name, group, text)
                 setattr(obj, name, value)
+        for _, name, *_ in self.results:
+            obj.setEditorMode(name, _READ_ONLY)
 
     @abc.abstractmethod
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
@@ -53,7 +64,7 @@ class DerivedOperation(abc.ABC):
         if not obj.Active:
             obj.Path = Path.Path("(inactive operation)")
         elif obj.Base is not None:
-            obj.Path = Path.Path(commands_of(_value(*self.derive(obj, _program(obj.Base)))))
+            obj.Path = Path.Path(commands_of(_value(*self.derive(obj, program_of(obj.Base)))))
 
     def onDocumentRestored(self, obj: Any) -> None:
         """Give documents of older versions the properties they do not have yet."""
@@ -66,8 +77,12 @@ class DerivedOperation(abc.ABC):
         """Nothing was saved."""
 
 
-def _program(base: Any) -> Program:
-    """The program of the base, its placement applied."""
+def program_of(base: Any) -> Program:
+    """The program of an operation without tools, its placement applied.
+
+    Raises:
+        ValueError: its commands cannot be read.
+    """
     placement = np.array(base.Placement.Matrix.A).reshape(4, 4)
     program = _value(*read_commands(base.Path.Commands, base.Document.Name, base.Label))
     return _value(*transform(program, placement))

@@ -17,33 +17,16 @@ from typing import Any
 import FreeCAD as App
 from PathScripts import PathUtils
 
-from pkm_post.freecad_app.derived_operation import BASE_AND_ACTIVE, DerivedOperation, Row
+from pkm_post.freecad_app.derived_operation import DerivedOperation
+from pkm_post.freecad_app.symmetry_properties import MIRROR, MIRROR_RESULTS, ROTATION, ROTATION_RESULTS
+from pkm_post.freecad_app.symmetry_reference import axis_of, plane_of
+from pkm_post.freecad_app.symmetry_report import report
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Program
-from pkm_post.placement import joined, mirror, rotation, transform
+from pkm_post.placement import joined, mirror, reversed_passes, rotation, transform
 
 _VIEW = "pkm_post.freecad_gui.symmetry_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
-
-_MIRROR: tuple[Row, ...] = (
-    *BASE_AND_ACTIVE,
-    ("App::PropertyVectorDistance", "Point", "Symmetry", "A point of the plane of the mirror", App.Vector()),
-    ("App::PropertyVector", "Normal", "Symmetry", "Normal of the plane of the mirror", App.Vector(1, 0, 0)),
-)
-_ROTATION: tuple[Row, ...] = (
-    *BASE_AND_ACTIVE,
-    ("App::PropertyVectorDistance", "Point", "Symmetry", "A point of the axis", App.Vector()),
-    ("App::PropertyVector", "Axis", "Symmetry", "Direction of the axis", App.Vector(0, 0, 1)),
-    ("App::PropertyAngle", "Angle", "Symmetry", "Angle of the turn, right-handed about the axis", 180.0),
-    ("App::PropertyInteger", "Copies", "Symmetry", "Number of copies, each turned by Angle against the one before", 1),
-    (
-        "App::PropertyFloatList",
-        "Angles",
-        "Symmetry",
-        "Angles of the copies in degrees, instead of the two",
-        [],
-    ),
-)
 
 
 class _SymmetricOperation(DerivedOperation):
@@ -53,8 +36,21 @@ class _SymmetricOperation(DerivedOperation):
     def matrices(self, obj: Any) -> list[Array]:
         """The (4, 4) matrices that take the base to its copies, in their order."""
 
+    @abc.abstractmethod
+    def hand(self, obj: Any) -> int:
+        """+1 where the copies have the material on the side where the base has it, -1 on the other side."""
+
+    @abc.abstractmethod
+    def follow(self, obj: Any) -> None:
+        """Take plane or axis from what was picked, if something was."""
+
+    def sequence(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+        """The copies in the order in which they are cut: as they are."""
+        return program, ()
+
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-        """The copies, one after the other."""
+        """The copies, one after the other, and the report of them."""
+        self.follow(obj)
         copies, told = [], list[Diagnostic]()
         for matrix in self.matrices(obj):
             copy, faults = transform(program, matrix)
@@ -62,23 +58,45 @@ class _SymmetricOperation(DerivedOperation):
             if copy is None:
                 return None, tuple(told)
             copies.append(copy)
-        return joined(copies), tuple(told)
+        made, faults = self.sequence(obj, joined(copies))
+        if made is not None:
+            report(obj, program, copies, made)
+        return made, (*told, *faults)
 
 
 class MirroredOperation(_SymmetricOperation):
-    """A copy that is mirrored in a plane. Climb milling becomes conventional milling: the cutter turns as before."""
+    """A copy that is mirrored in a plane.
 
-    properties = _MIRROR
+    The cutter turns as before, so climb milling becomes conventional milling, unless ``KeepClimb`` is set: then each
+    pass is run the other way.
+    """
+
+    properties = MIRROR
+    results = MIRROR_RESULTS
 
     def matrices(self, obj: Any) -> list[Array]:
         """The reflection in the plane."""
         return [mirror(obj.Point, obj.Normal)]
 
+    def hand(self, obj: Any) -> int:
+        """A mirror changes sides; so does running the passes the other way."""
+        return 1 if obj.KeepClimb else -1
+
+    def follow(self, obj: Any) -> None:
+        """Take point and normal from the plane that was picked."""
+        if obj.Plane:
+            _set(obj, "Normal", *plane_of(obj.Plane))
+
+    def sequence(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+        """Each pass the other way, if climb milling is to be kept."""
+        return reversed_passes(program) if obj.KeepClimb else (program, ())
+
 
 class RotatedOperation(_SymmetricOperation):
     """Copies that are turned about an axis."""
 
-    properties = _ROTATION
+    properties = ROTATION
+    results = ROTATION_RESULTS
 
     def matrices(self, obj: Any) -> list[Array]:
         """The turns about the axis."""
@@ -87,9 +105,29 @@ class RotatedOperation(_SymmetricOperation):
         angles = list(obj.Angles) or [number * obj.Angle.Value for number in range(1, obj.Copies + 1)]
         return [rotation(obj.Point, obj.Axis, math.radians(angle)) for angle in angles]
 
+    def hand(self, obj: Any) -> int:
+        """A turn keeps the side."""
+        return 1
+
+    def follow(self, obj: Any) -> None:
+        """Take point and direction from the line that was picked."""
+        if obj.Line:
+            _set(obj, "Axis", *axis_of(obj.Line))
+
+
+def _set(obj: Any, direction: str, point: App.Vector, along: App.Vector) -> None:
+    """Set point and direction where they differ: to set them touches the object."""
+    for name, value in (("Point", point), (direction, along)):
+        if getattr(obj, name) != value:
+            setattr(obj, name, value)
+
 
 def create_mirror(
-    base: Any, normal: Sequence[float], point: Sequence[float] = (0.0, 0.0, 0.0), label: str | None = None
+    base: Any,
+    normal: Sequence[float],
+    point: Sequence[float] = (0.0, 0.0, 0.0),
+    label: str | None = None,
+    keep_climb: bool = False,
 ) -> Any:
     """Add a mirrored copy of an operation to its job.
 
@@ -98,12 +136,13 @@ def create_mirror(
         normal: (3,) normal of the plane of the mirror.
         point: (3,) a point of the plane, mm.
         label: name shown to people.
+        keep_climb: whether each pass is run the other way.
 
     Raises:
         ValueError: the operation is in no job.
     """
     obj = _create(base, "PkmMirror", MirroredOperation, label or f"Mirror of {base.Label}")
-    obj.Normal, obj.Point = App.Vector(*normal), App.Vector(*point)
+    obj.Normal, obj.Point, obj.KeepClimb = App.Vector(*normal), App.Vector(*point), keep_climb
     return obj
 
 

@@ -19,7 +19,7 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Trajectory
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.tool import lengths_of
-from pkm_post.placement.smoothness import smooth
+from pkm_post.placement.smoothness import corners, smooth
 from pkm_post.placement.symmetry import mirrors, transform
 
 _NO_MOVE = 1e-9
@@ -55,7 +55,9 @@ def place(
     columns = {name: column[keep] for name, column in way.items()}
     tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
     events = _events_on_kept_rows(program.events, keep)
-    columns["exact_stop"] = stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
+    stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
+    columns["exact_stop"] = stops = stops | _exact_corners(placed.exact_path[keep], columns, tip_before)
+    columns["tip_tolerance"] = placed.tip_tolerance[keep]
     columns["smooth"] = ~stops & smooth(columns, tip_before, axis_before)
     trajectory = Trajectory(
         **columns,
@@ -135,6 +137,13 @@ def _faults(program: Program, machine: Machine, angle: Array, keep: Array) -> It
 def _events_on_kept_rows(events: tuple[Event, ...], keep: Array) -> tuple[Event, ...]:
     kept_before = np.concatenate([[0], np.cumsum(keep)])
     return tuple(Event(int(kept_before[event.row]), event.kind, event.value) for event in events)
+
+
+def _exact_corners(exact_path: Array, columns: dict[str, Any], tip_before: Array) -> Array:
+    """Whether the motion rests at the end of each segment since a corner there is not to be rounded, (N,)."""
+    if not exact_path.any():
+        return exact_path
+    return corners(columns, tip_before) & (exact_path | np.append(exact_path[1:], False))
 
 
 def _stops(events: tuple[Event, ...], segments: int) -> Array:

@@ -18,6 +18,8 @@ _NO_MOVE = 1e-9
 """mm: a tip that moves less stands."""
 _NO_CORNER = 1e-6
 """rad, and rad/mm of the tool axis: a smaller change is none."""
+_TANGENT = np.radians(0.1)
+"""rad: what the decimals of a program leave of a tangent; an exact path does not stop for it."""
 
 
 def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
@@ -36,6 +38,19 @@ def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Ar
     corner = norm(at_start[1:] - at_end[:-1]) + norm(rate_at_start[1:] - rate_at_end[:-1])
     moves = columns["length"] > _NO_MOVE
     return np.append((corner < _NO_CORNER) & moves[1:] & moves[:-1], False)
+
+
+def corners(columns: dict[str, Any], tip_before: Array) -> Array:
+    """Whether the tip's way has a corner at the end of each segment, (N,); at the end of all it has none.
+
+    A tip that stands while the tool turns begins and ends with a corner. The tool axis does not count.
+
+    Args:
+        columns: kind, tip, arc_centre, arc_axis, sweep of N segments.
+        tip_before: (N, 3) tips where they begin.
+    """
+    change = _directions(columns, tip_before, tip_before)[1:] - _directions(columns, tip_before, columns["tip"])[:-1]
+    return np.append(norm(change) > _TANGENT, False)
 
 
 def _directions(columns: dict[str, Any], tip_before: Array, at: Array) -> Array:

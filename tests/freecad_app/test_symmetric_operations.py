@@ -278,11 +278,12 @@ def test_names_in_saved_documents_are_a_file_format(saved):
 
 def test_document_of_an_older_version_gets_the_missing_properties(job, base, tmp_path):
     copy = recomputed(create_mirror(base, (1, 0, 0)))
-    copy.removeProperty("Point")
-    copy.removeProperty("Active")
+    for name in ("Point", "Active", "KeepClimb", "Plane", "MaterialSide", "CutOfBase", "ReversedPasses"):
+        copy.removeProperty(name)
     document = reopened(job.Document, tmp_path / "old.FCStd")
     base, copy = labelled(document, "Cut", "Mirror of Cut")
     assert (copy.Active, copy.Point) == (True, App.Vector())
+    assert (copy.KeepClimb, copy.Plane, copy.MaterialSide) == (False, None, "Not stated")
     copy.touch()
     assert_copied(recomputed(copy), base, YZ_PLANE)
 

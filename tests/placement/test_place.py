@@ -121,3 +121,45 @@ def test_compensation_that_was_not_applied_is_a_fault_of_the_caller():
     made = dataclasses.replace(program([[0, 0, 60], [10, 0, 60]]), side_offset=[0.0, 4.0])
     with pytest.raises(ValueError, match="expected a program whose cutter compensation was applied"):
         place(made, example(), ON_PALLET)
+
+
+def test_an_exact_path_rests_at_corners_and_goes_on_where_it_is_tangent():
+    given = square_with_arc()
+    plain, _ = place(given, example(), ON_PALLET)
+    exact, _ = place(dataclasses.replace(given, exact_path=np.ones(len(given), bool)), example(), ON_PALLET)
+    # From the smooth joints of the test above; the last of all rests anyway, and the tool axis stands.
+    assert exact.exact_stop.tolist() == [not smooth for smooth in plain.smooth]
+    assert plain.exact_stop.sum() == 1
+
+
+def test_an_exact_row_has_exact_corners_at_both_ends():
+    zigzag = program([[0, 0, 60], [10, 0, 60], [10, 10, 60], [20, 10, 60], [20, 20, 60]])
+    one = dataclasses.replace(zigzag, exact_path=np.arange(5) == 2)
+    trajectory, _ = place(one, example(), ON_PALLET)
+    assert trajectory.exact_stop.tolist() == [False, True, True, False, True]
+
+
+def test_an_exact_path_does_not_rest_for_what_rounding_leaves_of_a_tangent_nor_for_another_feed():
+    angle = np.radians([0.05, 0.2])
+    ends = [[0, 0, 60], [10, 0, 60], [20, 10 * angle[0], 60], [30, 10 * angle.sum() + 10 * angle[0], 60]]
+    given = program(ends)
+    feed = np.array([np.nan, 10.0, 3.0, 20.0])
+    given = dataclasses.replace(given, feed=feed, exact_path=np.ones(4, bool))
+    trajectory, _ = place(given, example(), ON_PALLET)
+    assert trajectory.exact_stop.tolist() == [True, False, True, True]
+
+
+def test_the_tool_axis_alone_makes_no_corner_and_a_tip_that_stands_does():
+    axis = np.array([[0, 0, 1], [0, 0, 1], [0, np.sin(0.1), np.cos(0.1)], [0, np.sin(0.2), np.cos(0.2)]])
+    given = program([[0, 0, 60], [10, 0, 60], [20, 0, 60], [20, 0, 60]], axis)
+    trajectory, _ = place(dataclasses.replace(given, exact_path=np.ones(4, bool)), example(), ON_PALLET)
+    assert trajectory.exact_stop.tolist() == [True, False, True, True]
+
+
+def test_tolerances_of_the_program_are_kept():
+    given = dataclasses.replace(
+        program([[0, 0, 60], [9, 0, 60], [9, 0, 60], [9, 9, 60]]), tip_tolerance=[0, 0.05, 1, 0.2]
+    )
+    trajectory, _ = place(given, example(), ON_PALLET)
+    assert trajectory.tip_tolerance.tolist() == [0, 0.05, 0.2]
+    assert trajectory.tip_tolerances(0.001).tolist() == [0.001, 0.05, 0.2]

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Symmetry reference: the plane or the axis that a picked thing of the document gives.
+
+A link enters, as properties hold it: an object with the names of its elements. A point in mm and a direction leave, in
+coordinates of the document. Planes come from flat faces and datum planes, axes from straight or round edges, faces
+round an axis, and datum lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import FreeCAD as App
+import Part
+
+Link = tuple[Any, list[str]]
+Placed = tuple[App.Vector, App.Vector]
+"""A point of a plane or an axis, and its normal or direction."""
+
+
+def plane_of(link: Link) -> Placed:
+    """The plane of a flat face or a datum plane.
+
+    Args:
+        link: the object and the name of its face; no name for an object with one face.
+
+    Raises:
+        ValueError: the face is not flat, or there is none.
+    """
+    shape = _element(link, lambda whole: whole.Faces)
+    plane = shape.findPlane() if shape is not None and shape.ShapeType == "Face" else None
+    if plane is None:
+        raise ValueError(f"Plane: expected a flat face or a datum plane, got {_told(link)}")
+    return plane.Position, plane.Axis
+
+
+def axis_of(link: Link) -> Placed:
+    """The axis of an edge, a round face or a datum line.
+
+    Args:
+        link: the object and the name of its edge or face; no name for an object with one edge.
+
+    Raises:
+        ValueError: what is picked has no axis.
+    """
+    shape = _element(link, lambda whole: whole.Edges)
+    form = {"Edge": "Curve", "Face": "Surface"}.get("" if shape is None else shape.ShapeType, "")
+    known = _FORMS.get(getattr(shape, form).TypeId) if form else None
+    if known is None:
+        raise ValueError(f"Line: expected a straight or round edge, a round face or a datum line, got {_told(link)}")
+    point, direction = known
+    return getattr(getattr(shape, form), point), getattr(getattr(shape, form), direction)
+
+
+_FORMS = {
+    "Part::GeomLine": ("Location", "Direction"),
+    "Part::GeomCircle": ("Center", "Axis"),
+    "Part::GeomEllipse": ("Center", "Axis"),
+    "Part::GeomCylinder": ("Center", "Axis"),
+    "Part::GeomCone": ("Apex", "Axis"),
+    "Part::GeomToroid": ("Center", "Axis"),
+    "Part::GeomSurfaceOfRevolution": ("Location", "Direction"),
+}
+"""For each curve and surface with an axis, the names of its point and direction."""
+
+
+def _element(link: Link, parts: Callable[[Any], list[Any]]) -> Any:
+    """The element that a link names, or the one element of an object, where it is in the document; None if none."""
+    obj, names = link
+    name = next(iter(names), "")
+    shape = Part.getShape(obj, name, needSubElement=True)
+    if shape.isNull():
+        return None
+    if shape.ShapeType not in ("Face", "Edge"):
+        found = parts(shape)
+        if len(found) != 1:
+            return None
+        (shape,) = found
+    # A shape is where its object says; the object may be in a part that stands elsewhere.
+    shape = shape.copy()
+    shape.Placement = obj.getGlobalPlacement() * obj.Placement.inverse() * shape.Placement
+    return shape
+
+
+def _told(link: Link) -> str:
+    obj, names = link
+    return " ".join([obj.Label, *names]).strip()

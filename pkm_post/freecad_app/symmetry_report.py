@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Symmetry report: how copies cut, whether they lie all round the part, and how well they meet.
+
+Programs or document objects enter; what is written into the read-only properties of a symmetric operation leaves, and
+what all copies of one operation in a job make together. Units: mm, rad; properties in mm and degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from PathScripts import PathUtils
+
+from pkm_post.freecad_app.derived_operation import program_of
+from pkm_post.freecad_app.material_side import base_side, is_symmetric, spindle_sense_of
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Program
+from pkm_post.placement import (
+    Coverage,
+    Joint,
+    beside_plane,
+    coverage,
+    cut_lengths,
+    joint,
+    joints,
+    passes,
+    sector,
+    transform,
+)
+
+_PARALLEL = 1e-6
+"""Sine of the angle of planes below which they do not cross."""
+
+
+@dataclass(frozen=True)
+class Family:
+    """An operation and all its copies in the job, however deep.
+
+    Attributes:
+        label: name of the operation.
+        members: how many times it is there.
+        coverage: what they cover about their axis, rad; None without an axis, or without a cut.
+        joints: where they meet.
+    """
+
+    label: str
+    members: int
+    coverage: Coverage | None
+    joints: tuple[Joint, ...]
+
+
+def report(obj: Any, base: Program, copies: Sequence[Program], made: Program) -> None:
+    """Write the read-only properties of a symmetric operation.
+
+    Args:
+        obj: the operation.
+        base: the program of its base.
+        copies: its copies, as they are mirrored or turned.
+        made: the program of the operation.
+    """
+    sense, side = spindle_sense_of(obj), base_side(obj)
+    obj.CutOfBase = cut_lengths(base, side, sense).direction.value
+    obj.CutOfCopies = cut_lengths(made, side * obj.Proxy.hand(obj), sense).direction.value
+    met = _beside(obj, base, copies[0]) if hasattr(obj, "Normal") else _around(obj, [base, *copies])
+    obj.Joints = len(met)
+    obj.JointDistance = max((each.distance for each in met), default=0.0)
+    obj.JointTurn = math.degrees(max((each.turn for each in met), default=0.0))
+
+
+def _beside(obj: Any, base: Program, copy: Program) -> tuple[Joint, ...]:
+    obj.GapToBase, obj.OverlapWithBase = beside_plane(base, obj.Point, obj.Normal)
+    obj.ReversedPasses = len(passes(copy)) if obj.KeepClimb else 0
+    return (joint(base, copy),) if len(passes(base)) else ()
+
+
+def _around(obj: Any, programs: list[Program]) -> tuple[Joint, ...]:
+    found, met = _circle(programs, np.array(obj.Point), np.array(obj.Axis))
+    angles = (found.covered, found.overlap, found.gap) if found else (0.0, 0.0, 2 * math.pi)
+    obj.Covered, obj.Overlap, obj.Gap = (math.degrees(angle) for angle in angles)
+    obj.Tiles = found is not None and found.tiles
+    return met
+
+
+def _circle(programs: list[Program], point: Array, axis: Array) -> tuple[Coverage | None, tuple[Joint, ...]]:
+    """What programs cover about an axis, and where they meet; nothing where one of them cuts nothing."""
+    sectors = [found for program in programs if (found := sector(program, point, axis))]
+    if not programs or len(sectors) < len(programs):
+        return None, ()
+    return coverage(sectors), joints(programs, sectors)
+
+
+def family_of(obj: Any) -> Family:
+    """What an operation and all its active copies in the job make together.
+
+    Args:
+        obj: a symmetric operation, or one that has copies.
+
+    Raises:
+        ValueError: the commands of the original cannot be read.
+    """
+    root, job = _root(obj), PathUtils.findParentJob(obj)
+    operations = [root] if job is None else job.Operations.Group
+    others = [each for each in operations if _root(each) == root and each != root and _is_sound(each)]
+    programs = [program for each in (root, *others) for program in _images(each)]
+    axis = _axis(others)
+    found, met = _circle(programs, *axis) if axis else (None, ())
+    return Family(root.Label, len(programs), found, met)
+
+
+def _root(obj: Any) -> Any:
+    """The operation that copies of copies come from; a copy without a base is its own."""
+    while is_symmetric(obj) and obj.Base is not None:
+        obj = obj.Base
+    return obj
+
+
+def _is_sound(obj: Any) -> bool:
+    """Whether a copy and all copies that it stands on are there and active."""
+    while is_symmetric(obj) and obj.Base is not None:
+        if not obj.Active or not obj.isValid():
+            return False
+        obj = obj.Base
+    return not is_symmetric(obj)
+
+
+def _images(obj: Any) -> list[Program]:
+    """The original, or each image of it that a copy has; as it is before passes are run the other way."""
+    if not is_symmetric(obj):
+        return [program_of(obj)]
+    if obj.Base is None:
+        return []
+    made = [transform(program, matrix)[0] for matrix in obj.Proxy.matrices(obj) for program in _images(obj.Base)]
+    return [program for program in made if program is not None]
+
+
+def _axis(copies: list[Any]) -> tuple[Array, Array] | None:
+    """A point and the direction of the axis: that of a turn, or the line in which two mirrors cross."""
+    turns = [each for each in copies if hasattr(each, "Axis")]
+    if turns:
+        return np.array(turns[0].Point), np.array(turns[0].Axis)
+    planes = [(np.array(each.Point), np.array(each.Normal.normalize())) for each in copies]
+    for number, (point, normal) in enumerate(planes):
+        for other_point, other in planes[number + 1 :]:
+            along = np.cross(normal, other)
+            if np.linalg.norm(along) > _PARALLEL:
+                sides = np.array([normal @ point, other @ other_point, 0.0])
+                return np.linalg.solve(np.array([normal, other, along]), sides), along
+    return None

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Symmetry fields: vectors, quantities and lists of angles as fields of the symmetry panel.
+
+Values in mm and degrees enter and leave; people type in the units that they have chosen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtWidgets
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_SIDES = {
+    "Not stated": QT_TRANSLATE_NOOP("SymmetryPanel", "As the original tells"),
+    "Left": QT_TRANSLATE_NOOP("SymmetryPanel", "Left of the original's way"),
+    "Right": QT_TRANSLATE_NOOP("SymmetryPanel", "Right of the original's way"),
+}
+"""What the choices of MaterialSide are called."""
+
+
+def text_of(side: str) -> str:
+    """What a choice of MaterialSide is called."""
+    return str(translate("SymmetryPanel", _SIDES[side]))
+
+
+def quantity(unit: str, changed: Callable[..., None]) -> Any:
+    """A field with a unit, or for a number if there is none; it tells when it was edited."""
+    field = FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox")
+    field.setProperty("unit", unit)
+    field.editingFinished.connect(changed)
+    return field
+
+
+class Three(QtWidgets.QWidget):
+    """Three fields for a vector."""
+
+    def __init__(self, unit: str, changed: Callable[..., None]) -> None:
+        super().__init__()
+        layout = QtWidgets.QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        self.fields = [quantity(unit, changed) for _ in range(3)]
+        for field in self.fields:
+            layout.addWidget(field)
+
+    def show_values(self, values: Iterable[float], enabled: bool) -> None:
+        """Show a vector, and say whether it can be typed in."""
+        for field, value in zip(self.fields, values, strict=True):
+            field.setProperty("rawValue", value)
+        self.setEnabled(enabled)
+
+    def vector(self) -> FreeCAD.Vector:
+        """The vector that is shown."""
+        return FreeCAD.Vector(*(field.property("rawValue") for field in self.fields))
+
+
+def angles_of(text: str, before: Sequence[float]) -> list[float]:
+    """Angles in degrees of a list as people type it, with or without units; those before where it is no such list."""
+    try:
+        quantities = [FreeCAD.Units.Quantity(part) for part in text.split(";") if part.strip()]
+    except (ValueError, ArithmeticError):
+        return list(before)
+    plain = FreeCAD.Units.Quantity("1").Unit
+    if any(each.Unit not in (plain, FreeCAD.Units.Angle) for each in quantities):
+        return list(before)
+    return [each.Value for each in quantities]
+
+
+def told_angles(angles: Sequence[float]) -> str:
+    """Angles in degrees as a list that people can edit."""
+    return "; ".join(f"{angle:.10g}" for angle in angles)

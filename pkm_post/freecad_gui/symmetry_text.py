@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Symmetry text: the report of a mirrored or turned operation in sentences.
+
+The object enters; lines leave, in the language of FreeCAD and the units that people have chosen.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import FreeCAD
+
+from pkm_post.freecad_app.symmetry_report import Family, family_of
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_CUTS = {
+    "Climb": QT_TRANSLATE_NOOP("SymmetryPanel", "climb milling"),
+    "Conventional": QT_TRANSLATE_NOOP("SymmetryPanel", "conventional milling"),
+    "Both": QT_TRANSLATE_NOOP("SymmetryPanel", "climb and conventional milling"),
+    "Unknown": QT_TRANSLATE_NOOP("SymmetryPanel", "not known"),
+}
+
+
+def report_lines(obj: Any) -> list[str]:
+    """What is to be known of the copies: how they cut, where they lie, how they meet.
+
+    Args:
+        obj: the operation, computed.
+    """
+    if not obj.isValid():
+        return [obj.getStatusString()]
+    if obj.Base is None or not obj.Active:
+        return [translate("SymmetryPanel", "Nothing is copied")]
+    own = _mirror(obj) if hasattr(obj, "Normal") else _turns(obj)
+    return [*_cuts(obj), *own, *_joints(obj.Joints, obj.JointDistance, obj.JointTurn), *_family(obj, family_of(obj))]
+
+
+def _cuts(obj: Any) -> list[str]:
+    if obj.CutOfBase == "Unknown":
+        return [translate("SymmetryPanel", "Climb or conventional is not known: say where the material is")]
+    texts = translate("SymmetryPanel", "Original: {}"), translate("SymmetryPanel", "Copies: {}")
+    cuts = obj.CutOfBase, obj.CutOfCopies
+    return [text.format(translate("SymmetryPanel", _CUTS[cut])) for text, cut in zip(texts, cuts, strict=True)]
+
+
+def _mirror(obj: Any) -> list[str]:
+    lines = []
+    if obj.ReversedPasses:
+        text = translate("SymmetryPanel", "Passes that are run the other way: {}")
+        lines.append(text.format(obj.ReversedPasses))
+    if obj.GapToBase.Value:
+        lines.append(translate("SymmetryPanel", "Between original and copy: {}").format(obj.GapToBase.UserString))
+    if obj.OverlapWithBase.Value:
+        text = translate("SymmetryPanel", "Both cut over a width of {}")
+        lines.append(text.format(obj.OverlapWithBase.UserString))
+    return lines
+
+
+def _turns(obj: Any) -> list[str]:
+    text = translate("SymmetryPanel", "Original and copies: {}")
+    return [text.format(_covered(obj.Covered.Value, obj.Overlap.Value, obj.Gap.Value, obj.Tiles))]
+
+
+def _covered(covered: float, overlap: float, gap: float, tiles: bool) -> str:
+    """Angles in degrees, in a sentence."""
+    if tiles:
+        return str(translate("SymmetryPanel", "all round, none on another"))
+    text = translate("SymmetryPanel", "{} covered, {} covered twice, widest gap {}")
+    return str(text.format(*(_quantity(value).UserString for value in (covered, overlap, gap))))
+
+
+def _quantity(degrees: float) -> Any:
+    return FreeCAD.Units.Quantity(degrees, FreeCAD.Units.Angle)
+
+
+def _joints(count: int, distance: Any, turn: Any) -> list[str]:
+    if not count:
+        return [translate("SymmetryPanel", "They meet nowhere")]
+    text = translate("SymmetryPanel", "Where they meet ({}): tips {} apart, tool axes by {}")
+    return [text.format(count, distance.UserString, turn.UserString)]
+
+
+def _family(obj: Any, family: Family) -> list[str]:
+    """The job as a whole, where the original has more copies than these and they go round an axis."""
+    own = 1 + (len(obj.Angles) or obj.Copies if hasattr(obj, "Angles") else 1)
+    if family.coverage is None or family.members == own:
+        return []
+    found = family.coverage
+    covered, overlap, gap = (math.degrees(each) for each in (found.covered, found.overlap, found.gap))
+    told = _covered(covered, overlap, gap, found.tiles)
+    text = translate("SymmetryPanel", "{} with all its copies in the job, {} in number: {}")
+    lines = [text.format(family.label, family.members, told)]
+    if family.joints:
+        distance = max(each.distance for each in family.joints)
+        turn = math.degrees(max(each.turn for each in family.joints))
+        lines += _joints(len(family.joints), FreeCAD.Units.Quantity(distance, FreeCAD.Units.Length), _quantity(turn))
+    return lines

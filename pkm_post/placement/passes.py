@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Passes: the stretches of a program in which the cutter works its way, and what leads from one to the next.
+
+A program enters; flags by row, and first and last rows of the passes leave. A pass is a run of feed moves between rapid
+moves and plunges. Moves straight along the tool axis belong to no pass: down they lead to one, up they lead away.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import arc_points, arc_sweep, norm
+from pkm_post.geometry.vectors import Array, dot
+from pkm_post.model import Kind, Program
+
+_NO_MOVE = 1e-9
+"""mm, and of unit vectors: a row that moves less stands."""
+_ALONG = 1e-3
+"""rad: a straight move this near to the direction of the tool axis goes along it."""
+_ARC_STEPS = 24
+"""Points for each arc, a full turn at most: 15 degrees apart."""
+
+
+def steps(program: Program) -> Array:
+    """How the tip moves on each row, (N, 3) in mm; zero on row 0, whose start is not known."""
+    return np.diff(program.position, axis=0, prepend=program.position[:1])
+
+
+def moving(program: Program) -> Array:
+    """Whether tip or tool axis move on each row, (N,); row 0 does not."""
+    turn = np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1])
+    flags: Array = (norm(steps(program)) > _NO_MOVE) | (norm(turn) > _NO_MOVE) | (program.kind == Kind.ARC)
+    return flags
+
+
+def lifts(program: Program) -> Array:
+    """+1 on straight rows up along a steady tool axis, -1 down along it, 0 on all others, (N,)."""
+    way = steps(program)
+    length = norm(way)
+    direction = way / np.maximum(length, _NO_MOVE)[:, None]
+    turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
+    straight = (program.kind != Kind.ARC) & (length > _NO_MOVE) & (turn < _ALONG)
+    up = straight & (norm(direction - program.tool_axis) < _ALONG)
+    down = straight & (norm(direction + program.tool_axis) < _ALONG)
+    return up.astype(np.int8) - down.astype(np.int8)
+
+
+def cutting(program: Program) -> Array:
+    """Whether a row belongs to a pass, (N,). A row that moves nothing belongs to what is before it."""
+    cuts = (program.kind != Kind.RAPID) & (lifts(program) == 0)
+    known = moving(program)
+    known[:1], cuts[:1] = True, False
+    latest = np.maximum.accumulate(np.where(known, np.arange(len(program)), 0))
+    found: Array = cuts[latest] & (program.kind != Kind.RAPID)
+    return found
+
+
+def passes(program: Program) -> Array:
+    """The passes, (P, 2): the first row, and the one behind the last row."""
+    edge = np.diff(np.concatenate([[0], cutting(program).astype(np.int8), [0]]))
+    return np.column_stack([np.flatnonzero(edge > 0), np.flatnonzero(edge < 0)])
+
+
+def chords(program: Program) -> tuple[Array, Array]:
+    """Starts and ends of what is cut, (n, 3) each in mm: straight rows as they are, arcs as short chords."""
+    rows = np.flatnonzero(cutting(program))
+    arc = program.kind[rows] == Kind.ARC
+    start, end = program.position[rows - 1], program.position[rows]
+    centre, axis = program.arc_centre[rows[arc]], program.arc_axis[rows[arc]]
+    share = np.linspace(0, 1, _ARC_STEPS + 1)
+    sweep = arc_sweep(start[arc], end[arc], centre, axis)[:, None]
+    rise = dot(end[arc] - start[arc], axis)[:, None]
+    points = arc_points(start[arc][:, None], centre[:, None], axis[:, None], sweep * share, rise * share)
+    return (
+        np.concatenate([start[~arc], points[:, :-1].reshape(-1, 3)]),
+        np.concatenate([end[~arc], points[:, 1:].reshape(-1, 3)]),
+    )

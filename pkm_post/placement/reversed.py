@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reversed: a program whose passes are run the other way, so that climb milling stays climb milling behind a mirror.
+
+A program enters and leaves; no point is added. Each pass is turned round in itself, and the passes keep their sequence,
+so that depths are still cut from the top. Point columns go with the points, feeds and arcs with their segments; an arc
+turns about the opposite axis, and what was left of the path is right of it then.
+
+A pass that ends where it began is still reached and left as before. Another one is reached by the way on which it was
+left, and left by the way on which it was reached. The tool never comes down to where such a pass begins by a rapid
+move: what was a rapid lift takes the feed of the plunge, down from the height at which that plunge began.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array, dot
+from pkm_post.model import Diagnostic, Kind, Program
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS
+from pkm_post.placement.leads import LEVEL, Rows, as_high, as_is, gone_down, gone_up
+from pkm_post.placement.links import Link, closed, links
+from pkm_post.placement.passes import passes
+from pkm_post.placement.reversed_events import misplaced, moved_events
+
+_POINT_COLUMNS = ("position", "tool_axis", "normal", "spin", "exact_stop")
+"""What is said of the end of a row. All other columns are of the way there."""
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What belongs together in the new program.
+
+    Attributes:
+        name: "leave", "travel", "enter" of the link with this number, or "pass".
+        number: of the link or the pass.
+        rows: its rows.
+    """
+
+    name: str
+    number: int
+    rows: Rows
+
+
+def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """The program with every pass run the other way, or what stands against it (K122 to K125).
+
+    Doing it twice brings all points and passes back. It gives the very same program where the heights of lifts are
+    those of plunges, as with CAM's safe and clearance heights; elsewhere a rapid move that became feed may stay feed.
+
+    Args:
+        program: cutter locations; a program without passes comes back as it is.
+    """
+    runs = passes(program)
+    if not len(runs):
+        return program, ()
+    between, whole = links(program, runs), closed(program, runs)
+    parts = _parts(program, runs, between, whole)
+    faults = tuple(_faults(program, runs, parts, between, whole))
+    if errors(faults):
+        return None, faults
+    made = _taken(program, [part.rows for part in parts])
+    sizes = np.cumsum([0, *(len(part.rows.way) for part in parts)]).tolist()
+    begins = {(part.name, part.number): begin for part, begin in zip(parts, sizes, strict=False)}
+    events = moved_events(program, len(made), runs, between, _unchanged(whole), begins)
+    return dataclasses.replace(made, events=events), faults
+
+
+def _parts(program: Program, runs: Array, between: list[Link], whole: Array) -> list[_Part]:
+    """The new program in its order."""
+    kept = _unchanged(whole)
+    parts = []
+    for number, (first, behind) in enumerate(runs):
+        before, after, open_pass = between[number], between[number + 1], not whole[number]
+        enter = (
+            gone_down(program, before.approach, after.departure, first)
+            if open_pass
+            else as_is(program, before.approach)
+        )
+        top = int(first - 1 if not len(before.approach) else before.approach[0] - 1)
+        if open_pass:
+            top = int(behind - 1 if not len(after.departure) else after.departure[-1])
+        travel = as_is(program, before.travel) if kept[number] else _to(program, before, top, number == 0)
+        leave = gone_up(program, before.approach, after.departure) if open_pass else as_is(program, after.departure)
+        way = np.arange(behind - 1, first - 1, -1)
+        parts += [
+            _Part("travel", number, travel),
+            _Part("enter", number, enter),
+            _Part("pass", number, Rows(way - 1, way, program.feed[way], back=True)),
+            _Part("leave", number + 1, leave),
+        ]
+    return [*parts, _Part("travel", len(runs), as_is(program, between[-1].travel))]
+
+
+def _unchanged(whole: Array) -> Array:
+    """Whether each link is between passes that are closed, (P + 1,)."""
+    either: Array = np.append(True, whole) & np.append(whole, True)
+    return either
+
+
+def _to(program: Program, link: Link, top: int, at_start: bool) -> Rows:
+    """One rapid move to the point above a pass. At the start of all, what came before the old such point is kept."""
+    kept = link.travel[:-1] if at_start else link.travel[:0]
+    way = np.append(kept, link.travel[-1] if len(link.travel) else top)
+    return Rows(np.append(kept, top), way, np.append(program.feed[kept], np.nan))
+
+
+def _faults(
+    program: Program, runs: Array, parts: list[_Part], between: list[Link], whole: Array
+) -> Iterator[Diagnostic]:
+    sizes = {(part.name, part.number): len(part.rows.way) for part in parts}
+    for number in (np.flatnonzero(~_unchanged(whole)[1:-1]) + 1).tolist():
+        lost = _lost(program, between[number], sizes["leave", number], sizes["enter", number])
+        if lost:
+            yield Diagnostic("K122", program.place(int(runs[number, 0])), lost)
+    if not sizes["enter", 0] and not whole[0]:
+        # A path that begins in the material by itself may begin in it at its other end as well; no other one may.
+        code = "K122" if len(between[0].approach) else "K123"
+        yield Diagnostic(code, program.place(int(runs[0, 1]) - 1), "no lift leads away from the end of this pass")
+    for number in np.flatnonzero(~whole).tolist():
+        first, behind = runs[number].tolist()
+        approach, departure = between[number].approach, between[number + 1].departure
+        if len(departure) and not np.all(as_high(program, departure[-1:], approach, departure, first)):
+            yield Diagnostic(
+                "K122", program.place(behind - 1), "the lift from this pass ends below where rapid moves went"
+            )
+        down = float(dot(program.position[first - 1] - program.position[behind - 1], program.tool_axis[first]))
+        if down > LEVEL:
+            yield Diagnostic("K124", program.place(first), f"{down:.3f} mm")
+    yield from misplaced(program, runs)
+
+
+def _lost(program: Program, link: Link, leaving: int, entering: int) -> str:
+    """Why the tool could not go from one turned pass to the next, or nothing."""
+    if not np.any(program.kind[link.rows] == Kind.RAPID):
+        return "no rapid move leads to this pass"
+    if not leaving or not entering:
+        return "the tool is not lifted before this pass, or not lowered to it"
+    if len(link.travel) > 1:
+        return "the rapid way to this pass has corners"
+    return ""
+
+
+def _taken(program: Program, parts: list[Rows]) -> Program:
+    """The rows of all parts as a program, its events still the old ones."""
+    point, way, feed = (np.concatenate([getattr(part, name) for part in parts]) for name in ("point", "way", "feed"))
+    back = np.repeat([part.back for part in parts], [len(part.way) for part in parts])
+    names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS} - {*_POINT_COLUMNS}
+    columns: dict[str, Any] = {name: getattr(program, name)[way] for name in names}
+    columns |= {name: getattr(program, name)[point] for name in _POINT_COLUMNS}
+    arc = back & (columns["kind"] == Kind.ARC)
+    columns["kind"] = np.where(arc, Kind.ARC, np.where(np.isnan(feed), Kind.RAPID, Kind.LINE))
+    columns["feed"] = feed
+    columns["arc_centre"] = np.where(arc[:, None], columns["arc_centre"], np.nan)
+    columns["arc_axis"] = np.where(arc[:, None], -columns["arc_axis"], np.nan)
+    columns["side_offset"] = np.where(back, -1.0, 1.0) * columns["side_offset"] + 0.0
+    return dataclasses.replace(program, **columns, events=())

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Which side the material is on, against the ways that CAM's own operations go round a box of 20 mm."""
+
+import numpy as np
+import Path.Op.PocketShape
+import Path.Op.Profile
+import pytest
+
+from pkm_post.freecad_app.derived_operation import program_of
+from pkm_post.freecad_app.material_side import material_side_of
+from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.placement.passes import chords
+
+MIDDLE = [10, 10, 0]
+COUNTERCLOCKWISE, CLOCKWISE = 1, -1
+
+
+def made(job, module, name, **properties):
+    operation = module.Create(name, parentJob=job)
+    controller = operation.ToolController = job.Tools.Group[0]
+    controller.HorizFeed = controller.VertFeed = "600 mm/min"
+    for key, value in properties.items():
+        setattr(operation, key, value)
+    job.Document.recompute()
+    assert operation.isValid()
+    return operation
+
+
+def winding(operation, middle=MIDDLE):
+    """+1 for a way that goes round the middle counterclockwise, by twice the area that it goes round."""
+    start, end = (points - middle for points in chords(program_of(operation)))
+    return np.sign((start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]).sum())
+
+
+@pytest.mark.parametrize(("direction", "found"), [("CW", CLOCKWISE), ("CCW", COUNTERCLOCKWISE)])
+def test_a_profile_round_the_outside_has_the_part_within_its_way(job, direction, found):
+    operation = made(job, Path.Op.Profile, "Profile", Side="Outside", Direction=direction)
+    assert winding(operation) == found
+    assert material_side_of(operation) == -found  # clockwise: the middle is to the right
+
+
+@pytest.mark.parametrize(("mode", "found"), [("Climb", COUNTERCLOCKWISE), ("Conventional", CLOCKWISE)])
+def test_a_pocket_has_its_wall_round_its_way(job, mode, found):
+    pattern = {"Base": [(job.Model.Group[0], ["Face6"])], "CutMode": mode}
+    operation = made(job, Path.Op.PocketShape, "Pocket", **pattern)
+    name = "ClearingPattern" if hasattr(operation, "ClearingPattern") else "OffsetPattern"
+    setattr(operation, name, "Offset")
+    job.Document.recompute()
+    assert winding(operation) == found
+    assert material_side_of(operation) == found  # counterclockwise: what is outside is to the right
+    setattr(operation, name, "ZigZag")
+    assert material_side_of(operation) == 0
+
+
+@pytest.mark.parametrize("keep", [False, True])
+def test_a_mirrored_profile_goes_round_as_it_has_to(job, keep):
+    operation = made(job, Path.Op.Profile, "Profile", Side="Outside", Direction="CW")
+    copy = create_mirror(operation, (1, 0, 0), keep_climb=keep)
+    job.Document.recompute()
+    assert copy.isValid(), copy.getStatusString()
+    assert (copy.CutOfBase, copy.CutOfCopies) == ("Climb", "Climb" if keep else "Conventional")
+    assert winding(copy, middle=[-10, 10, 0]) == (CLOCKWISE if keep else COUNTERCLOCKWISE)

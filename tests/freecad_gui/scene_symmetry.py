@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of mirrored and turned operations: opened by its buttons and by double click, accepted and cancelled."""
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from gui import main, new_document, picture, press, settle, step, until
+
+QUARTER = [
+    "G0 X60 Y0 Z90",
+    "G0 Z40",
+    "G1 Z30 F5",
+    "G3 X0 Y60 I-60 J0 F20",
+    "G0 Z40",
+    "G0 Z90",
+]
+
+
+def panel_of():
+    """The panel that is open."""
+    from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
+    return SymmetryPanel.opened
+
+
+def quadrant(name):
+    """A job with a quarter of a ring."""
+    document = new_document(name)
+    base = document.getObject("Custom")
+    base.Gcode = QUARTER
+    document.recompute()
+    return document, base
+
+
+def opened(document):
+    return bool(FreeCADGui.getDocument(document.Name).getInEdit())
+
+
+def labels(document):
+    return [item.Label for item in document.getObject("Job").Operations.Group]
+
+
+@step
+def mirror_from_its_button():
+    document, base = quadrant("mirror")
+    before = document.UndoCount
+    press("PKM_Mirror", base)
+    made = document.getObject("Job").Operations.Group[-1]
+    panel = panel_of()
+    told = {
+        "open": opened(document),
+        "choices": [panel.choice.itemText(index) for index in range(panel.choice.count())],
+        "chosen": panel.choice.currentText(),
+        "report": panel.report.text(),
+    }
+    panel.choice.setCurrentIndex(2)
+    panel.point.fields[0].setProperty("rawValue", 5.0)
+    panel.point.fields[0].editingFinished.emit()
+    panel.side.setCurrentIndex(1)
+    panel.keep_climb.setChecked(True)
+    told["computed later"] = until(lambda: made.ReversedPasses == 1 and "1" in panel.report.text())
+    told["live report"] = panel.report.text()
+    told["picture"] = picture("mirror_panel.png")
+    panel.accept()
+    settle()
+    told |= {
+        "closed": not opened(document),
+        "normal": list(made.Normal),
+        "point": list(made.Point),
+        "keeps": made.KeepClimb,
+        "cuts": [made.CutOfBase, made.CutOfCopies],
+        "undo steps": document.UndoCount - before,
+    }
+    document.undo()
+    document.recompute()
+    told["after undo"] = labels(document)
+    document.redo()
+    document.recompute()
+    told["after redo"] = [labels(document), document.getObject("Job").Operations.Group[-1].KeepClimb]
+    return told
+
+
+@step
+def cancel_takes_a_new_one_back():
+    document, base = quadrant("cancel")
+    before = document.UndoCount
+    press("PKM_Rotate", base)
+    inside = labels(document)
+    panel_of().reject()
+    settle()
+    return {"inside": inside, "after": labels(document), "undo": document.UndoCount - before, "open": opened(document)}
+
+
+@step
+def edit_by_double_click():
+    from pkm_post.freecad_app.symmetry import create_mirror
+
+    document, base = quadrant("again")
+    made = create_mirror(base, (0, 1, 0))
+    document.recompute()
+    view = made.ViewObject
+    before = document.UndoCount
+    view.Proxy.doubleClicked(view)
+    settle()
+    panel_of().choice.setCurrentIndex(0)
+    panel_of().compute()
+    inside = list(made.Normal)
+    panel_of().reject()
+    settle()
+    told = {"inside": inside, "rejected": list(made.Normal), "undo": document.UndoCount - before}
+    view.Proxy.doubleClicked(view)
+    settle()
+    panel_of().choice.setCurrentIndex(4)
+    for values in ((0.0, 0.0, 0.0), (1.0, 1.0, 0.0)):
+        for field, value in zip(panel_of().direction.fields, values, strict=True):
+            field.setProperty("rawValue", value)
+        if not any(values):
+            panel_of().apply()
+            panel_of().compute()
+            told["no direction"] = list(made.Normal)
+    panel_of().accept()
+    settle()
+    told |= {"accepted": list(made.Normal), "undo steps": document.UndoCount - before}
+    document.undo()
+    return told | {"undone": list(made.Normal), "open": opened(document)}
+
+
+@step
+def plane_by_a_picked_face_and_a_datum_plane():
+    from pkm_post.freecad_app.symmetry import create_mirror
+
+    document, base = quadrant("picked")
+    made = create_mirror(base, (0, 1, 0))
+    body = document.addObject("PartDesign::Body", "Body")
+    datum = body.newObject("PartDesign::Plane", "Datum")
+    datum.Placement = FreeCAD.Placement(FreeCAD.Vector(0, 7, 0), FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 90))
+    document.recompute()
+    made.ViewObject.Proxy.doubleClicked(made.ViewObject)
+    settle()
+    panel = panel_of()
+    panel.choice.setCurrentIndex(3)
+    told = {"hint": panel.picked.text()}
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Edge1")
+    told["unfit"] = panel.picked.text()
+    FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Face2")
+    told["face"] = panel.picked.text()
+    panel.compute()
+    told["plane of face"] = [list(made.Point), list(made.Normal)]
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(body, "Datum.")
+    panel.compute()
+    told["datum"] = panel.picked.text()
+    told["plane of datum"] = [list(made.Point), [abs(round(each, 9)) for each in made.Normal]]
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(made)
+    told["itself"] = panel.picked.text()
+    panel.accept()
+    settle()
+    told["link"] = made.Plane[0].Label
+    datum.Placement.Base = FreeCAD.Vector(0, 9, 0)
+    document.recompute()
+    told["follows"] = round(made.Point.y, 9)
+    return told
+
+
+@step
+def turns_with_their_report():
+    document, base = quadrant("turns")
+    press("PKM_Rotate", base)
+    made, panel = document.getObject("Job").Operations.Group[-1], panel_of()
+    told = {"half turn": panel.report.text()}
+    panel.angle.setProperty("rawValue", 90.0)
+    panel.copies.setValue(3)
+    panel.compute()
+    told["three quarters"] = panel.report.text()
+    told["picture"] = picture("rotation_panel.png")
+    panel.angles.setText("90; 100 deg; no angle")
+    panel.angles.editingFinished.emit()
+    told["no list"] = list(made.Angles)
+    panel.angles.setText("90; 1 rad")
+    panel.angles.editingFinished.emit()
+    told["list"] = list(np.round(made.Angles, 6))
+    panel.compute()
+    told["list report"] = panel.report.text()
+    panel.angles.setText("")
+    panel.angles.editingFinished.emit()
+    panel.choice.setCurrentIndex(3)
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Edge1")
+    panel.compute()
+    told["axis of edge"] = [abs(each) for each in made.Axis]
+    panel.accept()
+    settle()
+    return told | {"moves": len(made.Path.Commands), "copies": made.Copies, "angle": made.Angle.Value}
+
+
+@step
+def mirror_of_a_rotation_and_the_whole_family():
+    from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
+
+    document, base = quadrant("family")
+    half = create_rotation(base, (0, 0, 1), np.pi)
+    across = create_mirror(base, (0, 1, 0))
+    document.recompute()
+    press("PKM_Mirror", half)
+    told = {"report": panel_of().report.text(), "label": document.getObject("Job").Operations.Group[-1].Label}
+    panel_of().accept()
+    settle()
+    across.ViewObject.Proxy.doubleClicked(across.ViewObject)
+    settle()
+    told["other"] = panel_of().report.text()
+    panel_of().reject()
+    settle()
+    return told
+
+
+main()
