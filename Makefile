@@ -34,7 +34,7 @@ demo: export PKM_MODULES = numpy matplotlib
 demo: ## post-process the tapered column; its files and pictures are in out/ then (OUT=directory)
 	@$(FREECAD) examples/tapered_column/demo.py --out "$(OUT)"
 
-test: export PKM_MODULES = numpy lark serial pytest hypothesis matplotlib
+test: export PKM_MODULES = numpy lark serial paramiko pytest hypothesis matplotlib
 test: ## run the tests inside FreeCAD (ARGS="-k feed -x" for pytest)
 	@$(FREECAD) tools/run_tests.py $(ARGS)
 
@@ -52,7 +52,7 @@ fuzz: $(FUZZ_VENV)/made ## feed the readers of part programs with bytes (FUZZ_SE
 	@PYTHONPATH=. $(FUZZ_VENV)/bin/python fuzz/part_programs.py -max_total_time=$(FUZZ_SECONDS) \
 		-timeout=20 -rss_limit_mb=2048 -print_final_stats=1
 
-soak: $(VENV)/made ## download to the simulated PMAC over faulty links (SOAK_DOWNLOADS=10000)
+soak: $(VENV)/made ## download and stream to the simulated PMAC over faulty links (SOAK_DOWNLOADS=10000)
 	@PYTHONPATH=. $(VENV)/bin/python tests/pmac_link/soak.py $(SOAK_DOWNLOADS)
 
 conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it

@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 ADDON = Path(__file__).parents[1]
-WITHOUT = "import sys; sys.modules['lark'] = sys.modules['serial'] = None; "
+WITHOUT = "import sys; sys.modules['lark'] = sys.modules['serial'] = sys.modules['paramiko'] = None; "
 
 
 def python(code, *arguments):
@@ -20,7 +20,7 @@ def python(code, *arguments):
     )
 
 
-def test_a_job_is_posted_without_lark_and_pyserial():
+def test_a_job_is_posted_without_lark_pyserial_and_paramiko():
     told = python("import pkm_post.pipeline, pkm_post.options, pkm_post.gcode.chords; print('imported')")
     assert told.stdout == "imported\n", told.stderr
 

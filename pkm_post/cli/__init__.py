@@ -16,7 +16,7 @@ from pkm_post.cli import machine, part_programs, pmac, post, reach, reach_map, v
 
 __all__ = ["main"]
 
-_OPTIONAL = ("lark", "serial")
+_OPTIONAL = ("lark", "serial", "paramiko")
 """Packages that not every installation has; their doors say what to install."""
 
 

@@ -16,8 +16,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pkm_post.cli import pmac_simulate
-from pkm_post.cli.pmac_actions import ACTIONS, JobTarget, Target
+from pkm_post.cli import pmac_control, pmac_control_arguments, pmac_simulate
+from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, JobTarget, Target
+from pkm_post.cli.pmac_stream import ROTARY_WORDS
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
@@ -30,29 +31,36 @@ def add_commands(commands: Any) -> None:
     """Add the command ``pmac`` with its actions to a parser."""
     pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC, or simulate one")
     actions = pmac.add_subparsers(required=True, metavar="ACTION")
-    for name, (action, text, needs) in ACTIONS.items():
+    for name, (action, text, needs) in (ACTIONS | pmac_control.ACTIONS).items():
         parser = actions.add_parser(name, help=text)
         _add_port(parser)
         parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
         if "program" in needs:
             parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
         _add_own(parser, name)
-        parser.set_defaults(run=_run, action=action, clears="clears" in needs)
+        pmac_control_arguments.add_own(parser, name)
+        parser.set_defaults(run=_run, action=action, name=name, needs=needs)
     pmac_simulate.add_action(actions)
 
 
 def _add_port(parser: argparse.ArgumentParser) -> None:
     from pkm_post.pmac_link.links import PARITIES
 
-    parser.add_argument("--port", required=True, type=_port, metavar="PORT", help="serial:DEVICE or tcp:HOST[:PORT]")
+    forms = "serial:DEVICE, tcp:HOST[:PORT] or, for a Power PMAC, ssh:USER@HOST[:PORT]"
+    parser.add_argument("--port", required=True, type=_port, metavar="PORT", help=forms)
     parser.add_argument("--baud", type=int, default=38400, help="of a serial line (%(default)s)")
     parser.add_argument("--parity", choices=PARITIES, default="none", help="of a serial line (%(default)s)")
     parser.add_argument("--rtscts", action="store_true", help="the serial line has RTS and CTS")
+    known = "host keys that are trusted over ssh (~/.ssh/known_hosts)"
+    parser.add_argument("--known-hosts", type=Path, metavar="FILE", help=known)
     parser.add_argument("--patience", type=_positive, default=2.0, metavar="S", help="longest silence (%(default)s)")
 
 
 def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
-    if name == "run":
+    if name == "stream":
+        rotary = "size of the rotary buffer, as it was defined (%(default)s)"
+        parser.add_argument("--rotary", type=_words, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
+    if name in ("run", "stream"):
         near = "how far each strut may be from the first point (%(default)s)"
         parser.add_argument("--near", type=_positive, default=1.0, metavar="MM", help=near)
     elif name == "abort":
@@ -75,22 +83,37 @@ def _port(text: str) -> Port:
 
 
 def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.pmac_link.faults import PmacError
+    from pkm_post.pmac_link.faults import LinkLostError, PmacError
     from pkm_post.pmac_link.session import Leftover, Session
 
     logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
+    if namespace.port.is_power and namespace.name not in OF_POWER_PMAC:
+        print(f"{namespace.name} is not for a Power PMAC: {NOT_OF_POWER_PMAC}", file=sys.stderr)
+        return 1
     target = None if namespace.machine is None else _target(namespace)
     if target is None and namespace.machine is not None:
         return 1
-    port = replace(namespace.port, baud=namespace.baud, parity=namespace.parity, handshake=namespace.rtscts)
-    session = Session(port, namespace.patience, leftover=Leftover.CLEAR if namespace.clears else Leftover.REFUSE)
+    port = replace(
+        namespace.port,
+        baud=namespace.baud,
+        parity=namespace.parity,
+        handshake=namespace.rtscts,
+        known_hosts=namespace.known_hosts,
+    )
+    rights = {"clears": Leftover.CLEAR, "joins": Leftover.JOIN}
+    leftover = next((rights[need] for need in namespace.needs if need in rights), Leftover.REFUSE)
+    session = Session(port, namespace.patience, leftover=leftover)
+    connected = False
     try:
         with session:
+            connected = True
             for note in session.notes:
                 print(note, file=sys.stderr)
             return int(namespace.action(session, target, namespace))
     except PmacError as fault:
         print(fault, file=sys.stderr)
+        if isinstance(fault, LinkLostError):
+            pmac_control.tell_emergency(namespace.name, connected)
         return 1
     except KeyboardInterrupt:
         print("interrupted; the controller goes on with what it does", file=sys.stderr)
@@ -99,14 +122,14 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 def _target(namespace: argparse.Namespace) -> Target | None:
     """Machine and program that were named; None when they are not in order, which is told."""
-    from pkm_post.controllers.pmac import settings_of
+    from pkm_post.controllers import pmac, power_pmac
     from pkm_post.machine_file import machine_named
     from pkm_post.pmac_link.job import read_job
 
     machine = _told(*machine_named(namespace.machine))
     if machine is None:
         return None
-    settings = _told(*settings_of(machine))
+    settings: Any = _told(*(power_pmac if namespace.port.is_power else pmac).settings_of(machine))
     if settings is None:
         return None
     if "program" not in namespace:
@@ -125,6 +148,12 @@ def _told(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
     for fault in faults:
         print(fault, file=sys.stderr)
     return value
+
+
+def _words(text: str) -> int:
+    if not (text.isdecimal() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"expected a number of words above zero, got {text!r}")
+    return int(text)
 
 
 def _positive(text: str) -> float:

@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.cli.pmac_stream import stream
+
 if TYPE_CHECKING:
     from pkm_post.controllers.pmac import Settings
     from pkm_post.model import Machine
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     Action = Callable[[Session, Any, argparse.Namespace], int]
 
 _IDENTITY = ("TYPE", "VER", "CID", "SIZE", "I42", "I68")
+_IDENTITY_OF_POWER_PMAC = ("CID", "Sys.MaxCoords")
 _CLEAR_SCREEN = "\x1b[H\x1b[J"
 
 
@@ -52,12 +55,15 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
     from pkm_post.pmac_link.faults import RefusedError
     from pkm_post.pmac_link.ready import check_setup
 
-    for query in _IDENTITY:
+    is_power = namespace.port.is_power
+    for query in _IDENTITY_OF_POWER_PMAC if is_power else _IDENTITY:
         try:
             print(f"{query}: {' '.join(session.ask(query))}")
         except RefusedError as refused:
             print(f"{query}: {refused}")
-    if target is not None:
+    if target is not None and is_power:
+        print("the set-up of a Power PMAC is not compared: how it tells its axis definitions is not known")
+    elif target is not None:
         check_setup(session, target.settings, target.machine.strut_stroke)
         print(f"set up for {target.machine.name}")
     return 0
@@ -165,12 +171,20 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "probe": (probe, "say what controller answers, and whether it is set up for the machine", ()),
     "download": (download, "load a program, list it back and compare", ("machine", "program", "clears")),
     "run": (start, "start a program that is loaded, from its beginning", ("machine", "program")),
+    "stream": (stream, "run a program too large to be loaded, while it is sent", ("machine", "program", "clears")),
     "hold": (hold, "slow the program down to rest, on its path", ("machine", "clears")),
-    "resume": (resume, "go on after a hold", ("machine",)),
+    "resume": (resume, "go on after a hold", ("machine", "joins")),
     "abort": (abort, "end the program: hold, then abort", ("machine", "clears")),
-    "status": (status, "struts, following errors and faults in words", ("machine",)),
-    "monitor": (monitor, "the same with the pose of the tool, again and again", ("machine",)),
+    "status": (status, "struts, following errors and faults in words", ("machine", "joins")),
+    "monitor": (monitor, "the same with the pose of the tool, again and again", ("machine", "joins")),
     "terminal": (terminal, "send lines of the standard input, each once", ()),
 }
 """For each action what it does, in words, and what it needs: a machine or a program that is named, or the right to
-clear a program buffer that is open. To stop is more urgent than to load."""
+clear a program buffer that is open, or to join a stream. To stop is more urgent than to load."""
+
+OF_POWER_PMAC = ("probe", "hold", "abort", "status", "monitor", "terminal")
+"""What is known of a Power PMAC suffices for these."""
+NOT_OF_POWER_PMAC = (
+    "how it lists a program back, and what it answers to the rest of what this needs, is not known to this program,"
+    " and nothing is sent to a machine on a guess"
+)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The link to a Turbo PMAC: conversation, serial line and Ethernet, download, start and stop, status and readout."""
+"""The link to a PMAC: conversations over serial line, Ethernet and ssh, download, stream, stops, status, readout."""

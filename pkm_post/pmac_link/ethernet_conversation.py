@@ -22,9 +22,9 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from enum import Enum, auto
 
-from pkm_post.pmac_link.exchange import Answer, Command, Event, Kind, Lost, Refusal
+from pkm_post.pmac_link.bytewise import BytewiseConversation
+from pkm_post.pmac_link.exchange import Answer, Command, Kind, Lost, Refusal
 from pkm_post.pmac_link.responses import ResponseReader
 
 DOWNLOAD, UPLOAD = 0x40, 0xC0
@@ -52,14 +52,7 @@ def packet(request: int, data: bytes = b"", value: int = 0, length: int | None =
     return struct.pack(">BBHHH", kind, request, value, 0, len(data) if length is None else length) + data
 
 
-class _State(Enum):
-    IDLE = auto()
-    ANSWER = auto()
-    LINES = auto()
-    SILENCE = auto()
-
-
-class EthernetConversation:
+class EthernetConversation(BytewiseConversation):
     """A conversation in packets: I3=2, I4=0, I6=1.
 
     Attributes:
@@ -70,74 +63,32 @@ class EthernetConversation:
     handshake = "I3=2 I4=0 I6=1 I9=3"
 
     def __init__(self, silence: float = 0.1) -> None:
-        """Make a conversation.
-
-        Args:
-            silence: seconds without a byte after which the controller has nothing more to say.
-        """
-        self.deadline: float | None = None
-        self._silence = silence
-        self._state = _State.IDLE
-        self._command = Command("?")
+        """Make a conversation; as ``BytewiseConversation``."""
+        super().__init__(silence)
         self._reader = ResponseReader(b"", False)
-        self._out = bytearray()
-        self._events: list[Event] = []
-        self._collected = bytearray()
-        self._in_packet = self._taken = 0
+        self._in_packet = 0
 
     def begin(self, command: Command, now: float) -> None:
         """As ``exchange.Conversation``."""
-        if self._state is not _State.IDLE:
-            raise ValueError(f"command: expected none outstanding, got {self._command.text!r} before {command.text!r}")
-        most = MOST_LINES if command.kind is Kind.BUFFER else LONGEST_COMMAND
-        if len(command.text) >= most:
-            raise ValueError(f"command: expected less than {most} characters, got {len(command.text)}")
-        self._command, self._taken, self._in_packet = command, 0, 0
+        # Each line of a buffer has a byte of its end.
+        self._take_up(command, MOST_LINES - 1 if command.kind is Kind.BUFFER else LONGEST_COMMAND)
         text = command.text.encode("ascii")
-        self._collected.clear()
         if command.kind is Kind.BUFFER:
-            self._ask(packet(WRITEBUFFER, text.replace(b"\n", b"\0") + b"\0"), _State.LINES, now)
+            self._out += packet(WRITEBUFFER, text.replace(b"\n", b"\0") + b"\0")
+            self._wait_patiently(self._lines_taken, now)
             return
-        self._reader = ResponseReader(text, False)
-        self._ask(packet(GETRESPONSE, text), _State.SILENCE if command.kind is Kind.BLIND else _State.ANSWER, now)
+        self._out += packet(GETRESPONSE, text)
+        if command.kind is Kind.BLIND:
+            self._wait_for_silence(now)
+            return
+        self._reader, self._in_packet = ResponseReader(text, False), 0
+        self._wait_patiently(self._answer, now)
 
     def reset(self, now: float) -> None:
         """As ``exchange.Conversation``."""
-        self._command, self._taken = Command("forget", Kind.BLIND, self._silence), 0
-        self._collected.clear()
-        self._ask(packet(FLUSH), _State.SILENCE, now)
-
-    def receive(self, data: bytes, now: float) -> None:
-        """As ``exchange.Conversation``."""
-        for byte in data:
-            self._taken += 1
-            if self._state is _State.ANSWER:
-                self._answer(byte, now)
-            elif self._state is _State.LINES:
-                self._collected.append(byte)
-                self._lines_taken()
-            elif self._state is _State.SILENCE:
-                self._collected.append(byte)
-                self.deadline = now + self._silence
-            if self._taken > self._command.most and self._state is not _State.IDLE:
-                self._end(Lost(f"more than {self._command.most} bytes"))
-
-    def expire(self, now: float) -> None:
-        """As ``exchange.Conversation``."""
-        if self._state is _State.SILENCE:
-            self._end(Answer(tuple(self._collected.decode("latin-1").split("\r"))))
-        elif self._state is not _State.IDLE:
-            self._end(Lost(f"no answer for {self._command.patience:g} s"))
-
-    def outgoing(self) -> bytes:
-        """As ``exchange.Conversation``."""
-        data, self._out = bytes(self._out), bytearray()
-        return data
-
-    def events(self) -> list[Event]:
-        """As ``exchange.Conversation``."""
-        events, self._events = self._events, []
-        return events
+        self._forget()
+        self._out += packet(FLUSH)
+        self._wait_for_silence(now)
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
         """As many lines as one WRITEBUFFER holds."""
@@ -151,21 +102,22 @@ class EthernetConversation:
 
     def _answer(self, byte: int, now: float) -> None:
         self._in_packet += 1
-        self.deadline = now + self._command.patience
         event = self._reader.take(byte)
-        self._events += self._reader.messages
-        self._reader.messages.clear()
+        self._events += self._reader.taken_messages()
         if event is not None:
             self._end(event)
-        elif self._in_packet == MOST_ANSWER:
+            return
+        if self._in_packet == MOST_ANSWER:
             self._in_packet = 0
-            self._ask(packet(GETBUFFER, length=MOST_ANSWER), _State.ANSWER, now)
+            self._out += packet(GETBUFFER, length=MOST_ANSWER)
+        self._wait_patiently(self._answer, now)
 
-    def _lines_taken(self) -> None:
+    def _lines_taken(self, byte: int, now: float) -> None:
         """Four bytes: number of a line, low byte first; number of the error; 80 when there is one."""
+        self._collected.append(byte)
         if len(self._collected) < 4:
             return
-        line, error, fault = struct.unpack("<HBB", self._collected[:4])
+        line, error, fault = struct.unpack("<HBB", self._collected)
         count = self._command.text.count("\n") + 1
         if fault == 0 and error == 0:
             self._end(Answer())
@@ -173,12 +125,4 @@ class EthernetConversation:
             # Whether the first line is 0 or 1 is not in the manuals at hand; 1 is taken.
             self._end(Refusal(error, min(max(line - 1, 0), count - 1)))
         else:
-            self._end(Lost(f"{self._collected[:4].hex(' ')} in answer to lines of a program"))
-
-    def _ask(self, data: bytes, state: _State, now: float) -> None:
-        self._out += data
-        self._state, self.deadline = state, now + self._command.patience
-
-    def _end(self, event: Event) -> None:
-        self._state, self.deadline = _State.IDLE, None
-        self._events.append(event)
+            self._end(Lost(f"{self._collected.hex(' ')} in answer to lines of a program"))

@@ -66,10 +66,12 @@ class Refusal:
     Attributes:
         number: of the error, None when it gave none.
         line: index of the line that was refused, for lines of a buffer.
+        words: number and meaning, where the controller says them itself.
     """
 
     number: int | None
     line: int = 0
+    words: str = ""
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,8 @@ class Conversation(Protocol):
 
     Attributes:
         deadline: when ``expire`` is due unless bytes come before; None while nothing is outstanding.
-        handshake: the assignments that make the controller answer as this conversation expects.
+        handshake: the assignments that make the controller answer as this conversation expects; empty when ``reset``
+            is enough.
     """
 
     deadline: float | None
@@ -114,7 +117,7 @@ class Conversation(Protocol):
         """
 
     def reset(self, now: float) -> None:
-        """Forget what is outstanding and make the controller forget it; ends with an ``Answer`` in silence."""
+        """Forget what is outstanding and make the controller forget it; ends with an ``Answer``, or with ``Lost``."""
 
     def receive(self, data: bytes, now: float) -> None:
         """Take bytes of the controller."""

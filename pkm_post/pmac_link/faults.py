@@ -52,13 +52,17 @@ class RefusedError(PmacError):
         number: of the error, None when the controller gave none.
     """
 
-    def __init__(self, command: str, number: int | None) -> None:
-        super().__init__(f"the controller refused {command!r}: {meaning(number)}")
+    def __init__(self, command: str, number: int | None, words: str = "") -> None:
+        super().__init__(f"the controller refused {command!r}: {words or meaning(number)}")
         self.command, self.number = command, number
 
 
 class LinkLostError(PmacError):
     """The link was cut, or what came over it made no sense and asking again did not help."""
+
+
+class NoAccessError(PmacError):
+    """The controller's computer could not prove who it is, or lets this user not in: trying again does not help."""
 
 
 class OutcomeUnknownError(LinkLostError):
@@ -100,6 +104,26 @@ class DownloadError(PmacError):
         )
         super().__init__(f"{why}; {left}")
         self.cleared = cleared
+
+
+class StreamError(PmacError):
+    """A program could not be streamed to its end.
+
+    Attributes:
+        line: of the program, from 1, behind which the machine rests or comes to rest by itself; 0 before its first.
+        cleared: whether the controller has shown since that nothing is left in its rotary buffer.
+    """
+
+    def __init__(self, why: str, line: int, cleared: bool) -> None:
+        where = f"behind line {line} of the program" if line else "before the first line of the program"
+        left = (
+            f"it rests {where} at the latest, and nothing is left in the rotary buffer"
+            if cleared
+            else f"it comes to rest {where} at the latest, BUT WHAT IS LEFT IN ITS ROTARY BUFFER IS UNKNOWN:"
+            " do not start it, stream the program again"
+        )
+        super().__init__(f"{why}; {left}")
+        self.line, self.cleared = line, cleared
 
 
 class CancelledError(PmacError):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Job: a program file, read as the controller would read it before a byte of it is sent.
 
-Enters: the text of a program or of one part of it, and the settings it was written for. Leaves: its lines and its first
-point in mm, or what is wrong with it.
+Enters: the text of a program or of one part of it, and the settings it was written for. Leaves: its lines and its
+motion in mm, or what is wrong with it.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 
 from pkm_post.controllers.pmac import Settings, read_program
-from pkm_post.model import Diagnostic
+from pkm_post.model import Diagnostic, StrutMotion
 from pkm_post.pmac_link.listing import Program, program_of
 from pkm_post.pmac_link.status import Array
 
@@ -24,11 +24,16 @@ class Job:
 
     Attributes:
         program: what goes into the controller.
-        first: (6,) strut lengths at its first point, mm.
+        motion: what it does.
     """
 
     program: Program
-    first: Array
+    motion: StrutMotion
+
+    @property
+    def first(self) -> Array:
+        """(6,) strut lengths at its first point, mm."""
+        return self.motion.length[0]
 
 
 def read_job(text: str, settings: Settings, file: str) -> tuple[Job | None, tuple[Diagnostic, ...]]:
@@ -43,4 +48,4 @@ def read_job(text: str, settings: Settings, file: str) -> tuple[Job | None, tupl
     motion, faults = read_program(_COMMENT.sub(";", text), settings, file)
     if motion is None:
         return None, faults
-    return Job(program_of(text), motion.length[0]), faults
+    return Job(program_of(text), motion), faults

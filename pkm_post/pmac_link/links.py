@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 PARITIES = {"none": "N", "odd": "O", "even": "E"}
 # FreeCAD leaves SIGPIPE at its default: writing to a socket that the peer has closed would end the process.
-_WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
-_CHUNK = 1 << 16
+WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
+CHUNK = 1 << 16
 
 
 class Link(Protocol):
@@ -67,7 +67,7 @@ class TcpLink:
         connection = self._connection()
         connection.settimeout(max(timeout, 1e-3))
         try:
-            data = connection.recv(_CHUNK)
+            data = connection.recv(CHUNK)
         except TimeoutError:
             return b""
         except OSError as fault:
@@ -81,7 +81,7 @@ class TcpLink:
         connection = self._connection()
         connection.settimeout(self._timeout)
         try:
-            connection.sendall(data, _WITHOUT_SIGNAL)
+            connection.sendall(data, WITHOUT_SIGNAL)
         except OSError as fault:
             raise LinkLostError(f"{self._host}: {fault or 'takes no bytes'}") from fault
 

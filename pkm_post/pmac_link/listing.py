@@ -44,8 +44,13 @@ class Program:
 
     @property
     def words(self) -> int:
-        """48-bit words of memory it takes: two for a length with its speed; elsewhere each word and number counts."""
-        return sum(2 * line.count(":") or len(_WORD.findall(line)) for line in self.lines)
+        """48-bit words of memory it takes."""
+        return sum(map(words_of, self.lines))
+
+
+def words_of(line: str) -> int:
+    """48-bit words that a line takes: two for a length with its speed; elsewhere each word and number counts."""
+    return 2 * line.count(":") or len(_WORD.findall(line))
 
 
 def program_of(text: str) -> Program:

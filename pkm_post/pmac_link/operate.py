@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Operate: run, hold, resume and abort a program. Each is sent once; then the controller is asked what it does.
+"""Operate: run, hold, resume and abort a program, and its override. Each is sent once; then the state is asked for.
 
 ``Q`` is not offered: it would end a program at a knot where the struts run. A stop is ``H`` first, which slows the
 time base down along the path, then ``A``, which stops each strut by itself.
@@ -24,6 +24,10 @@ REPEATS = 3
 """How often a stop is sent while the controller shows that it does not stop."""
 HOLD_S = 5.0
 """Seconds in which a hold has to bring the struts to rest."""
+OVERRIDE_S = 5.0
+"""Seconds in which the time base has to get to an override."""
+_OVERRIDE_REACHED = 0.1
+"""%"""
 _POLL_S = 0.02
 
 
@@ -75,6 +79,46 @@ def resume(session: Session, settings: Settings) -> Status:
         raise NotReadyError(reasons)
     session.order(f"&{settings.coordinate_system}R")
     return read_status(session, settings)
+
+
+def override(
+    session: Session,
+    settings: Settings,
+    percent: float,
+    clock: Callable[[], float] = time.monotonic,
+    sleep: Callable[[float], None] = time.sleep,
+) -> Status:
+    """Set how fast time passes in programs, and see that it does.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        percent: above 0 and up to 100: programs were planned to the limits of the machine at 100 %.
+        clock: seconds of a clock that only grows.
+        sleep: waits so many seconds of it.
+
+    Raises:
+        ValueError: the percentage is out of range; to stop, hold.
+        NotReadyError: a program is held; its time base stands at 0.
+        PmacError: the time base does not go there.
+    """
+    if not 0 < percent <= 100:
+        raise ValueError(f"percent: expected above 0 and up to 100, got {percent:g}")
+    if read_status(session, settings).held:
+        raise NotReadyError(["a program is held: resume it, or abort it, before the override is changed"])
+    session.order(f"&{settings.coordinate_system}%{percent:.2f}")
+    until = clock() + OVERRIDE_S
+    while True:
+        status = read_status(session, settings)
+        if abs(status.override - percent) <= _OVERRIDE_REACHED:
+            return status
+        if clock() > until:
+            break
+        sleep(_POLL_S)
+    taken_from = f"I{50 + settings.coordinate_system}93"
+    raise PmacError(
+        f"the time base stays at {status.override:g} % after %{percent:g}: {taken_from} may take it from elsewhere"
+    )
 
 
 def abort(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ports: ``serial:/dev/ttyUSB0`` or ``tcp:HOST[:PORT]`` becomes a link that carries bytes.
+"""Ports: ``serial:/dev/ttyUSB0``, ``tcp:HOST[:PORT]`` or ``ssh:USER@HOST[:PORT]`` becomes a link that carries bytes.
 
 Enters: the name of a port. Leaves: the link to it, and the conversation that such a link needs.
 """
@@ -7,15 +7,19 @@ Enters: the name of a port. Leaves: the link to it, and the conversation that su
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 from pkm_post.pmac_link.ethernet_conversation import EthernetConversation
 from pkm_post.pmac_link.exchange import Conversation
+from pkm_post.pmac_link.gpascii_conversation import GpasciiConversation
 from pkm_post.pmac_link.links import Link, SerialLink, TcpLink
 from pkm_post.pmac_link.serial_conversation import SerialConversation
+from pkm_post.pmac_link.ssh_link import SshLink
 
-TCP_PORT = 1025
+TCP_PORT, SSH_PORT = 1025, 22
 
 
 class Door(Protocol):
@@ -37,7 +41,7 @@ class Port:
     """Where a controller is.
 
     Attributes:
-        kind: ``"serial"`` or ``"tcp"``.
+        kind: ``"serial"``, ``"tcp"`` or ``"ssh"``.
         address: of the device or host.
         number: of the TCP port.
         baud: of a serial line, as I54 of the controller says.
@@ -45,6 +49,8 @@ class Port:
         handshake: whether the line has RTS and CTS; adapters and pseudo terminals without them would wait for ever.
         timeout: seconds to connect, and to send.
         silence: seconds without a byte after which the controller has nothing more to say.
+        user: who logs in over ssh.
+        known_hosts: file with the host keys that are trusted; the user's own unless given.
     """
 
     kind: str
@@ -55,41 +61,57 @@ class Port:
     handshake: bool = False
     timeout: float = 5.0
     silence: float = 0.1
+    user: str = ""
+    known_hosts: Path | None = None
+
+    @property
+    def is_power(self) -> bool:
+        """Whether a Power PMAC is there; else a Turbo PMAC."""
+        return self.kind == "ssh"
 
     def link(self) -> Link:
         """A link, not yet connected: ``restart`` does that."""
+        if self.kind == "ssh":
+            return SshLink(self.address, self.number, self.user, self.known_hosts, self.timeout)
         if self.kind == "serial":
             return SerialLink(self.address, self.baud, self.parity, self.handshake, self.timeout)
         return TcpLink(self.address, self.number, self.timeout)
 
     def conversation(self) -> Conversation:
         """A conversation as this kind of link needs it."""
-        return SerialConversation(self.silence) if self.kind == "serial" else EthernetConversation(self.silence)
+        return _CONVERSATIONS[self.kind](self.silence)
 
 
+_CONVERSATIONS: dict[str, Callable[[float], Conversation]] = {
+    "serial": SerialConversation,
+    "tcp": EthernetConversation,
+    "ssh": GpasciiConversation,
+}
+_HOST = r"(?P<address>[^:@\[\]]+|\[[0-9A-Fa-f:.]+\])(?::(?P<number>\d{1,5}))?"
 _FORMS = (
     re.compile(r"(?P<kind>serial):(?P<address>.+)"),
-    re.compile(r"(?P<kind>tcp):(?P<address>[^:\[\]]+|\[[0-9A-Fa-f:.]+\])(?::(?P<number>\d{1,5}))?"),
+    re.compile(rf"(?P<kind>tcp):{_HOST}"),
+    re.compile(rf"(?P<kind>ssh):(?P<user>[^:@\[\]]+)@{_HOST}"),
 )
+_NAMES = "serial:DEVICE, tcp:HOST[:PORT] or ssh:USER@HOST[:PORT]"
 
 
 def port_named(name: str) -> Port:
     """The port of a name.
 
     Args:
-        name: ``serial:DEVICE`` or ``tcp:HOST[:PORT]``; an IPv6 address stands in brackets.
+        name: ``serial:DEVICE``, ``tcp:HOST[:PORT]`` or ``ssh:USER@HOST[:PORT]``; an IPv6 address stands in brackets.
 
     Raises:
         ValueError: the name has another form.
     """
-    if name.startswith("ssh:"):
-        raise ValueError("ssh: is the Power PMAC's way, which is not built in yet; expected serial: or tcp:")
     for form in _FORMS:
         found = form.fullmatch(name)
         if found:
             parts = {key: value for key, value in found.groupdict().items() if value is not None}
-            number = int(parts.pop("number", TCP_PORT))
+            kind = parts["kind"]
+            number = int(parts.get("number", SSH_PORT if kind == "ssh" else TCP_PORT))
             if not 0 < number < 1 << 16:
                 raise ValueError(f"port: expected 1 to 65535, got {number}")
-            return Port(parts["kind"], parts["address"].strip("[]"), number)
-    raise ValueError(f"port: expected serial:DEVICE or tcp:HOST[:PORT], got {name!r}")
+            return Port(kind, parts["address"].strip("[]"), number, user=parts.get("user", ""))
+    raise ValueError(f"port: expected {_NAMES}, got {name!r}")

@@ -11,10 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pkm_post.kinematics.following import follow
 from pkm_post.kinematics.forward import newton
+from pkm_post.kinematics.inverse import strut_lengths
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.model import Machine
 from pkm_post.pmac_link.status import MOTORS, Array, Status
+
+_STEPS_FROM_HOME = 128
 
 
 @dataclass(frozen=True)
@@ -24,10 +28,12 @@ class Pose:
     Attributes:
         tip: (3,) in {M}, mm.
         axis: (3,) unit tool axis in {M}, from the tip towards the spindle.
+        spin: turn of the platform about it, rad.
     """
 
     tip: Array
     axis: Array
+    spin: float
 
 
 class Readout:
@@ -52,8 +58,36 @@ class Readout:
             found = newton(self._machine, status.length[None], self._tool, tip, rotation)
             if found.converged[0]:
                 self._tip, self._rotation = found.tip, found.rotation
-                return Pose(found.tip[0], found.axis[0])
+                return Pose(found.tip[0], found.axis[0], float(spin_of(found.rotation)[0]))
         return None
+
+
+def spin_of(rotation: Array) -> Array:
+    """Turns of the platform about the tool axis, (N,) rad, of rotations R_T (N, 3, 3)."""
+    unspun = platform_rotation(rotation[:, :, 2], np.zeros(len(rotation)))
+    spun: Array = np.arctan2(*(np.einsum("ni,ni->n", unspun[:, :, side], rotation[:, :, 0]) for side in (1, 0)))
+    return spun
+
+
+def standing_pose(machine: Machine, length: Array, tool_length: float) -> Pose | None:
+    """The pose of lengths of which nothing is known but that the machine came to them from its home.
+
+    One jump of Newton's method may end in another pose with the same lengths. So the lengths between home and here are
+    gone through in small steps: the pose is the one that the platform can have got to without being taken apart.
+
+    Args:
+        machine: the geometry.
+        length: (6,) strut lengths, mm.
+        tool_length: gauge length of the tool in the spindle, mm.
+    """
+    tool = np.full(_STEPS_FROM_HOME, tool_length)
+    home = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin])
+    share = np.linspace(0.0, 1.0, _STEPS_FROM_HOME)[:, None]
+    way = (1 - share) * strut_lengths(machine, *home, tool[:1]) + share * length
+    found = follow(machine, way, tool, home[0][0], platform_rotation(*home[1:])[0])
+    if not found.converged[-1]:
+        return None
+    return Pose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
 
 
 def pose_text(pose: Pose | None) -> str:
@@ -63,7 +97,8 @@ def pose_text(pose: Pose | None) -> str:
     tilt = np.degrees(np.arccos(np.clip(pose.axis[2], -1, 1)))
     x, y, z = pose.tip
     i, j, k = pose.axis
-    return f"tip X{x:.3f} Y{y:.3f} Z{z:.3f} mm, axis I{i:.5f} J{j:.5f} K{k:.5f}, {tilt:.3f} deg from upright"
+    told = f"tip X{x:.3f} Y{y:.3f} Z{z:.3f} mm, axis I{i:.5f} J{j:.5f} K{k:.5f}, {tilt:.3f} deg from upright"
+    return f"{told}, spin {np.degrees(pose.spin):.3f} deg"
 
 
 def state_text(status: Status) -> str:

@@ -67,6 +67,11 @@ class ResponseReader:
         """Take one byte; the event when it was the last of the answer, or one that cannot be."""
         return self._steps[self._state](byte)
 
+    def taken_messages(self) -> list[Message]:
+        """What programs sent in between; each call gives it once."""
+        messages, self.messages = self.messages, []
+        return messages
+
     def _start(self, byte: int) -> Event | None:
         self._line = bytearray()
         if byte == ACK:

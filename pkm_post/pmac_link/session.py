@@ -29,12 +29,15 @@ class Leftover(Enum):
 
     REFUSE = "refuse"
     """Somebody may be loading a program: nothing is done."""
+    JOIN = "join"
+    """As well, but a rotary buffer with lines in it is left open: who only asks, or goes on, does not disturb it."""
     CLEAR = "clear"
-    """It is made empty and closed: the rest of a download that was cut must not be run."""
+    """It is made empty and closed: the rest of a download that was cut must not be run. A rotary one is joined."""
     CLOSE = "close"
     """It is closed as it is, by a download that asks what is in it."""
 
 
+_TIMID = (Leftover.REFUSE, Leftover.JOIN)
 _HANDSHAKE = re.compile(r"(I\d+)=(\d+)")
 _NEGATIVE = re.compile(r"(?:^|[^0-9A-Za-z$.])-\s?\d+")
 
@@ -45,6 +48,7 @@ class Session:
     Attributes:
         messages: what programs in the controller sent of their own accord.
         notes: what was found and done while connecting, in words.
+        connections: how often it has connected; a program buffer that was open before is closed since.
     """
 
     def __init__(
@@ -73,6 +77,7 @@ class Session:
         self._in_step = False
         self.messages: list[str] = []
         self.notes: list[str] = []
+        self.connections = 0
 
     def __enter__(self) -> Self:
         self.open()
@@ -140,15 +145,19 @@ class Session:
             OutcomeUnknownError: they may or may not be in the buffer.
             LinkLostError: they are not.
         """
-        count = self._conversation.lines_at_once(lines)
+        count = self.lines_at_once(lines)
         if not count:
             raise ValueError(f"lines: expected lines that fit into one exchange, got {lines[:1]}")
         self._exchange(Command("\n".join(lines[:count]), Kind.BUFFER, self._patience))
         return count
 
+    def lines_at_once(self, lines: Sequence[str]) -> int:
+        """How many of these lines ``load`` puts into the buffer in one exchange."""
+        return self._conversation.lines_at_once(lines)
+
     def _exchange(self, command: Command) -> tuple[str, ...]:
         if not self._in_step:
-            self._call(Leftover.REFUSE if self._leftover is Leftover.REFUSE else Leftover.CLOSE)
+            self._call(self._leftover if self._leftover in _TIMID else Leftover.CLOSE)
         self._in_step = False  # until the end is known: an interrupt may come at any time
         try:
             ended = self._run(command)
@@ -158,7 +167,7 @@ class Session:
         if isinstance(ended, Answer):
             return ended.lines
         if isinstance(ended, Refusal):
-            raise RefusedError(command.text.split("\n")[ended.line], ended.number)
+            raise RefusedError(command.text.split("\n")[ended.line], ended.number, ended.words)
         if command.kind is Kind.QUERY or ended.untouched:
             raise LinkLostError(f"{command.text[:60]!r}: {ended.why}")
         raise OutcomeUnknownError(command.text[:60], ended.why)
@@ -202,31 +211,52 @@ class Session:
                     raise LinkLostError(f"no controller that can be understood: {fault}") from fault
             else:
                 self._in_step = True
+                self.connections += 1
                 return
 
     def _greet(self, leftover: Leftover) -> None:
         """Agree on the handshake with a controller of which nothing is known yet."""
         self._conversation = self._port.conversation()
         self._link.restart()
-        self._run(None)
+        ended = self._run(None)
+        if isinstance(ended, Lost):
+            raise LinkLostError(ended.why)
+        wanted = self._conversation.handshake
+        if not wanted:
+            return
         # In an open buffer an assignment would become a line of the program.
         is_open = self._finds_open_buffer()
-        if is_open and leftover is Leftover.REFUSE:
+        ahead = self._lines_ahead() if is_open and leftover in (Leftover.JOIN, Leftover.CLEAR) else 0
+        if ahead:
+            self.notes.append(f"a rotary buffer is open, with {ahead} lines ahead of its program")
+            if self._is_agreed(wanted):
+                return  # who streams must not lose them in the middle of a move
+        if is_open and leftover in _TIMID:
             raise NotReadyError(
                 ["a program buffer is open: somebody loads a program, or a download was cut; no program runs meanwhile"]
             )
-        if is_open and leftover is Leftover.CLEAR:
+        if is_open and leftover is Leftover.CLEAR and not ahead:
             self._blind("CLEAR")
-        if leftover is not Leftover.REFUSE:
+        if leftover not in _TIMID:
             self._blind("CLOSE")
-        wanted = self._conversation.handshake
         self._blind(wanted)
-        names, values = zip(*_HANDSHAKE.findall(wanted), strict=True)
-        told_values = self._judged(Command(" ".join(names), Kind.QUERY, self._patience))
-        if told_values != values:
-            raise LinkLostError(f"expected {wanted}, got {told_values}")
-        if is_open and leftover is Leftover.CLEAR:
+        if not self._is_agreed(wanted):
+            raise LinkLostError(f"the controller does not keep {wanted}")
+        if is_open and leftover is Leftover.CLEAR and not ahead:
             self._note_open_buffer()
+
+    def _is_agreed(self, wanted: str) -> bool:
+        """Whether the controller answers as this conversation expects."""
+        names, values = zip(*_HANDSHAKE.findall(wanted), strict=True)
+        try:
+            return self._judged(Command(" ".join(names), Kind.QUERY, self._patience)) == values
+        except (LinkLostError, RefusedError):
+            return False
+
+    def _lines_ahead(self) -> int:
+        """Lines in the rotary buffer that the program has not begun."""
+        found = re.match(r"\s*(\d+)", self._blind("PR"))
+        return int(found[1]) if found else 0
 
     def _finds_open_buffer(self) -> bool:
         """SIZE is negative while a program buffer is open; asked while nobody knows how the answer is framed."""
@@ -255,5 +285,5 @@ class Session:
         if isinstance(ended, Answer):
             return ended.lines
         if isinstance(ended, Refusal):
-            raise RefusedError(command.text, ended.number)
+            raise RefusedError(command.text, ended.number, ended.words)
         raise LinkLostError(ended.why)

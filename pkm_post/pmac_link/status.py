@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from pkm_post.controllers.pmac import Settings
+from pkm_post.controllers.power_pmac import Settings as PowerSettings
 from pkm_post.pmac_link.faults import LinkLostError
 from pkm_post.pmac_link.session import Session
 
@@ -102,6 +103,16 @@ class Status:
     following_error: Array
 
     @property
+    def commanded(self) -> Array:
+        """(6,) strut lengths that the controller wants, mm."""
+        return self.length + self.following_error
+
+    @property
+    def homed(self) -> tuple[bool, ...]:
+        """For each strut whether it has found its home."""
+        return tuple(motor.has("homed") for motor in self.motors)
+
+    @property
     def running(self) -> bool:
         """Whether a program runs, or is held."""
         return self.system.has("running")
@@ -126,12 +137,16 @@ class Status:
         return (*own, *self.system.words())
 
 
-def read_status(session: Session, settings: Settings) -> Status:
+def read_status(session: Session, settings: Settings | PowerSettings) -> Status:
     """Ask for everything in one line, so that it belongs together.
 
     Raises:
         LinkLostError: the answer makes no sense.
     """
+    if isinstance(settings, PowerSettings):
+        from pkm_post.pmac_link.power_status import read_power_status  # it is made of what is here
+
+        return read_power_status(session, settings)
     system = f"&{settings.coordinate_system}"
     query = " ".join(f"#{motor}? #{motor}P #{motor}F" for motor in MOTORS) + f" {system}?? {system}%"
     told = session.ask(query)
@@ -144,14 +159,19 @@ def read_status(session: Session, settings: Settings) -> Status:
 def _status(told: tuple[str, ...], settings: Settings) -> Status:
     if len(told) != 20:
         raise ValueError(f"expected 20 lines, got {len(told)}")
-    motors = tuple(MotorBits(_hexadecimal(line, MotorBits.DIGITS)) for line in told[0:18:3])
+    motors = tuple(MotorBits(hexadecimal(line, MotorBits.DIGITS)) for line in told[0:18:3])
     counts = np.array([[float(line) for line in told[column:18:3]] for column in (1, 2)])
     length = counts[0] / settings.counts_per_mm + np.array(settings.zero_length)
-    system = SystemBits(_hexadecimal(told[18], SystemBits.DIGITS))
+    system = SystemBits(hexadecimal(told[18], SystemBits.DIGITS))
     return Status(motors, system, float(told[19]), length, counts[1] / settings.counts_per_mm)
 
 
-def _hexadecimal(text: str, digits: int) -> int:
+def hexadecimal(text: str, digits: int) -> int:
+    """The bits of an answer.
+
+    Raises:
+        ValueError: it has not so many digits.
+    """
     text = text.strip().lstrip("$")
     if len(text) != digits:
         raise ValueError(f"expected {digits} hexadecimal digits, got {text!r}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Thousands of downloads with faults: ``make soak``. The same seeds give the same faults.
+"""Thousands of downloads with faults, and a stream for every 50 of them: ``make soak``. Seeds give the same faults.
 
 python3 tests/pmac_link/soak.py [FAULTS [FIRST_SEED]]
 """
@@ -8,24 +8,38 @@ import logging
 import sys
 from collections import Counter
 
+import streams
 from link_faults import by_chance, reference_of, small_program
+
+DOWNLOADS_PER_STREAM = 50
 
 
 def main(count=10_000, first=0):
     """Try so many; the first that breaks a rule ends it with its seed."""
     logging.disable(logging.CRITICAL)
     program = small_program()
-    reference, ends = reference_of(program), Counter()
+    reference = reference_of(program)
+
+    def downloaded(seed):
+        fault, outcome = by_chance(seed, program, reference)
+        return fault, outcome.what
+
+    _tell(downloaded, count, first)
+    print(f"{count} downloads: each ended in the program as it was sent, or in an error that says what is left")
+    _tell(streams.by_chance, count // DOWNLOADS_PER_STREAM, first)
+    print(f"{count // DOWNLOADS_PER_STREAM} streams: the struts stopped where the program rests, and nowhere else")
+
+
+def _tell(tried, count, first):
+    ends = Counter()
     for seed in range(first, first + count):
         try:
-            fault, outcome = by_chance(seed, program, reference)
+            ends[tried(seed)] += 1
         except BaseException:
             print(f"seed {seed}", file=sys.stderr)
             raise
-        ends[fault, outcome.what] += 1
     for (fault, what), times in sorted(ends.items()):
-        print(f"{fault:14} {what:10} {times:6}")
-    print(f"{count} downloads: each ended in the program as it was sent, or in an error that says what is left")
+        print(f"{fault:14} {what:12} {times:6}")
 
 
 if __name__ == "__main__":

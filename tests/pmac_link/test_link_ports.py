@@ -25,13 +25,17 @@ from pkm_post.pmac_link.ports import Port, port_named
         ("tcp:192.6.94.5", Port("tcp", "192.6.94.5", 1025)),
         ("tcp:pmac.local:2000", Port("tcp", "pmac.local", 2000)),
         ("tcp:[::1]:2000", Port("tcp", "::1", 2000)),
+        ("ssh:root@192.168.0.200", Port("ssh", "192.168.0.200", 22, user="root")),
+        ("ssh:me@[::1]:2222", Port("ssh", "::1", 2222, user="me")),
     ],
 )
 def test_names(name, port):
     assert port_named(name) == port
 
 
-@pytest.mark.parametrize("name", ["", "tcp:", "tcp:host:0", "tcp:host:65536", "usb:1", "ssh:host", "host"])
+@pytest.mark.parametrize(
+    "name", ["", "tcp:", "tcp:host:0", "tcp:host:65536", "usb:1", "ssh:host", "ssh:@host", "ssh:me@", "host"]
+)
 def test_other_names(name):
     with pytest.raises(ValueError, match="expected"):
         port_named(name)
@@ -144,3 +148,16 @@ def test_without_pyserial_it_is_said_what_to_install(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "serial", None)
     assert main(["pmac", "probe", "--port", "serial:/dev/nothing"]) == 1
     assert "pip install pyserial" in capsys.readouterr().err
+
+
+def test_without_paramiko_it_is_said_what_to_install(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "paramiko", None)
+    assert main(["pmac", "probe", "--port", "ssh:me@127.0.0.1"]) == 1
+    assert "pip install paramiko" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("action", ["resume", "download", "run", "stream"])
+def test_what_is_not_known_of_a_power_pmac_is_refused_by_name(action, capsys):
+    program = [] if action == "resume" else ["none.pmc"]
+    assert main(["pmac", action, "--port", "ssh:me@127.0.0.1:1", "--machine", "example_6tps", *program]) == 1
+    assert f"{action} is not for a Power PMAC: how it lists a program back" in capsys.readouterr().err

@@ -80,6 +80,25 @@ def test_from_the_first_word_to_the_end_of_a_job(simulator, job, capsys, monkeyp
     assert "strut 6:" in (told := capsys.readouterr().out) and "no program runs" in told
 
 
+def test_a_program_too_large_is_streamed(simulator, machine, tmp_path, capsys, monkeypatch):
+    made, port = simulator
+    settings, _ = settings_of(machine)
+    time_ms = np.arange(0, 1001, 20)
+    turn = 2 * np.pi * time_ms / 500
+    speed = (2 * np.pi * np.sin(turn))[:, None] * np.ones(6)
+    speed[::25] = 0.0
+    length = settings.zero_length + 0.5 * (1 - np.cos(turn))[:, None]
+    file = tmp_path / "large.pmc"
+    file.write_text(program_text(StrutMotion(time_ms, length, speed, ()), settings, ["large"]))
+    typed(monkeypatch, port, *(f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)), "&1DEFINE ROT 600")
+    capsys.readouterr()
+    assert pmac("stream", port, "--rotary", 200, file) == 1
+    assert "the program does not rest between its lines" in capsys.readouterr().err
+    assert pmac("stream", port, "--rotary", 600, file) == 0
+    assert "lines carried out in 4 segments, SHA-256" in capsys.readouterr().out
+    assert not made.runs_program() and made.systems[0].path.abrupt_stops == 0
+
+
 def test_the_readout(simulator, capsys):
     _, port = simulator
     assert pmac("monitor", port, "--seconds", 0.2) == 0

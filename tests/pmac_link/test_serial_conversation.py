@@ -86,7 +86,7 @@ def test_one_command_at_a_time(talk):
 
 
 def test_too_long_a_line_is_not_sent(talk):
-    with pytest.raises(ValueError, match="expected one line"):
+    with pytest.raises(ValueError, match="expected up to 255 characters, got 256"):
         talk.begin(Command("A" * (LONGEST_LINE + 1)), 0.0)
 
 

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The arguments of the actions that operate the machine by hand: lengths in mm, angles in degrees, feeds in mm/min."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+
+_HIGHEST_PROGRAM = 999
+"""From 1000 on live the subprograms of the codes."""
+
+
+def add_own(parser: argparse.ArgumentParser, name: str) -> None:
+    """Add the arguments of an action."""
+    if name in _OWN:
+        _OWN[name](parser)
+
+
+def _add_home(parser: argparse.ArgumentParser) -> None:
+    told = "line that starts the homing of this machine, as its builder says, such as 'ENABLE PLC 3'"
+    parser.add_argument("--trigger", type=_trigger, metavar="LINE", help=f"{told} (only tell which struts have homes)")
+
+
+def _add_jog(parser: argparse.ArgumentParser) -> None:
+    for name in ("x", "y", "z"):
+        parser.add_argument(f"--{name}", type=_number, default=0.0, metavar="MM", help=f"the tip along {name.upper()}")
+    for name in ("x", "y"):
+        told = f"the tool axis about {name.upper()}, the tip stands"
+        parser.add_argument(f"--tilt-{name}", type=_number, default=0.0, metavar="DEG", help=told)
+    parser.add_argument("--spin", type=_number, default=0.0, metavar="DEG", help="the platform about the tool axis")
+    parser.add_argument("--strut", type=int, choices=range(1, 7), help="one strut instead of the tool")
+    parser.add_argument("--by", type=_number, default=0.0, metavar="MM", help="how much longer that strut becomes")
+    told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
+    parser.add_argument("--feed", type=_positive, default=300.0, metavar="MM/MIN", help=told)
+    _add_by_hand(parser)
+
+
+def _add_mdi(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.sources import AXIS_WORDS
+
+    parser.add_argument("line", metavar="LINE", help="a line of G-code; it stands by itself")
+    parser.add_argument("--work-offset", default="G54", metavar="NAME", help="frame of the line (%(default)s)")
+    told = "how the line says the tool axis; none leaves it as it is (%(default)s)"
+    parser.add_argument("--axis-words", choices=AXIS_WORDS, default="none", help=told)
+    _add_by_hand(parser)
+
+
+def _add_by_hand(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--tool-length", type=_positive, metavar="MM", help="gauge length (that of the rest pose)")
+    parser.add_argument("--check", action="store_true", help="plan and check it, and send nothing")
+    _add_number(parser)
+
+
+def _add_step(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--block", type=_count, default=1, metavar="N", help="begin at this block (%(default)s)")
+    near = "how far each strut may be from where a block begins (%(default)s)"
+    parser.add_argument("--near", type=_positive, default=1.0, metavar="MM", help=near)
+    parser.set_defaults(tool_length=None)
+    _add_number(parser)
+
+
+def _add_number(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.numerical_control.plan import OWN_PROGRAM
+
+    told = "number of the program in the controller that is used for it (%(default)s)"
+    parser.add_argument("--number", type=_program, default=OWN_PROGRAM, metavar="PROG", help=told)
+
+
+def _add_override(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("percent", type=_percent, metavar="PERCENT", help="above 0 and up to 100")
+
+
+def _number(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"expected a number, got {text!r}")
+    return number
+
+
+def _positive(text: str) -> float:
+    number = _number(text)
+    if number <= 0:
+        raise argparse.ArgumentTypeError(f"expected a number above zero, got {text!r}")
+    return number
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"expected a whole number above 0, got {text!r}")
+    return int(text)
+
+
+def _program(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= _HIGHEST_PROGRAM:
+        raise argparse.ArgumentTypeError(f"expected a whole number from 1 to {_HIGHEST_PROGRAM}, got {text!r}")
+    return int(text)
+
+
+def _percent(text: str) -> float:
+    number = _number(text)
+    if not 0 < number <= 100:
+        raise argparse.ArgumentTypeError(f"expected above 0 and up to 100, got {text!r}")
+    return number
+
+
+def _trigger(text: str) -> str:
+    from pkm_post.numerical_control.homing import check_trigger
+
+    try:
+        check_trigger(text)
+    except ValueError as fault:
+        raise argparse.ArgumentTypeError(str(fault)) from None
+    return text
+
+
+_OWN: dict[str, Callable[[argparse.ArgumentParser], None]] = {
+    "home": _add_home,
+    "jog": _add_jog,
+    "mdi": _add_mdi,
+    "step": _add_step,
+    "override": _add_override,
+}

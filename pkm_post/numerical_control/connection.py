@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Connection: a port and a machine file become a worker that operates the machine, and what has to be closed again.
+
+Enters: the name of a port and that of a machine, or a machine alone for a simulated one. Leaves: a connection, or what
+is wrong with the names. To connect takes as long as the controller takes to answer: windows do it beside themselves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pkm_post.controllers import pmac, power_pmac
+from pkm_post.machine_file import machine_named
+from pkm_post.model import Diagnostic, Machine
+from pkm_post.numerical_control.control import NumericalControl
+from pkm_post.numerical_control.plan import OWN_PROGRAM
+from pkm_post.numerical_control.training import Training
+from pkm_post.numerical_control.worker import Worker
+from pkm_post.pmac_link.ports import Port, port_named
+from pkm_post.pmac_link.session import Leftover, Session
+
+
+@dataclass(frozen=True)
+class Target:
+    """What is to be connected to.
+
+    Attributes:
+        port: where the controller is; None for a simulated one.
+        machine: the machine.
+        settings: of its controller, those of a Turbo PMAC or, over ssh, of a Power PMAC.
+    """
+
+    port: Port | None
+    machine: Machine
+    settings: Any
+
+    @property
+    def watch_only(self) -> bool:
+        """Whether the controller is one that is watched and stopped alone."""
+        return self.port is not None and self.port.is_power
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A machine that answered.
+
+    Attributes:
+        target: what was connected to.
+        worker: takes orders.
+        notes: what was found and done while connecting, in words.
+    """
+
+    target: Target
+    worker: Worker
+    notes: tuple[str, ...]
+    _session: Session
+    _training: Training | None
+
+    @property
+    def simulated(self) -> bool:
+        """Whether there is no machine."""
+        return self._training is not None
+
+    def close(self) -> None:
+        """End worker, link and simulation; nothing is stopped.
+
+        Raises:
+            RuntimeError: the worker does not end, or it had ended by a fault.
+        """
+        try:
+            self.worker.close()
+        finally:
+            self._session.close()
+            if self._training is not None:
+                self._training.close()
+
+
+def target_of(port: str | None, machine: str) -> tuple[Target | None, tuple[Diagnostic, ...]]:
+    """What two names mean.
+
+    Args:
+        port: as ``ports.port_named`` takes it; None for a simulated machine.
+        machine: name or path of a machine file.
+
+    Raises:
+        ValueError: the name of the port has no known form.
+    """
+    found = None if port is None else port_named(port)
+    model, told = machine_named(machine)
+    if model is None:
+        return None, told
+    kind: Any = power_pmac if found is not None and found.is_power else pmac
+    settings, faults = kind.settings_of(model)
+    return (None if settings is None else Target(found, model, settings)), told + tuple(faults)
+
+
+def connect(target: Target, tool_length: float, simulated_speed: float = 1.0) -> Connection:
+    """Call the controller, and begin to read its state.
+
+    Args:
+        target: what to connect to.
+        tool_length: gauge length of the tool in the spindle, mm.
+        simulated_speed: of a simulated machine, simulated seconds in a second.
+
+    Raises:
+        PmacError: no controller answers, or it lets nobody in.
+    """
+    training, port = None, target.port
+    if port is None:
+        training = Training(target.settings, target.machine.strut_stroke, simulated_speed)
+        port = port_named(training.port)
+    # A stop must not fail because a download was cut, so what is left of one is made empty, and that is told.
+    session = Session(port, leftover=Leftover.CLEAR)
+    try:
+        session.open()
+    except BaseException:
+        session.close()
+        if training is not None:
+            training.close()
+        raise
+    number = _own_number(target.settings.program)
+    control = NumericalControl(session, target.machine, target.settings, tool_length, number)
+    return Connection(target, Worker(control), tuple(session.notes), session, training)
+
+
+def _own_number(of_jobs: int) -> int:
+    """A number for moves by hand that is not that of the jobs."""
+    return OWN_PROGRAM if of_jobs != OWN_PROGRAM else OWN_PROGRAM - 1

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Control: one machine behind one session, for the command line and for a panel.
+
+Every method talks to the controller, waits no longer than its deadlines say, and belongs to one thread; ``worker`` runs
+it in one of its own. Plans are made first and executed after that: what the checks refuse never becomes a plan.
+
+Enters: a session, a machine and what is in its spindle. Leaves: states and plans, frozen.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from pkm_post.controllers.pmac import Settings
+from pkm_post.model import Diagnostic, Machine, Trajectory
+from pkm_post.model.findings import Tolerances
+from pkm_post.numerical_control import execute as execution
+from pkm_post.numerical_control import mdi, moves
+from pkm_post.numerical_control.emergency import emergency_text
+from pkm_post.numerical_control.homing import Homing, HomingWatch, Phase, missing_homes, start_homing
+from pkm_post.numerical_control.plan import OWN_PROGRAM, Plan, planned
+from pkm_post.numerical_control.single_block import Blocks, blocks_of
+from pkm_post.pmac_link import operate
+from pkm_post.pmac_link.download import Loaded, Progress, download
+from pkm_post.pmac_link.faults import LinkLostError, NotReadyError, PmacError
+from pkm_post.pmac_link.job import Job
+from pkm_post.pmac_link.readout import Pose, Readout, standing_pose
+from pkm_post.pmac_link.ready import NEAR_MM, check_setup
+from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.status import Array, Status, read_status
+
+Findings = tuple[Diagnostic, ...]
+
+Done = TypeVar("Done")
+
+TOLERANCES = Tolerances(1e-3, math.radians(1e-3))
+"""Of moves by hand: those that posting has unless the user says otherwise."""
+
+
+@dataclass(frozen=True)
+class State:
+    """What there is to show; one reading.
+
+    Attributes:
+        status: of struts and program; the last one that was read when the link is lost, None before the first.
+        pose: of the tool by the actual lengths; None when there is none, or no strut was ever read.
+        lost: why there is no link; empty while there is one.
+        emergency: what a person has to do, when the link was lost while the machine may move.
+        homing: of a homing that was started here; None when none was.
+        block: number of the block that runs or comes next, and of how many; None without single block.
+    """
+
+    status: Status | None
+    pose: Pose | None
+    lost: str = ""
+    emergency: tuple[str, ...] = ()
+    homing: Homing | None = None
+    block: tuple[int, int] | None = None
+
+
+class NumericalControl:
+    """A machine to look at and to operate."""
+
+    def __init__(
+        self,
+        session: Session,
+        machine: Machine,
+        settings: Settings,
+        tool_length: float,
+        number: int = OWN_PROGRAM,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        """Make it; the session connects by itself when it is not open.
+
+        Args:
+            session: to the controller.
+            machine: the machine.
+            settings: of its controller.
+            tool_length: gauge length of the tool in the spindle, mm; ``tool_length`` may be changed at any time.
+            number: of the program of moves by hand and of single blocks.
+            clock: seconds of a clock that only grows.
+            sleep: waits so many seconds of it.
+        """
+        self._session, self._machine, self._settings, self._number = session, machine, settings, number
+        self._clock, self._sleep = clock, sleep
+        self._watch: HomingWatch | None = None
+        self._blocks: tuple[Blocks, int] | None = None
+        self._last = State(None, None)
+        self._may_move = False
+        self.tool_length = tool_length
+
+    @property
+    def tool_length(self) -> float:
+        """Gauge length of the tool in the spindle, mm."""
+        return self._tool_length
+
+    @tool_length.setter
+    def tool_length(self, length: float) -> None:
+        if not (math.isfinite(length) and length > 0):
+            raise ValueError(f"tool_length: expected a length above zero, got {length}")
+        self._tool_length = length
+        self._readout = Readout(self._machine, length)
+
+    def poll(self) -> State:
+        """Read everything once; a lost link is a state, not an error."""
+        try:
+            status = read_status(self._session, self._settings)
+        except PmacError as fault:
+            self._last = State(
+                self._last.status, self._last.pose, str(fault), self._emergency(), self._last.homing, self._block()
+            )
+            return self._last
+        self._may_move = False
+        homing = None if self._watch is None else self._watch.see(status, self._session.now())
+        if homing is not None and homing.phase is not Phase.SEARCHING:
+            self._watch = None
+        elif homing is None:
+            homing = self._last.homing
+        self._last = State(status, self._readout.pose(status), homing=homing, block=self._block())
+        return self._last
+
+    def plan_jog(self, jog: moves.Jog, feed: float) -> tuple[Plan | None, Findings]:
+        """Plan a jog from where the machine stands; ``feed`` in mm/s, of a turn in place in degrees per second.
+
+        Raises:
+            NotReadyError: nobody knows where the tool is, or it moves.
+        """
+        here = self._here()
+        return self._planned(*moves.trajectory_of(jog, self._machine, here, self.tool_length, feed))
+
+    def plan_line(self, line: str, reading: mdi.Reading | None = None) -> tuple[Plan | None, Findings]:
+        """Plan a line of G-code from where the machine stands.
+
+        Raises:
+            NotReadyError: nobody knows where the tool is, or it moves.
+        """
+        return self._planned(*mdi.line_trajectory(line, self._machine, self._here(), self.tool_length, reading))
+
+    def execute(self, plan: Plan) -> Status:
+        """Load a plan, list it back and start it; as ``execute.execute``."""
+        return self._moving(lambda: execution.execute(self._session, self._machine, self._settings, plan.job))
+
+    def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
+        """Load a program and list it back, when the controller is set up for the machine; as ``download.download``."""
+        check_setup(self._session, self._settings, self._machine.strut_stroke)
+        return download(self._session, job.program, progress, is_cancelled)
+
+    def start(self, job: Job, near: float = NEAR_MM) -> Status:
+        """Start a program that is loaded, from its beginning; as ``operate.run``."""
+        return self._moving(lambda: operate.run(self._session, self._settings, job.program, job.first, near))
+
+    def open_blocks(self, job: Job, at: int = 1) -> int:
+        """Take a program for single block; how many blocks it has.
+
+        Args:
+            job: the program.
+            at: the block that comes next, from 1.
+
+        Raises:
+            ValueError: there is no such block.
+        """
+        blocks = blocks_of(job, self._settings, self._number)
+        if not 1 <= at <= len(blocks):
+            raise ValueError(f"at: expected a block from 1 to {len(blocks)}, got {at}")
+        self._blocks = blocks, at
+        return len(blocks)
+
+    def step(self, near: float = execution.NEAR_MM) -> Array:
+        """Start the block that comes next; the one behind it comes next then.
+
+        Returns:
+            (6,) strut lengths that it leads to, mm.
+
+        Raises:
+            ValueError: no program was taken for single block, or all its blocks have run.
+        """
+        if self._blocks is None or self._blocks[1] > len(self._blocks[0]):
+            raise ValueError("step: expected a block that comes next, got none")
+        blocks, number = self._blocks
+        job = blocks.job(number)
+        self._moving(lambda: execution.execute(self._session, self._machine, self._settings, job, near))
+        self._blocks = blocks, number + 1
+        return job.motion.length[-1]
+
+    def hold(self) -> Status:
+        """Slow down to rest on the path."""
+        return operate.hold(self._session, self._settings)
+
+    def resume(self) -> Status:
+        """Go on after a hold."""
+        return self._moving(lambda: operate.resume(self._session, self._settings))
+
+    def abort(self, at_once: bool = False) -> Status:
+        """End the program: held first unless at once; a homing is no longer watched."""
+        self._watch = None
+        return operate.abort(self._session, self._settings, at_once, self._clock, self._sleep)
+
+    def override(self, percent: float) -> Status:
+        """Set the override, above 0 and up to 100 %."""
+        return operate.override(self._session, self._settings, percent, self._clock, self._sleep)
+
+    def home(self, trigger: str) -> None:
+        """Send the line that starts the homing of the machine; ``poll`` watches it then."""
+        self._watch = self._moving(lambda: start_homing(self._session, self._settings, trigger))
+
+    def _block(self) -> tuple[int, int] | None:
+        return None if self._blocks is None else (self._blocks[1], len(self._blocks[0]))
+
+    def _emergency(self) -> tuple[str, ...]:
+        """What to do now that the link is lost; nothing when there never was one."""
+        if self._may_move:
+            return emergency_text(None)
+        return () if self._last.status is None else emergency_text(self._last.status)
+
+    def _moving(self, order: Callable[[], Done]) -> Done:
+        """Carry out what may set the machine in motion; until the next reading it may move."""
+        try:
+            done = order()
+        except LinkLostError:
+            self._may_move = True
+            raise
+        self._may_move = True
+        return done
+
+    def _here(self) -> Pose:
+        """The pose that the controller wants, of a machine that stands."""
+        status = read_status(self._session, self._settings)
+        reasons = [f"strut {strut}: not homed" for strut in missing_homes(status)]
+        reasons += ["a program runs, or is held"] if status.running else []
+        reasons += [] if status.standing else ["a strut moves"]
+        if reasons:
+            raise NotReadyError(reasons)
+        pose = standing_pose(self._machine, status.commanded, self.tool_length)
+        if pose is None:
+            raise NotReadyError(["no pose of the platform that small steps from home lead to has these strut lengths"])
+        return pose
+
+    def _planned(self, trajectory: Trajectory | None, told: Findings) -> tuple[Plan | None, Findings]:
+        if trajectory is None:
+            return None, told
+        plan, faults = planned(trajectory, self._machine, self._settings, TOLERANCES, self._number)
+        return plan, told + faults

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Execute: a plan goes into the controller under its own number, is listed back, and is started from where it begins.
+
+Enters: a session and a plan, which nothing but the checks of planning makes. Leaves: the state after the start.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from pkm_post.controllers.pmac import Settings
+from pkm_post.model import Machine
+from pkm_post.pmac_link import operate
+from pkm_post.pmac_link.download import download
+from pkm_post.pmac_link.faults import PmacError
+from pkm_post.pmac_link.job import Job
+from pkm_post.pmac_link.ready import check_setup, check_start
+from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.status import Array, Status, read_status
+
+NEAR_MM = 0.05
+"""How far a strut may be from where the move was planned from: what following errors of standing struts make."""
+_POLL_S = 0.05
+
+
+def execute(session: Session, machine: Machine, settings: Settings, job: Job, near: float = NEAR_MM) -> Status:
+    """Load a program and start it.
+
+    Args:
+        session: an open session.
+        machine: the machine.
+        settings: of its controller.
+        job: of a plan, or a block of a program.
+        near: how far each strut may be from its first point, mm.
+
+    Raises:
+        NotReadyError: set-up or machine are not as they have to be; nothing was loaded, or nothing was started.
+        DownloadError: it could not be loaded; nothing was started.
+    """
+    check_start(read_status(session, settings), job.first, near)
+    check_setup(session, settings, machine.strut_stroke)
+    download(session, job.program)
+    return operate.run(session, settings, job.program, job.first, near)
+
+
+def wait_for_rest(
+    session: Session,
+    settings: Settings,
+    seconds: float,
+    clock: Callable[[], float] = time.monotonic,
+    sleep: Callable[[float], None] = time.sleep,
+) -> Status:
+    """Watch until no program runs and the struts stand.
+
+    Args:
+        session: an open session.
+        settings: of the controller.
+        seconds: how long that may take; a program that waits in a hold ends the waiting as well.
+        clock: seconds of a clock that only grows.
+        sleep: waits so many seconds of it.
+
+    Raises:
+        PmacError: it takes longer.
+    """
+    until = clock() + seconds
+    while True:
+        status = read_status(session, settings)
+        if status.standing and (status.held or not status.running):
+            return status
+        if clock() > until:
+            raise PmacError(
+                f"the machine does not come to rest within {seconds:g} s; HOLD IT, OR USE THE EMERGENCY STOP"
+            )
+        sleep(_POLL_S)
+
+
+def off_target(status: Status, lengths: Array) -> float:
+    """By how much the commanded length of a strut misses where it was to go, at most, mm.
+
+    Args:
+        status: of struts that stand.
+        lengths: (6,) the last ones of a program, mm.
+    """
+    return float(np.abs(status.commanded - lengths).max())

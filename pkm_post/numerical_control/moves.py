@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Moves: what a jog asks for, as a trajectory from where the tool is.
+
+A Cartesian jog is one straight segment: the tip runs along a line, the tool axis along a great circle, the spin evenly.
+A jog of one strut moves all six degrees of freedom: the poses on its way are those that forward kinematics gives for
+lengths of which one grows. Units: mm, rad, mm/s; directions are those of {M}.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import angle_between, norm
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import follow, platform_rotation, strut_lengths
+from pkm_post.model import Diagnostic, Kind, Machine, Place, Tool, Trajectory
+from pkm_post.pmac_link.readout import Pose, spin_of
+
+SOURCE = "jog"
+_STEP_MM = 0.5
+"""Of one strut, between the poses of its way: what is straight between them bends by less than a micron."""
+_NO_MOVE = 1e-9
+_MEASURABLE = 1e-6
+"""mm: a turn about the tool axis alone would give the certificate no way to measure along, so the tip rises by this,
+a hundredth of what an encoder counts."""
+
+
+@dataclass(frozen=True)
+class Cartesian:
+    """A jog of the tool.
+
+    Attributes:
+        shift: (3,) of the tip in {M}, mm.
+        tilt: (2,) turn of the tool axis about X, then about Y of {M}, with the tip standing, rad.
+        spin: turn of the platform about the tool axis, rad.
+    """
+
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    tilt: tuple[float, float] = (0.0, 0.0)
+    spin: float = 0.0
+
+
+@dataclass(frozen=True)
+class OneStrut:
+    """A jog of one strut; the other five keep their lengths.
+
+    Attributes:
+        strut: from 1 to 6.
+        by: how much longer it becomes, mm.
+    """
+
+    strut: int
+    by: float
+
+    def __post_init__(self) -> None:
+        if self.strut not in range(1, 7):
+            raise ValueError(f"strut: expected 1 to 6, got {self.strut}")
+
+
+Jog = Cartesian | OneStrut
+
+
+def trajectory_of(
+    jog: Jog, machine: Machine, here: Pose, tool_length: float, feed: float
+) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+    """The way of a jog, or why there is none.
+
+    Args:
+        jog: what is asked for.
+        machine: the geometry and the highest feed.
+        here: where the tool is.
+        tool_length: gauge length of the tool in the spindle, mm.
+        feed: of the tip, mm/s; where it stands, degrees per second, as for programs.
+
+    Raises:
+        ValueError: a number is not finite, or the feed is not above zero.
+    """
+    if not (np.isfinite(feed) and feed > 0):
+        raise ValueError(f"feed: expected a number above zero, got {feed}")
+    if isinstance(jog, OneStrut):
+        poses = _of_strut(jog, machine, here, tool_length)
+        if poses is None:
+            return None, (Diagnostic("C202", Place(SOURCE), f"strut {jog.strut} by {jog.by:g} mm"),)
+    else:
+        poses = _of_tool(jog, here)
+    return _through(machine, here, poses, tool_length, min(feed, machine.feed_speed))
+
+
+def _of_tool(jog: Cartesian, here: Pose) -> tuple[Array, Array, Array]:
+    values = np.array([*jog.shift, *jog.tilt, jog.spin])
+    if not np.isfinite(values).all():
+        raise ValueError(f"jog: expected finite numbers, got {values.tolist()}")
+    axis = _about(1, jog.tilt[1]) @ _about(0, jog.tilt[0]) @ here.axis
+    tip = here.tip + values[:3]
+    if jog.spin and not values[:5].any():
+        tip = tip + _MEASURABLE * axis
+    return tip[None], (axis / norm(axis))[None], np.array([here.spin + jog.spin])
+
+
+def _about(coordinate: int, angle: float) -> Array:
+    """The rotation about X (0) or Y (1), (3, 3)."""
+    turn = np.eye(3)
+    first, second = ((1, 2), (2, 0))[coordinate]
+    turn[first, first] = turn[second, second] = np.cos(angle)
+    turn[second, first], turn[first, second] = np.sin(angle), -np.sin(angle)
+    return turn
+
+
+def _of_strut(jog: OneStrut, machine: Machine, here: Pose, tool_length: float) -> tuple[Array, Array, Array] | None:
+    if not np.isfinite(jog.by):
+        raise ValueError(f"by: expected a finite number, got {jog.by}")
+    steps = max(1, int(np.ceil(abs(jog.by) / _STEP_MM)))
+    tool = np.full(steps, tool_length)
+    lengths = np.repeat(_lengths(machine, here, tool_length), steps, axis=0)
+    lengths[:, jog.strut - 1] += jog.by * np.arange(1, steps + 1) / steps
+    rotation = platform_rotation(here.axis[None], np.array([here.spin]))[0]
+    found = follow(machine, lengths, tool, here.tip, rotation)
+    return (found.tip, found.axis, spin_of(found.rotation)) if found.converged.all() else None
+
+
+def _lengths(machine: Machine, here: Pose, tool_length: float) -> Array:
+    """(1, 6) strut lengths of a pose, mm."""
+    return strut_lengths(machine, here.tip[None], here.axis[None], np.array([here.spin]), np.array([tool_length]))
+
+
+def _through(
+    machine: Machine, here: Pose, poses: tuple[Array, Array, Array], tool_length: float, feed: float
+) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+    """Straight segments from here through poses, to rest."""
+    tip, axis, spin = poses
+    length = norm(np.diff(tip, axis=0, prepend=here.tip[None]))
+    axis_before = np.vstack([here.axis, axis[:-1]])
+    angle, turned = angle_between(axis_before, axis), np.abs(np.diff(spin, prepend=here.spin))
+    if (np.maximum(length, np.maximum(angle, turned)) < _NO_MOVE).any():
+        return None, (Diagnostic("C201", Place(SOURCE), "the jog leads to where the tool is"),)
+    count = len(tip)
+    blank, zero = np.full((count, 3), np.nan), np.zeros(count)
+    trajectory = Trajectory(
+        kind=np.full(count, Kind.LINE),
+        tip=tip,
+        axis=axis,
+        spin=spin,
+        feed=np.full(count, feed),
+        arc_centre=blank,
+        arc_axis=blank,
+        sweep=zero,
+        length=length,
+        angle=angle,
+        smooth=zero,
+        exact_stop=np.arange(count) == count - 1,
+        tool=zero,
+        operation=zero,
+        line=zero,
+        start_tip=here.tip,
+        start_axis=here.axis,
+        start_spin=here.spin,
+        events=(),
+        operations=("",),
+        tools={0: Tool(0, "in the spindle", 0.0, 0.0, tool_length)},
+        machine_from_work=np.eye(4),
+        machine=machine.name,
+        machine_fingerprint=machine.fingerprint,
+        source=SOURCE,
+    )
+    return trajectory, ()

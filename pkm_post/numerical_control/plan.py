@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plan: from the trajectory of a move by hand to a program that was certified and whose end was looked at.
+
+The steps are those of posting, in their order, without files: feed plan with the checks of the reach, interpolation,
+program text, read back, certificate. Then once more from the lengths alone: forward kinematics follows the cubics of
+the program from where the tool is, and the poses found go through the checks of the reach again. What comes out is all
+that may be sent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post import planning
+from pkm_post.certificate import certify
+from pkm_post.controllers import pmac
+from pkm_post.geometry import hermite_lengths
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import Solution, Way, faults_of, follow, platform_rotation, reach_findings
+from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.findings import Certificate, Tolerances
+from pkm_post.pmac_link.job import Job, read_job
+from pkm_post.pmac_link.readout import Pose, spin_of
+from pkm_post.report.summary import heading
+
+Findings = tuple[Diagnostic, ...]
+
+OWN_PROGRAM = 999
+"""Number of the program of a move by hand, unless the user says otherwise; jobs have others."""
+_SHARES = np.linspace(0.0, 1.0, 9)[1:]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A move that may be sent.
+
+    Attributes:
+        job: its program and motion, as read back.
+        certificate: what was measured.
+        end: where the tool will be, by forward kinematics of the last lengths.
+    """
+
+    job: Job
+    certificate: Certificate
+    end: Pose
+
+    @property
+    def lengths(self) -> Array:
+        """(6,) the last lengths, mm."""
+        return self.job.motion.length[-1]
+
+    @property
+    def seconds(self) -> float:
+        """How long it moves at 100 %."""
+        return self.certificate.duration
+
+
+def planned(
+    trajectory: Trajectory,
+    machine: Machine,
+    settings: pmac.Settings,
+    tolerances: Tolerances,
+    number: int = OWN_PROGRAM,
+) -> tuple[Plan | None, Findings]:
+    """The plan of a trajectory, or everything that stands against it.
+
+    Args:
+        trajectory: from where the tool is.
+        machine: geometry and limits.
+        settings: of its controller.
+        tolerances: what the certificate has to show.
+        number: of the program.
+
+    Raises:
+        ValueError: the number is that of the jobs, or no number of a program.
+    """
+    if number == settings.program:
+        raise ValueError(f"number: expected another one than that of the jobs, got {number}")
+    settings = replace(settings, program=number)
+    text, motion, told = _program(trajectory, machine, settings, tolerances)
+    if text is None or motion is None:
+        return None, told
+    name = trajectory.source
+    job, faults = read_job(text, settings, name)
+    if job is None:
+        return None, told + faults
+    certificate, faults = certify(job.motion, name, trajectory, machine, motion, tolerances)
+    told += faults
+    end, faults = _followed(job.motion, trajectory, machine)
+    told += faults
+    if certificate is None or end is None or errors(told):
+        return None, told
+    return Plan(job, certificate, end), told
+
+
+def _program(
+    trajectory: Trajectory, machine: Machine, settings: pmac.Settings, tolerances: Tolerances
+) -> tuple[str | None, Motion | None, Findings]:
+    path = planning.tool_path(trajectory, tolerances)
+    schedule, told = planning.plan_feed(path, trajectory, machine)
+    if errors(told):
+        return None, None, told
+    motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
+    struts = planning.strut_motion(motion, machine)
+    told += pmac.faults(struts, settings, trajectory.source)
+    if errors(told):
+        return None, None, told
+    parts = pmac.program_parts(struts, settings, heading(trajectory))
+    if len(parts) > 1:
+        found = f"{len(parts)} programs of {settings.memory_words} words"
+        return None, None, (*told, Diagnostic("C204", Place(trajectory.source), found))
+    return parts[0], motion, told
+
+
+def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[Pose | None, Findings]:
+    """Where the lengths lead to from where the tool is, when all of the way is within reach."""
+    lengths = _lengths(played)
+    tool = np.full(len(lengths), trajectory.tool_length()[0])
+    rotation = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
+    found = follow(machine, lengths, tool, trajectory.start_tip, rotation)
+    if not found.converged.all():
+        second = float(np.argmin(found.converged)) / len(lengths) * played.time_ms[-1] / 1000
+        told = f"from about {second:.3f} s on the poses of the lengths do not hang together"
+        return None, (Diagnostic("V107", Place(trajectory.source), told),)
+    end = Pose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
+    return end, _reach_faults(found, tool, trajectory, machine)
+
+
+def _lengths(played: StrutMotion) -> Array:
+    """Lengths at the knots and at instants between them, in order, (N, 6)."""
+    cubic = played.length[:-1], played.speed[:-1], played.length[1:], played.speed[1:], np.diff(played.time_ms) / 1000
+    return np.vstack([played.length[:1], hermite_lengths(*cubic, _SHARES).reshape(-1, 6)])
+
+
+def _reach_faults(found: Solution, tool: Array, trajectory: Trajectory, machine: Machine) -> Findings:
+    way = Way.straight(found.tip, found.axis, spin_of(found.rotation), tool)
+    segment = np.zeros(len(tool), dtype=np.int64)
+    return faults_of(reach_findings(machine, way), trajectory, segment)

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Power status: the state of the six struts of a Power PMAC, as ``status.Status``.
+
+Its bits stand in other places than those of a Turbo PMAC, in two words of 32, and whether a program runs is asked by
+the names of its data structure. Bits are counted from the least significant one of all hexadecimal digits.
+[EPICSpmac, pmacHardwarePower]
+
+Enters: a session. Leaves: counts, bits, and what they mean.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.controllers.power_pmac import Settings
+from pkm_post.pmac_link.faults import LinkLostError
+from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.status import MOTORS, MotorBits, Status, SystemBits, hexadecimal
+
+_ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus")
+_STATUS_BITS = 64
+
+
+class PowerMotorBits(MotorBits):
+    """Two words of 32 bits: ``#n?``. The closed loop has a bit here, the open loop has not; see ``_motor``."""
+
+    DIGITS = 16
+    PLACES = {
+        "homing": 62, "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59,
+        "fatal_following_error": 58, "stopped_on_limit": 57, "amplifier_fault": 56, "lower_soft_limit": 55,
+        "upper_soft_limit": 54, "homed": 47, "standing": 46, "closed_loop": 45, "amplifier_enabled": 44,
+        "in_position": 43, "open_loop": _STATUS_BITS,
+    }  # fmt: skip
+    TOLD = MotorBits.TOLD | {
+        "lower_soft_limit": "on its lower soft limit",
+        "upper_soft_limit": "on its upper soft limit",
+    }
+
+
+class PowerSystemBits(SystemBits):
+    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements, set when it is not 0."""
+
+    DIGITS = 16
+    PLACES = {
+        "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59, "fatal_following_error": 58,
+        "amplifier_fault": 56, "running": _STATUS_BITS, "held": _STATUS_BITS + 1, "runtime_error": _STATUS_BITS + 2,
+    }  # fmt: skip
+    TOLD = {name: text for name, text in SystemBits.TOLD.items() if name != "limit"} | {
+        "negative_limit": "a lower limit was met",
+        "positive_limit": "an upper limit was met",
+    }
+
+
+def read_power_status(session: Session, settings: Settings) -> Status:
+    """As ``status.read_status``."""
+    system = settings.coordinate_system
+    query = " ".join(
+        [
+            *(f"#{motor}? #{motor}p #{motor}f" for motor in MOTORS),
+            f"&{system}? &{system}%",
+            *(f"Coord[{system}].{name}" for name in _ELEMENTS),
+        ]
+    )
+    told = session.ask(query)
+    try:
+        return _status(told, settings)
+    except ValueError as fault:
+        raise LinkLostError(f"{query!r}: {fault}") from None
+
+
+def _status(told: tuple[str, ...], settings: Settings) -> Status:
+    expected = 3 * len(MOTORS) + 2 + len(_ELEMENTS)
+    if len(told) != expected:
+        raise ValueError(f"expected {expected} lines, got {len(told)}")
+    motors = tuple(_motor(hexadecimal(line, PowerMotorBits.DIGITS)) for line in told[0:18:3])
+    counts = np.array([[float(line) for line in told[column:18:3]] for column in (1, 2)])
+    length = counts[0] / settings.counts_per_mm + np.array(settings.zero_length)
+    bits = hexadecimal(told[18], PowerSystemBits.DIGITS)
+    for place, value in enumerate(told[20:], start=_STATUS_BITS):
+        bits |= int(float(value) != 0) << place
+    return Status(motors, PowerSystemBits(bits), float(told[19]), length, counts[1] / settings.counts_per_mm)
+
+
+def _motor(value: int) -> PowerMotorBits:
+    is_closed = value >> PowerMotorBits.PLACES["closed_loop"] & 1
+    return PowerMotorBits(value | (1 - is_closed) << PowerMotorBits.PLACES["open_loop"])

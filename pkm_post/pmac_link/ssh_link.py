@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Ssh link: a shell on a controller's computer. This is the package's door to paramiko.
+
+Nobody is trusted on sight: the controller's host key has to be among those that are known, or nothing is sent to it. A
+key of the user or of his agent is tried first, then a password, which is asked for and kept for this link alone.
+
+Enters and leaves: bytes.
+"""
+
+from __future__ import annotations
+
+import getpass
+import logging
+import os
+import socket
+import sys
+import threading
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from pkm_post.pmac_link.faults import LinkLostError, NoAccessError
+from pkm_post.pmac_link.links import CHUNK, WITHOUT_SIGNAL
+
+if TYPE_CHECKING:
+    import paramiko
+
+PASSWORD = "PKM_PMAC_PASSWORD"
+"""Variable of the environment with the password."""
+_LOG = logging.getLogger("pkm_post.paramiko")
+_LOG.setLevel(logging.CRITICAL)  # what goes wrong is told by exceptions; the rest is chatter
+_NOTHING_TO_OFFER = "No authentication methods available"
+"""What paramiko says, by an exception that has no name of its own."""
+_CURE = f"offer a key, by an agent or in ~/.ssh, or the password in {PASSWORD}"
+_COLUMNS = 1000
+"""Of the terminal: a line that is longer may be echoed in several."""
+
+
+class SshLink:
+    """A shell over ssh."""
+
+    def __init__(self, host: str, number: int, user: str, known_hosts: Path | None, timeout: float) -> None:
+        """Make a link, not yet connected.
+
+        Args:
+            host: name or address.
+            number: of the TCP port.
+            user: who logs in.
+            known_hosts: file with the host keys that are trusted; the user's own unless given.
+            timeout: seconds for each step of connecting, and to send.
+        """
+        self._host, self._number, self._user = host, number, user
+        self._known_hosts, self._timeout = known_hosts, timeout
+        self._password = os.environ.get(PASSWORD)
+        self._client: paramiko.SSHClient | None = None
+        self._channel: paramiko.Channel | None = None
+
+    def read(self, timeout: float) -> bytes:
+        """As ``links.Link``."""
+        channel = self._open_channel()
+        channel.settimeout(max(timeout, 1e-3))
+        try:
+            data = channel.recv(CHUNK)
+        except TimeoutError:
+            return b""
+        except OSError as fault:
+            raise LinkLostError(f"{self._host}: {fault}") from fault
+        if not data:
+            raise LinkLostError(f"{self._host} closed the connection")
+        return data
+
+    def write(self, data: bytes) -> None:
+        """As ``links.Link``."""
+        channel = self._open_channel()
+        channel.settimeout(self._timeout)
+        try:
+            channel.sendall(data)
+        except OSError as fault:
+            raise LinkLostError(f"{self._host}: {fault or 'takes no bytes'}") from fault
+
+    def restart(self) -> None:
+        """As ``links.Link``; logs in anew.
+
+        Raises:
+            NoAccessError: the host key is not a known one, or the user is not let in.
+            ImportError: paramiko is not installed.
+        """
+        self.close()
+        ssh = _paramiko()
+        try:
+            self._log_in(ssh)
+        except ssh.AuthenticationException as fault:
+            if not self._asked_password():
+                raise NoAccessError(f"{self._host} does not let {self._user} in: {fault} {_CURE}") from fault
+            self.restart()
+        except ssh.BadHostKeyException as fault:
+            raise NoAccessError(f"{self._host} IS NOT WHO IT WAS: its host key has changed. {fault}") from fault
+        except (OSError, EOFError, ssh.SSHException) as fault:
+            if _NOTHING_TO_OFFER in str(fault) and self._asked_password():
+                self.restart()
+                return
+            if _NOTHING_TO_OFFER in str(fault):
+                raise NoAccessError(f"{self._host} wants a key or a password of {self._user}: {_CURE}") from fault
+            raise LinkLostError(f"{self._host}, port {self._number}: {fault}") from fault
+
+    def close(self) -> None:
+        """As ``links.Link``."""
+        if self._client is not None:
+            self._client.close()
+        self._client = self._channel = None
+
+    def _open_channel(self) -> paramiko.Channel:
+        if self._channel is None:
+            raise LinkLostError(f"{self._host} is not connected")
+        return self._channel
+
+    def _log_in(self, ssh: ModuleType) -> None:
+        """Connect and open a shell, within a time."""
+        client = self._client = ssh.SSHClient()
+        client.set_log_channel(_LOG.name)
+        self._trust(client, ssh)
+        connection = _Socket(socket.create_connection((self._host, self._number), self._timeout))
+        # Some steps of paramiko have no deadline of their own; closing ends them.
+        deadline = threading.Timer(4 * self._timeout, client.close)
+        deadline.start()
+        try:
+            client.connect(
+                self._host, self._number, self._user, self._password, sock=connection,
+                timeout=self._timeout, banner_timeout=self._timeout, auth_timeout=self._timeout,
+            )  # fmt: skip
+            self._channel = client.invoke_shell(term="dumb", width=_COLUMNS)
+        except BaseException:
+            self.close()
+            connection.close()
+            raise
+        finally:
+            deadline.cancel()
+
+    def _trust(self, client: paramiko.SSHClient, ssh: ModuleType) -> None:
+        """Make a client trust the keys that are known, and no other."""
+        host, number = self._host, self._number
+
+        class Refuse(ssh.MissingHostKeyPolicy):  # type: ignore[misc,name-defined]
+            def missing_host_key(self, client: paramiko.SSHClient, name: str, key: paramiko.PKey) -> None:
+                raise NoAccessError(
+                    f"{host} shows a host key that is not among the known ones, {key.get_name()} {key.fingerprint}."
+                    f" If it is the controller's, add it: ssh-keyscan -p {number} {host} >>FILE, and --known-hosts FILE"
+                )
+
+        client.set_missing_host_key_policy(Refuse())
+        if self._known_hosts is None:
+            client.load_system_host_keys()
+            return
+        try:
+            client.load_system_host_keys(str(self._known_hosts))
+        except OSError as fault:
+            raise NoAccessError(f"{self._known_hosts}: {fault.strerror}") from fault
+
+    def _asked_password(self) -> bool:
+        """Ask the user once for a password; whether there is one to try now."""
+        if self._password is not None or not sys.stdin.isatty():
+            return False
+        self._password = getpass.getpass(f"password of {self._user} at {self._host}: ")
+        return True
+
+
+class _Socket(socket.socket):
+    """A socket that raises no SIGPIPE: FreeCAD would end of it."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        timeout = connection.gettimeout()
+        super().__init__(fileno=connection.detach())
+        self.settimeout(timeout)
+        self.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def send(self, data: bytes, flags: int = 0) -> int:  # type: ignore[override]
+        """As ``socket.socket``."""
+        return super().send(data, flags | WITHOUT_SIGNAL)
+
+
+def _paramiko() -> ModuleType:
+    try:
+        import paramiko
+    except ImportError as missing:
+        raise ImportError("ssh needs paramiko: python3 -m pip install paramiko", name="paramiko") from missing
+    return paramiko

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stream: a program that is larger than the controller's memory, run from its rotary buffer while it is sent.
+
+The program goes in segments that end with STOP at rest (``gates``). A segment is let go by R when it is in the buffer
+whole and the one before it has ended; while it runs, the next one is sent. So a cut link ends at rest, with no one's
+help. When the link comes back, the controller is waited for until it rests, and is asked how many lines lie ahead of
+it: that number says which of the last lines arrived. If it cannot be explained, or the machine is not where the
+segment ends, nothing goes on.
+
+Enters: a session, settings, a program, the size of the rotary buffer. Leaves: what was carried out.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from pkm_post.controllers.pmac import Settings
+from pkm_post.pmac_link.faults import CancelledError, PmacError, StreamError
+from pkm_post.pmac_link.gates import segments_of
+from pkm_post.pmac_link.listing import Program
+from pkm_post.pmac_link.ready import NEAR_MM, check_start
+from pkm_post.pmac_link.rotary import Progress, RotaryStream
+from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.status import Array, read_status
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Streamed:
+    """A program that was carried out to its end.
+
+    Attributes:
+        lines: of the program.
+        digest: SHA-256 of them.
+        segments: how many there were.
+        resumptions: how often the link failed and the stream went on.
+    """
+
+    lines: int
+    digest: str
+    segments: int
+    resumptions: int
+
+
+def stream(
+    session: Session,
+    settings: Settings,
+    program: Program,
+    first: Array,
+    words: int,
+    near: float = NEAR_MM,
+    progress: Progress = lambda done, sent, all_lines: None,
+    is_cancelled: Callable[[], bool] = lambda: False,
+    sleep: Callable[[float], None] = time.sleep,
+) -> Streamed:
+    """Run a program from the rotary buffer.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        program: what to run.
+        first: (6,) strut lengths of its first point, mm.
+        words: size of the rotary buffer, as it was defined.
+        near: how far each strut may be from the first point, and from the rest that it goes on from, mm.
+        progress: is told how far it is.
+        is_cancelled: asked again and again; the machine then rests at the end of the segment that runs.
+        sleep: waits so many seconds.
+
+    Raises:
+        NotReadyError: the program cannot be streamed, or the machine is not ready; nothing was sent.
+        StreamError: it failed; says where the machine rests and whether anything is left in the buffer.
+        CancelledError: it was stopped; the machine rests and nothing is left in the buffer.
+    """
+    streaming = RotaryStream(session, settings, segments_of(program, settings, words), words, near, sleep)
+    streaming.rest = first
+    check_start(read_status(session, settings), first, near)
+    try:
+        streaming.open()
+        streaming.run(progress, is_cancelled)
+    except (PmacError, KeyboardInterrupt) as fault:
+        left = streaming.end(at_once=isinstance(fault, KeyboardInterrupt))
+        if isinstance(fault, CancelledError | KeyboardInterrupt) and left:
+            raise CancelledError("the stream was stopped; the machine rests, the rotary buffer is empty") from fault
+        raise StreamError(str(fault) or "the stream was stopped", streaming.line, left) from fault
+    except BaseException:
+        streaming.end(at_once=False)
+        raise
+    if not streaming.end(at_once=False):
+        raise StreamError("the program was carried out, but its buffer could not be closed", streaming.line, False)
+    _log.info("%d lines in %d segments, SHA-256 %s", len(program.lines), len(streaming.segments), program.digest)
+    return Streamed(len(program.lines), program.digest, len(streaming.segments), streaming.resumptions)

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A posted program goes to the simulated machine over a link and runs there: where its struts bring tip and axis.
+
+    python3 tests/examples/column_over_links.py out/tapered_column.pmc
+
+does it with the whole column, which ``make demo`` posts, over TCP and over a pseudo terminal: some minutes. The tests
+do it with the upper part of the column, which is built, posted and certified in the same way.
+"""
+
+import math
+import sys
+import threading
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from pkm_post import planning, trajectory_file
+from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.controllers.pmac import settings_of
+from pkm_post.geometry import hermite_lengths
+from pkm_post.kinematics import forward
+from pkm_post.machine_file import machine_named
+from pkm_post.pmac_link import operate
+from pkm_post.pmac_link.download import download
+from pkm_post.pmac_link.job import read_job
+from pkm_post.pmac_link.ports import port_named
+from pkm_post.pmac_link.ready import check_setup
+from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.status import read_status
+from pkm_post.pmac_simulator import Controller, Line, Server
+from pkm_post.pmac_simulator.moves import Cubic
+
+MACHINE = "example_6tps"
+SPEED = 8.0
+"""Simulated seconds in a second: about what a computer can compute."""
+PATIENCE_S = 30.0
+"""The simulated controller answers late when the computer is busy."""
+LONGEST_S = 600.0
+
+
+class Recorded(Controller):
+    """Keeps where its program wants the struts, at each tick within a PVT move; time is scaled while a program runs."""
+
+    def __init__(self, speed):
+        super().__init__()
+        self._speed = speed
+        self.times, self.places, self.since = [], [], None
+
+    def advance(self, ms):
+        super().advance(self._speed * ms if self.runs_program() else ms)
+
+    def _tick(self, ms):
+        super()._tick(ms)
+        system = self.systems[0]
+        move = system.path.current() if system.running else None
+        if isinstance(move, Cubic):
+            self.since = move.start if self.since is None else self.since
+            self.times.append(system.path.time - self.since)
+            self.places.append(self.motors.commanded.copy())
+
+    @property
+    def abrupt_stops(self):
+        return self.systems[0].path.abrupt_stops
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What came of it; deviations of the worst sample in mm and degrees, and what the certificate says of them.
+
+    Attributes:
+        samples: milliseconds of the motion that were looked at.
+        part: of the motion that they cover, up to 1.
+        off: how far a strut was from the cubics of the program, at worst, mm.
+        end: how far the struts are from the last lengths of the program, mm.
+        words: what the controller has to say at the end.
+    """
+
+    samples: int
+    part: float
+    off: float
+    tip: float
+    axis: float
+    end: float
+    words: tuple[str, ...]
+
+
+@contextmanager
+def served(machine, settings, setup, kind, speed):
+    """A controller that was set up and homed, behind a link; it and the name of its port."""
+    made = Recorded(speed)
+    made.load(setup.splitlines())
+    line = Line(made)
+    for motor in range(1, 7):
+        fast = f"I{motor}11=320000 I{motor}15=10 I{motor}16=6000 I{motor}17=20 I{motor}19=5 I{motor}22=200"
+        for text in (fast, f"#{motor}J/", f"#{motor}HMZ"):
+            assert not line.refusal(text)
+    made.advance(100)
+    server, ended = Server(made), threading.Event()
+    port = f"tcp:127.0.0.1:{server.add_tcp(0)}" if kind == "tcp" else f"serial:{server.add_pty()}"
+    thread = threading.Thread(target=server.run, args=(ended.is_set,))
+    thread.start()
+    try:
+        yield made, port
+    finally:
+        ended.set()
+        thread.join(LONGEST_S)
+        server.close()
+
+
+def follow(program, kind, speed=SPEED):
+    """Download a posted program over a link, run it to its end, and measure where it went.
+
+    Args:
+        program: path of the motion program; set-up and trajectory stand beside it.
+        kind: ``"tcp"`` or ``"serial"``.
+        speed: simulated seconds in a second.
+    """
+    machine, _ = machine_named(MACHINE)
+    settings, _ = settings_of(machine)
+    job, faults = read_job(program.read_text(), settings, program.name)
+    assert not faults
+    setup = program.with_name(f"{program.stem}-setup.pmc").read_text()
+    with served(machine, settings, setup, kind, speed) as (made, port):
+        with Session(port_named(port), PATIENCE_S) as session:
+            check_setup(session, settings, machine.strut_stroke)
+            assert download(session, job.program).digest == job.program.digest
+            operate.run(session, settings, job.program, job.first)
+            status, until = read_status(session, settings), time.monotonic() + LONGEST_S
+            while status.running:
+                assert time.monotonic() < until
+                time.sleep(0.05)
+                status = read_status(session, settings)
+        assert made.abrupt_stops == 0
+        times, places = np.array(made.times), np.array(made.places)
+    lengths = places / settings.counts_per_mm + np.array(settings.zero_length)
+    tip, axis = deviations(machine, program, times, lengths)
+    return Followed(
+        samples=len(times),
+        part=len(times) / int(job.motion.time_ms[-1]),
+        off=float(np.abs(lengths - played(job.motion, times)).max()),
+        tip=float(tip.max()),
+        axis=math.degrees(axis.max()),
+        end=float(np.abs(status.commanded - job.motion.length[-1]).max()),
+        words=status.words(),
+    )
+
+
+def played(motion, times):
+    """Where the cubics of a program want the struts at times in ms, (N, 6) mm."""
+    knot = np.clip(np.searchsorted(motion.time_ms, times, side="right") - 1, 0, len(motion) - 2)
+    begin, end = motion.time_ms[knot], motion.time_ms[knot + 1]
+    cubic = motion.length[knot], motion.speed[knot], motion.length[knot + 1], motion.speed[knot + 1]
+    share = (times - begin) / (end - begin)
+    return hermite_lengths(*cubic, (end - begin) / 1000, share[:, None])[:, 0]
+
+
+def deviations(machine, program, times, lengths):
+    """How far tip (mm) and axis (rad) are from the programmed trajectory at times in ms, (N,) each."""
+    trajectory, faults = trajectory_file.read(program.with_suffix(".pkmt"))
+    assert not faults, faults
+    tolerances = trajectory.tolerances
+    path = planning.tool_path(trajectory, tolerances)
+    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
+    knot = np.clip(np.searchsorted(motion.time_ms, times, side="right") - 1, 0, len(motion) - 2)
+    pose = forward(
+        machine, lengths, motion.tool_length[knot + 1], motion.tip[knot], motion.axis[knot], motion.spin[knot]
+    )
+    assert pose.converged.all()
+    ruler = TrajectoryRuler(trajectory, tolerances)
+    return ruler.deviation(pose.tip, pose.axis, motion.segment[knot], motion.segment[knot + 1])
+
+
+def main(program):
+    """Say what came of both links."""
+    for kind in ("tcp", "serial"):
+        begin = time.monotonic()
+        print(f"{kind}: {follow(Path(program), kind)}, {time.monotonic() - begin:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The main job to its end: the posted column is downloaded over a link, runs, and the tool is where it was programmed.
+
+Here it is the upper four millimetres of the column, in all four quadrants; the whole of it takes minutes and is driven
+by ``column_over_links.py``. What is shorter is the number of passes: they are built, posted and certified alike.
+"""
+
+import importlib.util
+import json
+import sys
+from pathlib import Path
+
+import FreeCAD as App
+import pytest
+from column_over_links import follow
+from Path.Post.Processor import PostProcessorFactory
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "tapered_column"
+LOWEST = 76.0
+"""mm: the column is 80 mm high, and its passes are 2.5 mm apart."""
+BETWEEN_INSTANTS = 1.1
+"""The certificate looks at nine instants of an interval, every three or four milliseconds; this test at each one. In
+the middle of a rounded corner the deviation rises and falls within a few."""
+LAST_BITS = 2e-6
+"""mm: the controller keeps numbers in 36 bits, and the struts of the program have six decimals."""
+COUNT = 1e-4
+"""mm: what the encoder of the example counts."""
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory):
+    """The motion program of the upper part of the column, posted as CAM's Post Process command does it."""
+    folder = tmp_path_factory.mktemp("upper")
+    spec = importlib.util.spec_from_file_location("tapered_column_build_upper", EXAMPLE / "build.py")
+    build = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = build
+    spec.loader.exec_module(build)
+    document, job = build.build(build.Column(lowest_contact=LOWEST), out=folder)
+    job.PostProcessorOutputFile = str(folder / "upper.pmc")
+    PostProcessorFactory.get_post_processor(job, "hexapod_pmac").export()
+    App.closeDocument(document.Name)
+    return folder / "upper.pmc"
+
+
+@pytest.mark.parametrize("kind", ["tcp", "serial"])
+def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(program, kind):
+    report = json.loads(program.with_name("upper-report.json").read_text())
+    told = {finding["what"]: finding["value"] for finding in report["certificate"]["findings"]}
+    followed = follow(program, kind)
+    assert followed.part > 0.99 and followed.samples > 1000 and followed.words == ()
+    assert followed.off < LAST_BITS
+    assert followed.tip <= min(BETWEEN_INSTANTS * told["deviation of the tool tip"], report["tolerances"]["tip_mm"])
+    assert followed.axis <= min(BETWEEN_INSTANTS * told["deviation of the tool axis"], report["tolerances"]["axis_deg"])
+    assert followed.tip > 0.9 * told["deviation of the tool tip"]  # it is the path that was measured
+    assert followed.end < COUNT

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The commands ``pmac home``, ``jog``, ``mdi``, ``step`` and ``override`` against a simulated controller."""
+
+import copy
+import io
+import re
+import threading
+
+import numpy as np
+import pytest
+from station import SETTINGS, set_up
+
+from pkm_post.cli import main
+from pkm_post.cli.pmac_control import tell_emergency
+from pkm_post.controllers.pmac import program_text
+from pkm_post.model import Event, EventKind, StrutMotion
+from pkm_post.pmac_simulator import Server
+
+MACHINE = "example_6tps"
+START = 1007.8869
+"""mm: the struts of the example at home."""
+
+
+@pytest.fixture
+def simulator():
+    """A controller that serves in a thread, and the name of its port."""
+    made = copy.deepcopy(set_up())
+    server, ended = Server(made), threading.Event()
+    port = f"tcp:127.0.0.1:{server.add_tcp(0)}"
+    thread = threading.Thread(target=server.run, args=(ended.is_set,))
+    thread.start()
+    yield made, port
+    ended.set()
+    thread.join()
+    server.close()
+
+
+def pmac(action, port, *arguments):
+    return main(["pmac", action, "--port", port, "--machine", MACHINE, "--patience", "10", *map(str, arguments)])
+
+
+def tip(told):
+    return [float(number) for number in re.search(r"tip X(\S+) Y(\S+) Z(\S+) mm", told).groups()]
+
+
+def test_jogs_and_lines(simulator, capsys):
+    made, port = simulator
+    assert pmac("jog", port, "--x", 3, "--z", "-2", "--feed", 3000) == 0
+    told = capsys.readouterr().out
+    assert np.allclose(tip(told), [3, 0, 298], atol=2e-3) and "arrived; no strut is off by more than 0.000" in told
+    assert pmac("mdi", port, "G91 G1 Y4 F3000") == 0
+    assert np.allclose(tip(capsys.readouterr().out), [3, 4, 298], atol=2e-3)
+    assert pmac("jog", port, "--strut", 2, "--by", 1.5, "--feed", 3000, "--number", 77) == 0
+    assert 77 in made.memory.programs and not made.runs_program()
+    capsys.readouterr()
+    assert pmac("monitor", port, "--seconds", 0.1) == 0
+    assert "spin" in capsys.readouterr().out
+
+
+def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
+    made, port = simulator
+    assert pmac("jog", port, "--x", 900) == 1
+    assert "K102" in capsys.readouterr().err
+    assert pmac("mdi", port, "G1 X10") == 1
+    assert "G408" in capsys.readouterr().err
+    assert pmac("jog", port, "--tilt-x", 3, "--check") == 0
+    assert "3.000 deg from upright" in capsys.readouterr().out
+    assert pmac("jog", port, "--x", 1, "--number", SETTINGS.program) == 1
+    assert "choose another --number" in capsys.readouterr().err
+    assert 999 not in made.memory.programs
+
+
+def test_home(simulator, capsys):
+    made, port = simulator
+    assert pmac("home", port) == 0
+    assert "all struts are homed" in capsys.readouterr().out
+    made.motors.homed[2] = False
+    assert pmac("home", port) == 1
+    assert "not homed: strut 3" in capsys.readouterr().out
+    assert pmac("home", port, "--trigger", "#3HM") == 0
+    assert "all struts have found their homes" in capsys.readouterr().out
+
+
+def test_override(simulator, capsys):
+    _, port = simulator
+    assert pmac("override", port, 40) == 0
+    assert "override 40 %" in capsys.readouterr().out
+
+
+def test_from_rest_to_rest(simulator, capsys, monkeypatch, tmp_path):
+    _, port = simulator
+    share = np.arange(26) / 25
+    out, rate = (1 - np.cos(np.pi * share)) / 2, np.pi * np.sin(np.pi * share)
+    rate[[0, -1]] = 0.0
+    length = np.concatenate([out, 1 - out[1:]])[:, None] * np.ones(6) + START
+    speed = np.concatenate([rate, -rate[1:]])[:, None] * np.ones(6)
+    motion = StrutMotion(20 * np.arange(51), length, speed, (Event(25, EventKind.STOP, 0.0),))
+    file = tmp_path / "job.pmc"
+    file.write_text(program_text(motion, SETTINGS, ["job"]))
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n\n"))
+    assert pmac("step", port, file) == 0
+    told = capsys.readouterr().out
+    assert "block 1 of 2" in told and "block 2 of 2" in told and told.endswith("the program has ended\n")
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
+    assert pmac("step", port, file) == 0
+    assert "the program has ended" not in capsys.readouterr().out
+    assert pmac("step", port, file, "--block", 3) == 1
+    assert "there is no block 3: the program has 2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["jog", "--strut", "7"],
+        ["jog", "--x", "nan"],
+        ["jog", "--feed", "0"],
+        ["jog", "--number", "1000"],
+        ["home", "--trigger", "I5190=1"],
+        ["override", "120"],
+        ["step", "x.pmc", "--block", "0"],
+        ["mdi"],
+    ],
+)
+def test_arguments_without_sense_by_hand(arguments):
+    action, *rest = arguments
+    with pytest.raises(SystemExit) as refused:
+        main(["pmac", action, "--port", "tcp:127.0.0.1:1", "--machine", MACHINE, *rest])
+    assert refused.value.code == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "connected", "told"),
+    [("hold", False, True), ("run", False, False), ("run", True, True), ("status", True, False)],
+)
+def test_when_people_are_told_what_to_do(name, connected, told, capsys):
+    tell_emergency(name, connected)
+    assert ("EMERGENCY STOP" in capsys.readouterr().err) == told
+
+
+def test_a_hold_that_reaches_nobody(capsys):
+    assert pmac("hold", "tcp:127.0.0.1:1") == 1
+    assert "press the EMERGENCY STOP" in capsys.readouterr().err

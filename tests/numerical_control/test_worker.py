@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The thread that talks to the controller: nothing waits for it, stops come first, faults are told."""
+
+import threading
+import time
+from concurrent.futures import CancelledError
+
+import pytest
+
+from pkm_post.numerical_control.control import State
+from pkm_post.numerical_control.moves import Cartesian
+from pkm_post.numerical_control.worker import Worker
+from pkm_post.pmac_link.faults import NotReadyError
+
+LONGEST_S = 20.0
+
+
+class Stub:
+    """A control that counts its readings."""
+
+    def __init__(self):
+        self.polls = 0
+        self.done = []
+
+    def poll(self):
+        self.polls += 1
+        if self.polls == -1:
+            raise ZeroDivisionError
+        return State(None, None, lost=str(self.polls))
+
+
+def until(holds):
+    """Wait for what another thread does."""
+    end = time.monotonic() + LONGEST_S
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.002)
+
+
+@pytest.fixture
+def stub():
+    return Stub()
+
+
+@pytest.fixture
+def worker(stub):
+    made = Worker(stub, period=0.005)
+    yield made
+    if made.failure is None:
+        made.close()
+
+
+def test_the_state_is_read_again_and_again(worker, stub):
+    until(lambda: stub.polls > 5 and worker.state.lost)
+    assert int(worker.state.lost) > 0
+
+
+def test_orders_are_carried_out_in_their_order_and_give_results(worker, stub):
+    results = [worker.submit(lambda control, n=n: control.done.append(n) or n) for n in range(20)]
+    assert [result.result(LONGEST_S) for result in results] == list(range(20)) == stub.done
+
+
+def test_a_stop_comes_first_and_cancels_what_waits(worker, stub):
+    begun, go_on = threading.Event(), threading.Event()
+
+    def long(control):
+        begun.set()
+        assert go_on.wait(LONGEST_S)
+
+    first = worker.submit(long)
+    assert begun.wait(LONGEST_S)
+    waiting = [worker.submit(lambda control: control.done.append("jog")) for _ in range(3)]
+    hold = worker.submit(lambda control: control.done.append("hold"), urgent=True)
+    abort = worker.submit(lambda control: control.done.append("abort"), urgent=True)
+    go_on.set()
+    first.result(LONGEST_S)
+    hold.result(LONGEST_S)
+    abort.result(LONGEST_S)
+    assert stub.done == ["hold", "abort"]
+    for order in waiting:
+        with pytest.raises(CancelledError):
+            order.result(LONGEST_S)
+
+
+def test_the_exception_of_an_order_is_that_of_its_result(worker):
+    def fails(control):
+        raise NotReadyError(["no"])
+
+    with pytest.raises(NotReadyError):
+        worker.submit(fails).result(LONGEST_S)
+    assert worker.submit(lambda control: 7).result(LONGEST_S) == 7
+
+
+def test_it_ends(stub):
+    worker = Worker(stub, period=0.005)
+    begun, go_on = threading.Event(), threading.Event()
+    first = worker.submit(lambda control: begun.set() or go_on.wait(LONGEST_S))
+    assert begun.wait(LONGEST_S)
+    waiting = worker.submit(lambda control: 1)
+    threading.Timer(0.05, go_on.set).start()
+    worker.close()
+    assert first.result(0) and waiting.cancelled()
+    with pytest.raises(RuntimeError, match="the worker has ended"):
+        worker.submit(lambda control: 1)
+
+
+def test_a_fault_of_ours_is_not_hidden(worker, stub):
+    stub.polls = -2
+    until(lambda: worker.failure is not None)
+    with pytest.raises(RuntimeError) as told:
+        worker.submit(lambda control: 1)
+    assert isinstance(told.value.__cause__, ZeroDivisionError)
+    with pytest.raises(RuntimeError, match="ended by a fault"):
+        worker.close()
+
+
+def test_a_machine_is_operated(station):
+    worker = Worker(station.control, period=0.01)
+    try:
+        plan, told = worker.submit(lambda control: control.plan_jog(Cartesian((2, 0, 0)), 10.0)).result(LONGEST_S)
+        assert not told
+        worker.submit(lambda control: control.execute(plan)).result(LONGEST_S)
+        worker.submit(lambda control: station.to_rest()).result(LONGEST_S)
+        until(lambda: worker.state.pose is not None and worker.state.pose.tip[0] == pytest.approx(2.0, abs=1e-3))
+    finally:
+        worker.close()
