@@ -21,7 +21,7 @@ from pkm_post.geometry.arcs import across
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Event, Kind, Program
 
-_COPIED = ("tool_axis", "feed", "operation", "line", "plane", "normal", "spin")
+_COPIED = ("tool_axis", "feed", "operation", "line", "plane", "normal", "spin", "exact_path", "tip_tolerance")
 
 
 def compensated(program: Program, elements: Elements, offsets: Offsets) -> tuple[Program, Array, Array]:

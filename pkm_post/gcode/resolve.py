@@ -25,6 +25,7 @@ from pkm_post.gcode.magazine import side_offsets, spindle_speeds, tools_in_spind
 from pkm_post.gcode.modal import Modal, modal_state
 from pkm_post.gcode.motions import Motions
 from pkm_post.gcode.options import UNITS, ReadOptions, axis_names
+from pkm_post.gcode.path_modes import path_modes
 from pkm_post.gcode.walk import Walk
 from pkm_post.model import Diagnostic, Kind, Program, Tool
 from pkm_post.model.columns import by_row, is_uniform, locked, uniform
@@ -108,7 +109,7 @@ def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
 
 def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Program | None:
     settings = _settings(blocks, modal, options, faults)
-    _tolerances(modal, blocks, faults)
+    modes = path_modes(blocks, modal, options.axis_words, faults)
     motions = Walk(blocks, modal, settings.tools, settings.spindle, options, faults).motions()
     centre, axis = arcs_of(blocks, modal, motions, faults)
     if faults.stop():
@@ -128,7 +129,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
         "arc_centre": _frames(motions).points(centre),
         "operation": uniform(0, len(motions), np.int32),
         "line": motions.of_blocks(blocks.line),
-        "exact_stop": motions.of_blocks(by_row(_is_exact, modal.in_force[Group.PATH])),
+        **{name: motions.of_blocks(column) for name, column in modes.items()},
     }
     return Program(
         **{name: locked(column) for name, column in columns.items()},
@@ -182,15 +183,6 @@ def _handed(hand: Array, spin: Array) -> Array:
 def _turned(hand: Array, axis: Array) -> Array:
     """Axes of arcs in {C}, right-handed again where a frame is a mirror image."""
     return axis if is_uniform(axis) or (hand > 0).all() else hand[:, None] * axis
-
-
-def _is_exact(path: Array) -> Array:
-    return np.isin(path, (610, 611))
-
-
-def _tolerances(modal: Modal, blocks: Blocks, faults: Findings) -> None:
-    wanted = (modal.explicit[Group.PATH] == 640) & blocks.has("P")
-    faults.tell_all("G417", wanted, lambda row: f"G64 P{blocks.word('P')[row]:g}")
 
 
 def _compensation(

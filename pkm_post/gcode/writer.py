@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.gcode.chords import CHORD_ERROR, with_chords
+from pkm_post.gcode.path_modes import exact_codes
 from pkm_post.gcode.writer_arcs import WrittenArcs, written_arcs
 from pkm_post.gcode.writer_axes import FORMS, SWING, Form, impossible_axis, swings
 from pkm_post.gcode.writer_blocks import block_texts
@@ -39,7 +40,7 @@ def write(
         The text, or None when the form cannot say the program, and what was found.
 
     Raises:
-        ValueError: a place, tool axis, feed or radius is not a finite number.
+        ValueError: a place, tool axis, feed, radius or tolerance is not a finite number.
     """
     _require_numbers(program)
     fault = impossible_axis(program.tool_axis, form)
@@ -59,7 +60,8 @@ def write(
         arcs = written_arcs(program, numbers.unit, may_turn)
     diagnostics += _swings_told(program, form)
     between = between_blocks(program, form)
-    blocks = block_texts(words_of(program, FORMS[form], arcs, numbers), codes_of(program, arcs, numbers), between)
+    codes = codes_of(program, arcs, numbers, exact_codes("RPY" if form is Form.LINUXCNC else ""))
+    blocks = block_texts(words_of(program, FORMS[form], arcs, numbers), codes, between)
     end = between.get(len(program), "")
     return "".join([heading(program, form, inch), *blocks, end, "M2\n"]), diagnostics
 
@@ -70,6 +72,7 @@ def _require_numbers(program: Program) -> None:
         "tool_axis": program.tool_axis,
         "feed of cutting moves": program.feed[cutting(program)],
         "side_offset": program.side_offset,
+        "tip_tolerance": program.tip_tolerance,
     }
     for name, values in columns.items():
         if not np.isfinite(values).all():

@@ -25,10 +25,10 @@ def block_texts(words: list[Word], codes: Codes, between: Mapping[int, str]) -> 
 
     Args:
         words: in the order of the text.
-        codes: before the words, with D after that of the compensation.
+        codes: before the words, with P after that of the path and D after that of the compensation.
         between: whole lines before some rows.
     """
-    columns = [codes.diameter, *words]
+    columns = [codes.tolerance, codes.diameter, *words]
     templates, of_row = _templates(columns, codes)
     rows = sorted(between)
     for begin in range(0, len(of_row), _CHUNK):
@@ -58,9 +58,15 @@ def _template(key: int, radices: list[int], columns: list[Word]) -> str:
         key, digit = divmod(key, radix)
         digits.append(digit)
     code = {group: TEXTS[group][digit] for group, digit in zip(Codes.ORDER, digits, strict=False)}
-    diameter, *words = [
+    tolerance, diameter, *words = [
         f"{word.letter}%.{word.decimals}f" if said else ""
         for word, said in zip(columns, digits[len(Codes.ORDER) :], strict=True)
     ]
-    parts = [code["path"], code["plane"], code["side"], diameter, code["motion"], *words]
+    parts = [code["plane"], code["side"], diameter, code["motion"], *words]
+    if tolerance:  # in a line by itself: P has a meaning with other codes as well
+        return f"{code['path']} {tolerance}\n" + _line(parts)
+    return _line([code["path"], *parts])
+
+
+def _line(parts: list[str]) -> str:
     return " ".join(part for part in parts if part) + "\n"

@@ -18,6 +18,10 @@ from pkm_post.model import EventKind, Kind, Program
 from pkm_post.model.program import Array
 
 FEED_DECIMALS = 3
+_FINER = 2
+"""More decimals of a tolerance than of coordinates: it may be smaller than their last one."""
+_BLEND = 1
+"""The place of G64, which is in force at the beginning, in ``TEXTS``."""
 
 
 @dataclass(frozen=True)
@@ -62,10 +66,11 @@ class Codes:
     """Codes of each row by their place in ``TEXTS``, (N,) each.
 
     Attributes:
-        path: exact stop or not.
+        path: rounded corners, exact stop or exact path.
         plane: of arcs and of cutter compensation.
         side: cutter compensation.
         motion: how the row gets to its end.
+        tolerance: the word that goes with ``path``.
         diameter: the word that goes with ``side``.
     """
 
@@ -73,6 +78,7 @@ class Codes:
     plane: Array
     side: Array
     motion: Array
+    tolerance: Word
     diameter: Word
 
     # The plane is chosen before compensation begins, which then holds it.
@@ -80,7 +86,7 @@ class Codes:
 
 
 TEXTS: dict[str, tuple[str, ...]] = {
-    "path": ("", "G64", "G61"),
+    "path": ("", "G64", "G61", "G61.1"),
     "plane": ("", "G19", "G18", "G17"),
     # LinuxCNC refuses a compensation that starts while another one is on.
     "side": ("", "G40", "G41.1", "G42.1", "G40\nG41.1", "G40\nG42.1"),
@@ -124,8 +130,15 @@ def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers
     return [*tips, *axes, *centres, feed]
 
 
-def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers) -> Codes:
-    """The codes of all rows, as ``words_of`` gives the words."""
+def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple[int, int]) -> Codes:
+    """The codes of all rows, as ``words_of`` gives the words.
+
+    Args:
+        program: its arcs can all be said.
+        arcs: how its arcs are said.
+        numbers: how numbers are written.
+        exact: the codes of exact stop and exact path, in tenths.
+    """
     always, restart = np.ones(len(program), dtype=np.bool_), _tool_changes(program)
     diameter = _rounded(2 * program.side_offset / numbers.scale, numbers.decimals)
     compensated = diameter != 0
@@ -141,13 +154,26 @@ def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers) -> Codes:
 
     motion = np.where(cutting(program), 2, 1)
     motion[arcs.row] = np.where(arcs.clockwise, 3, 4)
+    path, tolerance = _path(program, numbers, exact)
     return Codes(
-        path=np.where(_changed(program.exact_stop, False), 1 + program.exact_stop, 0),
+        path=path,
         plane=np.where(new_plane, 1 + plane, 0),
         side=np.where(new_side, side, 0),
         motion=np.where(_new(motion, always, restart), motion, 0),
+        tolerance=tolerance,
         diameter=Word("D", numbers.decimals, np.abs(diameter), new_side & compensated),
     )
+
+
+def _path(program: Program, numbers: Numbers, exact: tuple[int, int]) -> tuple[Array, Word]:
+    """The code for corners by its place in ``TEXTS``, and P with it; both where one of them is new."""
+    stop, path = (TEXTS["path"].index(f"G{code / 10:g}") for code in exact)
+    code = np.select([program.exact_stop, program.exact_path], [stop, path], _BLEND)
+    decimals = numbers.decimals + _FINER
+    least = np.where((code == _BLEND) & (program.tip_tolerance > 0), 10.0**-decimals, 0.0)
+    value = np.where(least > 0, np.maximum(_rounded(program.tip_tolerance / numbers.scale, decimals), least), 0.0)
+    new = _changed(code, _BLEND) | _changed(value, 0.0)
+    return np.where(new, code, 0), Word("P", decimals, value, new & (value > 0))
 
 
 def _rounded(values: Array, decimals: int) -> Array:

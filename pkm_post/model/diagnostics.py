@@ -168,6 +168,19 @@ RULES: dict[str, Rule] = {
     "K120": _error("the tool axis is at right angles to the plane that the spin is kept to", "choose another spin"),
     "K119": _error("the machine is too compliant along the surface normal", "tilt the tool less, or move the part"),
     "K121": _error("a strut comes too near to the part", "move or turn the part on the table"),
+    "K122": _error(
+        "a pass cannot be run the other way: how the tool would come and go is not known",
+        "lift the tool along its axis between the passes, or do without climb milling",
+    ),
+    "K123": _warning(
+        "the path begins by a rapid move to where the tool stood in the material at its end",
+        "see that it is free there, or lift the tool along its axis at the end of the original",
+    ),
+    "K124": _warning("a pass begins at its deep end, for it is run the other way", "see that the cutter can take it"),
+    "K125": _error(
+        "something happens in the middle of a pass that is to be run the other way",
+        "let it happen between the passes, or do without climb milling",
+    ),
     # N3: paths over a surface
     "N301": _error("only closed lines along u or v can be joined to a spiral", "choose Zigzag or One way"),
     "N302": _error("there is nothing to be covered", "choose faces that have an area"),
@@ -276,6 +289,11 @@ RULES: dict[str, Rule] = {
     "V111": _error("the struts leave their plan", "post the job again; do not edit the program"),
     "V112": _error("the acceleration of a strut changes too fast", "report this as a fault of the feed planner"),
     "V110": _error("the program does not follow the whole path", "post the job again; do not edit it"),
+    # C2: moves by hand, at the controller
+    "C201": _error("nothing moves", "say which way, and how far"),
+    "C202": _error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),
+    "C203": _error("a line by hand cannot change the tool", "change it, and say its gauge length"),
+    "C204": _error("the way needs more memory than one program has", "jog less far, or program a higher feed"),
     # G3: the execution of a G-code program
     "G301": _error("a parameter has no value", "assign it before"),
     "G302": _error("there is no such parameter", "use whole numbers from 1 to 5601, or a name"),
@@ -311,7 +329,7 @@ RULES: dict[str, Rule] = {
     "G414": _error("rotary words have no meaning here", "say which axes they turn, and write G43.4 before them"),
     "G415": _error("the tool axis is not known", "write I, J and K, not all zero, after G43.5"),
     "G416": _error("the tool's position is not known yet", "move to X, Y and Z before"),
-    "G417": _warning("the tolerance of a path is not taken from the program", "set the tolerance of the job"),
+    "G417": _warning("the tolerance of a path is not taken from the program", "write G64 with a P above zero, alone"),
     "G418": _error("the cycle cannot be carried out", "correct its words"),
     "G419": _error("this cannot be done while cutter compensation is on", "switch it off before with G40"),
     "G420": _error("nothing moves in the program", "check the file"),

@@ -62,7 +62,8 @@ class Certificate:
         intervals: number of cubics played.
         instants: number of poses computed by forward kinematics.
         time: (K,) s, at the start of each interval.
-        tip_deviation: (K,) largest in the interval, mm.
+        tip_deviation: (K,) largest in the interval by its tolerance, mm.
+        tip_tolerance: (K,) what it may be there, mm: that of the program (G64 P), else what was asked for.
         axis_deviation: (K,) largest in the interval, rad.
     """
 
@@ -72,6 +73,7 @@ class Certificate:
     instants: int
     time: Array
     tip_deviation: Array
+    tip_tolerance: Array
     axis_deviation: Array
 
     @property

@@ -40,6 +40,8 @@ MOTION_COLUMNS: dict[str, RowType] = {
 
 OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
     "exact_stop": (np.bool_, (), False),
+    "exact_path": (np.bool_, (), False),
+    "tip_tolerance": (np.float64, (), 0.0),
     "side_offset": (np.float64, (), 0.0),
     "plane": (np.uint8, (), 2),
     "normal": (np.float64, (3,), np.nan),
@@ -67,6 +69,10 @@ class Program:
         source: name of the file the program comes from.
         source_fingerprint: SHA-256 of the bytes of that file, hexadecimal; empty where it is not known.
         exact_stop: (N,) whether the motion comes to rest at the end of the row (G61); none does by default.
+        exact_path: (N,) whether the corners at both ends of the row are followed and not rounded, so that the motion
+            rests there (G61.1); none are by default.
+        tip_tolerance: (N,) how far the tool tip may leave the row, where the program says so (G64 P), mm; 0, the
+            default, leaves it to whoever posts the program.
         side_offset: (N,) radius of the 2D cutter compensation that the row is programmed with and that is not applied
             yet, mm: positive to the left of the path (G41), negative to the right (G42), 0 for none, the default.
         plane: (N,) the coordinate the compensation's plane is normal to: 2 for XY (G17), the default, 1 for ZX (G18),
@@ -91,6 +97,8 @@ class Program:
     source: str
     source_fingerprint: str = ""
     exact_stop: Array = None  # type: ignore[assignment] # filled in below
+    exact_path: Array = None  # type: ignore[assignment] # filled in below
+    tip_tolerance: Array = None  # type: ignore[assignment] # filled in below
     side_offset: Array = None  # type: ignore[assignment] # filled in below
     plane: Array = None  # type: ignore[assignment] # filled in below
     normal: Array = None  # type: ignore[assignment] # filled in below

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model.columns import RowType, freeze
+from pkm_post.model.columns import RowType, by_row, freeze, uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.event import Event
 from pkm_post.model.findings import Tolerances
@@ -28,6 +28,7 @@ TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
     "angle": (np.float64, ()),
     "smooth": (np.bool_, ()),
     "exact_stop": (np.bool_, ()),
+    "tip_tolerance": (np.float64, ()),
     "tool": (np.int32, ()),
 }
 
@@ -48,7 +49,7 @@ class Trajectory:
         length: (N,) length of the tip's way.
         angle: (N,) angle the tool axis turns.
         smooth: (N,) the tip's direction continues into the next segment without a corner.
-        exact_stop: (N,) the motion comes to rest at the end of the segment.
+        exact_stop: (N,) the motion comes to rest at the end of the segment: a feed hold can end there, and work begin.
         tool: (N,) tool number.
         operation: (N,) index into ``operations``.
         line: (N,) line in the source of that operation.
@@ -64,6 +65,8 @@ class Trajectory:
         source: name of the file the program came from.
         source_fingerprint: SHA-256 of that file, hexadecimal; empty where it is not known, the default.
         tolerances: what was asked for when the trajectory was made; None where nothing was, the default.
+        tip_tolerance: (N,) how far the tool tip may leave the segment, where the program says so (G64 P), mm; 0, the
+            default, stands for that of ``tolerances``.
     """
 
     kind: Array
@@ -93,8 +96,11 @@ class Trajectory:
     source: str
     source_fingerprint: str = ""
     tolerances: Tolerances | None = None
+    tip_tolerance: Array = None  # type: ignore[assignment] # filled in below
 
     def __post_init__(self) -> None:
+        if self.tip_tolerance is None:
+            object.__setattr__(self, "tip_tolerance", uniform(0.0, len(self.kind)))
         freeze(self, len(self.kind), TRAJECTORY_COLUMNS)
         freeze(self, 3, {"start_tip": (np.float64, ()), "start_axis": (np.float64, ())})
         freeze(self, 4, {"machine_from_work": (np.float64, (4,))})
@@ -109,6 +115,10 @@ class Trajectory:
     def tool_length(self) -> Array:
         """Gauge length of the tool in use, (N,) in mm."""
         return lengths_of(self.tools, self.tool)
+
+    def tip_tolerances(self, asked: float) -> Array:
+        """How far the tip may leave each segment, (N,) in mm: as the program says, else as was asked for."""
+        return by_row(lambda said: np.where(said > 0, said, asked), self.tip_tolerance)
 
     def tip_before(self) -> Array:
         """Tool tip at the start of each segment, (N, 3).

@@ -19,7 +19,7 @@ MAGIC = b"PKMT\r\n\x1a\n"
 """The first bytes. A transfer that takes the file for text changes the line ends in them."""
 MAJOR = 1
 """Version of the layout: another one cannot be read."""
-MINOR = 0
+MINOR = 1
 """Version of what was added to the layout: a newer one can be read without the additions."""
 
 ALIGNMENT = 8
@@ -82,7 +82,8 @@ SEGMENT = np.dtype(
         ("kind", "u1"),
         ("smooth", "u1"),
         ("exact_stop", "u1"),
-        ("reserved", "u1", (9,)),
+        ("reserved", "u1"),
+        ("tip_tolerance", "<f8"),
     ],
     align=True,
 )

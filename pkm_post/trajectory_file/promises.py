@@ -133,6 +133,7 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
         "length is not a finite number of at least 0": ~(np.isfinite(length) & (length >= 0)),
         "angle is not between 0 and pi": ~_within(angle, 0, np.pi),
         "tip, the axis and the spin all stand": stands,
+        "tip tolerance is not a finite number of at least 0": ~_within(trajectory.tip_tolerance, 0, FARTHEST),
         "tool is not in the table": ~np.isin(trajectory.tool, list(trajectory.tools)),
         "operation is not in the table": ~_within(trajectory.operation, 0, len(trajectory.operations) - 1),
         "line is negative": trajectory.line < 0,

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.model import Diagnostic, Event, EventKind, Place, Tool, Trajectory
+from pkm_post.model.columns import uniform
 from pkm_post.model.findings import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
 from pkm_post.trajectory_file.container import DamageError, bytes_of, opened
@@ -122,7 +123,10 @@ def _columns(segments: Records) -> dict[str, Any]:
         if dtype is np.bool_ and np.any(segments[name] > 1):
             row = int(np.argmax(segments[name] > 1))
             raise DamageError(f"segment {row}: the flag {name} is {segments[name][row]}")
-    return {name: segments[name] for name in TRAJECTORY_COLUMNS}
+    columns = {name: segments[name] for name in TRAJECTORY_COLUMNS}
+    if not columns["tip_tolerance"].any():  # as in most programs: one zero stands for all, as it was before
+        columns["tip_tolerance"] = uniform(0.0, len(segments))
+    return columns
 
 
 def _events(instructions: Records) -> tuple[Event, ...]:

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /*
- * The records of a trajectory file (.pkmt), version 1.0, and the pose within a segment. The meaning of every field is
+ * The records of a trajectory file (.pkmt), version 1.1, and the pose within a segment. The meaning of every field is
  * in docs/trajectory-format.md. The file is little-endian, its records have no gaps, and a table begins at a multiple of
  * 8 bytes: on a machine with little-endian numbers they are read where they lie, also from a mapped file.
  * tests/trajectory_file/read_trajectory.c shows how.
@@ -19,7 +19,7 @@
 
 #define PKMT_MAGIC "PKMT\r\n\x1a\n"
 #define PKMT_MAJOR 1 /* refuse a file with another one */
-#define PKMT_MINOR 0 /* a file with a newer one can be read without what it adds */
+#define PKMT_MINOR 1 /* a file with a newer one can be read without what it adds */
 
 #define PKMT_AT(record, field, place) static_assert(offsetof(struct pkmt_##record, field) == (place), #field)
 #define PKMT_SIZE(record, size) static_assert(sizeof(struct pkmt_##record) == (size), #record)
@@ -179,7 +179,8 @@ struct pkmt_segment {
     uint8_t kind;                           /* enum pkmt_segment_kind */
     uint8_t smooth;                         /* 0 or 1 */
     uint8_t exact_stop;                     /* 0 or 1 */
-    uint8_t reserved[9];
+    uint8_t reserved;
+    double tip_tolerance;                   /* mm, or 0 for that of the header; since 1.1 */
 };
 PKMT_AT(segment, tip, 0);
 PKMT_AT(segment, axis, 24);
@@ -205,6 +206,7 @@ PKMT_AT(segment, kind, 308);
 PKMT_AT(segment, smooth, 309);
 PKMT_AT(segment, exact_stop, 310);
 PKMT_AT(segment, reserved, 311);
+PKMT_AT(segment, tip_tolerance, 312);
 PKMT_SIZE(segment, 320);
 
 /* The first segment that a line of the source makes; sorted by operation and line. */

@@ -2,7 +2,7 @@
 # `make conformance` compiles this, and reads a file with what comes out. A Kaitai Struct cannot check the checksums.
 meta:
   id: pkmt
-  title: Trajectory file of PKM Post, version 1.0
+  title: Trajectory file of PKM Post, version 1.1
   file-extension: pkmt
   license: LGPL-2.1-or-later
   endian: le
@@ -286,7 +286,10 @@ types:
         type: u1
         doc: "0 or 1"
       - id: reserved
-        size: 9
+        type: u1
+      - id: tip_tolerance
+        type: f8
+        doc: "mm, or 0 for that of the header; since 1.1"
   block:
     doc: "The first segment that a line of the source makes; sorted by operation and line. 16 bytes."
     seq:

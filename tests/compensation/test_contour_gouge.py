@@ -9,6 +9,7 @@ from contour_programs import contour, random_contour
 
 from pkm_post.compensation import OffsetOptions, offset_contours
 from pkm_post.model import Kind
+from pkm_post.model.program import OPTIONAL_COLUMNS
 
 
 def bottle(neck):
@@ -110,7 +111,10 @@ def test_each_contour_has_its_own_walls_and_its_own_diagnostic():
     }
     twice["line"] = np.arange(1, 2 * count + 1)
     both = replace(
-        first, **twice, exact_stop=None, side_offset=np.tile(first.side_offset, 2), plane=None, normal=None, spin=None
+        first,
+        **twice,
+        side_offset=np.tile(first.side_offset, 2),
+        **dict.fromkeys(OPTIONAL_COLUMNS.keys() - {"side_offset"}),
     )
     assert codes(offset_contours(both)[1]) == [("N204", 5), ("N204", 5 + count)]
 

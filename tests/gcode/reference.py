@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reading G-code block by block, as plainly as it can be written: what the columns of the reader are compared with.
 
-Knows G0 to G3, G4, G10 L2, G17 to G21, G40 to G42.1, G43, G43.5, G49, G52, G54 to G56, G61, G64, G68, G69, G51.1,
-G50.1, G81, G90 to G95, G98, G99, T, M6, M3 to M9, S, F. Its programs are right; it tells no faults.
+Knows G0 to G3, G4, G10 L2, G17 to G21, G40 to G42.1, G43, G43.5, G49, G52, G54 to G56, G61, G61.1, G64, G68, G69,
+G51.1, G50.1, G81, G90 to G95, G98, G99, T, M6, M3 to M9, S, F. Its programs are right; it tells no faults.
 """
 
 import numpy as np
@@ -40,7 +40,7 @@ class Machine:
         self.side = 0.0
         self.speed = self.sense = self.f = 0.0
         self.axis = np.array([0.0, 0.0, 1.0])
-        self.exact = False
+        self.exact, self.tolerance = 640, 0.0
         self.cycle = {}
         self.rows, self.events = [], []
 
@@ -60,6 +60,8 @@ class Machine:
     def block(self, line, words, g, m):
         scale = 25.4 if 200 in g else 1.0 if 210 in g else self.mode["unit"]
         self.modes(g, scale)
+        if {610, 611, 640} & set(g):
+            self.tolerance = words.get("P", 0.0) * scale if 640 in g else 0.0
         if "F" in words:
             self.f = words["F"] if self.mode["feed"] == 930 else words["F"] * scale
         self.switch(words, m)
@@ -94,8 +96,8 @@ class Machine:
                 self.mode["feed"] = code
             elif code in (980, 990):
                 self.mode["retract"] = code
-            elif code in (610, 640):
-                self.exact = code == 610
+            elif code in (610, 611, 640):
+                self.exact = code
 
     def switch(self, words, m):
         self.selected = words.get("T", self.selected)
@@ -252,7 +254,9 @@ class Machine:
             feed=feed if kind else np.nan,
             arc_centre=np.full(3, np.nan) if centre is None else (matrix @ [*centre, 1])[:3],
             arc_axis=np.full(3, np.nan) if axis is None else hand * matrix[:3, :3] @ axis,
-            exact_stop=self.exact,
+            exact_stop=self.exact == 610,
+            exact_path=self.exact == 611,
+            tip_tolerance=self.tolerance,
             side_offset=self.side * hand * np.sign(normal[plane]),
             plane=plane,
             normal=matrix[:3, :3] @ surface / np.sqrt(surface @ surface),

@@ -66,6 +66,8 @@ lines = st.one_of(
         lambda parts: [f"G10 L2 P{parts[0]} {parts[1]}{parts[2]}"]
     ),
     st.sampled_from(["G54", "G55", "G56", "G43 H1", "G43 H2", "G49", "G69", "G50.1", "G61", "G64"]).map(lambda w: [w]),
+    st.sampled_from(["G61.1", "G64 P.02", "G64 Q.5 P1.25"]).map(lambda w: [w]),
+    words().map(lambda text: ["G20 G64 P.25", f"G1 {text}", "G21"]),
     st.sampled_from(["T1 M6", "T2 M6", "T2", "S500", "M3 S900", "M4", "M7", "M9", "G4 P.5"]).map(lambda w: [w]),
     words("XY").map(lambda text: [f"G51.1 {text}"]),
     st.tuples(number, number, number).map(lambda text: ["G68 X{} Y{} R{}".format(*text)]),
@@ -84,7 +86,7 @@ def same(text, axis_words="none"):
     assert read is not None, faults
     rows, events = resolve_by_block(blocks, TOOLS)
     assert len(read) == len(rows)
-    for name in ("line", "kind", "exact_stop", "plane"):
+    for name in ("line", "kind", "exact_stop", "exact_path", "tip_tolerance", "plane"):
         assert getattr(read, name).tolist() == [row[name] for row in rows], name
     for name in ("position", "tool_axis", "arc_centre", "arc_axis", "side_offset", "normal"):
         np.testing.assert_allclose(getattr(read, name), np.array([row[name] for row in rows]), rtol=0, atol=NANOMETRE)

@@ -48,6 +48,8 @@ def assert_same(back, given, unit, axis_error, feed_unit=FEED_UNIT):
     in_plane = (back.arc_centre - given.arc_centre) * (given.arc_axis == 0)
     assert np.nanmax(norm(in_plane), initial=0.0) <= 4 * unit
     np.testing.assert_array_equal(back.exact_stop, given.exact_stop)
+    np.testing.assert_array_equal(back.exact_path, given.exact_path)
+    np.testing.assert_allclose(back.tip_tolerance, given.tip_tolerance, rtol=0, atol=0.51 * unit / 100)
     np.testing.assert_allclose(back.side_offset, given.side_offset, rtol=0, atol=0.51 * unit)
     on = given.side_offset != 0
     np.testing.assert_array_equal(back.plane[on], given.plane[on])
@@ -89,7 +91,9 @@ def arcs_in_all_planes(rng, count=60):
         Event(count, EventKind.SPINDLE, 0.0),
     )
     given = program(position, kind=kind, centre=centre, turn=turn, events=events)
-    return replace(given, exact_stop=rng.random(count) < 0.3)
+    mode = rng.integers(0, 3, count)
+    tolerance = np.where(mode == 0, rng.choice([0.0, 0.05, 0.001, 1.25], count), 0.0)
+    return replace(given, exact_stop=mode == 1, exact_path=mode == 2, tip_tolerance=tolerance)
 
 
 def test_text_of_a_small_job():

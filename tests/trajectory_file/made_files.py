@@ -6,7 +6,7 @@ import zlib
 
 import numpy as np
 
-from pkm_post.trajectory_file.layout import HEADER, TABLES, offset_of
+from pkm_post.trajectory_file.layout import HEADER, MINOR, TABLES, offset_of
 
 
 def header_of(content):
@@ -36,7 +36,7 @@ def newer(content):
         places.append((size + len(body), count, record.itemsize + grown))
         body += rows.tobytes()
     beginning = bytearray(content[: HEADER.itemsize] + b"\xee" * 8)
-    struct.pack_into("<HI", beginning, 10, 1, size)
+    struct.pack_into("<HI", beginning, 10, MINOR + 1, size)
     for name, place in zip(TABLES, places, strict=True):
         struct.pack_into("<3Q", beginning, offset_of(HEADER, name), *place)
     return sealed(bytes(beginning) + body)

@@ -147,7 +147,7 @@ static void print_segment(const struct pkmt_segment *s)
     REALS(s, arc_axis), REALS(s, sweep), REALS(s, angle), REALS(s, start_tip), REALS(s, start_axis), REALS(s, start_spin);
     REALS(s, shift), REALS(s, radius), REALS(s, quarter), REALS(s, growth), REALS(s, axis_quarter);
     INTEGER(s, tool), INTEGER(s, operation), INTEGER(s, line);
-    INTEGER(s, kind), INTEGER(s, smooth), INTEGER(s, exact_stop), BYTES(s, reserved);
+    INTEGER(s, kind), INTEGER(s, smooth), INTEGER(s, exact_stop), INTEGER(s, reserved), REALS(s, tip_tolerance);
     printf("\nmiddle");
     REALS(&middle, tip), REALS(&middle, axis), REALS(&middle, spin);
 }

@@ -119,7 +119,7 @@ def test_a_segment_has_every_column_of_the_model_with_all_its_bits_and_what_is_c
         for name, (dtype, shape) in TRAJECTORY_COLUMNS.items()
     }
     in_record = {name: (dtype, shape) for name, (_, dtype, shape) in fields(layout.SEGMENT).items()}
-    assert in_record.pop("reserved") == (np.dtype(np.uint8), (9,))
+    assert in_record.pop("reserved") == (np.dtype(np.uint8), ())
     computed = interpolation(random_trajectory(1))
     assert in_record == columns | {name: (column.dtype, column.shape[1:]) for name, column in computed.items()}
 

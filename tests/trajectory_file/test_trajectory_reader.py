@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Whatever a file contains, it is read or refused with a reason; nothing in it is believed."""
 
+import dataclasses
 import os
 import struct
 import tracemalloc
@@ -11,7 +12,7 @@ from made_files import header_of, newer, sealed
 from trajectories import everything, random_trajectory
 
 from pkm_post.trajectory_file import decode, read, write
-from pkm_post.trajectory_file.layout import HEADER, MAGIC, SEGMENT, STRING, TABLES, offset_of
+from pkm_post.trajectory_file.layout import HEADER, MAGIC, MINOR, SEGMENT, STRING, TABLES, offset_of
 from pkm_post.trajectory_file.promises import broken_promises
 
 KILOBYTE = 1024
@@ -83,7 +84,7 @@ def test_a_file_sent_as_text_is_not_taken(path, sound):
 
 @pytest.mark.parametrize("major", [0, 2, 65535])
 def test_another_major_version_is_told_whatever_follows(path, sound, major):
-    assert refusal(path, changed(sound, 8, "<H", major)[:12]) == f"T102 it has version {major}.0, known is 1.0"
+    assert refusal(path, changed(sound, 8, "<H", major)[:12]) == f"T102 it has version {major}.1, known is 1.1"
 
 
 def test_a_newer_minor_version_is_read_without_what_it_adds(path, sound):
@@ -93,8 +94,17 @@ def test_a_newer_minor_version_is_read_without_what_it_adds(path, sound):
     assert everything(trajectory) == everything(TRAJECTORY)
 
 
+def test_a_file_of_version_1_0_has_no_tolerances_of_the_program(path):
+    older = dataclasses.replace(TRAJECTORY, tip_tolerance=None)
+    write(older, path)
+    path.write_bytes(sealed(changed(path.read_bytes(), 10, "<H", 0)))
+    trajectory, diagnostics = read(path)
+    assert diagnostics == ()
+    assert everything(trajectory) == everything(older)
+
+
 def test_this_minor_version_has_no_additions(path, sound):
-    assert f"header size is {HEADER.itemsize + 8}" in refusal(path, sealed(changed(newer(sound), 10, "<H", 0)))
+    assert f"header size is {HEADER.itemsize + 8}" in refusal(path, sealed(changed(newer(sound), 10, "<H", MINOR)))
 
 
 def test_every_truncation_is_told(path, sound):
@@ -199,6 +209,8 @@ BAD_VALUES = [
     ("segments", "tool", "<i", 5, "segment 2: the tool is not in the table"),
     ("segments", "operation", "<i", 3, "segment 2: the operation is not in the table"),
     ("segments", "feed", "<d", -1.0, "segment 2: the feed is not"),
+    ("segments", "tip_tolerance", "<d", -1.0, "segment 2: the tip tolerance is not a finite number of at least 0"),
+    ("segments", "tip_tolerance", "<d", float("nan"), "segment 2: the tip tolerance is not"),
     ("segments", "axis", "<d", 2.0, "segment 2: the axis is not of unit length"),
     ("segments", "tip", "<d", float("nan"), "segment 2: the tip is not finite"),
     ("instructions", "kind", "<I", 0, "instruction 2: the kind 0 is unknown"),

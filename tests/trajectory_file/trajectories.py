@@ -57,6 +57,7 @@ def random_columns(rng, count, tools, operations):
         "angle": rng.uniform(0, np.pi, count),
         "smooth": rng.random(count) < 0.5,
         "exact_stop": rng.random(count) < 0.5,
+        "tip_tolerance": rng.choice([0.0, 5e-324, 0.05, 2.54], count),
         "tool": rng.choice(tools, count) if count else [],
         "operation": rng.integers(0, operations, count),
         "line": rng.integers(0, 2**31 - 1, count),

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Path modes: what G61, G61.1 and G64 say of the corners of each block.
+
+Blocks and their modal codes enter; columns leave: whether the motion rests at the end (exact stop), whether corners are
+followed rather than rounded (exact path), and how far the tip may leave the path (G64 P), mm. LinuxCNC has the first
+two codes the other way round; a program for its hexapod is taken as it means it. Q of G64, for joining moves that are
+nearly one, is not needed: no moves are joined.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.gcode.blocks import Blocks
+from pkm_post.gcode.codes import G_CODES, Group
+from pkm_post.gcode.findings import Findings
+from pkm_post.gcode.modal import Modal, carried
+from pkm_post.model.columns import by_row, uniform
+from pkm_post.model.program import Array
+
+_TOLERANCE = 640
+_TAKES_P = [code for code, meaning in G_CODES.items() if "P" in meaning.letters and code != _TOLERANCE]
+
+
+def exact_codes(axis_words: str) -> tuple[int, int]:
+    """The codes of exact stop and of exact path, in tenths.
+
+    Args:
+        axis_words: how the tool axis is said; "RPY" are words of LinuxCNC alone.
+    """
+    return (611, 610) if axis_words == "RPY" else (610, 611)
+
+
+def path_modes(blocks: Blocks, modal: Modal, axis_words: str, faults: Findings) -> dict[str, Array]:
+    """The columns ``exact_stop``, ``exact_path`` and ``tip_tolerance`` of a program, by block, (N,) each.
+
+    Args:
+        blocks: the program.
+        modal: its modal codes.
+        axis_words: how the tool axis is said.
+        faults: takes tolerances that are not taken.
+    """
+    stop, path = exact_codes(axis_words)
+    in_force = modal.in_force[Group.PATH]
+    return {
+        "exact_stop": by_row(lambda codes: codes == stop, in_force),
+        "exact_path": by_row(lambda codes: codes == path, in_force),
+        "tip_tolerance": _tolerances(blocks, modal, faults),
+    }
+
+
+def _tolerances(blocks: Blocks, modal: Modal, faults: Findings) -> Array:
+    """By block, mm; 0 where the program gives none."""
+    said = modal.explicit[Group.PATH]
+    wanted = (said == _TOLERANCE) & blocks.has("P")
+    if not wanted.any():
+        return uniform(0.0, len(blocks))
+    word = blocks.word("P")
+    taken = wanted & (word > 0) & ~_belongs_elsewhere(blocks, modal)
+    faults.tell_all("G417", wanted & ~taken, lambda row: f"G64 P{word[row]:g}")
+    rows = np.flatnonzero(np.isin(said, (610, 611, _TOLERANCE)))
+    return carried(rows, np.where(taken, modal.in_mm(word), 0.0)[rows], 0.0, len(blocks))
+
+
+def _belongs_elsewhere(blocks: Blocks, modal: Modal) -> Array:
+    """Whether another code of a block takes its P: a dwell, a cycle, the turns of an arc, (N,)."""
+    elsewhere: Array = modal.moves & np.isin(modal.in_force[Group.MOTION], _TAKES_P)
+    elsewhere[blocks.g_row[np.isin(blocks.g, _TAKES_P)]] = True
+    return elsewhere
