@@ -17,8 +17,9 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from pkm_post import planning, trajectory_file  # noqa: E402 - the path comes first
-from pkm_post.feed import by_time  # noqa: E402
-from pkm_post.kinematics import stray  # noqa: E402
+from pkm_post.cubics import poses_at  # noqa: E402
+from pkm_post.feed import glimpse  # noqa: E402
+from pkm_post.kinematics import Ends, Inside, stray  # noqa: E402
 from pkm_post.machine_file import machine_named  # noqa: E402
 
 FIXED_MS = (1, 2, 5, 10)
@@ -29,16 +30,14 @@ CHUNK = 4096
 def told(name, time_ms, path, schedule, machine):
     """One line of the table."""
     tip = axis = 0.0
-
-    def poses_at(ms):
-        s, speed, acceleration = schedule.at(ms / 1000)
-        return by_time(path.at(s), speed, acceleration)
-
     for first in range(0, len(time_ms) - 1, CHUNK):
         start, end = time_ms[first : first + CHUNK], time_ms[first + 1 : first + CHUNK + 1]
         start = start[: len(end)]
-        inner = poses_at((start[:, None] + (end - start)[:, None] * SHARES).ravel())
-        found = stray(machine, poses_at(start), poses_at(end), inner, (end - start) / 1000, SHARES)
+        s, speed, _ = schedule.at((start[:, None] + (end - start)[:, None] * SHARES).ravel() / 1000)
+        seen = glimpse(path, s)
+        inside = Inside(seen.tip, seen.axis, seen.spin, seen.tool_length, seen.pace * speed)
+        ends = (Ends.of(machine, poses_at(path, schedule, ms)) for ms in (start, end))
+        found = stray(machine, *ends, inside, (end - start) / 1000, SHARES)
         tip, axis = max(tip, found.tip.max()), max(axis, found.axis.max())
     print(f"{name:<12}{len(time_ms):>9} points   tip {tip:.6f} mm   axis {np.degrees(axis):.6f} degrees", flush=True)
 

@@ -7,43 +7,57 @@ kinematics sees no planner. This module brings the two together.
 
 from __future__ import annotations
 
+import os
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 
+from pkm_post.cubics import Cubics, poses_at
 from pkm_post.feed import (
-    Bounded,
     Ceilings,
+    PathBounds,
     Schedule,
+    Stations,
     ToolPath,
-    by_time,
     cell_times,
+    even_marks,
     for_jerk,
     knots,
     limits,
+    rough_limits,
     speed_profile,
     stations,
 )
 from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import reach_faults, stray, strut_rates
-from pkm_post.model import Diagnostic, Event, Machine, Motion, Poses, StrutMotion, Trajectory
+from pkm_post.kinematics import Way, reach_faults, strut_rates
+from pkm_post.model import Diagnostic, Event, Machine, Motion, StrutMotion, Trajectory
 from pkm_post.model.findings import Tolerances
+from pkm_post.speed_limits import below_feed, bent, bounded_by, feed_at, limits_at, roughly_bounded
 
 _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
-_FOR_CUBICS = 0.4
-"""Share that the controller's cubics may use; the rest is for decimals and for what lies between the instants."""
-_SPEED_SWING = 0.005
-"""Part of the feed by which the controller's cubics may be faster than planned."""
-_STRUT_SPEED_SHARE = 0.95
-"""Share of the strut speed that is planned: the controller's cubics swing a little about it."""
 _WINDOWS_MS = (4, 8, 16, 32, 64, 128)
 """Windows of time that are tried for a plan with a limit of jerk; the one with the shortest motion is taken."""
-_SHARES_LOOKED_AT = np.sort(np.arange(1, 21) * (np.sqrt(5) - 1) / 2 % 1)
-"""Spread by the golden ratio: even shares could keep step with the joints of the path and miss every one of them."""
+_BLOCK = 4096
+"""Stations in one pass: what is computed for them stays in the processor's cache."""
+_AT_ONCE = 1024
+"""Marks of a stretch of the motion, a minute or two, whose points are looked for by themselves."""
 
 
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
     """The path with rounded corners that the tool will follow."""
-    return ToolPath.of(trajectory, _FOR_CORNERS * tolerances.tip, _FOR_CORNERS * tolerances.axis)
+    return ToolPath.of(trajectory, _for_corners(trajectory, tolerances.tip), _FOR_CORNERS * tolerances.axis)
+
+
+def _for_corners(trajectory: Trajectory, asked: float) -> Array:
+    """How far the tip may leave each segment at corners, (N,) mm.
+
+    Where the program allows more than was asked for, corners get all of what is more: cubics and decimals keep to
+    what was asked for.
+    """
+    allowed = trajectory.tip_tolerances(asked)
+    tight = np.minimum(allowed, asked)
+    return _FOR_CORNERS * tight + (allowed - tight)
 
 
 def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple[Schedule, tuple[Diagnostic, ...]]:
@@ -54,19 +68,38 @@ def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple
         trajectory: names the places of faults.
         machine: geometry and limits.
     """
+    most = PathBounds.of(path)
+    faults = reach_faults(machine, trajectory, *_way(path, stations(path, bent(path, most))))
+    if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
+        return _without_jumps(path, machine), faults
+    rough = rough_limits(path.feed, roughly_bounded(machine, path, most))
+    close = below_feed(path, *rough)
+    marks = stations(path, close)
+    square, along = limits_at(path, marks, close, rough, machine)
+    return Schedule.of(marks, marks.s, marks.rest, speed_profile(marks.s, square, along)), faults
+
+
+def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
+    """The way through stations, straight from one to the next; and the segments they lie on."""
+    parts = []
+    for first in range(0, len(marks.s), _BLOCK):
+        rows = slice(first, first + _BLOCK)
+        poses = path.within(marks.segment[rows], marks.u[rows])
+        parts.append((poses.tip, poses.axis, poses.spin, poses.tool_length))
+    return Way.straight(*(np.concatenate(columns) for columns in zip(*parts, strict=True))), marks.segment
+
+
+def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
+    """The schedule for a machine with limits of jerk."""
     marks = stations(path)
-    poses = path.within(marks.segment, marks.u)
-    faults = reach_faults(machine, trajectory, poses)
-    bounded = _bounded(machine, poses)
-    square, along = limits(_feed_at(path, marks.segment, marks.u), bounded)
+    bounded = bounded_by(machine, path.within(marks.segment, marks.u))
+    square, along = limits(feed_at(path, marks.segment, marks.u), bounded)
     square[marks.rest] = 0.0
     ceilings = Ceilings(marks.s, marks.rest, square, along)
-    if not any(np.isfinite(item.jerk) for item in bounded):
-        return Schedule.of(marks, marks.s, marks.rest, speed_profile(marks.s, square, along)), faults
     _, window_ms, course = min(
         (_averaged(for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS), key=lambda tried: tried[0]
     )
-    return Schedule.of(marks, *course, window_ms), faults
+    return Schedule.of(marks, *course, window_ms)
 
 
 def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Array, Array, Array]]:
@@ -75,29 +108,6 @@ def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Arr
     runs = int(ceilings.rest.sum()) - 1
     duration = float(cell_times(ceilings.s, square).sum()) + runs * window_ms / 1000
     return duration, window_ms, (ceilings.s, ceilings.rest, square)
-
-
-def _feed_at(path: ToolPath, segment: Array, u: Array) -> Array:
-    """Feed at stations, (M,); at a joint the lower one of its two segments."""
-    at_end = u == path.segments.extent[segment]
-    following = np.minimum(segment + at_end, len(path.feed) - 1)
-    return np.minimum(path.feed[segment], path.feed[following])
-
-
-def _bounded(machine: Machine, poses: Poses) -> tuple[Bounded, ...]:
-    _, first, second = strut_rates(machine, poses)
-    return (
-        Bounded(
-            first,
-            second,
-            _STRUT_SPEED_SHARE * machine.strut_speed,
-            machine.strut_acceleration,
-            each=True,
-            jerk=machine.strut_jerk,
-        ),
-        Bounded(poses.tip_1, poses.tip_2, np.inf, machine.tip_acceleration, each=False, jerk=machine.tip_jerk),
-        Bounded(poses.axis_1, poses.axis_2, machine.axis_speed, np.inf, each=False),
-    )
 
 
 def interpolate(
@@ -112,22 +122,15 @@ def interpolate(
         machine: decides how far the controller's cubics stray between two points.
         tolerances: what was asked for.
     """
+    marks = even_marks(schedule.rests_ms)
+    stretches = [marks[first : first + _AT_ONCE + 1] for first in range(0, len(marks) - 1, _AT_ONCE)]
 
-    def poses_at(ms: Array) -> Poses:
-        s, speed, acceleration = schedule.at(ms / 1000)
-        return by_time(path.at(s), speed, acceleration)
+    def knots_of(stretch: Array) -> Array:
+        return knots(stretch, schedule.edges_ms, Cubics(path, schedule, machine, tolerances, stretch).error)
 
-    def error(start: Array, end: Array) -> Array:
-        inner = poses_at((start[:, None] + (end - start)[:, None] * _SHARES_LOOKED_AT).ravel())
-        duration = (end - start) / 1000
-        found = stray(machine, poses_at(start), poses_at(end), inner, duration, _SHARES_LOOKED_AT)
-        swing = _SPEED_SWING * path.feed[inner.segment].reshape(found.faster.shape)
-        off = np.maximum(found.tip / tolerances.tip, found.axis / tolerances.axis) / _FOR_CUBICS
-        worst = np.maximum(off, found.faster / swing).max(axis=1)
-        return np.maximum(worst, found.acceleration / machine.strut_acceleration)
-
-    time_ms = knots(schedule.rests_ms, schedule.edges_ms, error)
-    poses = poses_at(time_ms)
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        time_ms = np.unique(np.concatenate(list(threads.map(knots_of, stretches))))
+    poses = poses_at(path, schedule, time_ms)
     rest_of_row = np.searchsorted(schedule.rest_joints, [event.row for event in events])
     knot = np.searchsorted(time_ms, schedule.rests_ms[rest_of_row])
     return Motion(

@@ -11,10 +11,11 @@ PACKAGE = Path(__file__).parents[1] / "pkm_post"
 BY_FLOOR = (
     "model geometry files grammar pmac_simulator",
     "gcode cldata placement compensation kinematics feed trajectory_file controllers machine_file report",
-    "spin surface_speed surface_path reach certificate sources pmac_link machine_check machine_calibration",
+    "spin surface_speed surface_path speed_limits cubics reach certificate sources pmac_link machine_check "
+    "machine_calibration",
     "position planning outputs",
     "pipeline verify check convert",
-    "options reach_study program_text",
+    "options reach_study numerical_control program_text",
     "post_file freecad_app",
     "cli freecad_gui",
     "__main__",
@@ -33,6 +34,7 @@ DOORS = {
     "matplotlib": ("report/",),
     "lark": ("grammar.py", "gcode/", "cldata/"),
     "serial": ("pmac_link/links.py",),
+    "paramiko": ("pmac_link/ssh_link.py",),
 }
 
 MODULES = sorted(PACKAGE.rglob("*.py"))

@@ -14,7 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.playback import INSTANTS, Played, at_joints, off_plan, play, strut_jerk
+from pkm_post.certificate.knots import Knots
+from pkm_post.certificate.playback import (
+    INSTANTS,
+    SPEED_MISSED,
+    Played,
+    at_joints,
+    off_plan,
+    play,
+    strut_jerk,
+    tip_speeds,
+)
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.findings import Certificate, Finding, Tolerances
@@ -46,8 +56,9 @@ def certify(
     faults = _structure_faults(struts, program_name, trajectory, machine, motion)
     if faults:
         return None, faults
-    played = play(struts, machine, TrajectoryRuler(trajectory, tolerances), motion)
-    findings = _findings(played, struts, trajectory, machine, motion, tolerances)
+    knots = Knots.of(machine, motion)
+    played = play(struts, machine, TrajectoryRuler(trajectory, tolerances), motion, knots)
+    findings = _findings(played, struts, trajectory, machine, motion, knots, tolerances)
     certificate = Certificate(
         findings=findings,
         duration=float(struts.time_ms[-1]) / 1000,
@@ -55,6 +66,7 @@ def certify(
         instants=INSTANTS * (len(struts) - 1) + len(trajectory),
         time=struts.time_ms[:-1] / 1000,
         tip_deviation=played.tip,
+        tip_tolerance=played.tip_tolerance,
         axis_deviation=played.axis,
     )
     return certificate, tuple(finding.diagnostic() for finding in findings if not finding.holds)
@@ -66,22 +78,24 @@ def _findings(
     trajectory: Trajectory,
     machine: Machine,
     motion: Motion,
+    planned: Knots,
     tolerances: Tolerances,
 ) -> tuple[Finding, ...]:
     """One row for each quantity: code, name, unit, values, limit, and when and where they were taken."""
     intervals = _Series(struts.time_ms[:-1] / 1000, motion.segment[1:])
     joints = _Series(motion.joint_time, np.arange(len(trajectory)))
     knots = _Series(struts.time_ms / 1000, motion.segment)
-    excess = played.tip_speed - _feed_ceiling(trajectory, motion)
-    passed = at_joints(struts, machine, trajectory, motion)
+    excess = _excess(played, struts, trajectory, machine, motion)
+    at_ends = trajectory.tip_tolerances(tolerances.tip)
+    passed = at_joints(struts, machine, trajectory, motion, planned)
     axis_limit = math.degrees(tolerances.axis)
     rows: tuple[_Row, ...] = (
         ("V107", "instants without a pose", "", 1.0 - played.found, 0.0, intervals),
-        ("V101", "deviation of the tool tip", "mm", played.tip, tolerances.tip, intervals),
+        ("V101", "deviation of the tool tip", "mm", played.tip, played.tip_tolerance, intervals),
         ("V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), axis_limit, intervals),
-        ("V110", "tool tip off a programmed point", "mm", passed[0], tolerances.tip, joints),
+        ("V110", "tool tip off a programmed point", "mm", passed[0], at_ends, joints),
         ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed[1]), axis_limit, joints),
-        ("V111", "strut off its plan", "mm", off_plan(struts, machine, motion), tolerances.tip, knots),
+        ("V111", "strut off its plan", "mm", off_plan(struts, planned), tolerances.tip, knots),
         ("V108", "tip speed above the feed", "mm/s", excess, 0.0, intervals),
         ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, intervals),
         ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, intervals),
@@ -101,17 +115,17 @@ class _Series:
     segment: Array
 
 
-_Row = tuple[str, str, str, Array, float, _Series]
+_Row = tuple[str, str, str, Array, Array | float, _Series]
 
 
 def _worst(
-    trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: float, series: _Series
+    trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: Array | float, series: _Series
 ) -> Finding:
-    """The finding at the largest value; a value that is no number counts as beyond every limit."""
-    values = np.where(np.isnan(values), np.inf, values)
-    row = int(np.argmax(values))
-    value, place = float(values[row]), trajectory.place(int(series.segment[row]))
-    return Finding(code, name, unit, value, limit, value <= limit, float(series.time[row]), place)
+    """The finding at the largest value, by its limit if limits differ; no number counts as beyond every limit."""
+    values, limits = np.where(np.isnan(values), np.inf, values), np.broadcast_to(limit, values.shape)
+    row = int(np.argmax(values if np.ndim(limit) == 0 else values / limits))
+    value, most, place = float(values[row]), float(limits[row]), trajectory.place(int(series.segment[row]))
+    return Finding(code, name, unit, value, most, value <= most, float(series.time[row]), place)
 
 
 def _structure_faults(
@@ -130,6 +144,15 @@ def _structure_faults(
     if struts.speed[[0, -1]].any():
         faults.append(Diagnostic("V105", place, f"last speeds {struts.speed[-1].tolist()} mm/s"))
     return tuple(faults)
+
+
+def _excess(played: Played, struts: StrutMotion, trajectory: Trajectory, machine: Machine, motion: Motion) -> Array:
+    """Tip speed above what each interval may have, (K,); exact where it is highest."""
+    ceiling = _feed_ceiling(trajectory, motion)
+    excess = played.tip_speed - ceiling
+    near = np.flatnonzero(excess >= (excess - SPEED_MISSED * played.tip_speed).max() - SPEED_MISSED * played.tip_speed)
+    excess[near] = tip_speeds(struts, machine, motion, near) - ceiling[near]
+    return excess
 
 
 def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:

@@ -13,9 +13,13 @@ import numpy as np
 
 from pkm_post.geometry import along, angle_between, arc_points, dot, norm, towards
 from pkm_post.geometry.arcs import across
+from pkm_post.geometry.gather import among, taken
 from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Kind, Trajectory
 from pkm_post.model.findings import Tolerances
+
+_WELL_WITHIN = 0.5
+"""Part of the tolerances below which it does not matter whether another segment would fit even better."""
 
 
 class TrajectoryRuler:
@@ -23,7 +27,8 @@ class TrajectoryRuler:
 
     def __init__(self, trajectory: Trajectory, tolerances: Tolerances) -> None:
         self._trajectory = trajectory
-        self._tolerances = tolerances
+        self._axis_tolerance = tolerances.axis
+        self._tip_tolerance = trajectory.tip_tolerances(tolerances.tip)
         self._tip_before = trajectory.tip_before()
         self._axis_before = trajectory.axis_before()
         self._axis_turn = towards(self._axis_before, trajectory.axis)
@@ -37,43 +42,74 @@ class TrajectoryRuler:
             first: (N,) first segment to look at.
             last: (N,) last segment to look at.
         """
-        best = np.full((2, len(tip)), np.inf)
-        score = np.full(len(tip), np.inf)
-        for offset in range(int((last - first).max()) + 1):
-            rows = np.flatnonzero(first + offset <= last)
-            found = np.stack(self._from_segment(tip[rows], axis[rows], first[rows] + offset))
-            fit = np.maximum(found[0] / self._tolerances.tip, found[1] / self._tolerances.axis)
+        best = np.full((3, len(tip)), np.inf)
+        self._improve(best, tip, axis, first, last, np.arange(len(tip)))
+        return best[0], best[1]
+
+    def deviation_about(self, tip: Array, axis: Array, first: Array, last: Array, likely: Array) -> Array:
+        """Deviations of tip (mm) and axis (rad), and what that of the tip may be, (3, N).
+
+        Where half of the tolerances is kept from a likely segment, no other is looked at.
+
+        Args:
+            tip: (N, 3) tips.
+            axis: (N, 3) unit axes.
+            first: (N,) first segment to look at.
+            last: (N,) last segment to look at.
+            likely: (N,) the segment to look at before all others.
+        """
+        best = self._from_segments(tip, axis, likely)
+        self._improve(best, tip, axis, first, last, np.flatnonzero(self._fit(best) > _WELL_WITHIN))
+        return best
+
+    def _improve(self, best: Array, tip: Array, axis: Array, first: Array, last: Array, rows: Array) -> None:
+        """Replace the rows of what was found by what segments from first to last say, where these fit better."""
+        score = self._fit(best)
+        for offset in range(int((last - first)[rows].max(initial=-1)) + 1):
+            rows = rows[first[rows] + offset <= last[rows]]
+            found = self._from_segments(tip[rows], axis[rows], first[rows] + offset)
+            fit = self._fit(found)
             better = fit < score[rows]
             score[rows[better]] = fit[better]
             best[:, rows[better]] = found[:, better]
-        return best[0], best[1]
 
-    def _from_segment(self, tip: Array, axis: Array, segment: Array) -> tuple[Array, Array]:
-        share = self._nearest_share(tip, axis, segment)
-        trajectory, before = self._trajectory, self._tip_before[segment]
-        nearest = before + share[:, None] * (trajectory.tip[segment] - before)
-        rows = np.flatnonzero(trajectory.kind[segment] == Kind.ARC)
-        if len(rows):
-            nearest[rows] = self._on_arc(segment[rows], share[rows])
-        expected = along(self._axis_before[segment], share[:, None] * self._axis_turn[segment])
-        return norm(tip - nearest), angle_between(axis, expected)
+    def _fit(self, found: Array) -> Array:
+        """The larger of both deviations over their tolerances; infinite where nothing was found yet."""
+        of_tip = np.divide(found[0], found[2], out=np.full(found.shape[1], np.inf), where=np.isfinite(found[2]))
+        return np.maximum(of_tip, found[1] / self._axis_tolerance)
 
-    def _nearest_share(self, tip: Array, axis: Array, segment: Array) -> Array:
-        """How much of each segment has gone at the programmed pose nearest to the pose, from 0 to 1.
+    def _from_segments(self, tip: Array, axis: Array, segment: Array) -> Array:
+        """Deviations from the segment of each pose, and what that of the tip may be, (3, N)."""
+        if not len(segment):
+            return np.empty((3, 0))
+        trajectory, (segments, at) = self._trajectory, among(segment)
+        before, turn = self._tip_before[segments], self._axis_turn[segments]
+        chord = trajectory.tip[segments] - before
+        by_tip, by_axis = self._weights(segments)
+        away = tip - taken(before, at)
+        curved = np.flatnonzero((trajectory.kind[segments] == Kind.ARC)[at])
+        share = dot(away, taken(by_tip[:, None] * _over_square(chord), at))
+        if len(curved):
+            share[curved] = by_tip[at[curved]] * self._share_of_arc(tip[curved], segment[curved])
+        start = taken(self._axis_before[segments], at)
+        turns = bool(turn.any())
+        if turns:
+            share += dot(towards(start, axis), taken(by_axis[:, None] * _over_square(turn), at))
+        share = np.clip(share, 0.0, 1.0)
+        off = away - share[:, None] * taken(chord, at)
+        if len(curved):
+            off[curved] = tip[curved] - self._on_arc(segment[curved], share[curved])
+        expected = along(start, share[:, None] * taken(turn, at)) if turns else start
+        return np.stack([norm(off), angle_between(axis, expected), self._tip_tolerance[segments][at]])
 
-        Along a segment tip and axis move evenly, so the least sum of squares is at the weighted mean of the shares
-        that are nearest for tip and axis alone.
+    def _weights(self, segments: Array) -> tuple[Array, Array]:
+        """How much the shares that are nearest for the tip alone and for the axis alone count.
+
+        Along a segment tip and axis move evenly, so the least sum of squares is at the weighted mean of these shares.
         """
-        trajectory, before = self._trajectory, self._tip_before[segment]
-        by_tip = _projected(tip - before, trajectory.tip[segment] - before)
-        rows = np.flatnonzero(trajectory.kind[segment] == Kind.ARC)
-        if len(rows):
-            by_tip[rows] = self._share_of_arc(tip[rows], segment[rows])
-        by_axis = _projected(towards(self._axis_before[segment], axis), self._axis_turn[segment])
-        tip_weight = (trajectory.length[segment] / self._tolerances.tip) ** 2
-        axis_weight = (trajectory.angle[segment] / self._tolerances.axis) ** 2
-        share = (tip_weight * by_tip + axis_weight * by_axis) / (tip_weight + axis_weight)
-        return np.clip(share, 0.0, 1.0)
+        by_tip = (self._trajectory.length[segments] / self._tip_tolerance[segments]) ** 2
+        by_axis = (self._trajectory.angle[segments] / self._axis_tolerance) ** 2
+        return by_tip / (by_tip + by_axis), by_axis / (by_tip + by_axis)
 
     def _share_of_arc(self, tip: Array, segment: Array) -> Array:
         trajectory = self._trajectory
@@ -95,6 +131,7 @@ class TrajectoryRuler:
         return point + growth[:, None] * outward
 
 
-def _projected(vector: Array, onto: Array) -> Array:
-    square = dot(onto, onto)
-    return np.divide(dot(vector, onto), square, out=np.zeros_like(square), where=square > 0)
+def _over_square(vectors: Array) -> Array:
+    """Vectors over the squares of their lengths, (N, 3); zero where they have none."""
+    square = dot(vectors, vectors)[:, None]
+    return np.divide(vectors, square, out=np.zeros_like(vectors), where=square > 0)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Feed: corner blending, look-ahead and timing. Arrays alone: no machine, no kinematics."""
 
+from pkm_post.feed.glimpse import Glimpse, glimpse
 from pkm_post.feed.jerk import Ceilings, for_jerk
-from pkm_post.feed.knots import knots
-from pkm_post.feed.limits import PLANNED_SHARE, Bounded, limits
+from pkm_post.feed.knots import even_marks, knots
+from pkm_post.feed.limits import PLANNED_SHARE, Bounded, limits, rough_limits
+from pkm_post.feed.path_bounds import PathBounds
 from pkm_post.feed.profile import cell_times, speed_profile
 from pkm_post.feed.schedule import Schedule, by_time
 from pkm_post.feed.segments import Segments
@@ -14,15 +16,20 @@ __all__ = [
     "PLANNED_SHARE",
     "Bounded",
     "Ceilings",
+    "Glimpse",
+    "PathBounds",
     "Schedule",
     "Segments",
     "Stations",
     "ToolPath",
     "by_time",
     "cell_times",
+    "even_marks",
     "for_jerk",
+    "glimpse",
     "knots",
     "limits",
+    "rough_limits",
     "speed_profile",
     "stations",
 ]

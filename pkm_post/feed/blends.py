@@ -25,7 +25,7 @@ _SHARE = 0.45
 
 
 def half_widths(
-    tip_change: Array, curvature_change: Array, axis_change: Array, neighbour: Array, tip: float, axis: float
+    tip_change: Array, curvature_change: Array, axis_change: Array, neighbour: Array, tip: Array | float, axis: float
 ) -> Array:
     """Half widths of the blends that keep within the tolerances, (N,) in path length.
 
@@ -34,7 +34,7 @@ def half_widths(
         curvature_change: (N,) length of the change of the tip's curvature vector, 1/mm.
         axis_change: (N,) length of the change of the tool axis' rate, rad by path length.
         neighbour: (N,) length of the shorter of the two segments; 0 where the motion stops.
-        tip: tolerance of the tip, mm.
+        tip: tolerance of the tip, mm; a number, or (N,).
         axis: tolerance of the tool axis, rad.
     """
     # The deviation corner * d + bow * d^2 shall be the tolerance; this form of the root is exact for bow = 0 as well.

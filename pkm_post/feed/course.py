@@ -54,6 +54,14 @@ class Course:
         _, _, s, speed, acceleration = self._state(time)
         return s, speed, acceleration
 
+    def when(self, s: Array) -> Array:
+        """When path lengths above that of the first place are passed first, (N,) s."""
+        cell = np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2)
+        s0, v0 = self.s[cell], self.speed[cell]
+        share = (s - s0) / (self.s[cell + 1] - s0)
+        speed = np.sqrt(v0**2 + share * (self.speed[cell + 1] ** 2 - v0**2))
+        return self.time[cell] + 2 * (s - s0) / (v0 + speed)
+
     def mean(self, time: Array, window: float) -> tuple[Array, Array, Array]:
         """Means of path length, speed and acceleration over a window about the times given, (N,) each."""
         s1, v1, way1 = self._summed_at(time + window / 2)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.feed.limits import Bounded
+from pkm_post.feed.limits import Bounded, of_columns
 from pkm_post.geometry.vectors import Array, norm
 
 _TERMS = 3
@@ -80,7 +80,7 @@ def _third(s: Array, item: Bounded) -> Array:
 
 
 def _largest(size: Array) -> Array:
-    return np.maximum(size.max(axis=1), _NEGLIGIBLE)
+    return np.maximum(of_columns(np.maximum, size), _NEGLIGIBLE)
 
 
 def _carried(ceilings: Ceilings, window: float) -> Ceilings:

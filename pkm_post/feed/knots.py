@@ -18,11 +18,20 @@ LONGEST_MS = 128
 """The width to start from: the narrower, the less can hide between the places where the error is measured."""
 
 
+def even_marks(rests_ms: Array) -> Array:
+    """Whole ms, (R + more,): the rests, and between them even intervals of at most ``LONGEST_MS``."""
+    start, _ = _even(rests_ms)
+    return np.append(start, rests_ms[-1])
+
+
 def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array]) -> Array:
     """Times of the knots, (K,) whole ms, from the first rest to the last; every rest is one of them.
 
+    Knots of one part do not depend on the other parts: a long motion may be cut at its even marks, and the knots of
+    each piece found by themselves.
+
     Args:
-        rests_ms: (R,) whole ms.
+        rests_ms: (R,) whole ms, or other marks that have to be knots.
         edges_ms: (E,) whole ms where intervals had best be cut, increasing.
         error: for starts and ends of intervals, (N,) whole ms each, the error by tolerance of each; 1 is just right.
     """
@@ -30,10 +39,12 @@ def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Arra
     found = [rests_ms]
     while len(start):
         found.append(start)
-        wide = (end - start > 1) & (error(start, end) > 1)
+        wide = end - start > 1
+        start, end = start[wide], end[wide]
+        wide = error(start, end) > 1
         start, end = start[wide], end[wide]
         cut = _cut(start, end, edges_ms)
-        start, end = np.concatenate([start, cut]), np.concatenate([cut, end])
+        start, end = np.column_stack([start, cut]).ravel(), np.column_stack([cut, end]).ravel()
     return np.unique(np.concatenate(found))
 
 

@@ -48,7 +48,7 @@ class Schedule:
         """The schedule that runs through places with the given speeds squared.
 
         Args:
-            stations: say which path lengths are joints and edges; all of them are among the places.
+            stations: say which path lengths are joints and edges; all joints are among the places.
             s: (M,) path length of each place.
             rest: (M,) whether the motion stops there.
             square: (M,) speed squared.
@@ -56,20 +56,22 @@ class Schedule:
         """
         course, rests_ms = _stretched(s, rest, square, window_ms)
         window, rests = window_ms / 1000, np.flatnonzero(rest)
-        row = np.searchsorted(s, stations.s)
-        passed = course.time[row]
+        ends = np.append(np.diff(stations.segment) > 0, True)
+        joint, under_way = stations.s[ends], ~stations.rest[ends]
+        joint_time = course.time[np.searchsorted(s, joint)]
         if window_ms:
             course = course.standing(rests, window)
-            under_way = ~stations.rest
-            passed[under_way] = _when_passed(course, window, stations.s[under_way], passed[under_way])
-        ends = np.append(np.diff(stations.segment) > 0, True)
+        edge_time = course.when(stations.edges)
+        if window_ms:
+            joint_time[under_way] = _when_passed(course, window, joint[under_way], joint_time[under_way])
+            edge_time = _when_passed(course, window, stations.edges, edge_time)
         return cls(
             course=course,
             window=window,
             rests_ms=rests_ms,
             rest_joints=np.append(stations.segment[np.flatnonzero(stations.rest)[:-1] + 1], stations.segment[-1] + 1),
-            edges_ms=np.unique(np.rint(1000 * passed[stations.edge]).astype(np.int64)),
-            joint_time=passed[ends],
+            edges_ms=_whole_ms(edge_time),
+            joint_time=joint_time,
         )
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
@@ -98,6 +100,12 @@ def _stretched(s: Array, rest: Array, square: Array, window_ms: int) -> tuple[Co
     time[rests] = rests_ms / 1000
     speed[:-1] /= stretch[run]
     return Course(s, time, speed), rests_ms
+
+
+def _whole_ms(time: Array) -> Array:
+    """Whole milliseconds nearest to increasing times, each of them once."""
+    ms = np.maximum.accumulate(np.rint(1000 * time).astype(np.int64))
+    return ms[np.flatnonzero(np.diff(ms, prepend=-1))]
 
 
 def _when_passed(course: Course, window: float, s: Array, time: Array) -> Array:

@@ -2,7 +2,8 @@
 """Stations: the places on a tool path where its limits are asked for and its speed is planned.
 
 Enough of them that what the limits depend on is close to straight between two: every blend is cut evenly, and between
-blends the tip moves and the axis turns only a little from one station to the next.
+blends the tip moves and the axis turns only a little from one station to the next. Segments on which nothing has to
+be computed from place to place have so many only that the way may be taken as straight from one to the next.
 """
 
 from __future__ import annotations
@@ -31,26 +32,32 @@ class Stations:
         u: (M,) path length on that segment.
         s: (M,) path length since the start.
         rest: (M,) whether the motion stops there.
-        edge: (M,) whether a blend begins or ends there.
+        edges: (E,) path lengths at which blends begin or end, increasing.
     """
 
     segment: Array
     u: Array
     s: Array
     rest: Array
-    edge: Array
+    edges: Array
 
 
-def stations(path: ToolPath) -> Stations:
-    """The stations of a path."""
+def stations(path: ToolPath, close: Array | None = None) -> Stations:
+    """The stations of a path.
+
+    Args:
+        path: N segments.
+        close: (N,) whether a segment gets all of its stations, those in its blends as well; if not given, each does.
+    """
     extent = path.segments.extent
-    entry, leave = path.blend[:-1], path.blend[1:]
+    close = np.ones(len(extent), dtype=bool) if close is None else close
+    entry, leave = np.where(close, path.blend[:-1], 0.0), np.where(close, path.blend[1:], 0.0)
     middle = extent - entry - leave
     turn = np.maximum(norm(path.segments.axis_rate), path.segments.turn) * middle
     cells = np.column_stack(
         [
             np.where(entry > 0, _CELLS_IN_HALF_BLEND, 0),
-            np.maximum(2, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
+            np.maximum(1 + close, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
             np.where(leave > 0, _CELLS_IN_HALF_BLEND, 0),
         ]
     ).ravel()
@@ -62,11 +69,11 @@ def stations(path: ToolPath) -> Stations:
     u = begin[part] + width[part] * (number / cells[part])
     last = np.append(segment[1:] != segment[:-1], True)
     u[last] = extent
-    ends_part = np.append(part[1:] != part[:-1], True)
+    joint = np.flatnonzero(path.blend)
     return Stations(
         segment=np.concatenate([[0], segment]),
         u=np.concatenate([[0.0], u]),
         s=np.concatenate([[0.0], path.starts[segment] + u]),
         rest=np.concatenate([[True], last & path.rests[segment + 1]]),
-        edge=np.concatenate([[False], ends_part & ~last]),
+        edges=(path.starts[joint, None] + path.blend[joint, None] * [-1.0, 1.0]).ravel(),
     )

@@ -30,6 +30,7 @@ class ToolPath:
         rests: (N + 1,) whether the motion stops at the start of each segment; true at both ends.
         feed: (N,) highest speed by path length, mm/s.
         tool_length: (N,) gauge length in use.
+        tip_tolerance: (N,) how far the tip may be from each segment where the program says so, mm; 0 elsewhere.
     """
 
     segments: Segments
@@ -38,14 +39,16 @@ class ToolPath:
     rests: np.ndarray[tuple[int], np.dtype[np.bool_]]
     feed: Array
     tool_length: Array
+    tip_tolerance: Array
 
     @classmethod
-    def of(cls, trajectory: Trajectory, tip_tolerance: float, axis_tolerance: float) -> ToolPath:
+    def of(cls, trajectory: Trajectory, tip_tolerance: Array | float, axis_tolerance: float) -> ToolPath:
         """The path of a trajectory.
 
         Args:
             trajectory: at least one segment.
-            tip_tolerance: how far the tip may leave the segments at corners, mm.
+            tip_tolerance: how far the tip may leave the segments at corners, mm; a number, or (N,) by segment. At a
+                joint the lower one of its two segments counts.
             axis_tolerance: how far the tool axis may, rad.
         """
         segments = Segments.of(trajectory)
@@ -57,6 +60,7 @@ class ToolPath:
             rests=rests,
             feed=trajectory.feed,
             tool_length=trajectory.tool_length(),
+            tip_tolerance=trajectory.tip_tolerance,
         )
 
     def at(self, s: Array) -> Poses:
@@ -107,7 +111,7 @@ class ToolPath:
         spin[2][rows] = change * w1[:, 0]
 
 
-def _blends(segments: Segments, rests: Array, tip_tolerance: float, axis_tolerance: float) -> Array:
+def _blends(segments: Segments, rests: Array, tip_tolerance: Array | float, axis_tolerance: float) -> Array:
     blend = np.zeros(len(segments) + 1)
     joint = np.arange(1, len(segments))
     before, at_end, at_start = joint - 1, segments.extent[:-1], np.zeros(len(joint))
@@ -120,7 +124,12 @@ def _blends(segments: Segments, rests: Array, tip_tolerance: float, axis_toleran
         norm(bend_start - bend_end),
         norm(axis_change),
         neighbour,
-        tip_tolerance,
+        _of_joints(np.broadcast_to(tip_tolerance, len(segments))),
         axis_tolerance,
     )
     return blend
+
+
+def _of_joints(tolerance: Array) -> Array:
+    """The lower tolerance of the two segments at each joint, (N - 1,)."""
+    return np.minimum(tolerance[:-1], tolerance[1:])

@@ -3,7 +3,7 @@
 
 from pkm_post.geometry.arcs import arc_points, arc_sweep
 from pkm_post.geometry.great_circle import along, along_rates, angle_between, towards
-from pkm_post.geometry.hermite import hermite_accelerations, hermite_lengths, hermite_speeds
+from pkm_post.geometry.hermite import hermite_accelerations, hermite_lengths, hermite_motion, hermite_speeds
 from pkm_post.geometry.torsion import torsion, untwisted
 from pkm_post.geometry.vectors import dot, norm, unit
 
@@ -16,6 +16,7 @@ __all__ = [
     "dot",
     "hermite_accelerations",
     "hermite_lengths",
+    "hermite_motion",
     "hermite_speeds",
     "norm",
     "torsion",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array, cross, dot, norm
+from pkm_post.geometry.vectors import Array, dot, length_of, norm
 
 _SERIES_BELOW = 1e-4
 """Squared angle in rad^2 below which power series replace the quotients that would lose all their digits."""
@@ -17,7 +17,10 @@ _SERIES_BELOW = 1e-4
 
 def angle_between(left: Array, right: Array) -> Array:
     """Angles between unit vectors in rad, exact for small and for nearly straight ones."""
-    return np.arctan2(norm(cross(left, right)), dot(left, right))
+    x, y, z = left[..., 0], left[..., 1], left[..., 2]
+    u, v, w = right[..., 0], right[..., 1], right[..., 2]
+    sine = np.sqrt(np.square(y * w - z * v) + np.square(z * u - x * w) + np.square(x * v - y * u))
+    return np.asarray(np.arctan2(sine, x * u + y * v + z * w))
 
 
 def towards(start: Array, end: Array) -> Array:
@@ -37,8 +40,9 @@ def towards(start: Array, end: Array) -> Array:
 
 def along(start: Array, tangent: Array) -> Array:
     """Unit vectors reached from ``start`` along ``tangent``; inverse of ``towards``."""
-    zero = np.zeros_like(tangent)
-    return along_rates(start, tangent, zero, zero)[0]
+    angle = length_of(tangent[..., 0], tangent[..., 1], tangent[..., 2])[..., None]
+    ratio = np.divide(np.sin(angle), angle, out=np.ones_like(angle), where=angle > 0)
+    return np.asarray(np.cos(angle) * start + ratio * tangent)
 
 
 def along_rates(start: Array, tangent: Array, rate: Array, second_rate: Array) -> tuple[Array, Array, Array]:

@@ -21,6 +21,11 @@ def norm(vectors: Array) -> Array:
     return np.sqrt(dot(vectors, vectors))
 
 
+def length_of(x: Array, y: Array, z: Array) -> Array:
+    """Lengths of vectors given by their columns; the same to the last digit, whatever other rows there are."""
+    return np.asarray(np.sqrt(x * x + y * y + z * z))
+
+
 def unit(vectors: Array) -> Array:
     """The (..., 3) vectors divided by their lengths; a new array.
 

@@ -4,38 +4,49 @@
 from pkm_post.kinematics.findings import Finding, faults_of
 from pkm_post.kinematics.following import follow
 from pkm_post.kinematics.forward import Solution, forward
-from pkm_post.kinematics.interpolation import Stray, stray
+from pkm_post.kinematics.interpolation import Ends, Inside, Stray, carried, change, moving, steepest, stray
 from pkm_post.kinematics.inverse import platform_joints, strut_lengths, strut_vectors
 from pkm_post.kinematics.jacobian import jacobian_of_platform, jacobian_of_tip, scaled_jacobian
 from pkm_post.kinematics.margins import Margins, reach_margins
+from pkm_post.kinematics.near import NearPoses, near_poses
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.kinematics.part import Part
+from pkm_post.kinematics.rate_bounds import strut_rate_bounds
 from pkm_post.kinematics.rates import strut_rates
 from pkm_post.kinematics.stiffness import stiffness_along
 from pkm_post.kinematics.way import Way
 from pkm_post.kinematics.workspace import reach_faults, reach_findings
 
 __all__ = [
+    "Ends",
     "Finding",
+    "Inside",
     "Margins",
+    "NearPoses",
     "Part",
     "Solution",
     "Stray",
     "Way",
+    "carried",
+    "change",
     "faults_of",
     "follow",
     "forward",
     "jacobian_of_platform",
     "jacobian_of_tip",
+    "moving",
+    "near_poses",
     "platform_joints",
     "platform_rotation",
     "reach_faults",
     "reach_findings",
     "reach_margins",
     "scaled_jacobian",
+    "steepest",
     "stiffness_along",
     "stray",
     "strut_lengths",
+    "strut_rate_bounds",
     "strut_rates",
     "strut_vectors",
 ]

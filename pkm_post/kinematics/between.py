@@ -8,13 +8,14 @@ violation is found, or none is possible, or the stretch is so short that the mar
 check, which counts as a violation. Margins may be lower bounds of the true ones at any pose: what is said stays true.
 
 A check whose margins take long to compute begins with every 64th row. It goes down to the rows where less than its
-comfort is left, and elsewhere far enough to know the least margin to a quarter.
+comfort is left, and elsewhere far enough to know the least margin to a quarter. Where nothing but violations is asked
+for, every check does so, and goes down only to where one is possible.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from pkm_post.model import Machine
 _CHUNK = 2048
 """Poses per pass: the working arrays of one pass stay in the processor's cache."""
 _STRIDE = 64
+_STRIDE_FOR_FAULTS = 512
 _THREE_QUARTERS = 0.75
 """Beyond the comfort, how much of the least margin that was computed rows that are not computed must have."""
 
@@ -50,27 +52,29 @@ class Check(Subject):
     comfort: float = np.inf
 
 
-def survey(machine: Machine, way: Way, checks: tuple[Check, ...]) -> tuple[Finding, ...]:
+def survey(machine: Machine, way: Way, checks: tuple[Check, ...], faults_alone: bool = False) -> tuple[Finding, ...]:
     """Each check along the whole way.
 
     Args:
         machine: at whose poses the checks look.
         way: the poses and what is between them, at least one row.
         checks: what is looked at.
+        faults_alone: margins that are proven not to be negative need not be known any better.
     """
     turn = way.turn()
-    surveys = [_Survey(machine, way, check, check.by_travel * way.travel + check.by_turn * turn) for check in checks]
+    if faults_alone:
+        return tuple(
+            _Survey(machine, way, replace(check, comfort=0.0), turn).strided(_STRIDE_FOR_FAULTS, 0.0)
+            for check in checks
+        )
+    surveys = [_Survey(machine, way, check, turn) for check in checks]
     thorough = [one for one in surveys if one.check.comfort == np.inf]
     if thorough:
         for rows in _chunks(np.arange(len(way))):
             placed = Placed.of(machine, way.rows(rows))
             for one in thorough:
                 one.note(rows, one.check.margins(placed))
-    for one in surveys:
-        if one.check.comfort < np.inf:
-            one.stride()
-        one.refine()
-    return tuple(one.finding() for one in surveys)
+    return tuple(one.refined() if one in thorough else one.strided(_STRIDE, _THREE_QUARTERS) for one in surveys)
 
 
 def _chunks(rows: Array) -> Iterator[Array]:
@@ -80,18 +84,17 @@ def _chunks(rows: Array) -> Iterator[Array]:
 class _Survey:
     """One check on its way along the rows."""
 
-    def __init__(self, machine: Machine, way: Way, check: Check, change: Array) -> None:
+    def __init__(self, machine: Machine, way: Way, check: Check, turn: Array) -> None:
         self.machine, self.way, self.check = machine, way, check
-        self.change = change
+        self.change = check.by_travel * way.travel + check.by_turn * turn
         self.margin, self.part = np.empty(len(way)), np.zeros(len(way), dtype=np.int32)
-        self.computed = np.zeros(len(way), dtype=bool)
-        self.at_least = np.inf
+        self.computed, self.proven = np.zeros(len(way), dtype=bool), np.full(len(way), -np.inf)
 
-    def finding(self) -> Finding:
+    def _finding(self, at_least: float) -> Finding:
         """What was found; rows that were not computed must not look as bad as the worst that was."""
         beyond = np.nextafter(self.margin[self.computed].min(), np.inf)
         margin = np.where(self.computed, self.margin, np.maximum(self.margin, beyond))
-        return Finding(self.check, margin, self.part, self.at_least)
+        return Finding(self.check, margin, self.part, at_least)
 
     def note(self, rows: Array, margins: Array) -> None:
         """Keep the worst margins of rows."""
@@ -104,37 +107,45 @@ class _Survey:
         for chunk in _chunks(rows):
             self.note(chunk, self.check.margins(Placed.of(self.machine, self.way.rows(chunk))))
 
-    def stride(self) -> None:
-        """Compute margins of few rows, and of those between them where little may be left."""
+    def strided(self, stride: int, share: float) -> Finding:
+        """What is found by margins of few rows, and of those between them where little may be left.
+
+        Args:
+            stride: from one of the rows to begin with to the next.
+            share: of the least margin that was computed, what rows that are not computed must have.
+        """
         sum_of_changes = np.cumsum(self.change)
-        marks = np.unique(np.append(np.arange(0, len(self.way), _STRIDE), len(self.way) - 1))
+        marks = np.unique(np.append(np.arange(0, len(self.way), stride), len(self.way) - 1))
         self.look(marks)
         start, end = marks[:-1], marks[1:]
         while len(start):
             bound = (self.margin[start] + self.margin[end] - (sum_of_changes[end] - sum_of_changes[start])) / 2
-            enough = max(self.check.comfort, _THREE_QUARTERS * self.margin[self.computed].min())
+            enough = max(self.check.comfort, share * self.margin[self.computed].min())
             wide, near = end - start > 1, bound < enough
             self._fill(start[wide & ~near], end[wide & ~near], bound[wide & ~near])
             start, end = start[wide & near], end[wide & near]
             middle = (start + end) // 2
             self.look(middle)
             start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+        return self.refined()
 
     def _fill(self, start: Array, end: Array, bound: Array) -> None:
-        """Give the rows between two rows the bound that holds for all of them, and the part of the first one."""
-        count = end - start - 1
+        """Give the rows between two rows the bound that holds on the whole way, and the part of the first one."""
+        count = end - start
         rows = np.repeat(start + 1 - (np.cumsum(count) - count), count) + np.arange(int(count.sum()))
-        self.margin[rows], self.part[rows] = np.repeat(bound, count), np.repeat(self.part[start], count)
+        self.proven[rows] = np.repeat(bound, count)
+        rows = rows[~self.computed[rows]]
+        self.margin[rows], self.part[rows] = self.proven[rows], np.repeat(self.part[start], count - 1)
 
-    def refine(self) -> None:
-        """Look between the rows where a violation may hide there."""
+    def refined(self) -> Finding:
+        """What is found after looking between the rows where a violation may hide there."""
         first = np.concatenate([self.margin[:1], self.margin[:-1]])
-        bound = (first + self.margin - self.change) / 2
+        bound = np.maximum((first + self.margin - self.change) / 2, self.proven)
         cells = np.flatnonzero((bound < 0) & (first >= 0) & (self.margin >= 0))
         for chunk in _chunks(cells):
             least = self._halve(chunk, first[chunk], self.margin[chunk].copy())
             bound[chunk] = np.where(least < 0, bound[chunk], least)
-        self.at_least = float(bound.min())
+        return self._finding(float(bound.min()))
 
     def _halve(self, cells: Array, at_start: Array, at_end: Array) -> Array:
         """Halve cells until each is settled; the least margin that is left in each of them, (M,)."""

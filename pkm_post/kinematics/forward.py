@@ -19,7 +19,7 @@ from pkm_post.model import Machine
 
 _CHUNK = 4096
 """Poses per pass: their Jacobians stay in the processor's cache."""
-_LENGTH_TOLERANCE = 1e-10
+LENGTH_TOLERANCE = 1e-10
 """mm: Newton stops when no strut is off by more; about a thousand roundings of a metre-long strut."""
 
 
@@ -93,7 +93,7 @@ def _newton(
     for _ in range(iterations):
         jacobian, found = linearise(machine, at, turned, tool)
         residual = wanted - found
-        done = np.max(np.abs(residual), axis=1) < _LENGTH_TOLERANCE
+        done = np.max(np.abs(residual), axis=1) < LENGTH_TOLERANCE
         if done.any():
             closed = rows[done]
             tip[closed], rotation[closed], converged[closed] = at[done], turned[done], True

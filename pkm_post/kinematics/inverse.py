@@ -52,7 +52,7 @@ def strut_vectors(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
 def strut_lengths(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
     """Strut lengths as the controller counts them, (N, 6) in mm; arguments as above."""
     lengths = np.empty((len(tip), 6))
-    form, middle = _form_of_squares(machine)
+    form, middle = form_of_squares(machine)
     space = np.empty((17, min(_CHUNK, len(tip))))
     for first in range(0, len(tip), _CHUNK):
         rows = slice(first, first + _CHUNK)
@@ -84,7 +84,7 @@ def _counted_beyond_distance(machine: Machine, tip: Array, axis: Array, spin: Ar
     return screw_correction(direction, platform_rotation(axis, spin), machine) - machine.length_offset
 
 
-def _form_of_squares(machine: Machine) -> tuple[Array, Array]:
+def form_of_squares(machine: Machine) -> tuple[Array, Array]:
     """Coefficients of the squared distances, (17, 6), and the middle of the base in {M}, (3,)."""
     middle = machine.base_joints.mean(axis=0)
     a, b = machine.platform_joints, machine.base_joints - middle
@@ -99,6 +99,19 @@ def _fill(
     """Write the 17 numbers of each pose, (17, N): p, R^T p, |p|^2, 1, and the columns of R one after the other."""
     p, turned, x, y, k = numbers[0:3], numbers[3:6], numbers[8:11], numbers[11:14], numbers[14:17]
     k[:] = axis.T
+    fill_frame(x, y, k, spin)
+    np.multiply(machine.spindle_nose + tool_length, k, out=p)
+    p += tip.T
+    p -= middle[:, None]
+    for product, column in zip(turned, (x, y, k), strict=True):
+        np.einsum("ij,ij->j", column, p, out=product)
+    np.einsum("ij,ij->j", p, p, out=numbers[6])
+    numbers[7] = 1.0
+    return numbers
+
+
+def fill_frame(x: Array, y: Array, k: Array, spin: Array) -> None:
+    """Write the x and y axes of the platform, (3, N) each, whose z axis is the tool axis k."""
     lean = 1 + k[2]
     if np.any(lean < 1e-9):
         raise ValueError("expected tool axes that do not point straight down, got one that does")
@@ -109,11 +122,3 @@ def _fill(
         column[0] += along
         column[1] += across
         column[2] = -down
-    np.multiply(machine.spindle_nose + tool_length, k, out=p)
-    p += tip.T
-    p -= middle[:, None]
-    for product, column in zip(turned, (x, y, k), strict=True):
-        np.einsum("ij,ij->j", column, p, out=product)
-    np.einsum("ij,ij->j", p, p, out=numbers[6])
-    numbers[7] = 1.0
-    return numbers

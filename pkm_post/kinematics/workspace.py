@@ -19,7 +19,7 @@ from pkm_post.kinematics.part import Part
 from pkm_post.kinematics.part_checks import part_checks
 from pkm_post.kinematics.stiffness import stiffness_along
 from pkm_post.kinematics.way import Way
-from pkm_post.model import Diagnostic, Machine, Poses, Trajectory
+from pkm_post.model import Diagnostic, Machine, Trajectory
 
 _NO_STRUT = 1e-3
 """Of the shortest stroke: below it a way has no proof of anything, and its struts are much too short anyway."""
@@ -43,7 +43,7 @@ def reach_findings(
         normal: (N, 3) unit normals of the surface, for the stiffness; a machine without stiffness has no such finding.
         least_stiffness: what the tip must have along the normals, N/mm.
     """
-    shortest = max(shortest_distance(machine, way), _NO_STRUT * max(machine.strut_stroke[0], 1.0))
+    shortest = _shortest(machine, way)
     findings = survey(machine, way, _checks(machine, way, shortest, part))
     if duration is not None:
         findings += (pace_finding(machine, way, shortest, duration),)
@@ -70,13 +70,20 @@ def _stiffness_finding(machine: Machine, way: Way, normal: Array, least: float) 
     return Finding(subject, margin, np.zeros(len(way), dtype=np.int32), -np.inf)
 
 
-def reach_faults(machine: Machine, trajectory: Trajectory, poses: Poses) -> tuple[Diagnostic, ...]:
+def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Array) -> tuple[Diagnostic, ...]:
     """Diagnostics for a way that leaves a limit: one for each operation and limit, at its worst.
+
+    The same as of ``reach_findings``, but margins are computed only where the slopes do not prove that there is one.
 
     Args:
         machine: the limits.
         trajectory: says where each pose comes from.
-        poses: poses in order along the trajectory; between them the tip is taken to run straight.
+        way: N poses in order along the trajectory, and what is between them.
+        segment: (N,) segment each of them lies on.
     """
-    way = Way.straight(poses.tip, poses.axis, poses.spin, poses.tool_length)
-    return faults_of(reach_findings(machine, way), trajectory, poses.segment)
+    checks = _checks(machine, way, _shortest(machine, way), None)
+    return faults_of(survey(machine, way, checks, faults_alone=True), trajectory, segment)
+
+
+def _shortest(machine: Machine, way: Way) -> float:
+    return max(shortest_distance(machine, way), _NO_STRUT * max(machine.strut_stroke[0], 1.0))

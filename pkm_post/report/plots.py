@@ -112,7 +112,12 @@ def _speeds(axes: Any, struts: StrutMotion, machine: Machine) -> None:
 
 def _deviations(axes: Any, certificate: Certificate, tolerances: Tolerances) -> None:
     rows = _shown(len(certificate.time))
-    axes.plot(certificate.time[rows], certificate.tip_deviation[rows] / tolerances.tip, linewidth=0.5, label="tip")
+    axes.plot(
+        certificate.time[rows],
+        certificate.tip_deviation[rows] / certificate.tip_tolerance[rows],
+        linewidth=0.5,
+        label="tip",
+    )
     axes.plot(certificate.time[rows], certificate.axis_deviation[rows] / tolerances.axis, linewidth=0.5, label="axis")
     axes.axhline(1.0, **_LIMIT)
     told = f"tip {1000 * tolerances.tip:g} um, axis {np.degrees(tolerances.axis):g} degrees"

@@ -53,7 +53,11 @@ def report(
             "tools": [vars(tool) for tool in _tools(trajectory)],
         },
         "machine": {"name": machine.name, "sha256": machine.fingerprint},
-        "tolerances": {"tip_mm": tolerances.tip, "axis_deg": _rounded(np.degrees(tolerances.axis), 9)},
+        "tolerances": {
+            "tip_mm": tolerances.tip,
+            "axis_deg": _rounded(np.degrees(tolerances.axis), 9),
+            "tip_of_program_mm": _rounded(np.unique(trajectory.tip_tolerance[trajectory.tip_tolerance > 0]), 9),
+        },
         "motion": {
             "duration_s": certificate.duration,
             "points": len(struts),
@@ -61,6 +65,7 @@ def report(
             "longest_strut_mm": _rounded(struts.length.max(axis=0), 3),
         },
         "machining_time": machining_time(trajectory, motion),
+        "hold_points": hold_points(trajectory, motion),
         "certificate": {
             "holds": certificate.holds,
             "instants": certificate.instants,
@@ -87,6 +92,16 @@ def machining_time(trajectory: Trajectory, motion: Motion) -> dict[str, Any]:
         for number, name in enumerate(trajectory.operations)
     ]
     return {"total_s": _rounded(segment_time.sum() + dwell.sum(), 3), "operations": operations}
+
+
+def hold_points(trajectory: Trajectory, motion: Motion) -> dict[str, list[Any]]:
+    """When and at the end of which line the motion rests, in columns: a feed hold can end there, and work begin."""
+    rows = np.flatnonzero(trajectory.exact_stop)
+    return {
+        "time_s": _rounded(motion.joint_time[rows], 3),
+        "operation": [trajectory.operations[number] for number in trajectory.operation[rows].tolist()],
+        "line": trajectory.line[rows].tolist(),
+    }
 
 
 def write(content: dict[str, Any], path: Path) -> None:

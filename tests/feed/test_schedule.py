@@ -81,3 +81,13 @@ def test_cuts_are_made_at_edges():
         np.array([0, 120]), edges, lambda start, end: 2.0 * ((edges[:, None] > start) & (edges[:, None] < end)).any(0)
     )
     np.testing.assert_array_equal(found, [0, *edges, 120])
+
+
+def test_when_a_place_is_passed_is_when_the_course_is_there():
+    _, _, schedule = schedule_of(stop_and_go())
+    course = schedule.course
+    s = np.sort(np.random.default_rng(4).uniform(0, course.s[-1], 2000))
+    time = course.when(s)
+    np.testing.assert_allclose(course.at(time)[0], s, atol=1e-9)
+    assert np.all(np.diff(time) > 0)
+    np.testing.assert_allclose(course.when(course.s[1:]), course.time[1:], atol=1e-9)

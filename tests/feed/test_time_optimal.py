@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from time_optimal_paths import LIMITS, PATHS, stations_of
 
-from pkm_post import planning
 from pkm_post.feed import cell_times, limits, speed_profile
+from pkm_post.speed_limits import bounded_by, feed_at
 
 SHORTEST = json.loads((Path(__file__).parents[1] / "data" / "time_optimal.json").read_text(encoding="ascii"))
 FACTOR = 1.7
@@ -22,8 +22,8 @@ OPTIMUM_DIGITS = 1e-3
 def test_the_plan_is_no_faster_and_not_much_slower_than_the_optimum(name, limits_name):
     machine, path, marks = stations_of(name, limits_name)
     poses = path.within(marks.segment, marks.u)
-    feed = planning._feed_at(path, marks.segment, marks.u)
-    square, along = limits(feed, planning._bounded(machine, poses))
+    feed = feed_at(path, marks.segment, marks.u)
+    square, along = limits(feed, bounded_by(machine, poses))
     square[marks.rest] = 0.0
     time = float(cell_times(marks.s, speed_profile(marks.s, square, along)).sum())
     shortest = SHORTEST[f"{name}, {limits_name}"]

@@ -152,3 +152,46 @@ def test_margins_of_many_rows_are_those_of_the_rows_where_little_is_left():
 def test_a_way_of_one_row_has_findings():
     findings = reach_findings(bodied(), Way.straight(*upright([[0.0, 0, 200]])), PART, np.zeros(1))
     assert all(finding.at_least == finding.margin[0] for finding in findings)
+
+
+@pytest.mark.parametrize("machine", [bodied(), screwed(bodied())], ids=["keyed", "screwed"])
+def test_faults_alone_are_those_of_looking_at_every_row(machine):
+    # Limits of all checks are set within what they have on random ways, so that some rows break them and others do not.
+    rng = np.random.default_rng(12)
+    bad_rows = 0
+    for _ in range(4):
+        corners = wandering(rng, 12, tilt_deg=20)
+        way = Way.straight(*samples(corners, np.arange(1, 12), np.linspace(0.0, 1.0, 150)[1:]))
+        placed = Placed.of(machine, way.rows(slice(None)))
+        for check in checks_of(machine, way, None):
+            exact = check.margins(placed).min(axis=1)
+            some = shifted(check, np.quantile(exact, rng.choice([0.0, 0.001, 0.02, 0.5])))
+            whole = dataclasses.replace(some, comfort=np.inf)
+            (every,), (bad,) = survey(machine, way, (whole,)), survey(machine, way, (some,), faults_alone=True)
+            at = np.flatnonzero(every.margin < 0)
+            if check.code == "K116":  # planes may tell too little at a row where its neighbours prove more
+                assert set(np.flatnonzero(bad.margin < 0)) <= set(at)
+                continue
+            np.testing.assert_array_equal(np.flatnonzero(bad.margin < 0), at, err_msg=check.name)
+            np.testing.assert_allclose(bad.margin[at], every.margin[at], atol=ROUNDING)
+            np.testing.assert_array_equal(bad.part[at], every.part[at])
+            assert (bad.at_least < 0) == (every.at_least < 0)
+            bad_rows += len(at)
+    assert bad_rows > 1000
+
+
+def test_a_way_within_its_limits_is_proven_by_few_poses():
+    way = Way.straight(*upright(np.column_stack([np.linspace(-50, 50, 20001), np.zeros(20001), np.full(20001, 200.0)])))
+    looked_at = []
+
+    def counted(check):
+        def margins(placed):
+            looked_at.append(len(placed))
+            return check.margins(placed)
+
+        return dataclasses.replace(check, margins=margins)
+
+    checks = checks_of(bodied(), way, None)
+    found = survey(bodied(), way, tuple(counted(check) for check in checks), faults_alone=True)
+    assert all(0 <= finding.at_least <= finding.margin.min() for finding in found)
+    assert sum(looked_at) < 0.02 * len(way) * len(checks)

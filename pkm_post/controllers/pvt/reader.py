@@ -15,10 +15,12 @@ from decimal import Decimal
 import numpy as np
 
 from pkm_post.controllers.pvt.codes import MEANINGS
+from pkm_post.controllers.pvt.numbers import numbers_of
 from pkm_post.controllers.pvt.parts import joined, part_faults
 from pkm_post.controllers.pvt.settings import Settings
 from pkm_post.controllers.pvt.syntax import FINISHED, START, Form, Grammar, state_after
 from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
+from pkm_post.model.program import Array
 
 MOST_FAULTS = 20
 _INTERVAL_MS = 4095
@@ -64,7 +66,7 @@ def read_program(
     """
     reading = _Reading(grammar, settings, file)
     number = 1
-    for piece in _pieces(text, reading.forms["move"]):
+    for piece in _pieces(text, reading.forms["interval"], reading.forms["move"]):
         if len(reading.faults) >= MOST_FAULTS:
             break
         reading.take(number, piece)
@@ -74,17 +76,20 @@ def read_program(
     return (None if faults else motion), tuple(faults[:MOST_FAULTS])
 
 
-def _pieces(text: str, move: Form) -> Iterator[str]:
-    """The lines of a text with their line ends; lines of moves that follow each other come as one piece."""
-    piece = re.compile(rf"(?>{move.pattern.pattern}\n)++|[^\n]*\n|[^\n]+")
+def _pieces(text: str, interval: Form, move: Form) -> Iterator[str]:
+    """The lines of a text with their line ends; lines of moves, with intervals between them, come as one piece."""
+    moves = rf"(?>{move.pattern.pattern}\n)(?>(?:{interval.pattern.pattern}\n)?{move.pattern.pattern}\n)*+"
+    piece = re.compile(rf"{moves}|[^\n]*\n|[^\n]+")
     return (match[0] for match in piece.finditer(text))
 
 
 def _too_long(text: str, settings: Settings, file: str) -> Iterator[Diagnostic]:
-    for number, line in enumerate(text.split("\n"), start=1):
-        if len(line) > settings.line_limit:
-            found = f"{len(line)} characters, the controller takes {settings.line_limit}"
-            yield Diagnostic("C103", Place(file, line=number, column=settings.line_limit + 1), found)
+    characters = np.frombuffer(text.encode("latin-1", "replace"), dtype=np.uint8)
+    ends = np.concatenate([[-1], np.flatnonzero(characters == ord("\n")), [len(characters)]])
+    lengths = np.diff(ends) - 1
+    for row in np.flatnonzero(lengths > settings.line_limit)[:MOST_FAULTS].tolist():
+        found = f"{lengths[row]} characters, the controller takes {settings.line_limit}"
+        yield Diagnostic("C103", Place(file, line=row + 1, column=settings.line_limit + 1), found)
 
 
 class _Reading:
@@ -102,8 +107,9 @@ class _Reading:
             state: [name for name in self.forms if _kind(name) in kinds] for state, kinds in grammar.flow.items()
         }
         self._grammar, self._letters, self._file = grammar, settings.letters, file
+        self._change = re.compile(rf"{self.forms['interval'].pattern.pattern}\n")
         self._state = START
-        self._values: list[str] = []
+        self._values: list[Array] = []
         self._knots = self._interval = 0
         self._spans: list[tuple[int, int]] = []
         self._halts: list[tuple[int, int]] = []
@@ -112,7 +118,7 @@ class _Reading:
         self._acts |= {"halt": self._halt, "dwell": self._dwell}
 
     def take(self, number: int, piece: str) -> None:
-        """Take a piece: one line, or several lines of moves, the first of them line ``number``."""
+        """Take a piece: one line, or lines of moves with intervals between them, the first of them line ``number``."""
         line = piece.split("\n", 1)[0]
         name, numbers = self._form_of(line)
         if numbers is None:
@@ -135,8 +141,7 @@ class _Reading:
         return None if self.faults else motion
 
     def _motion(self) -> StrutMotion:
-        no_number = str.maketrans(dict.fromkeys("".join(self._letters) + ":\n", " "))
-        values = np.fromstring("".join(self._values).translate(no_number), sep=" ").reshape(self._knots, 6, 2)
+        values = np.concatenate(self._values)
         spans = np.array(self._spans, dtype=np.int64).reshape(-1, 2)
         time_ms = np.cumsum(np.concatenate([[0], np.repeat(spans[:, 0], spans[:, 1])]))
         return StrutMotion(time_ms, values[:, :, 0], values[:, :, 1], tuple(self._events))
@@ -158,10 +163,7 @@ class _Reading:
 
     def _act(self, name: str, number: int, piece: str, numbers: Sequence[str]) -> None:
         if name == "move":
-            lines = piece.count("\n")
-            self._values.append(piece)
-            self._spans.append((self._interval, lines))
-            self._knots += lines
+            self._moves(number, piece)
         elif name in MEANINGS:
             meaning = MEANINGS[name]
             value = meaning.sign * float(numbers[0]) if meaning.value is None else meaning.value
@@ -175,13 +177,31 @@ class _Reading:
             self._fault(number, 0, piece.rstrip("\n"), f"the numbers {expected}")
 
     def _approach(self, number: int, piece: str, numbers: Sequence[str]) -> None:
-        self._values.append(" ".join(f"{length} 0" for length in numbers) + "\n")
+        self._values.append(np.array([[[float(length), 0.0] for length in numbers]]))
         self._knots += 1
+
+    def _moves(self, number: int, piece: str) -> None:
+        """Take lines of moves, the first of them line ``number``, with intervals between them."""
+        if not piece.endswith("\n"):
+            return  # the text ends within a line, and is told to be no program
+        first, *rest = self._change.split(piece)
+        counts = [lines.count("\n") for lines in (first, *rest[1::2])]
+        intervals = [self._interval, *map(int, rest[::2])]
+        for row, interval in enumerate(intervals[1:]):
+            if interval > _INTERVAL_MS:
+                self._too_slow(number + sum(counts[: row + 1]) + row, str(interval))
+        self._values.append(numbers_of("".join((first, *rest[1::2])), self._letters))
+        self._spans += zip(intervals, counts, strict=True)
+        self._knots += sum(counts)
+        self._interval = intervals[-1]
 
     def _new_interval(self, number: int, piece: str, numbers: Sequence[str]) -> None:
         self._interval = int(numbers[0])
         if self._interval > _INTERVAL_MS:
-            self._fault(number, len("PVT"), piece.rstrip("\n"), f"at most {_INTERVAL_MS} ms")
+            self._too_slow(number, numbers[0])
+
+    def _too_slow(self, number: int, interval: str) -> None:
+        self._fault(number, len("PVT"), " " * len("PVT") + interval, f"at most {_INTERVAL_MS} ms")
 
     def _halt(self, number: int, piece: str, numbers: Sequence[str]) -> None:
         self._halts.append((self._knots - 1, number))

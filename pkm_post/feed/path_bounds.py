@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""PathBounds: how large the derivatives of a tool path can be on each of its segments, blends included.
+
+No number is looked for along the way: what a segment and its two blends are made of says how far they can go. Enters:
+a path. Leaves: upper bounds, one for each segment. They show where a path asks so little of a machine that its limits
+need not be computed from place to place. docs/feed.md has the derivations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.feed.blends import OFFSET
+from pkm_post.feed.segments import Segments
+from pkm_post.feed.tool_path import ToolPath
+from pkm_post.geometry.vectors import Array, norm
+
+_STEP = 0.75
+"""Largest slope of the cubic step that leads from one segment to the next, by its half width."""
+_WIDEST = 0.5
+"""rad: a blend in which the tool axis may turn farther has no bound."""
+_NO_BOUND = 1e12
+_ALMOST_DOWN = np.pi / 2 - 1e-3
+"""Half of the highest tilt that has a bound of the turn; a platform does not come near it."""
+_BEYOND = 1.45
+"""How far a segment is followed for its blends, by its extent: it begins one and ends one."""
+
+
+@dataclass(frozen=True)
+class PathBounds:
+    """Upper bounds on N segments; ``_1`` and ``_2`` are derivatives by path length.
+
+    Attributes:
+        tip_1, tip_2: (N,) sizes of the derivatives of the tip.
+        axis_1, axis_2: (N,) sizes of those of the unit tool axis.
+        half_tilt: (N,) tangent of half the highest tilt of the tool axis.
+        spin_1, spin_2: (N,) sizes of those of the spin.
+    """
+
+    tip_1: Array
+    tip_2: Array
+    axis_1: Array
+    axis_2: Array
+    half_tilt: Array
+    spin_1: Array
+    spin_2: Array
+
+    @classmethod
+    def of(cls, path: ToolPath) -> PathBounds:
+        """The bounds of a path."""
+        width, blended = path.blend[1:-1], path.blend[1:-1] > 0
+        steepness = np.divide(_STEP, width, out=np.zeros_like(width), where=blended)
+        return cls(
+            *_of_tip(path.segments, width, blended, steepness),
+            *_of_axis(path.segments, width, blended, steepness),
+            *_of_spin(path.segments, blended, steepness),
+        )
+
+
+def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array]:
+    """In a blend, what the prolonged segments bend away from each other adds to the change of the tangent."""
+    rise, radius = norm(seg.tangent), norm(seg.radius)
+    scale = 1 + np.abs(seg.growth) * _BEYOND * seg.extent
+    first = np.hypot(rise, np.hypot(seg.growth * radius, seg.turn * radius * scale))
+    bend = radius * np.hypot(2 * seg.growth * seg.turn, scale * seg.turn**2)
+    before = np.arange(len(seg) - 1)
+    tangents = seg.tip_at(before, seg.extent[:-1])[1], seg.tip_at(before + 1, 0 * width)[1]
+    corner = norm(tangents[1] - tangents[0])
+    bends = np.where(blended, bend[1:] + bend[:-1], 0.0)
+    return (
+        _with_joints(first, np.maximum(first[1:], first[:-1]) + _STEP / 2 * bends * width, blended),
+        _with_joints(bend, np.maximum(bend[1:], bend[:-1]) + corner * steepness + 3 * _STEP * bends, blended),
+    )
+
+
+def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array, Array]:
+    """A tangent vector a of the sphere moves the axis by no more than itself, and bends it by |a'|^2 (1 + 2 |a|)."""
+    first = norm(seg.axis_rate)
+    if not first.any():
+        return first, first, _half_tilt(seg, first, first[1:])
+    before = np.arange(len(seg) - 1)
+    corner = np.where(blended, norm(seg.axis_rate[1:] - seg.axis_at(before, seg.extent[:-1])[1]), 0.0)
+    rate = np.maximum(first[1:], first[:-1])
+    angle = (1 + 2 * OFFSET) * width * rate
+    second = np.where(angle < _WIDEST, corner * steepness + rate**2 * (1 + 2 * angle), _NO_BOUND)
+    return (
+        _with_joints(first, rate, blended),
+        _with_joints(first**2, second, blended),
+        _half_tilt(seg, first * seg.extent, OFFSET * width * corner),
+    )
+
+
+def _half_tilt(seg: Segments, angle: Array, off: Array) -> Array:
+    """A great circle rises above its ends by no more than half its angle, and a blend is off by a little."""
+    last = seg.axis_at(np.array([len(seg) - 1]), seg.extent[-1:])[0]
+    axis = np.concatenate([seg.axis, last])
+    tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
+    highest = np.maximum(tilt[1:], tilt[:-1]) + angle / 2 + _with_joints(np.zeros(len(seg)), off, off > 0)
+    return np.tan(np.minimum(highest / 2, _ALMOST_DOWN))
+
+
+def _of_spin(seg: Segments, blended: Array, steepness: Array) -> tuple[Array, Array]:
+    first = np.abs(seg.spin_rate)
+    corner = np.abs(np.diff(seg.spin_rate))
+    return (
+        _with_joints(first, np.maximum(first[1:], first[:-1]), blended),
+        _with_joints(np.zeros(len(seg)), corner * steepness, blended),
+    )
+
+
+def _with_joints(inside: Array, at_joint: Array, blended: Array) -> Array:
+    """The larger one of what segments (N,) have and what the blends at their joints (N - 1,) have."""
+    joint = np.concatenate([[0.0], np.where(blended, at_joint, 0.0), [0.0]])
+    return np.maximum(inside, np.maximum(joint[1:], joint[:-1]))

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rate bounds: how fast strut lengths can change along a path of which only the sizes of the derivatives are known.
+
+With r the greatest distance of a platform joint from the tip, w the angular velocity and d the shortest distance of a
+strut's joints: the joint moves by |V| <= |q'| + r |w|, |A| <= |q''| + r (|w'| + |w|^2), and so
+
+    |l'| <= |V|,    |l''| <= |A| + |V|^2 / d
+
+w and w' are bounded as in ``way`` and ``pace``. Units: mm, rad, by path length or time.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics.checks import arms_from_tip
+from pkm_post.model import Machine
+
+_NEARER = 0.99
+"""A path with rounded corners may make a strut a little shorter than the way that is proven to be within the stroke."""
+
+Pair = tuple[Array, Array]
+
+
+def strut_rate_bounds(
+    machine: Machine, tip: Pair, axis: Pair, spin: Pair, half_tilt: Array, tool_length: Array
+) -> Pair:
+    """Bounds of the first and second derivative of any strut length, (N,) each, where struts keep their stroke.
+
+    Infinite for a screw without a key, whose correction has no bound here, and without a shortest length.
+
+    Args:
+        machine: the geometry.
+        tip: sizes of first and second derivatives of the tip, (N,) each.
+        axis: of the unit tool axis.
+        spin: of the spin.
+        half_tilt: (N,) tangent of half the highest tilt.
+        tool_length: (N,) gauge lengths.
+    """
+    shortest = _NEARER * (machine.strut_stroke[0] + float(machine.length_offset.min()))
+    if machine.screw_lead != 0.0 or shortest <= 0:
+        endless = np.full(len(half_tilt), np.inf)
+        return endless, endless
+    arm = float(arms_from_tip(machine, tool_length).max())
+    turn, turn_1 = _turning(axis, spin, half_tilt)
+    speed = tip[0] + arm * turn
+    return speed, tip[1] + arm * (turn_1 + turn**2) + speed**2 / shortest
+
+
+def _turning(axis: Pair, spin: Pair, half_tilt: Array) -> Pair:
+    """Bounds of angular velocity and acceleration: the zero-torsion frame turns about the axis by itself as well."""
+    about = spin[0] + half_tilt * axis[0]
+    about_1 = spin[1] + half_tilt * axis[1] + half_tilt * (1 + half_tilt**2) / 2 * axis[0] ** 2
+    return np.hypot(axis[0], about), axis[1] + about_1 + about * axis[0]

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Speed limits: how fast a machine may run a path at its stations, computed only where it may matter.
+
+What a segment is made of bounds the derivatives on it, and these bound what the machine has to do. A plan under such
+rough limits is allowed under the true ones, so that the true plan is nowhere below it: where the rough plan runs at the
+feed, so does the true one, and nothing finer is computed there. Enters: a path and a machine. Leaves: the segments to
+look at closely, and at stations the highest speed squared and acceleration along the path, mm and s.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.feed import Bounded, PathBounds, Stations, ToolPath, limits, speed_profile
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import strut_rate_bounds, strut_rates
+from pkm_post.model import Machine, Poses
+
+_STRUT_SPEED_SHARE = 0.95
+"""Share of the strut speed that is planned: the controller's cubics swing a little about it."""
+_AT_FEED = 1e-6
+"""Part of the speed squared by which a plan at the feed may be below it by rounding."""
+_STRAIGHT = 0.01, 1e-4
+"""mm and rad: by how much a path may leave its segments in blends and still be taken as straight between its joints."""
+_BLOCK = 4096
+"""Stations in one pass: what is computed for them stays in the processor's cache."""
+
+Pair = tuple[Array, Array]
+
+
+def bent(path: ToolPath, most: PathBounds) -> Array:
+    """Segments that the path leaves so far in blends that it is not straight between its joints, (N,).
+
+    A blend of the half width d and the curvature c at its joint leaves the segments by c d^2 / 4.
+    """
+    square = np.maximum(path.blend[1:], path.blend[:-1]) ** 2 / 4
+    tip, axis = _STRAIGHT
+    return np.asarray((most.tip_2 * square > tip) | (most.axis_2 * square > axis))
+
+
+def below_feed(path: ToolPath, square: Array, along: Array) -> Array:
+    """Segments on which the plan may be below the feed, (N,), by rough limits of each segment, (N,)."""
+    joint_square, joint_along = (
+        np.concatenate([one[:1], np.minimum(one[1:], one[:-1]), one[-1:]]) for one in (square, along)
+    )
+    joint_square[path.rests] = 0.0
+    planned = speed_profile(path.starts, joint_square, joint_along)
+    return np.asarray(np.minimum(planned[1:], planned[:-1]) < (1 - _AT_FEED) * path.feed**2)
+
+
+def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machine: Machine) -> Pair:
+    """Highest speed squared and acceleration at stations, (M,) each: true ones on close segments, else rough ones.
+
+    Where a close segment meets another one, the rough limits hold.
+
+    Args:
+        path: N segments.
+        marks: all stations of close segments, and of others at least their joints.
+        close: (N,) which segments are looked at closely.
+        rough: limits of speed squared and acceleration that hold all over each segment, (N,) each.
+        machine: the limits.
+    """
+    following = _following(path, marks.segment, marks.u)
+    square, along = (np.minimum(one[marks.segment], one[following]) for one in rough)
+    inner = close[marks.segment] & close[following]
+    rows = np.flatnonzero(close[marks.segment] | close[following])
+    for first in range(0, len(rows), _BLOCK):
+        # with the neighbours of the block, whose curvature counts
+        begin = max(first - 1, 0)
+        block = rows[begin : first + _BLOCK + 1]
+        segment, u = marks.segment[block], marks.u[block]
+        found = limits(feed_at(path, segment, u), bounded_by(machine, path.within(segment, u)))
+        own = np.flatnonzero(inner[block])
+        own = own[(own >= first - begin) & (own < first - begin + _BLOCK)]
+        square[block[own]], along[block[own]] = found[0][own], found[1][own]
+    square[marks.rest] = 0.0
+    return square, along
+
+
+def feed_at(path: ToolPath, segment: Array, u: Array) -> Array:
+    """Feed at stations, (M,); at a joint the lower one of its two segments."""
+    return np.minimum(path.feed[segment], path.feed[_following(path, segment, u)])
+
+
+def _following(path: ToolPath, segment: Array, u: Array) -> Array:
+    """The segment behind each station, (M,): the next one at a joint, else its own."""
+    return np.minimum(segment + (u == path.segments.extent[segment]), len(path.feed) - 1)
+
+
+def bounded_by(machine: Machine, poses: Poses) -> tuple[Bounded, ...]:
+    """What a machine limits, at poses with derivatives by path length."""
+    _, first, second = strut_rates(machine, poses)
+    return _limited(machine, (first, second), (poses.tip_1, poses.tip_2), (poses.axis_1, poses.axis_2))
+
+
+def roughly_bounded(machine: Machine, path: ToolPath, most: PathBounds) -> tuple[Bounded, ...]:
+    """What a machine limits, as the largest sizes on each segment."""
+    tip, axis = (most.tip_1, most.tip_2), (most.axis_1, most.axis_2)
+    spin = most.spin_1, most.spin_2
+    struts = strut_rate_bounds(machine, tip, axis, spin, most.half_tilt, path.tool_length)
+    return _limited(machine, _column(struts), _column(tip), _column(axis))
+
+
+def _column(sizes: Pair) -> Pair:
+    return sizes[0][:, None], sizes[1][:, None]
+
+
+def _limited(machine: Machine, struts: Pair, tip: Pair, axis: Pair) -> tuple[Bounded, ...]:
+    """What a machine limits, by first and second derivatives by path length."""
+    return (
+        Bounded(
+            first=struts[0],
+            second=struts[1],
+            speed=_STRUT_SPEED_SHARE * machine.strut_speed,
+            acceleration=machine.strut_acceleration,
+            each=True,
+            jerk=machine.strut_jerk,
+        ),
+        Bounded(tip[0], tip[1], np.inf, machine.tip_acceleration, each=False, jerk=machine.tip_jerk),
+        Bounded(axis[0], axis[1], machine.axis_speed, np.inf, each=False),
+    )
