@@ -16,3 +16,37 @@ def post_job(job, machine="example_6tps", out=".", **choices):  # type: ignore[n
     from pkm_post.freecad_app.post_job import post_job as post
 
     return post(job, machine, out, **choices)
+
+
+def post(source, machine="example_6tps", out=".", **choices):  # type: ignore[no-untyped-def]
+    """Post whatever can be posted: a CAM job, a FreeCAD document, G-code or CL data.
+
+    Args:
+        source: a CAM job, a document object, or the path of a file. A FreeCAD document (``.FCStd``) needs FreeCAD;
+            G-code and CL data do not, and are told apart by what the name ends with.
+        machine: name of a machine that comes with PKM Post, or path of a machine file.
+        out: folder for the results.
+        choices: ``options`` (``pkm_post.pipeline.Options``), ``tool_lengths`` (mm by tool number), ``log`` (takes a
+            line for each step) and ``progress`` (``pkm_post.pipeline.Progress``) for all; ``job_name`` for documents,
+            ``reading`` (``pkm_post.sources.Reading``) for part programs.
+
+    Returns:
+        A tuple with a ``pkm_post.pipeline.Posted`` for each motion program: one, or one for each job of a document.
+
+    Raises:
+        pkm_post.model.Refused: something in the input or the folder does not allow it. Of a document with several jobs,
+            those posted before stay posted; of anything else nothing was written.
+        ValueError: the suffix of the file is not known.
+    """
+    from os import PathLike
+    from pathlib import Path
+
+    if isinstance(source, str | PathLike) and Path(source).suffix.lower() != ".fcstd":
+        from pkm_post.post_file import post_file
+
+        return (post_file(Path(source), machine, out, **choices),)
+    from pkm_post.freecad_app import post_job as jobs
+
+    if isinstance(source, str | PathLike):
+        return jobs.post_document(Path(source), machine, out, **choices)
+    return (jobs.post_job(source, machine, out, **choices),)

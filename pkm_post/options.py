@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 FIXTURE_OF_THE_JOB = "job"
 """A work offset of this name is the fixture of the CAM job."""
+READING = "reading"
+"""The name of the step before those of the pipeline, for who is told of the progress."""
 
 Pose = tuple[float, float, float, float]
 
@@ -77,6 +79,10 @@ _SPINS = {
 }
 """The rules for the spin by name, each with what may follow it behind ``=``."""
 _OBJECTIVES = ("stroke", "joints", "singular", "weighted")
+HEADED = tuple(rule for rule, value in _SPINS.items() if value == "DEG")
+"""The rules that want a heading."""
+SPIN_WORDS = (*(rule for rule in _SPINS if _SPINS[rule] != "OBJECTIVE"), *(f"optimise={one}" for one in _OBJECTIVES))
+"""All that can be chosen for the spin, without headings."""
 
 
 def _spin(text: str) -> tuple[str, float, str]:
@@ -91,16 +97,16 @@ def _spin(text: str) -> tuple[str, float, str]:
     return rule, 0.0, value or _OBJECTIVES[0]
 
 
-_ALSO = ("csv", "halstreamer", "linuxcnc")
+ALSO = ("csv", "halstreamer", "linuxcnc")
 """What can be written beside the program: two tables of the strut motion, and G-code for LinuxCNC's hexapod."""
 
 
 def _also(text: str) -> tuple[str, ...]:
     """Names, each once."""
     chosen = text.split(",")
-    if not set(chosen) <= set(_ALSO):
-        raise argparse.ArgumentTypeError(f"expected names out of {', '.join(_ALSO)}, got {text!r}")
-    return tuple(name for name in _ALSO if name in chosen)
+    if not set(chosen) <= set(ALSO):
+        raise argparse.ArgumentTypeError(f"expected names out of {', '.join(ALSO)}, got {text!r}")
+    return tuple(name for name in ALSO if name in chosen)
 
 
 def _spin_words() -> str:
@@ -184,7 +190,7 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "metavar": "NAMES",
         "type": _also,
         "default": (),
-        "help": f"what to write beside the program, joined by commas: {', '.join(_ALSO)} (default: nothing)",
+        "help": f"what to write beside the program, joined by commas: {', '.join(ALSO)} (default: nothing)",
     },
 }
 

@@ -71,6 +71,7 @@ def _as_program(trajectory: Trajectory) -> Program:
         arc_centre=trajectory.arc_centre,
         arc_axis=trajectory.arc_axis,
         exact_stop=trajectory.exact_stop,
+        tip_tolerance=trajectory.tip_tolerance,
         operation=trajectory.operation,
         line=trajectory.line,
         events=trajectory.events,

@@ -14,7 +14,7 @@ from pathlib import Path
 from pkm_post import pipeline
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Diagnostic, Place, Program
-from pkm_post.options import FIXTURE_OF_THE_JOB
+from pkm_post.options import FIXTURE_OF_THE_JOB, READING
 from pkm_post.sources import AS_WRITTEN, Reading, read_part_program
 
 _ASKED_FOR = "L411"
@@ -29,6 +29,7 @@ def post_file(
     tool_lengths: Mapping[int, float] | None = None,
     reading: Reading = AS_WRITTEN,
     log: pipeline.Log = pipeline.quiet,
+    progress: pipeline.Progress = pipeline.unwatched,
 ) -> pipeline.Posted:
     """Post a part program.
 
@@ -40,15 +41,17 @@ def post_file(
         tool_lengths: gauge lengths by tool number that go before those of the file, mm.
         reading: what the file does not say itself.
         log: takes a line for each step.
+        progress: is told of each step when it begins; what it raises ends the work, and nothing is written.
 
     Raises:
         Refused: something in the file, the machine file or the folder does not allow it; nothing was written.
         ValueError: the suffix of the file is not known.
     """
+    progress(READING, 0.0)
     model, machine_faults = machine_named(machine)
     program, program_faults, options = read_to_post(file, options, tool_lengths, reading)
     target = Path(out) / f"{Path(file).stem}{pipeline.SUFFIX}"
-    return pipeline.post(program, model, target, options, log, (*machine_faults, *program_faults))
+    return pipeline.post(program, model, target, options, log, (*machine_faults, *program_faults), progress)
 
 
 def read_to_post(

@@ -68,6 +68,41 @@ def test_two_documents_in_one_call(tmp_path):
     assert {"a.pmc", "b.pmc"} <= {path.name for path in tmp_path.iterdir()}
 
 
+def test_documents_in_processes_of_their_own_are_told_in_order(tmp_path):
+    parts = [saved_job(tmp_path / name) for name in ("a.FCStd", "c.FCStd")]
+    parts.insert(1, saved_job(tmp_path / "b.FCStd", ["G0 X0 Y0 Z30", "G1 X10"]))
+    told = pkm_post("post", *parts, "--out", tmp_path / "out", "--jobs", 3, *REACHED)
+    assert told.returncode == 1
+    assert [Path(line).name for line in told.stdout.splitlines() if line.endswith(".pkmt")] == ["a.pkmt", "c.pkmt"]
+    assert "b.FCStd: Cut: line 4: error J105" in told.stderr
+    assert {path.name[0] for path in (tmp_path / "out").iterdir()} == {"a", "c"}
+
+
+def test_one_process_goes_on_behind_a_refused_document(tmp_path):
+    parts = [saved_job(tmp_path / "a.FCStd", ["G0 X0 Y0 Z30", "G1 X10"]), saved_job(tmp_path / "b.FCStd")]
+    told = pkm_post("post", *parts, "--out", tmp_path / "out", "--jobs", 1, *REACHED)
+    assert told.returncode == 1
+    assert (tmp_path / "out" / "b.pmc").exists()
+
+
+def test_batch_from_inside_freecad(tmp_path):
+    parts = [saved_job(tmp_path / name) for name in ("a.FCStd", "b.FCStd")]
+    script = tmp_path / "batch.py"
+    arguments = ["post", *map(str, parts), "--out", str(tmp_path / "out"), "--jobs", "2", *REACHED]
+    script.write_text(f"import sys\nfrom pkm_post.cli import main\nsys.exit(main({arguments!r}))\n")
+    command = [
+        str(ADDON / "tools" / "freecad"),
+        "-M",
+        str(ADDON),
+        str(ADDON / "tools" / "run_script.py"),
+        "--",
+        str(script),
+    ]
+    told = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
+    assert told.returncode == 0, told.stderr
+    assert {"a.pmc", "b.pmc"} <= {path.name for path in (tmp_path / "out").iterdir()}
+
+
 # CAM puts two comments before the lines of a Custom operation: its second line is command 4 of its path.
 BAD_JOBS = {
     "unreachable pose": (["G0 X0 Y0 Z30", "G1 X900 F20"], "K102", "Cut: line 4"),

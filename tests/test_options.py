@@ -8,7 +8,7 @@ import pytest
 
 from pkm_post import options
 from pkm_post.compensation import OffsetOptions
-from pkm_post.options import FIXTURE_OF_THE_JOB, add_options, options_from, tool_lengths_from
+from pkm_post.options import FIXTURE_OF_THE_JOB, SPIN_WORDS, add_options, options_from, tool_lengths_from
 from pkm_post.pipeline import Options
 from pkm_post.spin import OBJECTIVES, ZERO_TORSION, Policy, Rule
 from pkm_post.surface_speed import SurfaceSpeed
@@ -97,3 +97,9 @@ def test_what_makes_no_sense_is_told(arguments, message, capsys):
     with pytest.raises(SystemExit):
         parsed(*arguments)
     assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("word", SPIN_WORDS)
+def test_every_spin_that_is_offered_is_understood(word):
+    rule, _, objective = parsed("--spin", word).spin
+    assert word == (f"{rule}={objective}" if rule == "optimise" else rule)

@@ -12,7 +12,7 @@ from programs import ON_PALLET, cone, program, random_job
 from pkm_post.controllers import pmac
 from pkm_post.machine_file import find_machine, read_machine
 from pkm_post.model import Event, EventKind, Refused
-from pkm_post.pipeline import Options, post
+from pkm_post.pipeline import Options, post, step_names
 
 
 @pytest.fixture(scope="module")
@@ -147,3 +147,27 @@ def test_warnings_do_not_stop_the_job(machine, tmp_path):
     fast = np.array([np.nan, 30.0, 900.0])
     posted = post(program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], feed=fast), machine, tmp_path / "job.pmc")
     assert [fault.code for fault in posted.diagnostics] == ["K110"]
+
+
+class Cancelled(Exception):  # noqa: N818 - what a window raises when its user cancels
+    pass
+
+
+def test_progress_is_told_in_the_order_of_the_steps_and_ends_with_all(machine, tmp_path):
+    told, options = [], Options(also=("linuxcnc", "csv"))
+    post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", options, progress=lambda *each: told.append(each))
+    names, shares = zip(*told, strict=True)
+    assert names == (*step_names(options), "")
+    assert list(shares) == sorted(set(shares))
+    assert (shares[0], shares[-1]) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize("at", [*step_names(Options(also=("csv",))), ""])
+def test_what_the_progress_raises_stops_the_run_and_leaves_nothing(machine, tmp_path, at):
+    def stop(step, share):
+        if step == at:
+            raise Cancelled(step)
+
+    with pytest.raises(Cancelled, match=f"^{at}$"):
+        post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", Options(also=("csv",)), progress=stop)
+    assert list(tmp_path.iterdir()) == []

@@ -17,10 +17,9 @@ import numpy as np
 from PySide import QtCore
 
 from pkm_post.freecad_app.job import read_job
-from pkm_post.freecad_app.machine_shape import machine_bodies
+from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.post_job import find_job
-from pkm_post.machine_file import find_machine, read_machine
-from pkm_post.placement import place
+from pkm_post.model import EventKind
 
 SIZE = 1200, 1000
 FROM_ABOVE = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), 20) * FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 45)
@@ -44,20 +43,17 @@ def show_path(document):
 
 
 def show_machine(document, machine):
-    """Add the machine's bodies to the document, at the middle of the job's first operation."""
-    program, _ = read_job(find_job(document))
-    trajectory, _ = place(program, machine, machine.work_offsets["G54"])
-    rows = np.flatnonzero(trajectory.operation == 0)
+    """Add the machine to the document, at the middle of the job's first operation."""
+    job = find_job(document)
+    program, _ = read_job(job)
+    rows = np.flatnonzero(program.operation == 0)
     row = int(rows[len(rows) // 2])
-    tool = trajectory.tools[int(trajectory.tool[row])]
-    work_from_machine = np.linalg.inv(trajectory.machine_from_work)
-    placement = FreeCAD.Placement(FreeCAD.Matrix(*work_from_machine.ravel()))
-    for body in machine_bodies(machine, tool, trajectory.tip[row], trajectory.axis[row]):
-        item = document.addObject("Part::Feature", body.name)
-        item.Shape = body.shape
-        item.Placement = placement
-        item.ViewObject.ShapeColor = body.colour
-        item.ViewObject.DisplayMode = "Shaded"
+    number = next(event.value for event in program.events if event.kind == EventKind.TOOL_CHANGE)
+    tool = program.tools[int(number)]
+    shown = create_machine(document, machine, job)
+    shown.Tip = FreeCAD.Vector(*program.position[row])
+    shown.ToolAxis = FreeCAD.Vector(*program.tool_axis[row])
+    shown.ToolLength, shown.ToolDiameter, shown.ToolCornerRadius = tool.length, tool.diameter, tool.corner_radius
 
 
 def draw(document_path, machine_name, path_picture, picture_path):
@@ -65,20 +61,17 @@ def draw(document_path, machine_name, path_picture, picture_path):
     FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View").SetBool("ShowNaviCube", False)
     document = FreeCAD.openDocument(document_path)
     document.recompute()
-    machine, faults = read_machine(find_machine(machine_name))
-    if machine is None:
-        raise ValueError("\n".join(str(fault) for fault in faults))
     view = FreeCADGui.getDocument(document.Name).ActiveView
     view.setAnimationEnabled(False)
     view.setCameraType("Perspective")
-    for show, target, orientation in (
-        (show_path, path_picture, FROM_ABOVE),
-        (lambda opened: show_machine(opened, machine), picture_path, STANDING_UP),
+    for show, target, orientation, fit in (
+        (show_path, path_picture, FROM_ABOVE, 0.9),
+        (lambda opened: show_machine(opened, machine_name), picture_path, STANDING_UP, 1.0),
     ):
         show(document)
         document.recompute()
         view.setCameraOrientation(orientation)
-        view.fitAll(0.9)
+        view.fitAll(fit)
         view.saveImage(target, *SIZE, "White")
 
 

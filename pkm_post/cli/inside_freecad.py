@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 _ADDON = Path(__file__).resolve().parents[2]
+_START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
+"""As ``-m pkm_post``, wherever the add-on is."""
 
 
 def is_inside() -> bool:
@@ -20,13 +22,26 @@ def is_inside() -> bool:
 
 def run_inside(arguments: Sequence[str]) -> int:
     """Run the same command inside FreeCADCmd, with this add-on loaded; the exit code."""
+    command = command_inside(arguments)
+    return subprocess.run(command, check=False).returncode if command else 1
+
+
+def command_inside(arguments: Sequence[str]) -> list[str]:
+    """How a command is started inside FreeCADCmd, with this add-on loaded; nothing if there is no FreeCAD, as told."""
     freecad = _freecad_command()
     if not freecad:
         print("FreeCAD 1.0 or newer is needed: install it, or name its FreeCADCmd in $FREECADCMD", file=sys.stderr)
-        return 1
+        return []
     frame, module = _ADDON / "tools" / "run_script.py", _ADDON / "pkm_post" / "__main__.py"
-    command = [*freecad, "-M", str(_ADDON), str(frame), "--", str(module), *arguments]
-    return subprocess.run(command, check=False).returncode
+    return [*freecad, "-M", str(_ADDON), str(frame), "--", str(module), *arguments]
+
+
+def command_outside(arguments: Sequence[str]) -> list[str]:
+    """How a command is started in a Python like this one, which is not FreeCAD's."""
+    start = (
+        "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
+    )
+    return [sys.executable, "-c", start, str(_ADDON), *arguments]
 
 
 def _freecad_command() -> list[str]:

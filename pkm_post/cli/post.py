@@ -1,21 +1,31 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command ``post``: FreeCAD documents, G-code and CL data become certified motion programs."""
+"""The command ``post``: FreeCAD documents, G-code and CL data become certified motion programs.
+
+One file, or --jobs 1, is posted in this process, or in one FreeCAD. Several are posted at the same time, each in a
+process of its own; one that is refused does not stop the others.
+"""
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inside_freecad import is_inside, run_inside
+from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, run_inside
+from pkm_post.cli.many import run_many
+from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, reading_from
 from pkm_post.options import add_options, options_from, tool_lengths_from
 
 if TYPE_CHECKING:
     from pkm_post.pipeline import Posted
+
+_ONLY = "--only"
+"""The number of the one file that a process posts, from 0."""
 
 
 def add_commands(commands: Any) -> None:
@@ -25,34 +35,72 @@ def add_commands(commands: Any) -> None:
     post.add_argument("files", nargs="+", type=Path, metavar="FILE")
     post.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the results (default: here)")
     post.add_argument("--job", metavar="NAME", help="post this job of the document only, by name or label")
+    post.add_argument(
+        "--jobs",
+        type=_count,
+        default=os.cpu_count() or 1,
+        metavar="N",
+        help="how many of several files to post at the same time (default: the number of processors, %(default)s)",
+    )
+    post.add_argument(_ONLY, type=int, help=argparse.SUPPRESS)
     add_options(post)
     add_reading(post)
     post.set_defaults(run=_post)
 
 
-def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.model import Refused
-    from pkm_post.sources import is_part_program
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"expected a whole number above 0, got {text!r}")
+    return int(text)
 
-    twice = [stem for stem, count in Counter(file.stem for file in namespace.files).items() if count > 1]
+
+def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    files = namespace.files if namespace.only is None else [namespace.files[namespace.only]]
+    twice = [stem for stem, count in Counter(file.stem for file in files).items() if count > 1]
     if twice:
         print(f"several files would be posted as {', '.join(twice)}: post them to different folders", file=sys.stderr)
         return 2
-    if not is_inside() and not all(map(is_part_program, namespace.files)):
+    at_a_time = min(namespace.jobs, len(files))
+    if at_a_time > 1:
+        return _post_in_processes(files, arguments, at_a_time)
+    if _needs_freecad(files):
         return run_inside(arguments)
-    for file in namespace.files:
-        post = _part_program if is_part_program(file) else _document
-        try:
-            results = post(file, namespace)
-        except Refused as refused:
-            print(refused, file=sys.stderr)
-            return 1
-        for result in results:
-            _tell(result)
+    return max([_post_one(file, namespace) for file in files])
+
+
+def _needs_freecad(files: Sequence[Path]) -> bool:
+    from pkm_post.sources import is_part_program
+
+    return not is_inside() and not all(map(is_part_program, files))
+
+
+def _post_in_processes(files: Sequence[Path], arguments: Sequence[str], at_a_time: int) -> int:
+    """The same command for each file, in a process of its own."""
+    commands = []
+    for number, file in enumerate(files):
+        start = command_inside if is_inside() or _needs_freecad([file]) else command_outside
+        commands.append(start([*arguments, f"{_ONLY}={number}"]))
+    return run_many(commands, at_a_time, "posted") if all(commands) else 1
+
+
+def _post_one(file: Path, namespace: argparse.Namespace) -> int:
+    """Post a file and tell what was made, or why nothing was; the exit code."""
+    from pkm_post.model import Refused
+    from pkm_post.sources import is_part_program
+
+    post, line = _part_program if is_part_program(file) else _document, ProgressLine(file.name)
+    try:
+        results = post(file, namespace, line)
+    except Refused as refused:
+        line.clear()
+        print(refused, file=sys.stderr)
+        return 1
+    for result in results:
+        _tell(result)
     return 0
 
 
-def _part_program(file: Path, namespace: argparse.Namespace) -> tuple[Posted, ...]:
+def _part_program(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> tuple[Posted, ...]:
     from pkm_post.post_file import post_file
 
     posted = post_file(
@@ -62,12 +110,13 @@ def _part_program(file: Path, namespace: argparse.Namespace) -> tuple[Posted, ..
         options=options_from(namespace),
         tool_lengths=tool_lengths_from(namespace),
         reading=reading_from(namespace),
-        log=print,
+        log=line.print,
+        progress=line.show,
     )
     return (posted,)
 
 
-def _document(file: Path, namespace: argparse.Namespace) -> tuple[Posted, ...]:
+def _document(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> tuple[Posted, ...]:
     from pkm_post.freecad_app.post_job import post_document
 
     return post_document(
@@ -77,7 +126,8 @@ def _document(file: Path, namespace: argparse.Namespace) -> tuple[Posted, ...]:
         options=options_from(namespace),
         tool_lengths=tool_lengths_from(namespace),
         job_name=namespace.job,
-        log=print,
+        log=line.print,
+        progress=line.show,
     )
 
 

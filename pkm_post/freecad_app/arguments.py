@@ -9,7 +9,10 @@ from __future__ import annotations
 
 import argparse
 import shlex
+from collections.abc import Iterator, Mapping
 from typing import Any, NoReturn
+
+import Path.Preferences
 
 from pkm_post.freecad_app.job import document_name
 from pkm_post.gcode import Form
@@ -81,6 +84,52 @@ def own_arguments(job: Any) -> argparse.Namespace:
     if job.PostProcessor in POST_PROCESSORS:
         return job_arguments(job, job.PostProcessorArgs, job.PostProcessor)
     return job_arguments(job, "")
+
+
+def own_text(job: Any) -> str:
+    """The text of these arguments that ``hexapod_pmac`` understands; empty if the job has none."""
+    if job.PostProcessor not in POST_PROCESSORS:
+        return ""
+    return rewritten(job.PostProcessorArgs, dict.fromkeys(_MORE.get(job.PostProcessor, {})))
+
+
+def rewritten(text: str, chosen: Mapping[str, str | None]) -> str:
+    """Arguments with some of them set anew; all others stay as they are.
+
+    Args:
+        text: the arguments, quoted as in a shell.
+        chosen: values by flag; None takes the flag away, so that its default holds.
+
+    Raises:
+        ValueError: the quotes of the text do not close.
+    """
+    kept = [word for flag, words in _by_flag(shlex.split(text)) if flag not in chosen for word in words]
+    return shlex.join([*kept, *(f"{flag}={value}" for flag, value in chosen.items() if value is not None)])
+
+
+def _by_flag(words: list[str]) -> Iterator[tuple[str, list[str]]]:
+    """Each flag with the words that say it: one with ``=`` or without a value, else two."""
+    while words:
+        flag, equals, _ = words[0].partition("=")
+        with_value = not equals and len(words) > 1 and not words[1].startswith("--")
+        size = 2 if flag.startswith("--") and with_value else 1
+        yield flag, words[:size]
+        words = words[size:]
+
+
+def remember(job: Any, text: str, program: str) -> None:
+    """Let a job keep its arguments and the file they are for, so that CAM's own post command does the same.
+
+    Args:
+        job: the job; it gets the post-processor ``hexapod_pmac``.
+        text: the arguments.
+        program: path of the motion program.
+    """
+    if PMAC not in job.getEnumerationsOfProperty("PostProcessor"):  # made where PKM Post is not installed
+        job.PostProcessor = Path.Preferences.allEnabledPostProcessors([PMAC])
+    for name, value in (("PostProcessor", PMAC), ("PostProcessorArgs", text), ("PostProcessorOutputFile", program)):
+        if getattr(job, name) != value:
+            setattr(job, name, value)
 
 
 def arguments_help(post_processor: str = PMAC) -> str:

@@ -16,9 +16,9 @@ from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.frames import apply, matrix_of
 from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.job_to_post import at_fixture
 from pkm_post.freecad_app.machine_object import machine_of
 from pkm_post.freecad_app.part_mesh import part_mesh
-from pkm_post.freecad_app.post_job import at_fixture
 from pkm_post.kinematics import Part
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Diagnostic, Machine, Program, Refused, Trajectory

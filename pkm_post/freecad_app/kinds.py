@@ -19,6 +19,11 @@ def is_program(item: Any) -> bool:
     return hasattr(item, "AxisWords") and hasattr(item, "Found")
 
 
+def is_simulation(item: Any) -> bool:
+    """Whether an object is the simulation of a CAM job."""
+    return hasattr(item, "ProblemTimes") and hasattr(item, "OperationTimes")
+
+
 def is_operation(item: Any) -> bool:
     """Whether an object is an operation of a CAM job; tool controllers have paths, too."""
     others = is_job(item) or is_program(item) or hasattr(item, "ToolNumber")

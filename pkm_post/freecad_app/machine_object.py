@@ -21,7 +21,7 @@ import numpy as np
 from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.frames import matrix_of, placement_of
-from pkm_post.freecad_app.post_job import at_fixture
+from pkm_post.freecad_app.job_to_post import at_fixture
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import Way, reach_findings, reach_margins, strut_lengths
 from pkm_post.kinematics.way import Pose

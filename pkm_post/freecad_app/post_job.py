@@ -8,7 +8,6 @@ machine file are collected before anything is refused.
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
@@ -19,12 +18,12 @@ import FreeCAD as App
 from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.job import NO_LENGTHS, document_name, read_job
+from pkm_post.freecad_app.job_to_post import at_fixture, read_for_post
 from pkm_post.freecad_app.kinds import is_job
 from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.geometry.vectors import Array
-from pkm_post.machine_file import machine_named
 from pkm_post.model import Diagnostic, Place, Program, Refused
-from pkm_post.options import FIXTURE_OF_THE_JOB, options_from, tool_lengths_from
+from pkm_post.options import READING, options_from, tool_lengths_from
 
 
 def post_job(
@@ -34,6 +33,7 @@ def post_job(
     options: pipeline.Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     log: pipeline.Log = pipeline.quiet,
+    progress: pipeline.Progress = pipeline.unwatched,
 ) -> pipeline.Posted:
     """Post a CAM job.
 
@@ -44,11 +44,12 @@ def post_job(
         options: what the user chose; if nothing, the work offset is the fixture of the job.
         tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
         log: takes a line for each step.
+        progress: is told of each step when it begins; what it raises ends the work, and nothing is written.
 
     Raises:
         Refused: something in the job, the machine file or the folder does not allow it; nothing was written.
     """
-    return post_to(FilePath(out) / _file_name(job), job, machine, options, tool_lengths, log)
+    return post_to(FilePath(out) / file_name(job), job, machine, options, tool_lengths, log, progress)
 
 
 def post_as_the_job_says(job: Any, out: str | FilePath, log: pipeline.Log = pipeline.quiet) -> pipeline.Posted:
@@ -69,6 +70,7 @@ def post_document(
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     job_name: str | None = None,
     log: pipeline.Log = pipeline.quiet,
+    progress: pipeline.Progress = pipeline.unwatched,
 ) -> tuple[pipeline.Posted, ...]:
     """Post one job of a saved document, or all of them.
 
@@ -80,13 +82,14 @@ def post_document(
         tool_lengths: gauge lengths by tool number, mm.
         job_name: name or label of the job; all jobs if there is none.
         log: takes a line for each step.
+        progress: as in ``post_job``; the share is that of the job that is being posted.
 
     Raises:
         Refused: as ``post_job``, and J101 and J102 for the document. Jobs posted before stay posted.
     """
     with _opened(FilePath(file)) as document:
         jobs = [find_job(document, job_name)] if job_name else find_jobs(document)
-        return tuple(post_job(job, machine, out, options, tool_lengths, log) for job in jobs)
+        return tuple(post_job(job, machine, out, options, tool_lengths, log, progress) for job in jobs)
 
 
 def read_document(
@@ -140,29 +143,19 @@ def post_to(
     options: pipeline.Options | None,
     tool_lengths: Mapping[int, float],
     log: pipeline.Log,
+    progress: pipeline.Progress = pipeline.unwatched,
 ) -> pipeline.Posted:
     """Post a CAM job to a motion program of this name; the other files take its stem.
 
     Raises:
         Refused: as ``post_job``.
     """
-    job.Document.recompute()
-    model, machine_faults = machine_named(machine)
-    program, job_faults = read_job(job, tool_lengths)
-    found = (*machine_faults, *job_faults)
-    return pipeline.post(program, model, program_path, at_fixture(options, job), log, found)
+    progress(READING, 0.0)
+    return read_for_post(job, machine, options, tool_lengths).post(program_path, log, progress)
 
 
-def at_fixture(options: pipeline.Options | None, job: Any) -> pipeline.Options:
-    """The options, with the fixture of the job for the work offset if none was chosen."""
-    options = options or pipeline.Options(work_offset=FIXTURE_OF_THE_JOB)
-    if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
-        return dataclasses.replace(options, work_offset=job.Fixtures[0] if job.Fixtures else "G54")
-    return options
-
-
-def _file_name(job: Any) -> str:
-    """The document's name, and the job's where there are several."""
+def file_name(job: Any) -> str:
+    """The name of the motion program: the document's name, and the job's where there are several."""
     document = job.Document
     stem = FilePath(document.FileName).stem or document.Label
     if len(find_jobs(document)) > 1:

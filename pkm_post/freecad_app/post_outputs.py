@@ -14,12 +14,15 @@ from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any, TypeVar
 
+import FreeCAD as App
+
 from pkm_post import outputs, pipeline, trajectory_file
 from pkm_post.files import staged
 from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_on_machine import job_and_machine
 from pkm_post.freecad_app.post_job import post_to
+from pkm_post.freecad_app.progress import Progress
 from pkm_post.gcode import Form, write
 from pkm_post.model import Diagnostic, Place, Refused, Trajectory
 from pkm_post.model.diagnostics import errors
@@ -31,11 +34,22 @@ T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
 Written = tuple[str, Findings]
 """The text for CAM, and warnings."""
+_MORE_STEPS = 2
+"""Reading comes before the steps of the pipeline, and its end is told as well."""
 
 
 def _motion_program(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
-    """The motion program; trajectory, set-up file and report are written beside it."""
-    posted = post_to(path, job, chosen.machine, options_from(chosen), tool_lengths_from(chosen), print)
+    """The motion program, or the first of its parts; all else is written beside it.
+
+    CAM takes several texts, but puts a number of its own into the name of each behind the first: a part would lie there
+    under a name that no reader of the program looks for. So the other parts are not given to CAM.
+    """
+    options, lengths = options_from(chosen), tool_lengths_from(chosen)
+    with Progress("Post", len(pipeline.step_names(options)) + _MORE_STEPS) as bar:
+        posted = post_to(path, job, chosen.machine, options, lengths, print, lambda step, share: bar.step())
+    if len(posted.parts) > 1:
+        names = ", ".join(part.name for part in posted.parts)
+        App.Console.PrintMessage(f"the program has {len(posted.parts)} parts, to be run in this order: {names}\n")
     return posted.program.read_text(encoding="ascii"), posted.diagnostics
 
 

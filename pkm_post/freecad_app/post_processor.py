@@ -46,27 +46,31 @@ class HexapodPost(PostProcessor):
         return arguments_help(self.name)
 
     def export(self) -> list[tuple[str, str]]:
-        """The text for CAM to write; what is no text is written beside its place.
+        """The text for CAM to write; what is no text is written beside its place. Nothing if the user stopped it.
 
         Raises:
             Refused: the job cannot be posted; CAM writes nothing then.
         """
         from pkm_post.freecad_app.arguments import job_arguments
         from pkm_post.freecad_app.post_outputs import OUTPUTS
+        from pkm_post.freecad_app.progress import Stopped
         from pkm_post.model import Refused
 
         try:
             chosen = job_arguments(self._job, self._job.PostProcessorArgs, self.name)
-            text, diagnostics = OUTPUTS[self.name](self._job, chosen, _program_path(self._job))
+            text, diagnostics = OUTPUTS[self.name](self._job, chosen, program_path(self._job))
         except Refused as refused:
             _tell(refused)
             raise
+        except Stopped as stopped:
+            App.Console.PrintWarning(f"{stopped}\n")
+            return []
         for diagnostic in diagnostics:
             App.Console.PrintWarning(f"{diagnostic}\n")
         return [("allitems", text)]
 
 
-def _program_path(job: Any) -> FilePath:
+def program_path(job: Any) -> FilePath:
     """Where CAM is going to write the text."""
     from Path.Post.Utils import FilenameGenerator
 

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtCore, QtWidgets
+from PySide import QtCore
 
-from pkm_post.freecad_app.kinds import is_job, is_operation
+from pkm_post.freecad_app.kinds import is_job, is_operation, is_simulation
 from pkm_post.freecad_gui.workbench import ICONS
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -85,6 +84,25 @@ class WindowCommand(Command):
         self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
 
 
+@dataclass(frozen=True)
+class PanelCommand(Command):
+    """A command whose object is edited in a panel at once: that ends the transaction, so that both are one step."""
+
+    def Activated(self) -> None:
+        """Add the object and open its panel; on a fault everything is as before."""
+        (subject,) = FreeCADGui.Selection.getSelection()
+        document, before = subject.Document, set(subject.Document.Objects)
+        document.openTransaction(self.text)
+        try:
+            self.action(subject)
+            document.recompute()
+            (made,) = set(document.Objects) - before
+            FreeCADGui.getDocument(document.Name).setEdit(made.ViewObject, 0)
+        except Exception:
+            document.abortTransaction()
+            raise
+
+
 def _do(module: str, call: str, operation: FreeCAD.DocumentObject) -> None:
     FreeCADGui.addModule(module)
     subject = f"FreeCAD.getDocument({operation.Document.Name!r}).getObject({operation.Name!r})"
@@ -135,43 +153,40 @@ def _machine(job: FreeCAD.DocumentObject | None) -> None:
     FreeCADGui.doCommand(f"{module}.create_machine({subject}{chosen})")
 
 
+def _create_on_machine(job: FreeCAD.DocumentObject, module: str, call: str) -> None:
+    """Add what is made of a job and, if there is one, the machine of the document."""
+    from pkm_post.freecad_app.reach_object import machine_for
+
+    machine, document = machine_for(job), f"FreeCAD.getDocument({job.Document.Name!r})"
+    FreeCADGui.addModule(module)
+    chosen = "" if machine is None else f", machine={document}.getObject({machine.Name!r})"
+    FreeCADGui.doCommand(f"{module}.{call}({document}.getObject({job.Name!r}){chosen})")
+
+
 def _reach(job: FreeCAD.DocumentObject) -> None:
     """Add the checks of a job, on its machine in the document if there is one."""
-    from pkm_post.freecad_app.reach_object import machine_for
-
-    module, machine = "pkm_post.freecad_app.reach_object", machine_for(job)
-    FreeCADGui.addModule(module)
-    document = f"FreeCAD.getDocument({job.Document.Name!r})"
-    chosen = "" if machine is None else f", machine={document}.getObject({machine.Name!r})"
-    FreeCADGui.doCommand(f"{module}.create_reach({document}.getObject({job.Name!r}){chosen})")
+    _create_on_machine(job, "pkm_post.freecad_app.reach_object", "create_reach")
 
 
-def _simulate(job: FreeCAD.DocumentObject) -> None:
-    """Plan the motion of a job and open the player, or tell why there is none."""
-    from pkm_post.freecad_app.reach_object import machine_for
-    from pkm_post.freecad_gui.player import play
-    from pkm_post.model import Refused
+def _simulate(item: FreeCAD.DocumentObject) -> None:
+    """Add the simulation of a job if there is none yet, and open its player when the command is done."""
+    from pkm_post.freecad_gui.player import open_player
 
-    try:
-        play(job, machine_for(job))
-    except Refused as refused:
-        title = translate("PKM_Simulate", "Simulate")
-        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, str(refused))
+    if not is_simulation(item) and _simulation_of(item) is None:
+        _create_on_machine(item, "pkm_post.freecad_app.simulation_object", "create_simulation")
+    shown = item if is_simulation(item) else _simulation_of(item)
+    QtCore.QTimer.singleShot(0, lambda: open_player(shown))
+
+
+def _simulation_of(job: FreeCAD.DocumentObject) -> FreeCAD.DocumentObject | None:
+    return next((other for other in job.InList if is_simulation(other)), None)
 
 
 def _post(job: FreeCAD.DocumentObject) -> None:
-    """Post beside the document and show what was made, or why nothing was."""
-    from pkm_post.freecad_app.post_job import post_as_the_job_says
-    from pkm_post.model import Refused
+    """Open the panel that posts a job."""
+    from pkm_post.freecad_gui.post_panel import open_panel
 
-    window, title = FreeCADGui.getMainWindow(), translate("PKM_Post", "Post to a hexapod")
-    try:
-        posted = post_as_the_job_says(job, Path(job.Document.FileName or "job.FCStd").parent)
-    except Refused as refused:
-        QtWidgets.QMessageBox.warning(window, title, str(refused))
-        return
-    written = "\n".join(str(path) for path in posted.files)
-    QtWidgets.QMessageBox.information(window, title, translate("PKM_Post", "Certified and written:") + "\n" + written)
+    open_panel(job)
 
 
 def _edit(item: FreeCAD.DocumentObject | None) -> None:
@@ -182,19 +197,19 @@ def _edit(item: FreeCAD.DocumentObject | None) -> None:
 
 
 COMMANDS = (
-    Command(
+    PanelCommand(
         "PKM_Mirror",
         "mirror.svg",
         QT_TRANSLATE_NOOP("PKM_Mirror", "Mirror operation"),
-        QT_TRANSLATE_NOOP("PKM_Mirror", "Add the mirror image of the selected operation, in the x-z plane at first"),
+        QT_TRANSLATE_NOOP("PKM_Mirror", "Add the mirror image of the selected operation: plane, climb milling, report"),
         is_operation,
         _mirror,
     ),
-    Command(
+    PanelCommand(
         "PKM_Rotate",
         "rotate.svg",
         QT_TRANSLATE_NOOP("PKM_Rotate", "Rotate operation"),
-        QT_TRANSLATE_NOOP("PKM_Rotate", "Add the selected operation turned, by half a turn about z at first"),
+        QT_TRANSLATE_NOOP("PKM_Rotate", "Add the selected operation turned, once or several times about an axis"),
         is_operation,
         _rotate,
     ),
@@ -241,7 +256,7 @@ COMMANDS = (
         "simulate.svg",
         QT_TRANSLATE_NOOP("PKM_Simulate", "Simulate"),
         QT_TRANSLATE_NOOP("PKM_Simulate", "Play the planned motion of the selected job on its machine"),
-        is_job,
+        lambda item: is_job(item) or is_simulation(item),
         _simulate,
     ),
     WindowCommand(
@@ -256,7 +271,7 @@ COMMANDS = (
         "PKM_Post",
         "pkm_post.svg",
         QT_TRANSLATE_NOOP("PKM_Post", "Post to a hexapod"),
-        QT_TRANSLATE_NOOP("PKM_Post", "Write the certified motion program of the selected job beside its document"),
+        QT_TRANSLATE_NOOP("PKM_Post", "Write the certified motion program of the selected job"),
         is_job,
         _post,
     ),

@@ -13,6 +13,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_gui.job_places import show_place
 from pkm_post.freecad_gui.workbench import ICONS
 
 translate = FreeCAD.Qt.translate
@@ -34,14 +35,14 @@ class ReachPanel:
 
     def __init__(self, obj: Any) -> None:
         self.obj = obj
-        obj.Document.openTransaction(translate(_CONTEXT, "Colour by a check"))
+        obj.Document.openTransaction(translate("PKM_Reach", "Colour by a check"))
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(obj.Label)
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "reach.svg")))
         layout = QtWidgets.QVBoxLayout(self.form)
         self.table, self.violations = _table(obj), QtWidgets.QPlainTextEdit("\n".join(obj.Violations))
         self.violations.setReadOnly(True)
-        self.violations.setPlaceholderText(translate(_CONTEXT, "Nothing is out of limits"))
+        self.violations.setPlaceholderText(translate("PKM_Reach", "Nothing is out of limits"))
         layout.addWidget(QtWidgets.QLabel(_verdict(obj)))
         layout.addWidget(self.table)
         layout.addWidget(self.violations)
@@ -51,10 +52,7 @@ class ReachPanel:
         """Colour by the check of a row and select the operation that has its worst point."""
         obj = self.obj
         obj.ColourBy = obj.Checks[row]
-        FreeCADGui.Selection.clearSelection()
-        for operation in obj.Job.Operations.Group if obj.Job else ():
-            if operation.Label == obj.WorstOperations[row]:
-                FreeCADGui.Selection.addSelection(operation)
+        show_place(obj.Job, obj.WorstOperations[row], obj.WorstLines[row])
 
     def getStandardButtons(self) -> Any:
         """There is nothing to accept or reject."""
@@ -69,10 +67,10 @@ class ReachPanel:
 
 def _verdict(obj: Any) -> str:
     if not obj.Checks:
-        return translate(_CONTEXT, "Not checked")
+        return translate("PKM_Reach", "Not checked")
     if obj.Reachable:
-        return translate(_CONTEXT, "The machine can follow the job")
-    return translate(_CONTEXT, "The machine cannot follow the job")
+        return translate("PKM_Reach", "The machine can follow the job")
+    return translate("PKM_Reach", "The machine cannot follow the job")
 
 
 def _table(obj: Any) -> QtWidgets.QTableWidget:

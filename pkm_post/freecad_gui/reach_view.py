@@ -13,10 +13,12 @@ import FreeCADGui
 import numpy as np
 from pivy import coin
 
-from pkm_post.freecad_gui.margin_colours import OUT, colours_of, largest, legend
+from pkm_post.freecad_gui.margin_colours import colours_of, largest, legend
+from pkm_post.freecad_gui.marks import OUT, marks
 from pkm_post.freecad_gui.views import DrawnView
 
 _LINE_WIDTH, _MARK_SIZE = 3.0, 11.0
+_WORST_IN_LIMITS = (0.1, 0.2, 0.8)
 
 
 class ReachView(DrawnView):
@@ -38,8 +40,9 @@ class ReachView(DrawnView):
         if not len(margin) or len(points) != len(margin) or obj.ColourBy not in obj.Checks:
             return
         chosen = list(obj.Checks).index(obj.ColourBy)
-        for node in (_way(points, margin), _mark(tuple(obj.WorstPoints[chosen]), obj.LeastMargins[chosen])):
-            self._root.addChild(node)
+        self._root.addChild(_way(points, margin))
+        colour = OUT if obj.LeastMargins[chosen] < 0.0 else _WORST_IN_LIMITS
+        self._root.addChild(marks([obj.WorstPoints[chosen]], colour, _MARK_SIZE))
         shown = coin.SoType.fromName("SkipBoundingGroup")
         corner = shown.createInstance() if shown.canCreateInstance() else coin.SoGroup()
         corner.addChild(legend(str(obj.ColourBy), largest(margin), obj.Units[chosen]))
@@ -72,17 +75,5 @@ def _way(points: list[tuple[float, ...]], margin: Any) -> coin.SoSeparator:
     coordinates.point.setValues(0, len(points), points)
     lines.coordIndex.setValues(0, len(points) + 1, [*range(len(points)), -1])
     for child in (light, style, colour, binding, coordinates, lines):
-        separator.addChild(child)
-    return separator
-
-
-def _mark(point: tuple[float, ...], margin: float) -> coin.SoSeparator:
-    """The point with the least margin, seen through the part as well."""
-    separator, light, colour, style = coin.SoAnnotation(), coin.SoLightModel(), coin.SoBaseColor(), coin.SoDrawStyle()
-    light.model, style.pointSize = coin.SoLightModel.BASE_COLOR, _MARK_SIZE
-    colour.rgb = OUT if margin < 0.0 else (0.1, 0.2, 0.8)
-    coordinates, node = coin.SoCoordinate3(), coin.SoPointSet()
-    coordinates.point.setValues(0, 1, [point])
-    for child in (light, colour, style, coordinates, node):
         separator.addChild(child)
     return separator

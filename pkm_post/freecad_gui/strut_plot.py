@@ -2,7 +2,8 @@
 """Strut plot: lengths and speeds of the six struts over time, with a cursor; a click goes there.
 
 A simulation enters. The curves are drawn once for each size of the widget, from the least and largest value in each
-column of pixels, so that neither long motions nor the moving cursor cost anything.
+column of pixels, so that long motions cost no more than short ones; when the cursor moves, the strips are painted anew
+where it was and where it is.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_app.simulated_motion import Simulation
 from pkm_post.geometry.vectors import Array
 
 translate = FreeCAD.Qt.translate
@@ -22,6 +23,8 @@ translate = FreeCAD.Qt.translate
 _COLOURS = ("#3465a4", "#cc0000", "#4e9a06", "#f57900", "#75507b", "#8f5902")
 _MARGIN_LEFT, _MARGIN, _GAP = 64, 6, 18
 _CURSOR, _LIMIT = "#204a87", "#a40000"
+_STRIP = 5
+"""Pixels: the width of what is painted anew for the cursor."""
 
 
 class StrutPlot(QtWidgets.QWidget):
@@ -35,14 +38,34 @@ class StrutPlot(QtWidgets.QWidget):
     def __init__(self, simulation: Simulation, go_to: Callable[[float], None]) -> None:
         super().__init__()
         self._simulation, self._go_to = simulation, go_to
-        self._seconds = 0.0
+        self._seconds, self._override = 0.0, 1.0
         self._curves: Any = None
         self.setMinimumSize(260, 150)
 
+    def take(self, simulation: Simulation) -> None:
+        """Draw another simulation."""
+        self._simulation = simulation
+        self._draw_anew()
+
+    def show_override(self, share: float) -> None:
+        """Draw the speeds at a feed override; 1 is as planned."""
+        self._override = share
+        self._draw_anew()
+
     def show_time(self, seconds: float) -> None:
         """Move the cursor."""
-        self._seconds = seconds
+        before, self._seconds = self._cursor(), seconds
+        for x in {before, self._cursor()}:
+            self.update(x - _STRIP // 2, 0, _STRIP, self.height())
+
+    def _draw_anew(self) -> None:
+        self._curves = None
         self.update()
+
+    def _cursor(self) -> int:
+        """Where the cursor is, pixels from the left."""
+        share = self._seconds / max(self._simulation.duration, 1e-9)
+        return _MARGIN_LEFT + round(share * (self._width() - 1))
 
     def resizeEvent(self, _event: Any) -> None:
         """The curves are those of another size."""
@@ -61,7 +84,7 @@ class StrutPlot(QtWidgets.QWidget):
         painter = QtGui.QPainter(self)
         painter.drawPixmap(0, 0, self._curves)
         painter.setPen(QtGui.QPen(QtGui.QColor(_CURSOR), 2))
-        x = _MARGIN_LEFT + round(self._seconds / max(self._simulation.duration, 1e-9) * (self._width() - 1))
+        x = self._cursor()
         painter.drawLine(x, _GAP, x, self.height() - _MARGIN)
         painter.end()
 
@@ -77,7 +100,8 @@ class StrutPlot(QtWidgets.QWidget):
         machine = self._simulation.machine
         limits = machine.strut_stroke, (-machine.strut_speed, machine.strut_speed)
         titles = translate("PKM_Simulate", "Lengths in mm"), translate("PKM_Simulate", "Speeds in mm/s")
-        for number, (values, ends, title) in enumerate(zip((lengths, speeds), limits, titles, strict=True)):
+        curves = lengths, speeds * self._override
+        for number, (values, ends, title) in enumerate(zip(curves, limits, titles, strict=True)):
             top = _GAP + number * (height + _GAP)
             area = QtCore.QRect(_MARGIN_LEFT, top, self._width(), height)
             _draw_curves(painter, area, values, ends, title)

@@ -45,10 +45,12 @@ class CamMenu:
 
 
 def install() -> None:
-    """Register workbench and commands; called once from InitGui.py."""
+    """Register workbench, commands and preferences; called once from InitGui.py."""
+    from pkm_post.freecad_gui import preferences
     from pkm_post.freecad_gui.commands import register
 
     register()
+    preferences.install()
     FreeCADGui.addWorkbench(PkmPostWorkbench())
     CamMenu.registered.append(CamMenu())
     FreeCADGui.addWorkbenchManipulator(CamMenu.registered[-1])

@@ -2,6 +2,7 @@
 """Jobs and documents are posted or refused as a whole, from Python and by CAM's own post command."""
 
 import dataclasses
+import re
 
 import FreeCAD as App
 import Path.Main.Job
@@ -10,9 +11,12 @@ from cam_jobs import FIVE_AXIS, add_operation, new_job
 from Path.Post.Processor import PostProcessorFactory
 from Path.Post.Utils import FilenameGenerator
 
+import pkm_post
 from pkm_post.freecad_app.arguments import job_arguments
 from pkm_post.freecad_app.post_job import find_job, post_as_the_job_says, post_document, post_job
+from pkm_post.freecad_app.progress import Progress, Stopped
 from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.machine_file import find_machine
 from pkm_post.model import Refused
 from pkm_post.pipeline import Options
 
@@ -150,12 +154,21 @@ def test_job_by_name_or_label(ready):
 
 
 @pytest.fixture
-def cam_post(ready, tmp_path):
-    """What CAM makes to post the job, which has a place for its output."""
-    ready.PostProcessor = "hexapod_pmac"
-    ready.PostProcessorOutputFile = str(tmp_path / "made by cam.ngc")
-    ready.PostProcessorArgs = "--tip-tolerance 0.001 --axis-tolerance 0.001"
-    return PostProcessorFactory.get_post_processor(ready, "hexapod_pmac")
+def cam_post_of(tmp_path):
+    """What CAM makes to post a job, which has a place for its output, with arguments."""
+
+    def made(job, arguments):
+        job.PostProcessor = "hexapod_pmac"
+        job.PostProcessorOutputFile = str(tmp_path / "made by cam.ngc")
+        job.PostProcessorArgs = arguments
+        return PostProcessorFactory.get_post_processor(job, "hexapod_pmac")
+
+    return made
+
+
+@pytest.fixture
+def cam_post(ready, cam_post_of):
+    return cam_post_of(ready, "--tip-tolerance 0.001 --axis-tolerance 0.001")
 
 
 def name_by_cam(job):
@@ -209,3 +222,53 @@ def test_arguments_for_another_post_processor_are_left_alone(ready, tmp_path):
     assert post_as_the_job_says(ready, tmp_path).files
     ready.PostProcessor = "hexapod_pmac"
     assert refusal(post_as_the_job_says, ready, tmp_path) == ["J117"]
+
+
+def in_parts(folder):
+    """A machine whose controller can hold a part of a small program only."""
+    text = find_machine(MACHINE).read_text(encoding="utf-8")
+    machine = folder / "small.toml"
+    machine.write_text(re.sub(r"memory_words = \d+", "memory_words = 1300", text))
+    return machine
+
+
+def test_cam_gets_the_first_part_and_the_user_is_told_of_the_others(job, cam_post_of, tmp_path, monkeypatch):
+    told = []
+    monkeypatch.setattr(App.Console, "PrintMessage", told.append)
+    add_operation(job, [*FIVE_AXIS, "G4 P0.5", *FIVE_AXIS])
+    ((_, text),) = cam_post_of(job, f"--machine {in_parts(tmp_path)}").export()
+    others = sorted(path.name for path in tmp_path.glob("made by cam-part*"))
+    assert others
+    assert f"; part 1 of {len(others) + 1}" in text
+    assert ", ".join(["made by cam.ngc", *others]) in "".join(told)
+
+
+def test_a_stopped_post_gives_cam_nothing(job, cam_post_of, tmp_path, monkeypatch):
+    def stop(_bar):
+        raise Stopped("stopped")
+
+    add_operation(job)
+    monkeypatch.setattr(Progress, "step", stop)
+    assert cam_post_of(job, "").export() == []
+    assert list(tmp_path.iterdir()) == []
+
+
+# From macros
+
+
+def test_one_call_posts_jobs_documents_and_part_programs(ready, tmp_path):
+    document = tmp_path / "part.FCStd"
+    ready.Document.saveAs(str(document))
+    program = tmp_path / "lines.ngc"
+    program.write_text("T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG1 X10 F600\nM5\nM30\n")
+    steps = []
+    (of_job,) = pkm_post.post(ready, MACHINE, tmp_path / "job", options=AT_FIXTURE)
+    (of_document,) = pkm_post.post(document, MACHINE, tmp_path / "document", job_name="Job")
+    (of_program,) = pkm_post.post(
+        str(program), MACHINE, tmp_path, tool_lengths={1: 60.0}, progress=lambda step, share: steps.append(step)
+    )
+    assert of_job.program.read_bytes() == of_document.program.read_bytes()
+    assert of_program.program == tmp_path / "lines.pmc"
+    assert (steps[0], steps[-2], steps[-1]) == ("reading", "report", "")
+    with pytest.raises(ValueError, match="txt"):
+        pkm_post.post(tmp_path / "a.txt", MACHINE, tmp_path)

@@ -103,6 +103,29 @@ def test_a_job_in_reach_has_no_problem_and_one_out_of_reach_stops_where_it_leave
         assert not outside[0]
 
 
+def test_a_problem_is_worst_behind_its_beginning_where_its_tip_is(job):
+    job.PostProcessorArgs = "--machine example_6tps --work-offset=500,0,200"
+    found = simulate_job(job)
+    for problem in found.problems:
+        assert problem.time <= problem.worst_time <= found.duration
+        tip, *_ = found.pose_at(np.array([problem.worst_time]))
+        block = found.block_at(problem.worst_time)
+        begins = found.block_before(problem.worst_time)
+        step = (found.next_block(begins) - begins) / 200 * found.trajectory.feed[block]
+        assert np.linalg.norm(tip[0] - problem.worst_tip) <= max(step, TOLERANCE)
+        assert found.trajectory.place(block) == problem.worst_place
+
+
+def test_operations_begin_where_the_one_before_ends(simulation):
+    assert simulation.operation_begins(0) == (0, 0.0)
+    row, begins = simulation.operation_begins(1)
+    assert simulation.trajectory.place(row - 1).operation == "Arcs"
+    assert simulation.trajectory.place(row).operation == "Tilted"
+    moving, dwelling = simulation.operation_times()
+    assert begins == pytest.approx(moving[0], abs=1e-9)
+    assert dwelling.tolist() == [0.0, 0.0]
+
+
 def test_at_a_tool_change_the_platform_stands_and_the_tip_jumps(job):
     operation = add_operation(job, ["G0 X0 Y0 Z30", "G1 X10 F20"], "Other tool")
     operation.ToolController = add_tool_controller(job, 2)  # gauge length 102, that of the first is 120

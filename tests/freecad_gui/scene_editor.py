@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The program editor: opened for a program object, errors planted, text replaced, saved, decoded and posted."""
 
+import itertools
+import time
 from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, answer, main, new_document, picture, press, step, until
+from gui import FOLDER, answer, main, new_document, picture, press, settle, step, until
+from PySide import QtCore, QtGui, QtWidgets
 
 PROGRAM = """G21 G90 G17
 T1 M6
@@ -60,7 +63,8 @@ def program_is_opened_and_its_editor_shows_a_block():
 @step
 def editor_finds_planted_errors_while_they_are_typed():
     editor = _editor()
-    editor.body.text.replace_text(PROGRAM.replace("X10 Y4", "X1..5 Y4").replace("G0 Z30\nM2", "G0 Q\nM2"))
+    editor.body.text.selectAll()
+    editor.body.text.insertPlainText(PROGRAM.replace("X10 Y4", "X1..5 Y4").replace("G0 Z30\nM2", "G0 Q\nM2"))
     findings = _findings(editor)
     underlined = [each.cursor.selectedText() for each in editor.body.text.extraSelections()[1:]]
     editor.body.findings.itemClicked.emit(editor.body.findings.item(1))
@@ -78,14 +82,24 @@ def editor_replaces_renumbers_and_saves():
     bar.wanted.setText("y4")
     found = [bar.find_next() and editor.body.text.current_line() for _ in range(3)]
     bar.instead.setText("Y8")
-    replaced = bar.replace_all()
+    backwards = bar.find_previous() and editor.body.text.current_line()
+    bar.replace_all()
+    replaced = editor.body.size.text()
     editor.body.renumber()
     title = editor.windowTitle()
     saved = editor.save()
     text = Path(obj.File).read_text(encoding="ascii")
     ys = sorted({each.Parameters["Y"] for each in obj.Path.Commands if "Y" in each.Parameters})
     bar.hide()
-    return {"found": found, "replaced": replaced, "title": title, "saved": saved, "text": text, "ys": ys}
+    return {
+        "found": found,
+        "backwards": backwards,
+        "replaced": replaced,
+        "title": title,
+        "saved": saved,
+        "text": text,
+        "ys": ys,
+    }
 
 
 @step
@@ -94,6 +108,7 @@ def editor_colours_the_lines_in_sight_of_a_large_file():
     before, large = editor.body.file, editor.body.file.with_name("large.apt")
     large.write_text("UNITS/MM\nFEDRAT/600,MMPM\n" + "GOTO/1,2,3\n" * 19998, encoding="ascii")
     editor.open_file(large)
+    until(lambda: not editor.body.busy())
     last = editor.body.text.document().findBlockByNumber(19999)
     until(lambda: editor.body.text.document().firstBlock().layout().formats())
     out_of_sight = len(last.layout().formats())
@@ -104,6 +119,90 @@ def editor_colours_the_lines_in_sight_of_a_large_file():
     told = {"out_of_sight": out_of_sight, "in_sight": in_sight, "size": editor.body.size.text()}
     told["back"] = editor.open_file(before)
     return told
+
+
+def _widest_gap(call, done):
+    """Milliseconds that the window had no turn at the most, from a call until it is done; for the log.
+
+    By the clock, and by the processor time of the window's thread, which other programs do not prolong.
+    """
+    turns = [(time.perf_counter(), time.thread_time())]
+    timer = QtCore.QTimer()
+    timer.timeout.connect(lambda: turns.append((time.perf_counter(), time.thread_time())))
+    timer.start(0)
+    QtCore.QTimer.singleShot(0, call)
+    settle()
+    until(done, 60)
+    return [
+        round(1000 * max(after - before for before, after in itertools.pairwise(clock)))
+        for clock in zip(*turns, strict=True)
+    ]
+
+
+@step
+def editor_leaves_the_window_its_turns_in_100000_lines():
+    editor = _editor()
+    body, before, large = editor.body, editor.body.file, editor.body.file.with_name("long.ngc")
+    heading = ["G21 G90 G17", "T1 M6", "S9000 M3", "G0 X0 Y0 Z30", "G1 Z5 F600"]
+    moves = [f"G1 X{row % 500 / 10:.1f} Y{row // 500 / 10:.1f}" for row in range(99995)]
+    large.write_text("\n".join([*heading, *moves]), encoding="ascii")
+    body.find_bar.wanted.setText("G1 X7.0 ")
+    body.find_bar.instead.setText("G1 X7.5 ")
+    told, busy = {}, {}
+
+    def timed(name, call):
+        def begin():
+            call()
+            busy[name] = body.text.edits.busy()
+
+        told[name] = _widest_gap(begin, lambda: name in busy and not body.busy())
+        return body.text.toPlainText().split("\n")
+
+    lines = {"opened": timed("open", lambda: editor.open_file(large))}
+    lines["replaced"] = timed("replace all", body.find_bar.replace_all)
+    lines["numbered"] = timed("renumber", body.renumber)
+    lines["undone"] = timed("undo", body.text.undo)
+    lines["redone"] = timed("redo", body.text.redo)
+    lines["undone twice"] = timed("undo again", body.text.undo) and timed("undo replacing", body.text.undo)
+    body.text.jump(50000)
+    timed("type", lambda: body.text.insertPlainText("G1 X1\n"))
+    timed("find nothing", body.find_bar.find_next)
+    timed("save", editor.save)
+    saved, size = large.read_text(encoding="ascii").split("\n"), body.size.text()
+    editor.open_file(before)
+    return {
+        "gaps": told,
+        "in slices": [name for name, is_busy in busy.items() if is_busy],
+        "opened": lines["opened"] == [*heading, *moves],
+        "replaced": [lines["replaced"].count("G1 X7.5 Y0.0"), lines["replaced"][5 + 70]],
+        "numbered": [lines["numbered"][0], lines["numbered"][-1]],
+        "undone": [lines["undone"] == lines["replaced"], lines["undone twice"] == lines["opened"]],
+        "redone": lines["redone"] == lines["numbered"],
+        "saved": [len(saved), saved[49999]],
+        "size": size,
+    }
+
+
+@step
+def editor_opens_what_is_dropped():
+    editor = _editor()
+    before, dropped = editor.body.file, editor.body.file.with_name("dropped.ngc")
+    dropped.write_text("G0 X1 Y2 Z3\n", encoding="ascii")
+    data = QtCore.QMimeData()
+    data.setUrls([QtCore.QUrl.fromLocalFile(str(dropped.with_name(name))) for name in ("a.png", "dropped.ngc")])
+    _drop(editor.body.text.viewport(), data)
+    settle()
+    text = editor.body.text.toPlainText()
+    editor.open_file(before)
+    return {"text": text, "keys": sorted(action.shortcut().toString() for action in editor.actions())}
+
+
+def _drop(widget, data):
+    """Drag something into a widget and drop it there, as the window system would tell it."""
+    place, copy = QtCore.QPoint(5, 5), QtCore.Qt.DropAction.CopyAction
+    button, keys = QtCore.Qt.MouseButton.LeftButton, QtCore.Qt.KeyboardModifier.NoModifier
+    QtWidgets.QApplication.sendEvent(widget, QtGui.QDragEnterEvent(place, copy, data, button, keys))
+    QtWidgets.QApplication.sendEvent(widget, QtGui.QDropEvent(QtCore.QPointF(place), copy, data, button, keys))
 
 
 @step

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine, Reach and the player from their buttons."""
+"""Machine and Reach from their buttons."""
 
 import os
-import time
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, main, picture_of_all, press, settle, step
+from gui import main, picture_of_all, press, settle, step
 from PySide import QtWidgets
 
 
@@ -83,57 +82,6 @@ def reach_from_its_button():
     document.undo()
     told["after_undo"] = found.ColourBy
     return told
-
-
-@step
-def simulation_from_its_button():
-    document = FreeCAD.getDocument("hexapod")
-    machine = document.getObject("Machine")
-    before = machine.ViewObject.Proxy.scene._platform.matrix.getValue().getValue()
-    press("PKM_Simulate", document.getObject("Job"))
-    player = _player()
-    told = {"duration": player.simulation.duration, "told": player.told.text()}
-    player.factor.setCurrentText("2x")
-    player.toggle()
-    until = time.monotonic() + 1.0
-    while time.monotonic() < until:
-        settle()
-    player.toggle()
-    told["played"] = player.seconds
-    player.step()
-    told["stepped"] = player.simulation.next_block(told["played"]) == player.seconds
-    player.slider.setValue(4000)
-    told["scrubbed"] = player.seconds
-    tip = player.simulation.pose_at([4.0])[0][0]
-    told["machine_is_there"] = bool(abs(tip[2] + 120 + 80 - _highest(machine.ViewObject.Proxy.scene._platform)) < 1.0)
-    frames = FOLDER / "frames"
-    frames.mkdir()
-    player.factor.setCurrentText("10x")
-    player.write_pictures(frames, per_second=2, width=320, height=240)
-    told["pictures"] = sorted(os.listdir(frames))
-    document.getObject("Reach").ViewObject.Visibility = False
-    told["saved"] = picture_of_all("simulation.png")
-    player.close()
-    settle()
-    after = machine.ViewObject.Proxy.scene._platform.matrix.getValue().getValue()
-    told["machine_is_back"] = after == before
-    press("PKM_Simulate", document.getObject("Job"))
-    document.removeObject("Machine")
-    settle()
-    told["closed_with_its_machine"] = _player() is None
-    document.getObject("Job").PostProcessorArgs = "--work-offset=500,0,200"
-    press("PKM_Simulate", document.getObject("Job"))
-    player = _player()
-    player.advance(1e6)
-    told["problem"], told["stopped_at"] = player.problem.text, player.seconds == player.problem.time
-    FreeCAD.closeDocument("hexapod")
-    settle()
-    told["closed_with_its_document"] = _player() is None
-    return told
-
-
-def _player():
-    return FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
 
 
 main()

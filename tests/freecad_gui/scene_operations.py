@@ -12,9 +12,13 @@ from PySide import QtCore, QtGui
 
 @step
 def mirror_and_rotate_from_their_buttons():
+    from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
     document = new_document("gui")
     for command in ("PKM_Mirror", "PKM_Rotate"):
         press(command, document.getObject("Custom"))
+        SymmetryPanel.opened.accept()
+        settle()
     made = document.getObject("Job").Operations.Group[1:]
     return {
         "labels": [item.Label for item in made],

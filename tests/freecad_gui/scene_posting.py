@@ -1,28 +1,253 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Posting from the button: files and the message, or the reasons and no file."""
+"""Posting from the panel: files and the certificate, or the reasons and no file; what the job and the user keep."""
 
-from gui import FOLDER, answer, main, new_document, press, step
+import time
+
+import FreeCAD
+import FreeCADGui
+from gui import FOLDER, answer, main, new_document, picture, press, select, settle, step, until
+from PySide import QtCore, QtWidgets
+
+LONG = ["G0 X0 Y0 Z30", *(f"G1 X{x % 2 * 20} Y{x * 0.02} Z20 F30" for x in range(400)), "G0 Z30"]
+
+
+class Panel:
+    """The panel that is open, by its widgets."""
+
+    def __init__(self):
+        from pkm_post.freecad_gui.post_choices import PostChoices
+        from pkm_post.freecad_gui.post_outcome import PostOutcome
+        from pkm_post.freecad_gui.post_panel import NAME
+
+        self.form = FreeCADGui.getMainWindow().findChild(QtWidgets.QWidget, NAME)
+        inside = self.form.findChildren(QtWidgets.QWidget)
+        (self.choices,) = [each for each in inside if isinstance(each, PostChoices)]
+        (self.outcome,) = [each for each in inside if isinstance(each, PostOutcome)]
+        self.buttons = {each.text(): each for each in inside if isinstance(each, QtWidgets.QPushButton)}
+
+    def post(self):
+        """Press the button and wait for the end; the longest time for which the window did nothing, ms."""
+        clock = _Clock()
+        self.buttons["Post"].click()
+        self.wait()
+        return clock.longest()
+
+    def wait(self):
+        return until(self.buttons["Post"].isEnabled, 60)
+
+    def rows(self):
+        listed = self.outcome.diagnostics
+        return [listed.item(row).text() for row in range(listed.count())]
+
+
+class _Clock:
+    """Measures how long the window does nothing."""
+
+    def __init__(self):
+        self._timer, self._last, self._longest = QtCore.QTimer(), time.perf_counter(), 0.0
+        self._timer.timeout.connect(self._tick)
+        self._timer.start(5)
+
+    def _tick(self):
+        now = time.perf_counter()
+        self._longest, self._last = max(self._longest, now - self._last), now
+
+    def longest(self):
+        self._timer.stop()
+        return round(1000 * self._longest)
+
+
+def saved(name):
+    document, folder = new_document(name), FOLDER / name
+    folder.mkdir()
+    document.saveAs(str(folder / f"{name}.FCStd"))
+    return document, folder
+
+
+def names_in(folder):
+    return sorted(file.name for file in folder.iterdir())
+
+
+def open_panel(document):
+    press("PKM_Post", document.getObject("Job"))
+    return Panel()
+
+
+def typed(field, text):
+    """Type into a field with a unit, and leave it."""
+    field.selectAll()
+    field.findChild(QtWidgets.QLineEdit).setText(text)
+    field.editingFinished.emit()
+
+
+def close():
+    FreeCADGui.Control.closeDialog()
+    settle()
 
 
 @step
-def post_command_writes_and_tells():
-    document, told = new_document("gui"), []
-    document.saveAs(str(FOLDER / "gui.FCStd"))
-    answer(told)
-    press("PKM_Post", document.getObject("Job"))
-    return {"files": sorted(file.name for file in FOLDER.glob("gui*")), "told": told}
+def posting_shows_the_certificate():
+    document, folder = saved("gui")
+    panel = open_panel(document)
+    panel.choices.also["csv"].setChecked(True)
+    typed(panel.choices.tip_tolerance, "0.002 mm")
+    before = document.UndoCount
+    longest = panel.post()
+    found = {
+        "steps to undo": document.UndoCount - before,
+        "files": names_in(folder),
+        "verdict": panel.outcome.verdict.text(),
+        "findings": panel.outcome.findings.rowCount(),
+        "picture": panel.outcome.picture.isVisible(),
+        "drawn": picture("post_panel.png"),
+        "longest": longest,
+    }
+    close()
+    return found
+
+
+@step
+def job_keeps_what_was_chosen():
+    document = FreeCAD.getDocument("gui")
+    job, folder = document.getObject("Job"), FOLDER / "gui"
+    kept = [job.PostProcessor, job.PostProcessorArgs, job.PostProcessorOutputFile]
+    ours = (folder / "gui.pmc").read_bytes()
+    (folder / "gui.pmc").unlink()
+    FreeCADGui.activateWorkbench("CAMWorkbench")
+    FreeCAD.setActiveDocument("gui")
+    press("CAM_Post", job)
+    same = (folder / "gui.pmc").read_bytes() == ours
+    shown = open_panel(document)
+    again = {"text": shown.choices.text(), "folder": shown.choices.folder.text()}
+    close()
+    document.undo()
+    document.undo()
+    return {"kept": kept, "same": same, "again": again, "undone": job.PostProcessorArgs}
 
 
 @step
 def refused_job_is_told_and_leaves_nothing():
-    document, told, folder = new_document("refused"), [], FOLDER / "refused"
-    folder.mkdir()
-    document.saveAs(str(folder / "refused.FCStd"))
+    document, folder = saved("refused")
     document.getObject("Custom").Gcode = ["G0 X0 Y0 Z30", "G1 X10 F0"]
     document.recompute()
-    answer(told)
-    press("PKM_Post", document.getObject("Job"))
-    return {"files": [file.name for file in folder.iterdir()], "told": told}
+    panel = open_panel(document)
+    panel.post()
+    FreeCADGui.Selection.clearSelection()
+    panel.outcome.diagnostics.itemClicked.emit(panel.outcome.diagnostics.item(0))
+    selected = [each.Name for each in FreeCADGui.Selection.getSelection()]
+    found = {"files": names_in(folder), "told": panel.rows(), "selected": selected, "drawn": picture("refused.png")}
+    close()
+    return found
+
+
+@step
+def arguments_without_a_meaning_are_told():
+    document, folder = saved("meaningless")
+    panel = open_panel(document)
+    panel.choices.more.setText("--no-such-argument 'and a quote")
+    panel.post()
+    found = {"files": names_in(folder), "told": panel.rows(), "kept": document.getObject("Job").PostProcessorArgs}
+    close()
+    return found
+
+
+@step
+def cancelled_job_leaves_nothing():
+    document, folder = saved("cancelled")
+    document.getObject("Custom").Gcode = LONG
+    document.recompute()
+    panel = open_panel(document)
+    panel.buttons["Post"].click()
+    enabled = panel.buttons["Cancel"].isEnabled()
+    panel.buttons["Cancel"].click()
+    ended = panel.wait()
+    found = {
+        "files": names_in(folder),
+        "told": panel.outcome.verdict.text(),
+        "ended": ended,
+        "could": enabled,
+        "can": panel.buttons["Cancel"].isEnabled(),
+    }
+    close()
+    return found
+
+
+@step
+def editor_asks_in_the_same_fields():
+    from pkm_post.freecad_gui.editor import open_editor
+    from pkm_post.freecad_gui.post_choices import PostChoices
+
+    file, ended, told = FOLDER / "lines" / "lines.ngc", [], []
+    file.parent.mkdir()
+    file.write_text("T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG1 X10 F600\nM5\nM30\n")
+
+    def fill():
+        dialog = QtWidgets.QApplication.activeModalWidget()
+        (fields,) = [each for each in dialog.findChildren(QtWidgets.QWidget) if isinstance(each, PostChoices)]
+        fields.work_offset.setEditText("0,0,250")
+        fields.folder.setText(str(FOLDER / "lines" / "out"))
+        answer(told)
+        dialog.accept()
+
+    editor = open_editor()
+    editor.open_file(file)
+    editor.posting.ended.connect(lambda: ended.append(True))
+    QtCore.QTimer.singleShot(300, fill)
+    editor.post()
+    until(lambda: ended, 60)
+    editor.close()
+    return {"files": names_in(FOLDER / "lines" / "out"), "told": told}
+
+
+@step
+def preferences_are_what_a_new_job_is_offered():
+    from pkm_post.freecad_gui.preferences import PostPreferences
+
+    page = PostPreferences()
+    page.loadSettings()
+    typed(page.choices.axis_tolerance, "0.005 deg")
+    page.choices.spin.setCurrentIndex(page.choices.spin.findData("y-in-plane"))
+    typed(page.choices.heading, "30 deg")
+    page.choices.folder.setText(str(FOLDER / "elsewhere"))
+    page.saveSettings()
+    document, _ = saved("new")
+    job = document.getObject("Job")
+    job.PostProcessorArgs = ""
+    panel = open_panel(document)
+    offered = {"text": panel.choices.text(), "folder": panel.choices.folder.text()}
+    close()
+    from pkm_post.freecad_app.arguments import own_arguments
+
+    return {"offered": offered, "headless": own_arguments(job).axis_tolerance}
+
+
+@step
+def preferences_have_a_page():
+    seen = []
+
+    def look():
+        dialog = QtWidgets.QApplication.activeModalWidget()
+        if dialog is None:
+            QtCore.QTimer.singleShot(100, look)
+            return
+        settle()
+        seen.append(picture("preferences.png"))
+        seen.append([each.text() for each in dialog.findChildren(QtWidgets.QLabel) if "post panel" in each.text()])
+        dialog.reject()
+
+    QtCore.QTimer.singleShot(200, look)
+    FreeCADGui.showPreferences("PKM Post", 0)
+    return {"seen": seen}
+
+
+@step
+def panel_closes_with_its_job():
+    document, _ = saved("deleted")
+    open_panel(document)
+    select(document.getObject("Job"))
+    FreeCAD.closeDocument(document.Name)
+    settle()
+    return {"open": bool(FreeCADGui.Control.activeDialog())}
 
 
 main()

@@ -29,7 +29,8 @@ def test_editor_finds_planted_errors(session):
 def test_editor_replaces_renumbers_and_saves(session):
     found = session["editor_replaces_renumbers_and_saves"]
     assert found["found"] == [6, 7, 6]
-    assert (found["replaced"], found["title"], found["saved"]) == (2, "program.ngc * - PKM Post", True)
+    assert found["backwards"] == 7
+    assert (found["replaced"], found["title"], found["saved"]) == ("2 replaced", "program.ngc * - PKM Post", True)
     assert found["text"].startswith("N10 G21 G90 G17\nN20 T1 M6\n")
     assert found["ys"] == [0.0, 8.0]
 
@@ -38,6 +39,23 @@ def test_editor_colours_only_the_lines_in_sight(session):
     found = session["editor_colours_the_lines_in_sight_of_a_large_file"]
     assert (found["out_of_sight"], found["in_sight"]) == (0, 7)  # GOTO / 1 , 2 , 3
     assert (found["size"], found["back"]) == ("19998 blocks, 0 arcs, 0.0 mm", True)
+
+
+def test_100000_lines_are_loaded_and_changed_in_slices_and_undone_in_one_step(session):
+    found = session["editor_leaves_the_window_its_turns_in_100000_lines"]
+    print("widest gaps between two turns of the window, ms by the clock and of the processor:", found["gaps"])
+    assert found["in slices"] == ["open", "replace all", "renumber", "undo", "redo", "undo again", "undo replacing"]
+    assert found["opened"]
+    assert found["replaced"] == [2, "G1 X7.5 Y0.0"]
+    assert found["numbered"] == ["N10 G21 G90 G17", "N1000000 G1 X49.4 Y19.9"]
+    assert (found["undone"], found["redone"]) == ([True, True], True)
+    assert found["saved"] == [100001, "G1 X1"]
+
+
+def test_editor_opens_a_part_program_that_is_dropped_among_other_files(session):
+    found = session["editor_opens_what_is_dropped"]
+    assert found["text"] == "G0 X1 Y2 Z3\n"
+    assert {"Ctrl+O", "Ctrl+S", "Ctrl+F", "F3", "Shift+F3"} <= set(found["keys"])
 
 
 def test_editor_decodes_into_a_job_and_posts(session):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Posting from the button in a FreeCAD with a window."""
+"""Posting from the panel in a FreeCAD with a window."""
+
+import shlex
 
 import pytest
 
@@ -9,14 +11,70 @@ def session(scene):
     return scene("posting")
 
 
-def test_post_command_writes_beside_the_document_and_says_so(session):
-    found = session["post_command_writes_and_tells"]
-    assert {"gui.pmc", "gui.pkmt", "gui-setup.pmc", "gui-report.json"} <= set(found["files"])
-    assert len(found["told"]) == 1
-    assert "gui.pmc" in found["told"][0]
+def test_panel_writes_and_shows_the_certificate(session):
+    found = session["posting_shows_the_certificate"]
+    assert found["files"] == [
+        "gui-report.json", "gui-report.png", "gui-setup.pmc", "gui.FCStd", "gui.csv", "gui.pkmt", "gui.pmc",
+    ]  # fmt: skip
+    assert found["verdict"].startswith("Certified")
+    assert found["findings"] >= 11  # rows of the certificate
+    assert found["picture"]
+    assert found["steps to undo"] == 1
+    assert session.drew("post_panel.png")
+
+
+def test_job_keeps_what_was_chosen_and_cam_posts_the_same(session):
+    found = session["job_keeps_what_was_chosen"]
+    name, text, program = found["kept"]
+    assert name == "hexapod_pmac"
+    assert {"--tip-tolerance=0.002", "--also=csv", "--work-offset=0,0,250"} <= set(shlex.split(text))
+    assert program.endswith("gui.pmc")
+    assert found["same"]
+    assert found["again"] == {"text": text, "folder": str(session.folder / "gui")}
+    assert found["undone"] == "--work-offset=0,0,250"
 
 
 def test_refused_job_is_told_and_leaves_nothing(session):
     found = session["refused_job_is_told_and_leaves_nothing"]
     assert found["files"] == ["refused.FCStd"]
     assert "J105" in found["told"][0]
+    assert found["selected"] == ["Custom"]
+
+
+def test_arguments_without_a_meaning_are_told_and_not_kept(session):
+    found = session["arguments_without_a_meaning_are_told"]
+    assert found["files"] == ["meaningless.FCStd"]
+    assert "J117" in found["told"][0]
+    assert found["kept"] == "--work-offset=0,0,250"
+
+
+def test_cancelled_job_leaves_nothing(session):
+    found = session["cancelled_job_leaves_nothing"]
+    assert found["files"] == ["cancelled.FCStd"]
+    assert found["told"].startswith("Stopped")
+    assert (found["could"], found["ended"], found["can"]) == (True, True, False)
+
+
+def test_editor_asks_in_the_same_fields(session):
+    found = session["editor_asks_in_the_same_fields"]
+    assert {"lines.pmc", "lines.pkmt"} <= set(found["files"])
+    assert "lines.pmc" in found["told"][0]
+
+
+def test_preferences_are_what_a_new_job_is_offered_and_nothing_else(session):
+    found = session["preferences_are_what_a_new_job_is_offered"]
+    assert {"--tip-tolerance=0.001", "--axis-tolerance=0.005", "--spin=y-in-plane=30"} <= set(
+        shlex.split(found["offered"]["text"])
+    )
+    assert found["offered"]["folder"] == str(session.folder / "elsewhere")
+    assert found["headless"] == 0.001
+
+
+def test_preferences_have_a_page(session):
+    drawn, labels = session["preferences_have_a_page"]["seen"]
+    assert drawn
+    assert len(labels) == 1
+
+
+def test_panel_closes_with_its_job(session):
+    assert not session["panel_closes_with_its_job"]["open"]

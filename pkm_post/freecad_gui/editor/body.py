@@ -7,6 +7,7 @@ cursor on the path of its program object are shown.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import FreeCAD
@@ -26,6 +27,8 @@ translate = FreeCAD.Qt.translate
 
 _NEW = "new.ngc"
 """The name of a text without a file: it is taken for G-code."""
+_NUMBERED = re.compile(r"^[ \t]*/?[ \t]*N\d", re.M)
+"""The beginning of a block that ``renumbered`` gave a number."""
 
 
 class Body(QtWidgets.QWidget):
@@ -46,14 +49,18 @@ class Body(QtWidgets.QWidget):
         self.axis_words = QtWidgets.QComboBox(self)
         self.axis_words.addItems(list(AXIS_WORDS))
         self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
+        self._progress = QtWidgets.QProgressBar(self)
+        self._progress.hide()
         layout = QtWidgets.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.find_bar, self.text, self.size, self.findings):
+        for widget in (self.find_bar, self.text, self._progress, self.size, self.findings):
             layout.addWidget(widget)
         self.checker = Checker(self._text_to_check, self)
         self.checker.checked.connect(self._tell)
         self.checker.missing.connect(self.size.setText)
         self.findings.chosen.connect(self._jump)
+        self.find_bar.replaced.connect(self._tell_replaced)
+        self.text.edits.progressed.connect(self._tell_progress)
         self.text.textChanged.connect(self._changed)
         self.text.cursorPositionChanged.connect(self._show_block)
         self.axis_words.currentTextChanged.connect(self._read_otherwise)
@@ -83,10 +90,21 @@ class Body(QtWidgets.QWidget):
 
     def renumber(self) -> None:
         """Give each block a line number; CL data has none."""
-        if self.language() is Language.GCODE:
-            line = self.text.current_line()
-            self.text.replace_text(renumbered(self.text.toPlainText()))
-            self.text.jump(line)
+        if self.language() is not Language.GCODE:
+            return
+        first = step = 10
+
+        def changed(lines: str) -> str:
+            nonlocal first
+            text = renumbered(lines, first, step)
+            first += step * len(_NUMBERED.findall(text))
+            return text
+
+        self.text.edits.change(changed)
+
+    def busy(self) -> bool:
+        """Whether the text is being changed, or something of it is still to be told."""
+        return self.text.edits.busy() or self.checker.busy()
 
     def _text_to_check(self) -> tuple[str, str, Reading]:
         return self.text.toPlainText(), self.name(), Reading(self.axis_words.currentText())
@@ -101,6 +119,13 @@ class Body(QtWidgets.QWidget):
         obj = linked.object_of(self.file)
         if obj is not None and obj.AxisWords != axis_words:
             linked.bring_up_to_date(obj, axis_words)
+
+    def _tell_progress(self, share: float) -> None:
+        self._progress.setVisible(share < 1)
+        self._progress.setValue(round(100 * share))
+
+    def _tell_replaced(self, count: int) -> None:
+        self.size.setText(translate("PKM_Editor", "{} replaced").format(count))
 
     def _tell(self, checked: CheckedText) -> None:
         self.program, size = checked.program, checked.size

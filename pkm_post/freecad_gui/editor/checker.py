@@ -8,7 +8,7 @@ from functools import partial
 
 from PySide import QtCore
 
-from pkm_post.freecad_gui.editor.task import Task
+from pkm_post.freecad_gui.task import Task
 from pkm_post.program_text import check_text
 from pkm_post.sources import Reading
 

@@ -18,6 +18,7 @@ from pkm_post.files import staged
 from pkm_post.freecad_app.kinds import is_program
 from pkm_post.freecad_gui.editor import linked
 from pkm_post.freecad_gui.editor.body import Body
+from pkm_post.freecad_gui.editor.file_drop import FileDrop
 from pkm_post.freecad_gui.editor.posting import Posting
 from pkm_post.model import Refused
 from pkm_post.program_text import Content
@@ -50,30 +51,40 @@ class ProgramEditor(QtWidgets.QDockWidget):
         self._document = self.body.text.document()
         self._document.modificationChanged.connect(self._name_window)
         window.installEventFilter(self)
+        drop = FileDrop(self, self, self.body.text, self.body.text.viewport())
+        # what is dragged is taken first; a question to the user would hold up the other program
+        drop.dropped.connect(self.open_file, QtCore.Qt.ConnectionType.QueuedConnection)
         self._name_window()
 
     def _tool_bar(self, parent: QtWidgets.QWidget) -> QtWidgets.QToolBar:
         bar, keys = QtWidgets.QToolBar(parent), QtGui.QKeySequence.StandardKey
-        find, renumber = self.body.find_bar.begin, self.body.renumber
+        find, renumber = self.body.find_bar, self.body.renumber
         rows: tuple[tuple[str, str, Any, Callable[[], Any]], ...] = (
             (translate(NAME, "Open"), translate(NAME, "Open a part program"), keys.Open, self.ask_and_open),
             (translate(NAME, "Save"), translate(NAME, "Save the part program"), keys.Save, self.save),
-            (translate(NAME, "Save as"), translate(NAME, "Save under another name"), None, self.save_as),
-            (translate(NAME, "Find"), translate(NAME, "Find and replace"), keys.Find, find),
+            (translate(NAME, "Save as"), translate(NAME, "Save under another name"), keys.SaveAs, self.save_as),
+            (translate(NAME, "Find"), translate(NAME, "Find and replace"), keys.Find, find.begin),
             (translate(NAME, "Renumber"), translate(NAME, "Give each block a line number"), None, renumber),
             (translate(NAME, "Decode"), translate(NAME, "Make it an operation of a CAM job"), None, self.decode),
             (translate(NAME, "Post"), translate(NAME, "Write a certified motion program"), None, self.post),
         )
         for text, tip, key, call in rows:
             action = bar.addAction(text)
-            action.setToolTip(tip)
-            if key is not None:
-                action.setShortcut(QtGui.QKeySequence(key))
-                action.setShortcutContext(QtCore.Qt.ShortcutContext.WidgetWithChildrenShortcut)
-                self.addAction(action)
-            action.triggered.connect(lambda checked=False, call=call: call())
+            shortcut = QtGui.QKeySequence(key) if key is not None else QtGui.QKeySequence()
+            action.setToolTip(tip if shortcut.isEmpty() else f"{tip} ({shortcut.toString()})")
+            self._add(action, shortcut, call)
+        for key, call in ((keys.FindNext, find.find_next), (keys.FindPrevious, find.find_previous)):
+            self._add(QtGui.QAction(self), QtGui.QKeySequence(key), call)
+        self._add(QtGui.QAction(self), QtGui.QKeySequence(keys.Replace), find.begin)
         bar.addWidget(self.body.axis_words)
         return bar
+
+    def _add(self, action: QtGui.QAction, shortcut: QtGui.QKeySequence, call: Callable[[], Any]) -> None:
+        """An action of the editor, with a shortcut that counts while the keys go to the editor."""
+        action.setShortcut(shortcut)
+        action.setShortcutContext(QtCore.Qt.ShortcutContext.WidgetWithChildrenShortcut)
+        action.triggered.connect(lambda checked=False: call())
+        self.addAction(action)
 
     def ask_and_open(self) -> None:
         """Open a file that the user chooses."""
@@ -90,9 +101,8 @@ class ProgramEditor(QtWidgets.QDockWidget):
         except OSError as fault:
             QtWidgets.QMessageBox.warning(self, translate(NAME, "Open"), str(fault))
             return False
-        self.body.text.setPlainText(self._content.text)
+        self.body.text.edits.load(self._content.text)
         self.body.set_file(file.absolute())
-        self._document.setModified(False)
         self._name_window()
         return True
 
@@ -108,6 +118,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         return self._write(Path(name) if is_part_program(Path(name)) else Path(f"{name}.ngc"))
 
     def _write(self, file: Path) -> bool:
+        self.body.text.edits.finish()
         try:
             with staged(file.parent) as folder:
                 (folder / file.name).write_bytes(self._content.written(self.body.text.toPlainText()))

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 
 import FreeCAD
-from PySide import QtGui, QtWidgets
+from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_gui.editor.text_view import TextView
 
@@ -15,6 +15,9 @@ translate = FreeCAD.Qt.translate
 
 class FindBar(QtWidgets.QWidget):
     """A line to find and a line to put in its place. Capital and small letters are the same."""
+
+    replaced = QtCore.Signal(int)
+    """How many places were replaced at once."""
 
     def __init__(self, text: TextView, parent: QtWidgets.QWidget) -> None:
         super().__init__(parent)
@@ -26,15 +29,19 @@ class FindBar(QtWidgets.QWidget):
         layout = QtWidgets.QHBoxLayout(self)
         layout.setContentsMargins(2, 0, 2, 0)
         layout.addWidget(self.wanted)
-        self._button(layout, translate("PKM_Editor", "Next"), self.find_next)
-        self._button(layout, translate("PKM_Editor", "Previous"), self.find_previous)
+        where, what = translate("PKM_Editor", "Go to the next place"), translate("PKM_Editor", "Go to the place before")
+        one = translate("PKM_Editor", "Replace what is selected and go to the next place")
+        everywhere = translate("PKM_Editor", "Replace everywhere, in one step to undo")
+        self._button(layout, translate("PKM_Editor", "Next"), f"{where} (F3)", self.find_next)
+        self._button(layout, translate("PKM_Editor", "Previous"), f"{what} (Shift+F3)", self.find_previous)
         layout.addWidget(self.instead)
-        self._button(layout, translate("PKM_Editor", "Replace"), self.replace)
-        self._button(layout, translate("PKM_Editor", "All"), self.replace_all)
+        self._button(layout, translate("PKM_Editor", "Replace"), one, self.replace)
+        self._button(layout, translate("PKM_Editor", "All"), everywhere, self.replace_all)
         self.hide()
 
-    def _button(self, layout: QtWidgets.QHBoxLayout, text: str, action: object) -> None:
+    def _button(self, layout: QtWidgets.QHBoxLayout, text: str, tip: str, action: object) -> None:
         button = QtWidgets.QPushButton(text, self)
+        button.setToolTip(tip)
         button.clicked.connect(lambda checked=False: action())
         layout.addWidget(button)
 
@@ -47,26 +54,42 @@ class FindBar(QtWidgets.QWidget):
         self.wanted.setFocus()
         self.wanted.selectAll()
 
+    def keyPressEvent(self, event: QtGui.QKeyEvent) -> None:
+        """Called by Qt: Escape leads back to the text."""
+        if event.key() == QtCore.Qt.Key.Key_Escape:
+            self.hide()
+            self._text.setFocus()
+        else:
+            super().keyPressEvent(event)
+
     def find_next(self) -> bool:
         """Select the next place, from the beginning again behind the last; whether there is one."""
-        return self._find(QtGui.QTextDocument.FindFlags(), QtGui.QTextCursor.MoveOperation.Start)
+        if not self.wanted.text():
+            return False
+        text, wanted = self._text.toPlainText(), self._wanted()
+        here = _index(text, self._text.textCursor().selectionEnd())
+        return self._select(text, wanted.search(text, here) or wanted.search(text))
 
     def find_previous(self) -> bool:
         """The same backwards."""
-        backward = QtGui.QTextDocument.FindFlag.FindBackward
-        return self._find(QtGui.QTextDocument.FindFlags(backward), QtGui.QTextCursor.MoveOperation.End)
-
-    def _find(self, flags: object, start: object) -> bool:
         if not self.wanted.text():
             return False
-        if self._text.find(self.wanted.text(), flags):
-            return True
-        before = self._text.textCursor()
-        self._text.moveCursor(start)
-        if self._text.find(self.wanted.text(), flags):
-            return True
-        self._text.setTextCursor(before)
-        return False
+        text, wanted = self._text.toPlainText(), self._wanted()
+        here = _index(text, self._text.textCursor().selectionStart())
+        places = [*wanted.finditer(text, 0, here)] or [*wanted.finditer(text)]
+        return self._select(text, places[-1] if places else None)
+
+    def _wanted(self) -> re.Pattern[str]:
+        return re.compile(re.escape(self.wanted.text()), re.I)
+
+    def _select(self, text: str, place: re.Match[str] | None) -> bool:
+        if place is None:
+            return False
+        cursor = self._text.textCursor()
+        cursor.setPosition(_position(text, place.start()))
+        cursor.setPosition(_position(text, place.end()), QtGui.QTextCursor.MoveMode.KeepAnchor)
+        self._text.setTextCursor(cursor)
+        return True
 
     def replace(self) -> None:
         """Replace what is selected, if it is what is wanted, and go to the next place."""
@@ -75,14 +98,26 @@ class FindBar(QtWidgets.QWidget):
             cursor.insertText(self.instead.text())
         self.find_next()
 
-    def replace_all(self) -> int:
-        """Replace everywhere, in one step to undo; how many there were."""
+    def replace_all(self) -> None:
+        """Replace everywhere, in one step to undo; ``replaced`` tells how many there were."""
         if not self.wanted.text():
-            return 0
-        wanted, instead = re.compile(re.escape(self.wanted.text()), re.I), self.instead.text()
-        text, count = wanted.subn(lambda found: instead, self._text.toPlainText())
-        if count:
-            line = self._text.current_line()
-            self._text.replace_text(text)
-            self._text.jump(line)
-        return count
+            return
+        wanted, instead = self._wanted(), self.instead.text()
+        counts: list[int] = []
+
+        def changed(lines: str) -> str:
+            text, count = wanted.subn(lambda found: instead, lines)
+            counts.append(count)
+            return text
+
+        self._text.edits.change(changed, lambda: self.replaced.emit(sum(counts)))
+
+
+def _index(text: str, position: int) -> int:
+    """The index in a text of a position of Qt, which counts in UTF-16."""
+    return position if text.isascii() else len(text.encode("utf-16-le")[: 2 * position].decode("utf-16-le"))
+
+
+def _position(text: str, index: int) -> int:
+    """The other way round."""
+    return index if text.isascii() else len(text[:index].encode("utf-16-le")) // 2

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Posting: the file of an editor becomes a certified motion program, beside the window.
 
-The arguments are those of the post-processor ``hexapod_pmac``. They are asked for and kept in the preferences.
+What can be chosen is asked for in the fields of the post panel, and kept in the preferences.
 """
 
 from __future__ import annotations
@@ -14,7 +14,11 @@ import FreeCAD
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.arguments import parsed
-from pkm_post.freecad_gui.editor.task import Task
+from pkm_post.freecad_app.progress import Stopped
+from pkm_post.freecad_gui.post_choices import PostChoices
+from pkm_post.freecad_gui.post_steps import step_text
+from pkm_post.freecad_gui.preferences import GROUP, default_arguments
+from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Place, Refused
 from pkm_post.options import options_from, tool_lengths_from
 from pkm_post.post_file import post_file
@@ -22,7 +26,7 @@ from pkm_post.sources import Reading
 
 translate = FreeCAD.Qt.translate
 
-PREFERENCES = "User parameter:BaseApp/Preferences/Mod/PKM"
+_PER_MILLE = 1000
 _ENTRY, _AT_FIRST = "EditorArguments", "--machine example_6tps --work-offset G54 --tool-length 1=120"
 
 
@@ -39,17 +43,20 @@ class Posting(QtCore.QObject):
         self._progress: Any = None
 
     def ask_and_post(self, file: Path, axis_words: str) -> None:
-        """Ask for the arguments and post a file into its folder."""
-        kept = FreeCAD.ParamGet(PREFERENCES).GetString(_ENTRY, _AT_FIRST)
-        label = translate("PKM_Editor", "Arguments, as those of hexapod_pmac:")
-        mode = QtWidgets.QLineEdit.EchoMode.Normal
-        text, wanted = QtWidgets.QInputDialog.getText(self._window, self._title, label, mode, kept)
-        if wanted:
-            FreeCAD.ParamGet(PREFERENCES).SetString(_ENTRY, text)
-            self.post(file, axis_words, text)
+        """Ask for what can be chosen, in the fields of the post panel, and post a file into its folder."""
+        kept = FreeCAD.ParamGet(GROUP).GetString(_ENTRY, default_arguments() or _AT_FIRST)
+        dialog = _Dialog(PostChoices(kept, str(file.parent)), self._title, self._window)
+        if dialog.is_accepted():
+            text, folder = dialog.fields.text(), dialog.fields.folder.text().strip()
+            FreeCAD.ParamGet(GROUP).SetString(_ENTRY, text)
+            self.post(file, axis_words, text, Path(folder or file.parent))
+        dialog.deleteLater()
 
-    def post(self, file: Path, axis_words: str, arguments: str) -> None:
-        """Post a file into its folder; ``ended`` tells when its files are there, or why they are not was told."""
+    def post(self, file: Path, axis_words: str, arguments: str, folder: Path | None = None) -> None:
+        """Post a file, beside it if no folder is given.
+
+        ``ended`` tells when its files are there, or why they are not was told.
+        """
         if self._task is not None:
             return
         try:
@@ -59,15 +66,28 @@ class Posting(QtCore.QObject):
             self.ended.emit()
             return
         options, lengths = options_from(chosen), tool_lengths_from(chosen)
-        call = partial(post_file, file, chosen.machine, file.parent, options, lengths, Reading(axis_words))
-        self._progress = QtWidgets.QProgressDialog(self._title, "", 0, 0, self._window)
-        self._progress.setCancelButton(None)
-        self._progress.setWindowModality(QtCore.Qt.WindowModality.WindowModal)
-        self._progress.setMinimumDuration(0)
-        self._progress.show()
-        self._task = Task(call, self)
-        self._task.finished.connect(self._end)
-        self._task.start()
+        out = folder or file.parent
+        call = partial(post_file, file, chosen.machine, out, options, lengths, Reading(axis_words))
+        task = Task(lambda: call(progress=task.tell), self)
+        self._task, self._progress = task, self._bar(task)
+        task.finished.connect(self._end)
+        task.start()
+
+    def _bar(self, task: Task) -> Any:
+        """A window with a progress bar and a button that stops the task."""
+        cancel = translate("PKM_Editor", "Cancel")
+        bar = QtWidgets.QProgressDialog(self._title, cancel, 0, _PER_MILLE, self._window)
+        bar.setWindowModality(QtCore.Qt.WindowModality.WindowModal)
+        bar.setMinimumDuration(0)
+        bar.setAutoReset(False)
+        bar.canceled.connect(task.stop)
+        task.progressed.connect(self._show)
+        bar.show()
+        return bar
+
+    def _show(self, step: str, share: float) -> None:
+        self._progress.setLabelText(step_text(step))
+        self._progress.setValue(round(share * _PER_MILLE))
 
     def _end(self) -> None:
         task, self._task = self._task, None
@@ -77,6 +97,9 @@ class Posting(QtCore.QObject):
             posted = task.value()
         except Refused as refused:
             QtWidgets.QMessageBox.warning(self._window, self._title, str(refused))
+        except Stopped:
+            told = translate("PKM_Editor", "Stopped. Nothing was written.")
+            QtWidgets.QMessageBox.information(self._window, self._title, told)
         else:
             written = "\n".join(str(path) for path in (*posted.files, *posted.diagnostics))
             told = translate("PKM_Editor", "Certified and written:")
@@ -84,3 +107,24 @@ class Posting(QtCore.QObject):
         finally:
             task.deleteLater()
             self.ended.emit()
+
+
+class _Dialog(QtWidgets.QDialog):
+    """The fields in a window of their own."""
+
+    def __init__(self, fields: PostChoices, title: str, window: QtWidgets.QWidget) -> None:
+        super().__init__(window)
+        self.fields = fields
+        self.setWindowTitle(title)
+        button = QtWidgets.QDialogButtonBox.StandardButton
+        buttons = QtWidgets.QDialogButtonBox(button.Ok | button.Cancel)
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.addWidget(fields)
+        layout.addWidget(buttons)
+
+    def is_accepted(self) -> bool:
+        """Show it; whether the user accepted what is in the fields."""
+        show = getattr(self, "exec", None) or self.exec_  # Qt 6, Qt 5
+        return bool(show())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Text view: the text of a part program with line numbers, colours and underlines.
 
-Only the lines in sight are coloured, when they come into sight: a program of 100,000 lines opens at once, and a key
-costs the colours of one line. A block remembers in its user state for which of its revisions it was coloured.
+Only the lines in sight are coloured, when they come into sight: a key costs the colours of one line, however long the
+text is. A block remembers in its user state for which of its revisions it was coloured.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_gui.editor.long_edits import LongEdits
+from pkm_post.freecad_gui.editor.margin import Margin
 from pkm_post.program_text import Colour, Language, spans
 
 LIGHT: dict[Colour, str] = {
@@ -50,15 +52,20 @@ class Mark:
 
 
 class TextView(QtWidgets.QPlainTextEdit):
-    """The text. Its margin is a widget of its own that paints what the text tells it."""
+    """The text. Its margin is a widget of its own that paints what the text tells it.
+
+    Attributes:
+        edits: loads the text, and changes many lines of it.
+    """
 
     def __init__(self, parent: QtWidgets.QWidget) -> None:
         super().__init__(parent)
         self.setFont(QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont))
         self.setLineWrapMode(QtWidgets.QPlainTextEdit.LineWrapMode.NoWrap)
+        self.edits = LongEdits(self)
         self._language = Language.GCODE
         self._marks: tuple[Mark, ...] = ()
-        self._margin = _Margin(self)
+        self._margin = Margin(self)
         self._colouring = QtCore.QTimer(self)
         self._colouring.setSingleShot(True)
         self._colouring.timeout.connect(self._colour_lines_in_sight)
@@ -90,11 +97,34 @@ class TextView(QtWidgets.QPlainTextEdit):
             self.setTextCursor(cursor)
             self.centerCursor()
 
-    def replace_text(self, text: str) -> None:
-        """Put another text in the place of all; one undo takes it back."""
-        cursor = QtGui.QTextCursor(self.document())
-        cursor.select(QtGui.QTextCursor.SelectionType.Document)
-        cursor.insertText(text)
+    def undo(self) -> None:
+        """Take back what was done last."""
+        self.edits.undo()
+
+    def redo(self) -> None:
+        """Do again what was taken back last."""
+        self.edits.redo()
+
+    def keyPressEvent(self, event: QtGui.QKeyEvent) -> None:
+        """Called by Qt, whose own undo would take back one slice of a long edit."""
+        keys = QtGui.QKeySequence.StandardKey
+        for key, action in ((keys.Undo, self.undo), (keys.Redo, self.redo)):
+            if event.matches(key):
+                if not self.edits.busy():
+                    action()
+                return
+        super().keyPressEvent(event)
+
+    def contextMenuEvent(self, event: QtGui.QContextMenuEvent) -> None:
+        """Called by Qt: its menu, with the undo and redo of this text."""
+        menu = self.createStandardContextMenu()
+        for action in menu.actions():
+            own = {"edit-undo": self.undo, "edit-redo": self.redo}.get(action.objectName())
+            if own is not None:
+                action.triggered.disconnect()
+                action.triggered.connect(lambda checked=False, own=own: own())
+        menu.exec(event.globalPos())
+        menu.deleteLater()
 
     def resizeEvent(self, event: QtGui.QResizeEvent) -> None:
         """Called by Qt: the margin goes along."""
@@ -141,7 +171,8 @@ class TextView(QtWidgets.QPlainTextEdit):
         here.format.setProperty(QtGui.QTextFormat.Property.FullWidthSelection, True)
         here.cursor = self.textCursor()
         here.cursor.clearSelection()
-        self.setExtraSelections([here, *(self._underline(mark) for mark in self._marks)])
+        lines = self.blockCount()
+        self.setExtraSelections([here, *(self._underline(mark) for mark in self._marks if mark.line < lines)])
 
     def _underline(self, mark: Mark) -> QtWidgets.QTextEdit.ExtraSelection:
         selection = QtWidgets.QTextEdit.ExtraSelection()
@@ -153,31 +184,6 @@ class TextView(QtWidgets.QPlainTextEdit):
         selection.cursor.setPosition(block.position() + min(mark.start, last))
         selection.cursor.setPosition(block.position() + min(mark.end, last), QtGui.QTextCursor.MoveMode.KeepAnchor)
         return selection
-
-
-class _Margin(QtWidgets.QWidget):
-    """The line numbers."""
-
-    def __init__(self, text: TextView) -> None:
-        super().__init__(text)
-        self._text = text
-
-    def wanted_width(self) -> int:
-        """As wide as the largest number needs."""
-        digits = len(str(self._text.blockCount()))
-        return self._text.fontMetrics().horizontalAdvance("9") * (max(digits, 3) + 1) + 6
-
-    def paintEvent(self, event: QtGui.QPaintEvent) -> None:
-        """Called by Qt: paint the numbers of the lines in sight."""
-        painter, metrics = QtGui.QPainter(self), self._text.fontMetrics()
-        painter.setFont(self._text.font())
-        painter.fillRect(event.rect(), QtGui.QColor("#2b2f2b" if self._text.is_dark() else "#f0f0ee"))
-        painter.setPen(QtGui.QColor("#888a85"))
-        width = self.width() - 6
-        for block, top in self._text.lines_in_sight():
-            place = QtCore.QRect(0, int(top), width, metrics.height())
-            painter.drawText(place, int(QtCore.Qt.AlignmentFlag.AlignRight), str(block.blockNumber() + 1))
-        painter.end()
 
 
 def _formats(dark: bool) -> dict[Colour, QtGui.QTextCharFormat]:

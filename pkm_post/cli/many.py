@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Many: commands run in processes of their own, several at a time, told one after the other.
+
+Command lines enter, in an order; what each printed appears in that order, kept together, as soon as all before it have
+ended. Whoever ends this with Ctrl-C ends them all.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+from pkm_post.cli.progress_line import ProgressLine
+
+_INTERRUPTED = 130
+"""The exit code of what Ctrl-C ended, as shells have it."""
+_TIME_TO_END = 10.0
+"""Seconds a process has to remove what it began, before it is killed."""
+_APART = os.name == "posix"
+"""Whether a process can be the first of a group, so that all it started are ended with it."""
+
+
+@dataclass
+class _Child:
+    """A command in a process of its own."""
+
+    command: Sequence[str]
+    process: subprocess.Popen[str] | None = None
+    is_wanted: bool = True
+
+    def run(self) -> tuple[int, str, str]:
+        """Run it; exit code, output and errors."""
+        if not self.is_wanted:
+            return 1, "", ""
+        self.process = subprocess.Popen(
+            self.command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            errors="replace",
+            start_new_session=_APART,
+        )
+        if not self.is_wanted:
+            self.interrupt()
+        printed, errors = self.process.communicate()
+        return self.process.returncode, printed, errors
+
+    def interrupt(self) -> None:
+        """Let it end as if Ctrl-C had been pressed there, so that it leaves nothing half done."""
+        self.is_wanted = False
+        if self.process is not None and self.process.poll() is None:
+            self._signal(signal.SIGINT) if _APART else self.process.terminate()
+
+    def end(self) -> None:
+        """Wait for its end, not for ever."""
+        if self.process is not None:
+            try:
+                self.process.wait(_TIME_TO_END)
+            except subprocess.TimeoutExpired:
+                self._signal(signal.SIGKILL) if _APART else self.process.kill()
+
+    def _signal(self, number: int) -> None:
+        if self.process is not None:
+            os.killpg(self.process.pid, number)
+
+
+def run_many(commands: Sequence[Sequence[str]], at_a_time: int, doing: str) -> int:
+    """Run commands; 0 if all ended with 0, 130 after Ctrl-C, and 1 otherwise.
+
+    Args:
+        commands: command lines.
+        at_a_time: how many processes there may be.
+        doing: what they do, for the terminal.
+    """
+    children, line, code = [_Child(command) for command in commands], ProgressLine(doing), 0
+    with ThreadPoolExecutor(at_a_time) as pool:
+        try:
+            for number, (ended, printed, errors) in enumerate(pool.map(_Child.run, children)):
+                line.clear()
+                print(printed, end="", flush=True)
+                print(errors, end="", file=sys.stderr, flush=True)
+                code = code or int(ended != 0)
+                line.show(f"{number + 1} of {len(children)}", (number + 1) / len(children))
+        except BaseException as fault:
+            _end_all(children)
+            if not isinstance(fault, KeyboardInterrupt):
+                raise
+            code = _INTERRUPTED
+        finally:
+            line.clear()
+    return code
+
+
+def _end_all(children: Sequence[_Child]) -> None:
+    for child in children:
+        child.interrupt()
+    for child in children:
+        child.end()

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Simulated motion: a planned motion that can be looked at at any time, and what of it cannot be followed.
+
+A plan enters; poses, strut lengths and speeds, block and tool at times in s leave, and figures of the whole. Dwells do
+not count in these times. Between two knots the struts follow the cubics that a controller plays, and so do spindle nose
+and tool axis here. All by search in sorted times: a motion of a million knots costs little more than a short one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds, unit
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics.way import Pose
+from pkm_post.model import EventKind, Machine, Motion, Place, StrutMotion, Tool, Trajectory
+
+_AT_ONCE = 16384
+"""Cubics in one pass: the working arrays of one pass stay in the processor's cache."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A stretch of the way that the machine cannot follow.
+
+    Attributes:
+        time: when it begins, s.
+        place: of its first block.
+        worst_time: when it is worst, s.
+        worst_place: of the block in which it is worst.
+        worst_tip: (3,) tool tip in {M} then.
+        text: the worst of it.
+    """
+
+    time: float
+    place: Place
+    worst_time: float
+    worst_place: Place
+    worst_tip: Array
+    text: str
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """The plan.
+
+    Attributes:
+        trajectory: what is driven, in {M}.
+        machine: by which machine.
+        motion: poses by time.
+        struts: lengths and speeds by time.
+        problems: what cannot be followed, by time.
+    """
+
+    trajectory: Trajectory
+    machine: Machine
+    motion: Motion
+    struts: StrutMotion
+    problems: tuple[Problem, ...]
+
+    @property
+    def duration(self) -> float:
+        """How long it takes, s."""
+        return float(self.motion.time_ms[-1]) / 1000.0
+
+    def operation_times(self) -> tuple[Array, Array]:
+        """How long each operation of the trajectory moves and dwells, (O,) each, s."""
+        trajectory, count = self.trajectory, len(self.trajectory.operations)
+        driven = np.diff(self.motion.joint_time, prepend=0.0)
+        moving = np.bincount(trajectory.operation, driven, count)
+        dwells = [event for event in trajectory.events if event.kind == EventKind.DWELL]
+        row = np.minimum([event.row for event in dwells], len(trajectory) - 1).astype(np.int64)
+        return moving, np.bincount(trajectory.operation[row], [event.value for event in dwells], count)
+
+    @cached_property
+    def greatest_speeds(self) -> Array:
+        """The greatest speed of each strut, its direction left out, (6,) in mm/s, between the knots as well."""
+        greatest = np.abs(self.struts.speed).max(axis=0)
+        for begin in range(0, len(self.struts.speed) - 1, _AT_ONCE):
+            greatest = np.maximum(greatest, self._greatest_between(slice(begin, begin + _AT_ONCE + 1)))
+        return greatest
+
+    def _greatest_between(self, knots: slice) -> Array:
+        """The same, of what the cubics between some knots reach inside."""
+        p, v, time = self.struts.length[knots], self.struts.speed[knots], self.struts.time_ms[knots]
+        duration = np.diff(time) / 1000.0
+        starts, ends = hermite_accelerations(p[:-1], v[:-1], p[1:], v[1:], duration)
+        turns = starts * ends < 0.0  # there the speed of a cubic is greatest or least
+        share = np.divide(starts, starts - ends, out=np.zeros_like(starts), where=turns)
+        reached = v[:-1] + starts * share * duration[:, None] / 2.0
+        greatest: Array = np.abs(reached).max(axis=0)
+        return greatest
+
+    def pose_at(self, seconds: Array) -> Pose:
+        """Poses in {M} at times (T,)."""
+        start, share, duration = self._between(seconds)
+        motion, end = self.motion, start + 1
+
+        def at(value: Array, rate: Array) -> Array:
+            return hermite_lengths(value[start], rate[start], value[end], rate[end], duration, share[:, None])[:, 0]
+
+        nose = hermite_lengths(*_noses(motion, start), *_noses(motion, end), duration, share[:, None])[:, 0]
+        axis = unit(at(motion.axis, motion.axis_rate))
+        spin = at(motion.spin[:, None], motion.spin_rate[:, None])[:, 0]
+        length = motion.tool_length[end]  # at a tool change the spindle stands still, and the tip jumps
+        return nose - length[:, None] * axis, axis, spin, length
+
+    def struts_at(self, seconds: Array) -> tuple[Array, Array]:
+        """Strut lengths and speeds at times (T,), (T, 6) each."""
+        start, share, duration = self._between(seconds)
+        p, v = self.struts.length, self.struts.speed
+        cubic = p[start], v[start], p[start + 1], v[start + 1], duration
+        return hermite_lengths(*cubic, share[:, None])[:, 0], hermite_speeds(*cubic, share[:, None])[:, 0]
+
+    def block_at(self, seconds: float) -> int:
+        """The segment of the trajectory that is driven at a time; the earlier one where two meet."""
+        return min(int(np.searchsorted(self.motion.joint_time, seconds)), len(self.trajectory) - 1)
+
+    def tool_at(self, seconds: float) -> Tool:
+        """The tool in the spindle at a time."""
+        return self.trajectory.tools[int(self.trajectory.tool[self.block_at(seconds)])]
+
+    def operation_begins(self, number: int) -> tuple[int, float]:
+        """The first segment of an operation, and when it begins."""
+        row = int(np.argmax(self.trajectory.operation == number))
+        return row, float(self.motion.joint_time[row - 1]) if row else 0.0
+
+    def next_block(self, seconds: float) -> float:
+        """When the block ends that is driven behind a time."""
+        after = self.motion.joint_time[np.searchsorted(self.motion.joint_time, seconds, side="right") :]
+        return float(after[0]) if len(after) else self.duration
+
+    def block_before(self, seconds: float) -> float:
+        """When the block begins that is driven before a time."""
+        before = self.motion.joint_time[: np.searchsorted(self.motion.joint_time, seconds)]
+        return float(before[-1]) if len(before) else 0.0
+
+    def problem_between(self, start: float, end: float) -> Problem | None:
+        """The first problem behind a time, up to another time."""
+        return next((problem for problem in self.problems if start < problem.time <= end), None)
+
+    def envelope(self, columns: int) -> tuple[Array, Array]:
+        """Least and largest of lengths and speeds, (2, columns, 6) each, over equal stretches of time.
+
+        Made of the knots and of the instants between the stretches, so that long cubics are drawn as well.
+        """
+        edges = np.linspace(0.0, self.duration, columns + 1)
+        at_edges = self.struts_at(edges)
+        first = np.searchsorted(self.motion.time_ms / 1000.0, edges)
+        lengths = _extremes(self.struts.length, first, at_edges[0])
+        return lengths, _extremes(self.struts.speed, first, at_edges[1])
+
+    def _between(self, seconds: Array) -> tuple[Array, Array, Array]:
+        """Knot before each time (T,), the share of the interval that has gone (T,), and its duration (T,)."""
+        ms = np.clip(np.asarray(seconds, dtype=np.float64) * 1000.0, 0.0, self.motion.time_ms[-1])
+        whole_ms = ms.astype(np.int64)  # to search whole numbers for others would copy all of them first
+        start = np.clip(np.searchsorted(self.motion.time_ms, whole_ms, side="right") - 1, 0, len(self.motion) - 2)
+        whole = self.motion.time_ms[start + 1] - self.motion.time_ms[start]
+        return start, (ms - self.motion.time_ms[start]) / whole, whole / 1000.0
+
+
+def _noses(motion: Motion, knot: Array) -> tuple[Array, Array]:
+    """Where the spindle nose is at knots, and its velocity: unlike the tip, it does not jump at tool changes."""
+    length = motion.tool_length[knot][:, None]
+    return motion.tip[knot] + length * motion.axis[knot], motion.tip_rate[knot] + length * motion.axis_rate[knot]
+
+
+def _extremes(knots: Array, first: Array, ends: Array) -> Array:
+    """Least and largest rows (2, C, 6) of knots by stretch; a stretch without a knot has its two ends."""
+    least, largest = np.minimum(ends[:-1], ends[1:]), np.maximum(ends[:-1], ends[1:])
+    full = np.flatnonzero(first[1:] > first[:-1])
+    if len(full):
+        least[full] = np.minimum(least[full], np.minimum.reduceat(knots, first[full], axis=0))
+        largest[full] = np.maximum(largest[full], np.maximum.reduceat(knots, first[full], axis=0))
+    return np.stack([least, largest])

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Buttons: those that give orders, and know why they cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from PySide import QtWidgets
+
+from pkm_post.freecad_gui.control_panel.words import why_text
+from pkm_post.numerical_control.permissions import Order, Why, refusal
+
+
+class OrderButton(QtWidgets.QPushButton):
+    """A button for an order; where the order makes no sense it is grey, and its tip says why."""
+
+    def __init__(self, text: str, tip: str, order: Order, action: Callable[[], Any]) -> None:
+        super().__init__(text)
+        self._tip, self._order = tip, order
+        self._why: Why | None = None
+        self.setToolTip(tip)
+        self.setAutoDefault(False)
+        self.clicked.connect(lambda: action())
+
+    def refresh(self, found: frozenset[Why]) -> None:
+        """Show whether the order makes sense."""
+        why = refusal(self._order, found)
+        self.setEnabled(why is None)
+        if why is not self._why:
+            self._why = why
+            self.setToolTip(self._tip if why is None else f"{self._tip}\n({why_text(why)})")
+
+
+def refresh_all(buttons: Iterable[OrderButton], found: frozenset[Why]) -> None:
+    """Show of several whether they make sense."""
+    for button in buttons:
+        button.refresh(found)
+
+
+def plain_button(text: str, tip: str, action: Callable[[], Any]) -> QtWidgets.QPushButton:
+    """A button that gives no order to a machine."""
+    button = QtWidgets.QPushButton(text)
+    button.setToolTip(tip)
+    button.setAutoDefault(False)
+    button.clicked.connect(lambda: action())
+    return button
+
+
+def side_by_side(*widgets: QtWidgets.QWidget) -> QtWidgets.QHBoxLayout:
+    """Widgets in a row."""
+    row = QtWidgets.QHBoxLayout()
+    for widget in widgets:
+        row.addWidget(widget)
+    return row

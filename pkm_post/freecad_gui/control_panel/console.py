@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Console: the connection of a panel and the orders under way, without a widget.
+
+Orders enter as functions of the control. Their results leave as calls in the thread of the window, from a timer that
+looks ten times a second. Nothing here waits: what takes long runs in the worker's thread, or beside the window.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+import FreeCAD
+from PySide import QtCore
+
+from pkm_post.freecad_gui.task import Task
+from pkm_post.model import Diagnostic
+from pkm_post.numerical_control.connection import Connection, Target, connect
+from pkm_post.numerical_control.control import NumericalControl, State
+from pkm_post.numerical_control.permissions import Desk
+from pkm_post.numerical_control.plan import Plan
+from pkm_post.pmac_link.faults import PmacError
+from pkm_post.pmac_link.job import Job
+
+translate = FreeCAD.Qt.translate
+
+Call = Callable[[NumericalControl], Any]
+Then = Callable[[Any], None]
+
+_LOOK_MS = 100
+_TOLD = (PmacError, OSError, UnicodeError)
+"""Faults of machine, link and files: a person reads them. All others are ours."""
+
+
+class Console(QtCore.QObject):
+    """What the parts of a panel share.
+
+    Attributes:
+        connection: to the machine; None while there is none.
+        job: the program that was opened.
+        loaded: whether it was loaded by this panel.
+        stepping: whether its blocks were taken for single block.
+        progress: lines of it that are loaded, and of how many.
+    """
+
+    looked = QtCore.Signal()
+    """Ten times a second, and when something has changed."""
+    told = QtCore.Signal(str, bool)
+    """A text for the user, and whether something is wrong."""
+
+    def __init__(self, parent: QtCore.QObject) -> None:
+        super().__init__(parent)
+        self.connection: Connection | None = None
+        self.job: Job | None = None
+        self.loaded, self.stepping, self.progress = False, False, (0, 0)
+        self._under_way: list[tuple[Future[Any], Then | None]] = []
+        self._waiting: deque[tuple[Callable[[], Any], Then]] = deque()
+        self._task: Task | None = None
+        self._then: Then | None = None
+        self._cancelled, self._homing, self._is_wanted = threading.Event(), False, True
+        self._timer = QtCore.QTimer(self)
+        self._timer.timeout.connect(self._look)
+        QtCore.QCoreApplication.instance().aboutToQuit.connect(self._quit)
+
+    @property
+    def state(self) -> State:
+        """The newest."""
+        return State(None, None) if self.connection is None else self.connection.worker.state
+
+    @property
+    def waits(self) -> bool:
+        """Whether something is done beside the window: connecting, leaving, reading a file."""
+        return self._task is not None
+
+    @property
+    def has_orders(self) -> bool:
+        """Whether orders are under way."""
+        return bool(self._under_way)
+
+    def desk(self) -> Desk:
+        """What is known here besides the state."""
+        return Desk(
+            connected=self.connection is not None,
+            watch_only=self.connection is not None and self.connection.target.watch_only,
+            busy=self.has_orders or self.waits,
+            has_job=self.job is not None,
+            loaded=self.loaded,
+            stepping=self.stepping,
+            homing=self._homing,
+        )
+
+    def connect_to(self, target: Target, tool_length: float) -> None:
+        """Connect beside the window; mm."""
+        self._is_wanted = True
+        self.beside(lambda: connect(target, tool_length), self._connected)
+
+    def _connected(self, connection: Connection) -> None:
+        self.connection = connection
+        for note in connection.notes:
+            self.told.emit(note, False)
+        self._timer.start(_LOOK_MS)
+        if not self._is_wanted:
+            self.leave()
+
+    def leave(self) -> None:
+        """End the connection beside the window, as soon as there is one; nothing is stopped."""
+        self._is_wanted = False
+        self._cancelled.set()
+        connection, self.connection = self.connection, None
+        self._timer.stop()
+        self._under_way, self._homing = [], False
+        self.take_job(None)
+        if connection is not None:
+            self.beside(connection.close, lambda _ended: None)
+
+    def beside(self, call: Callable[[], Any], then: Then) -> None:
+        """Have something done that needs no controller; one after the other.
+
+        Args:
+            call: is made in a thread of its own.
+            then: gets what it gave back, in the thread of the window.
+        """
+        self._waiting.append((call, then))
+        if self._task is None:
+            self._begin_next()
+        self.looked.emit()
+
+    def _begin_next(self) -> None:
+        call, self._then = self._waiting.popleft()
+        self._task = Task(call, self)
+        self._task.finished.connect(self._done)
+        self._task.start()
+
+    def _done(self) -> None:
+        task, then, self._task = self._task, self._then, None
+        assert task is not None and then is not None
+        task.deleteLater()
+        try:
+            then(task.value())
+        except _TOLD as fault:
+            self.told.emit(str(fault), True)
+        finally:
+            if self._waiting and self._task is None:
+                self._begin_next()
+            self.looked.emit()
+
+    def order(self, call: Call, then: Then | None = None) -> None:
+        """Have something done by the control; ``then`` gets the result, unless a stop comes between."""
+        assert self.connection is not None
+        self._under_way.append((self.connection.worker.submit(call), then))
+        self.looked.emit()
+
+    def stop(self, call: Call) -> None:
+        """Have a stop done next: what waits is cancelled, and what was to follow does not follow."""
+        assert self.connection is not None
+        self._cancelled.set()
+        self._under_way = [(future, None) for future, _ in self._under_way]
+        self._under_way.append((self.connection.worker.submit(call, urgent=True), None))
+        self.looked.emit()
+
+    def abort(self, at_once: bool) -> None:
+        """End the program; a homing is no longer watched."""
+        self._homing = False
+        self.stop(lambda control: control.abort(at_once))
+
+    def home(self, trigger: str) -> None:
+        """Start the homing of the machine."""
+        self.order(lambda control: control.home(trigger), self._begin_to_watch)
+
+    def _begin_to_watch(self, _done: None) -> None:
+        self._homing = True
+
+    def move(self, planning: Callable[[NumericalControl], Any], then: Then, sends: bool = True) -> None:
+        """Plan a move and, if nothing stands against it, have it carried out.
+
+        Args:
+            planning: gives the plan, or None, and what is to be told.
+            then: gets the plan, or None.
+            sends: whether it is carried out; else it is planned alone.
+        """
+        self.order(planning, lambda found: self._planned(*found, then, sends))
+
+    def _planned(self, plan: Plan | None, told: tuple[Diagnostic, ...], then: Then, sends: bool) -> None:
+        for each in told:
+            self.told.emit(str(each), plan is None)
+        then(plan)
+        if plan is not None and sends:
+            self.order(lambda control: control.execute(plan))
+
+    def load(self) -> None:
+        """Load the program that was opened; ``cancel_load`` ends that."""
+        assert self.job is not None
+        job, self.loaded = self.job, False
+        self._cancelled.clear()
+        self.order(lambda control: control.load(job, self._progressed, self._cancelled.is_set), self._has_loaded)
+
+    def cancel_load(self) -> None:
+        """End a download; nothing is left of it in the controller."""
+        self._cancelled.set()
+
+    def _progressed(self, done: int, lines: int) -> None:
+        """Called in the worker's thread."""
+        self.progress = done, lines
+
+    def _has_loaded(self, loaded: Any) -> None:
+        self.loaded = True
+        text = translate("ControlPanel", "Program {}: {} lines, listed back as sent")
+        self.told.emit(text.format(loaded.program, loaded.lines), False)
+
+    def take_job(self, job: Job | None) -> None:
+        """Have another program opened, or none; blocks of the one before do not come next any more."""
+        self.job, self.loaded, self.stepping, self.progress = job, False, False, (0, 0)
+
+    def _look(self) -> None:
+        """Called by the timer."""
+        if self.connection is not None and self.connection.worker.failure is not None:
+            told = translate("ControlPanel", "An error of this program ended the connection. THE MACHINE GOES ON.")
+            self.told.emit(told, True)
+            self.leave()
+        while ended := next((each for each in self._under_way if each[0].done()), None):
+            self._under_way.remove(ended)
+            self._end(*ended)
+        self.looked.emit()
+
+    def _end(self, future: Future[Any], then: Then | None) -> None:
+        if future.cancelled():
+            self.told.emit(translate("ControlPanel", "Not carried out: a stop came first"), False)
+            return
+        fault = future.exception()
+        if isinstance(fault, _TOLD):
+            self.told.emit(str(fault), True)
+        elif fault is not None:
+            raise fault
+        elif then is not None:
+            then(future.result())
+
+    def _quit(self) -> None:
+        """FreeCAD ends: the link is closed in order; who wanted to be asked was asked before."""
+        connection, self.connection = self.connection, None
+        self._timer.stop()
+        if connection is not None:
+            self._cancelled.set()
+            connection.close()

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Words: what the room of numerical control tells, in the language of the user.
+
+Names and texts of ``pmac_link`` and ``numerical_control`` enter, translated text leaves. The English is theirs, letter
+by letter: a test compares it. Refusals of the controller and diagnostics stay as they are told.
+"""
+
+from __future__ import annotations
+
+import FreeCAD
+
+from pkm_post.numerical_control.control import State
+from pkm_post.numerical_control.homing import Homing, Phase
+from pkm_post.numerical_control.permissions import Why
+from pkm_post.pmac_link.status import Bits, Status
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+WHY = {
+    Why.NOT_CONNECTED: QT_TRANSLATE_NOOP("ControlPanel", "there is no connection"),
+    Why.WATCH_ONLY: QT_TRANSLATE_NOOP("ControlPanel", "a Power PMAC can be watched, held and aborted alone"),
+    Why.NO_ANSWER: QT_TRANSLATE_NOOP("ControlPanel", "the controller does not answer"),
+    Why.BUSY: QT_TRANSLATE_NOOP("ControlPanel", "another order is being carried out"),
+    Why.NO_JOB: QT_TRANSLATE_NOOP("ControlPanel", "no program was opened"),
+    Why.NOT_LOADED: QT_TRANSLATE_NOOP("ControlPanel", "the program is not loaded"),
+    Why.NO_BLOCK: QT_TRANSLATE_NOOP("ControlPanel", "no block comes next"),
+    Why.RUNS: QT_TRANSLATE_NOOP("ControlPanel", "a program runs"),
+    Why.HELD: QT_TRANSLATE_NOOP("ControlPanel", "a program is held"),
+    Why.NOT_HELD: QT_TRANSLATE_NOOP("ControlPanel", "no program is held"),
+    Why.MOVES: QT_TRANSLATE_NOOP("ControlPanel", "the machine moves"),
+    Why.NOT_HOMED: QT_TRANSLATE_NOOP("ControlPanel", "not all struts are homed"),
+}
+PHASES = {
+    Phase.SEARCHING: QT_TRANSLATE_NOOP("ControlPanel", "the struts look for their homes"),
+    Phase.DONE: QT_TRANSLATE_NOOP("ControlPanel", "all struts have found their homes"),
+    Phase.NOTHING: QT_TRANSLATE_NOOP("ControlPanel", "the controller shows no homing"),
+    Phase.FAILED: QT_TRANSLATE_NOOP("ControlPanel", "the homing has failed"),
+    Phase.LATE: QT_TRANSLATE_NOOP("ControlPanel", "the homing takes too long"),
+}
+MOTOR = {
+    "negative_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its lower limit"),
+    "positive_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its upper limit"),
+    "stopped_on_limit": QT_TRANSLATE_NOOP("ControlPanel", "stopped on a limit"),
+    "open_loop": QT_TRANSLATE_NOOP("ControlPanel", "in open loop"),
+    "homing": QT_TRANSLATE_NOOP("ControlPanel", "searching its home"),
+    "amplifier_fault": QT_TRANSLATE_NOOP("ControlPanel", "amplifier fault"),
+    "fatal_following_error": QT_TRANSLATE_NOOP("ControlPanel", "following error too large, switched off"),
+    "warning_following_error": QT_TRANSLATE_NOOP("ControlPanel", "following error at its warning limit"),
+}
+SYSTEM = {
+    "runtime_error": QT_TRANSLATE_NOOP("ControlPanel", "the program ended with an error"),
+    "amplifier_fault": QT_TRANSLATE_NOOP("ControlPanel", "an amplifier has a fault"),
+    "fatal_following_error": QT_TRANSLATE_NOOP("ControlPanel", "a following error was too large"),
+    "limit": QT_TRANSLATE_NOOP("ControlPanel", "a limit was met"),
+}
+EMERGENCY = (
+    QT_TRANSLATE_NOOP(
+        "ControlPanel",
+        "THE LINK TO THE CONTROLLER IS LOST AND THE MACHINE MAY BE MOVING. This computer cannot stop it now.",
+    ),
+    QT_TRANSLATE_NOOP(
+        "ControlPanel",
+        "1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
+    ),
+    QT_TRANSLATE_NOOP(
+        "ControlPanel",
+        "2. Keep everybody away from the machine. The program goes on in the controller until it ends.",
+    ),
+    QT_TRANSLATE_NOOP(
+        "ControlPanel",
+        "3. If the machine has a feed hold of its own, press it, and look that all six struts stand.",
+    ),
+    QT_TRANSLATE_NOOP(
+        "ControlPanel",
+        "4. Then look at the cable, at the power of the controller, and at this computer; leave the machine as it is.",
+    ),
+    QT_TRANSLATE_NOOP(
+        "ControlPanel",
+        "5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.",
+    ),
+    QT_TRANSLATE_NOOP(
+        "ControlPanel",
+        "6. If the power was off or the emergency stop was pressed: home the machine before anything else.",
+    ),
+    QT_TRANSLATE_NOOP(
+        "ControlPanel",
+        "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",
+    ),
+)
+
+
+def why_text(why: Why) -> str:
+    """What stands against an order."""
+    return translate("ControlPanel", WHY[why])
+
+
+def activity_text(state: State) -> str:
+    """What the controller does, in a line, with what is wrong with the program."""
+    status = state.status
+    if status is None:
+        return translate("ControlPanel", "Nothing was read yet")
+    told = translate("ControlPanel", "no program runs")
+    if status.running:
+        told = why_text(Why.HELD if status.held else Why.RUNS)
+    moves = [] if status.standing else [why_text(Why.MOVES)]
+    block = [] if state.block is None or state.block[0] > state.block[1] else [_block_text(*state.block)]
+    override = translate("ControlPanel", "override {:g} %").format(status.override)
+    return ", ".join([told, *moves, *block, override, *_told(status.system, SYSTEM)])
+
+
+def _block_text(number: int, count: int) -> str:
+    return translate("ControlPanel", "block {} of {} comes next").format(number, count)
+
+
+def strut_text(status: Status, index: int) -> str:
+    """What is to be said of a strut, from 0; empty when all is well."""
+    return ", ".join(_told(status.motors[index], MOTOR))
+
+
+def homing_text(homing: Homing) -> str:
+    """How far a homing is."""
+    told = translate("ControlPanel", PHASES[homing.phase])
+    if not homing.missing:
+        return told
+    missing = translate("ControlPanel", "no home yet: strut {}").format(", ".join(map(str, homing.missing)))
+    return f"{told}; {missing}"
+
+
+def emergency_text(lines: tuple[str, ...]) -> str:
+    """What a person has to do."""
+    return "\n".join(translate("ControlPanel", line) for line in lines)
+
+
+def _told(bits: Bits, texts: dict[str, str]) -> list[str]:
+    return [translate("ControlPanel", texts[name]) for name in bits.TOLD if bits.has(name)]

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Film: a motion as pictures, one by one or in one animated picture.
+
+A view, a call that shows an instant, and the instants enter; PNG files leave. Escape stops it.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import FreeCAD
+import numpy as np
+from PySide import QtWidgets
+
+from pkm_post.freecad_app.progress import Progress, Stopped
+from pkm_post.report.animated_png import animate
+
+translate = FreeCAD.Qt.translate
+
+_PICTURES, _ANIMATION = (30.0, 1280, 720), (15.0, 800, 450)
+"""Per second of film, width and height. An animation is one file, and each picture of it is compressed by itself."""
+
+
+@dataclass(frozen=True)
+class Film:
+    """What is filmed, and how.
+
+    Attributes:
+        view: the 3D view.
+        show: shows an instant, s.
+        now: the instant that is shown, s; it is shown again when the film is done.
+        duration: of the motion, s.
+        pace: seconds of motion for each second of film.
+        per_second: pictures for each second of film.
+        width: of a picture, pixels.
+        height: of a picture, pixels.
+    """
+
+    view: Any
+    show: Callable[[float], None]
+    now: float
+    duration: float
+    pace: float
+    per_second: float
+    width: int
+    height: int
+
+    def write_pictures(self, folder: Path) -> int:
+        """Write frame_00001.png and so on; how many there are, fewer than all if the user stopped it."""
+        instants, written = np.arange(0.0, self.duration + 1e-9, self.pace / self.per_second), 0
+        try:
+            with Progress(translate("PKM_Simulate", "Pictures"), len(instants)) as bar:
+                for number, seconds in enumerate(instants.tolist(), start=1):
+                    self.show(seconds)
+                    target = str(folder / f"frame_{number:05d}.png")
+                    self.view.saveImage(target, self.width, self.height, "Current")
+                    written = number
+                    bar.step()
+        except Stopped:
+            told = translate("PKM_Simulate", "{} of {} pictures were written")
+            FreeCAD.Console.PrintWarning(told.format(written, len(instants)) + "\n")
+        self.show(self.now)
+        return written
+
+    def write_animation(self, target: Path) -> int:
+        """Write an animated PNG; of how many pictures it is. What the user stopped is shown as far as it went."""
+        with tempfile.TemporaryDirectory() as folder:
+            written = self.write_pictures(Path(folder))
+            if written:
+                animate(sorted(Path(folder).glob("*.png")), target, self.per_second)
+        return written
+
+
+Shooting = Callable[[float, int, int], Film]
+"""Makes a film of pictures per second, width and height."""
+
+
+def ask_for_pictures(parent: Any, film: Shooting) -> None:
+    """Ask where the pictures go, and write them."""
+    folder = QtWidgets.QFileDialog.getExistingDirectory(parent, translate("PKM_Simulate", "Folder for the pictures"))
+    if folder:
+        film(*_PICTURES).write_pictures(Path(folder))
+
+
+def ask_for_animation(parent: Any, film: Shooting, name: str) -> None:
+    """Ask where the animated picture goes, and write it."""
+    title, kind = translate("PKM_Simulate", "Animated PNG"), translate("PKM_Simulate", "Animated PNG (*.png)")
+    target, _ = QtWidgets.QFileDialog.getSaveFileName(parent, title, f"{name}.png", kind)
+    if target:
+        film(*_ANIMATION).write_animation(Path(target))

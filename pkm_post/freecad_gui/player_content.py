@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Player content: what is in the dock of the player: controls, slider, curves, and the lists to be clicked.
+
+A simulation enters, then times in s; a time that the user wants to see leaves.
+"""
+
+from __future__ import annotations
+
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_app.simulated_motion import Simulation
+from pkm_post.freecad_gui.player_controls import PlayerControls
+from pkm_post.freecad_gui.player_lists import PlayerLists
+from pkm_post.freecad_gui.strut_plot import StrutPlot
+
+_PER_SECOND = 1000
+"""Steps of the slider, as many as the motion has milliseconds."""
+
+
+class PlayerContent(QtWidgets.QWidget):
+    """The content.
+
+    Attributes:
+        controls: the row of buttons.
+        slider: over the whole motion.
+        plot: lengths and speeds.
+        lists: problems and operations.
+    """
+
+    wanted = QtCore.Signal(float)
+
+    def __init__(self, simulation: Simulation) -> None:
+        super().__init__()
+        self.controls, self.lists = PlayerControls(), PlayerLists()
+        self.slider = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal)
+        self.slider.valueChanged.connect(lambda value: self.wanted.emit(value / _PER_SECOND))
+        self.plot = StrutPlot(simulation, self.wanted.emit)
+        self.controls.overridden.connect(self.plot.show_override)
+        below, layout = QtWidgets.QHBoxLayout(), QtWidgets.QVBoxLayout(self)
+        below.addWidget(self.plot, 1)
+        below.addWidget(self.lists)
+        layout.addWidget(self.controls)
+        layout.addWidget(self.slider)
+        layout.addLayout(below, 1)
+
+    def take(self, simulation: Simulation) -> None:
+        """Show another simulation."""
+        self.plot.take(simulation)
+        self.lists.take(simulation)
+        self.slider.blockSignals(True)
+        self.slider.setRange(0, round(simulation.duration * _PER_SECOND))
+        self.slider.blockSignals(False)
+
+    def show_time(self, seconds: float) -> None:
+        """Move cursor and slider; it is the player that moves them, not the user."""
+        self.plot.show_time(seconds)
+        self.slider.blockSignals(True)
+        self.slider.setValue(round(seconds * _PER_SECOND))
+        self.slider.blockSignals(False)

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Post outcome: what came of posting, to look at: the certificate with its picture, or the reasons for a refusal.
+
+What was posted enters, or diagnostics do; a click on a row tells the name of its operation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.model import Diagnostic
+from pkm_post.model.diagnostics import RULES, Severity
+from pkm_post.pipeline import Posted
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_CONTEXT = "PostOutcome"
+_HEAD = (
+    QT_TRANSLATE_NOOP("PostOutcome", "Measured"),
+    QT_TRANSLATE_NOOP("PostOutcome", "Worst"),
+    QT_TRANSLATE_NOOP("PostOutcome", "Limit"),
+    QT_TRANSLATE_NOOP("PostOutcome", "Unit"),
+    QT_TRANSLATE_NOOP("PostOutcome", "Where"),
+)
+_OPERATION = QtCore.Qt.ItemDataRole.UserRole
+_WIDTH = 380
+"""Of the picture, pixels; a click shows it as it is."""
+
+
+class PostOutcome(QtWidgets.QWidget):
+    """Verdict, findings, diagnostics and picture; what does not apply is hidden."""
+
+    chosen = QtCore.Signal(str)
+    """The name of the operation of a row that was clicked."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.verdict, self.picture = QtWidgets.QLabel(), _Picture()
+        self.findings, self.diagnostics = _table(), QtWidgets.QListWidget()
+        self.verdict.setWordWrap(True)
+        self.diagnostics.setWordWrap(True)
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for part in (self.verdict, self.diagnostics, self.findings, self.picture):
+            layout.addWidget(part)
+        self.diagnostics.itemClicked.connect(lambda item: self.chosen.emit(item.data(_OPERATION)))
+        self.findings.itemClicked.connect(lambda item: self.chosen.emit(item.data(_OPERATION)))
+        self.show_nothing("")
+
+    def show_nothing(self, text: str) -> None:
+        """Show a line and nothing else."""
+        self.verdict.setText(text)
+        self._show_diagnostics(())
+        self.findings.hide()
+        self.picture.hide()
+
+    def show_refused(self, diagnostics: Sequence[Diagnostic]) -> None:
+        """Show why nothing was written."""
+        self.show_nothing(translate(_CONTEXT, "Refused. Nothing was written."))
+        self._show_diagnostics(diagnostics)
+
+    def show_posted(self, posted: Posted) -> None:
+        """Show the certificate."""
+        certificate, seconds = posted.report["certificate"], posted.report["machining_time"]["total_s"]
+        told = translate(_CONTEXT, "Certified: every limit is kept at {} poses. {} s at the machine, {} files.")
+        self.verdict.setText(told.format(certificate["instants"], seconds, len(posted.files)))
+        self._show_diagnostics(posted.diagnostics)
+        _fill(self.findings, certificate["findings"])
+        self.findings.show()
+        pictures = [path for path in posted.files if path.suffix == ".png"]
+        self.picture.setVisible(bool(pictures))
+        if pictures:
+            self.picture.show_file(str(pictures[0]))
+
+    def _show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
+        self.diagnostics.clear()
+        for each in diagnostics:
+            item = QtWidgets.QListWidgetItem(_icon(self, each), str(each))
+            item.setToolTip(RULES[each.code].cure)
+            item.setData(_OPERATION, each.place.operation)
+            self.diagnostics.addItem(item)
+        self.diagnostics.setVisible(bool(diagnostics))
+
+
+class _Picture(QtWidgets.QLabel):
+    """The report's picture, small; a click shows it as it is."""
+
+    def show_file(self, name: str) -> None:
+        """Show a picture."""
+        self._name = name
+        self.setPixmap(QtGui.QPixmap(name).scaledToWidth(_WIDTH, QtCore.Qt.TransformationMode.SmoothTransformation))
+        self.setToolTip(translate(_CONTEXT, "Click to see it in full size"))
+
+    def mousePressEvent(self, _event: Any) -> None:
+        """Show it as it is."""
+        QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(self._name))
+
+
+def _table() -> QtWidgets.QTableWidget:
+    table = QtWidgets.QTableWidget(0, len(_HEAD))
+    table.setHorizontalHeaderLabels([translate(_CONTEXT, text) for text in _HEAD])
+    table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
+    table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
+    table.verticalHeader().hide()
+    return table
+
+
+def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> None:
+    """One row for each finding of the report."""
+    table.setRowCount(len(findings))
+    for row, each in enumerate(findings):
+        where = f"{each['operation']}: {each['line']}"
+        for column, text in enumerate(
+            (each["what"], f"{each['value']:.4g}", f"{each['limit']:.4g}", each["unit"], where)
+        ):
+            item = QtWidgets.QTableWidgetItem(text)
+            item.setData(_OPERATION, each["operation"])
+            table.setItem(row, column, item)
+    table.resizeColumnsToContents()
+
+
+def _icon(widget: QtWidgets.QWidget, diagnostic: Diagnostic) -> Any:
+    sign = QtWidgets.QStyle.StandardPixmap
+    chosen = sign.SP_MessageBoxCritical if diagnostic.severity is Severity.ERROR else sign.SP_MessageBoxWarning
+    return widget.style().standardIcon(chosen)

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Post panel: a CAM job becomes a certified motion program, beside the window.
+
+A job enters; it keeps what is chosen as its arguments, so that CAM's own post command does the same. The job is read in
+the thread of the window, as documents must be, and posted in another one.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.freecad_app.arguments import job_arguments, own_text, remember
+from pkm_post.freecad_app.job_to_post import read_for_post
+from pkm_post.freecad_app.post_job import file_name
+from pkm_post.freecad_app.post_processor import program_path
+from pkm_post.freecad_app.progress import Stopped
+from pkm_post.freecad_gui.deletion_watch import DeletionWatch
+from pkm_post.freecad_gui.post_choices import PostChoices
+from pkm_post.freecad_gui.post_outcome import PostOutcome
+from pkm_post.freecad_gui.post_steps import step_text
+from pkm_post.freecad_gui.preferences import default_arguments, default_folder
+from pkm_post.freecad_gui.task import Task
+from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.model import Refused
+from pkm_post.options import READING, options_from, tool_lengths_from
+
+translate = FreeCAD.Qt.translate
+
+NAME = "PkmPostPanel"
+_CONTEXT = "PostPanel"
+_PER_MILLE = 1000
+
+
+class PostPanel:
+    """The task panel.
+
+    Attributes:
+        choices: the fields.
+        outcome: what came of it.
+        post, stop, folder, simulate: buttons.
+    """
+
+    def __init__(self, job: Any) -> None:
+        self.job, self._task, self._target = job, None, Path()
+        self.form = QtWidgets.QWidget()
+        self.form.setObjectName(NAME)
+        self.form.setWindowTitle(translate(_CONTEXT, "Post to a hexapod"))
+        self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "pkm_post.svg")))
+        self.choices = PostChoices(own_text(job) or default_arguments(), str(_folder_of(job)))
+        self.outcome, self.bar, self.step = PostOutcome(), QtWidgets.QProgressBar(), QtWidgets.QLabel()
+        self.bar.setRange(0, _PER_MILLE)
+        self.outcome.chosen.connect(self._select)
+        self.post = _button(translate(_CONTEXT, "Post"), self.begin)
+        self.stop = _button(translate(_CONTEXT, "Cancel"), self.cancel)
+        self.folder = _button(translate(_CONTEXT, "Open folder"), self._open_folder)
+        self.simulate = _button(translate(_CONTEXT, "Simulate"), self._simulate)
+        self._lay_out()
+        self._show_running(False)
+        self.folder.setEnabled(False)
+        self._watch = DeletionWatch(self.reject, job.Document.Name, job.Name)
+
+    def _lay_out(self) -> None:
+        layout, buttons = QtWidgets.QVBoxLayout(self.form), QtWidgets.QHBoxLayout()
+        for button in (self.post, self.stop, self.folder, self.simulate):
+            buttons.addWidget(button)
+        layout.addWidget(self.choices)
+        layout.addLayout(buttons)
+        for part in (self.step, self.bar, self.outcome):
+            layout.addWidget(part)
+
+    def begin(self) -> None:
+        """Keep what is chosen, read the job, and begin to post it."""
+        self._show_running(True)
+        self._show_progress(READING, 0.0)
+        QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
+        try:
+            read = self._read()
+        except BaseException as fault:
+            self._show_end(fault)
+            if not isinstance(fault, Refused):
+                raise
+            return
+        task = Task(lambda: read.post(self._target, progress=task.tell), self.form)
+        self._task = task
+        task.progressed.connect(self._show_progress)
+        task.finished.connect(self._end)
+        task.start()
+
+    def _read(self) -> Any:
+        """The job and its machine, when the job has kept what is chosen."""
+        text, job = self.choices.text(), self.job
+        chosen = job_arguments(job, text)
+        self._target = Path(self.choices.folder.text().strip() or ".").absolute() / file_name(job)
+        job.Document.openTransaction("Post to a hexapod")
+        remember(job, text, str(self._target))
+        job.Document.commitTransaction()
+        return read_for_post(job, chosen.machine, options_from(chosen), tool_lengths_from(chosen))
+
+    def cancel(self) -> None:
+        """Stop behind the step that is being done; nothing is written then."""
+        if self._task is not None:
+            self._task.stop()
+            self.stop.setEnabled(False)
+            self.step.setText(translate(_CONTEXT, "Stops behind this step"))
+
+    def _end(self) -> None:
+        task, self._task = self._task, None
+        task.deleteLater()
+        try:
+            posted = task.value()
+        except BaseException as fault:
+            self._show_end(fault)
+            if not isinstance(fault, Refused | Stopped):
+                raise
+        else:
+            self._show_running(False)
+            self.folder.setEnabled(True)
+            self.outcome.show_posted(posted)
+
+    def _show_end(self, fault: BaseException) -> None:
+        """Show that nothing was written, and why."""
+        self._show_running(False)
+        if isinstance(fault, Refused):
+            self.outcome.show_refused(fault.diagnostics)
+        elif isinstance(fault, Stopped):
+            self.outcome.show_nothing(translate(_CONTEXT, "Stopped. Nothing was written."))
+        else:
+            self.outcome.show_nothing(translate(_CONTEXT, "An error of the program; the Report view has it."))
+
+    def _show_running(self, runs: bool) -> None:
+        for part in (self.choices, self.post, self.simulate):
+            part.setEnabled(not runs)
+        self.stop.setEnabled(runs)
+        self.bar.setVisible(runs)
+        self.step.setVisible(runs)
+        if runs:
+            self.outcome.show_nothing("")
+
+    def _show_progress(self, step: str, share: float) -> None:
+        self.bar.setValue(round(share * _PER_MILLE))
+        if self.stop.isEnabled():
+            self.step.setText(step_text(step))
+
+    def _select(self, operation: str) -> None:
+        """Select the operation of a row."""
+        FreeCADGui.Selection.clearSelection()
+        for each in self.job.Operations.Group:
+            if operation and each.Label == operation:
+                FreeCADGui.Selection.addSelection(each)
+
+    def _open_folder(self) -> None:
+        QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(str(self._target.parent)))
+
+    def _simulate(self) -> None:
+        """As the command does, which tells for itself why there is nothing to play."""
+        FreeCADGui.Selection.clearSelection()
+        FreeCADGui.Selection.addSelection(self.job)
+        FreeCADGui.runCommand("PKM_Simulate", 0)
+
+    def getStandardButtons(self) -> Any:
+        """There is nothing to accept or reject."""
+        return QtWidgets.QDialogButtonBox.StandardButton.Close
+
+    def reject(self) -> bool:
+        """Close the panel; what is being posted is stopped before."""
+        self._watch.end()
+        if self._task is not None:
+            self._task.finish()
+        FreeCADGui.Control.closeDialog()
+        return True
+
+
+def open_panel(job: Any) -> PostPanel | None:
+    """Show the panel for a job; None if another task panel is open."""
+    if FreeCADGui.Control.activeDialog():
+        text = translate(_CONTEXT, "Another task panel is open: close it first.")
+        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), translate(_CONTEXT, "Post to a hexapod"), text)
+        return None
+    panel = PostPanel(job)
+    FreeCADGui.Control.showDialog(panel)
+    return panel
+
+
+def _folder_of(job: Any) -> Path:
+    """Where the job was posted before; else the folder of the preferences, else that of the document."""
+    if job.PostProcessorOutputFile:
+        return program_path(job).absolute().parent
+    return Path(default_folder() or Path(job.Document.FileName or "job.FCStd").absolute().parent)
+
+
+def _button(text: str, action: Any) -> QtWidgets.QPushButton:
+    button = QtWidgets.QPushButton(text)
+    button.setAutoDefault(False)
+    button.clicked.connect(lambda: action())
+    return button

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Preferences: what the post panel shows at first for a job that was never posted, and the page to set it.
+
+The page enters into FreeCAD's preferences. Nothing but the panel reads them: what is posted depends on the job alone.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtWidgets
+
+translate = FreeCAD.Qt.translate
+
+GROUP = "User parameter:BaseApp/Preferences/Mod/PkmPost"
+PAGES = "PKM Post"
+"""The group of pages in FreeCAD's preferences."""
+_CONTEXT = "PostPreferences"
+_ARGUMENTS, _FOLDER = "Arguments", "Folder"
+
+
+def default_arguments() -> str:
+    """The arguments that a job is offered at first."""
+    text: str = FreeCAD.ParamGet(GROUP).GetString(_ARGUMENTS, "")
+    return text
+
+
+def default_folder() -> str:
+    """The folder that a job is offered at first; empty for that of its document."""
+    text: str = FreeCAD.ParamGet(GROUP).GetString(_FOLDER, "")
+    return text
+
+
+class PostPreferences:
+    """The page, as FreeCAD wants it."""
+
+    def __init__(self, _parent: Any = None) -> None:
+        from pkm_post.freecad_gui.post_choices import PostChoices
+
+        self.form = QtWidgets.QWidget()
+        self.form.setWindowTitle(translate(_CONTEXT, "Posting"))
+        self.choices = PostChoices("", "")
+        self.choices.folder.setPlaceholderText(translate(_CONTEXT, "the folder of the document"))
+        told = translate(_CONTEXT, "What the post panel shows at first for a job that has no arguments of its own.")
+        layout = QtWidgets.QVBoxLayout(self.form)
+        layout.addWidget(QtWidgets.QLabel(told))
+        layout.addWidget(self.choices)
+        layout.addStretch(1)
+
+    def loadSettings(self) -> None:
+        """Show what is stored."""
+        self.choices.show_text(default_arguments())
+        self.choices.folder.setText(default_folder())
+
+    def saveSettings(self) -> None:
+        """Store what is shown."""
+        group = FreeCAD.ParamGet(GROUP)
+        group.SetString(_ARGUMENTS, self.choices.text())
+        group.SetString(_FOLDER, self.choices.folder.text())
+
+
+def install() -> None:
+    """Add the page to FreeCAD's preferences; they name the icon of a group themselves."""
+    from pkm_post.freecad_gui.workbench import ICONS
+
+    FreeCADGui.addIcon(f"preferences-{PAGES.lower().replace(' ', '_')}", str(ICONS / "pkm_post.svg"))
+    FreeCADGui.addPreferencePage(PostPreferences, PAGES)

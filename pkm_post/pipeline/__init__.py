@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pipeline: the one way through the house, from a program to files that a controller and a person can use.
+
+``steps`` alone knows the order of the steps. Either every file is written and certified, or none is there.
+"""
+
+from pkm_post.pipeline.options import LINUXCNC, Options
+from pkm_post.pipeline.placed import trajectory_of, work_offset
+from pkm_post.pipeline.run import Log, Progress, quiet, unwatched
+from pkm_post.pipeline.steps import SUFFIX, Posted, post, step_names
+
+__all__ = [
+    "LINUXCNC",
+    "SUFFIX",
+    "Log",
+    "Options",
+    "Posted",
+    "Progress",
+    "post",
+    "quiet",
+    "step_names",
+    "trajectory_of",
+    "unwatched",
+    "work_offset",
+]

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options: what a user may choose for a program, in mm and rad."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pkm_post.compensation import OffsetOptions
+from pkm_post.controllers import TABLES
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Tool
+from pkm_post.model.findings import Tolerances
+from pkm_post.spin import ZERO_TORSION, Policy
+from pkm_post.surface_speed import SurfaceSpeed
+
+LINUXCNC = "linuxcnc"
+"""The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is no table of the motion."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a user may choose.
+
+    Attributes:
+        work_offset: name of a work offset in the machine file, or the (4, 4) pose of {C} in {M}.
+        tip_tolerance: how far the tool tip may be from the programmed path, mm.
+        axis_tolerance: how far the tool axis may be from the programmed one, rad.
+        spin: how the platform turns about the tool axis.
+        contours: how 2D cutter compensation (G41, G42, CUTCOM) is applied.
+        actual_tools: by number, tools whose cutters are others than those the program was made for; a program with
+            surface normals is compensated for them.
+        surface_speed: how fast the cutting edge is to move over the work; None leaves the spindle as programmed.
+        also: what is written beside the program: names of ``controllers.TABLES``, and ``LINUXCNC``.
+    """
+
+    work_offset: str | Array = "G54"
+    tip_tolerance: float = 1e-3
+    axis_tolerance: float = math.radians(1e-3)
+    spin: Policy = ZERO_TORSION
+    contours: OffsetOptions = OffsetOptions()
+    actual_tools: Mapping[int, Tool] = field(default_factory=dict)
+    surface_speed: SurfaceSpeed | None = None
+    also: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        known = (*TABLES, LINUXCNC)
+        if not set(self.also) <= set(known):
+            raise ValueError(f"also: expected names out of {', '.join(known)}, got {', '.join(self.also)}")
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """Both tolerances."""
+        return Tolerances(self.tip_tolerance, self.axis_tolerance)

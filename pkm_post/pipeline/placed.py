@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Placed: a program as the trajectory that its machine is to follow.
+
+A program in {C} enters; it leaves compensated, on the machine, in {M}, with its spin, or what stands against it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.compensation import compensate
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Diagnostic, Machine, Place, Program, Trajectory
+from pkm_post.pipeline.options import Options
+from pkm_post.placement import place
+from pkm_post.spin import with_spin
+from pkm_post.surface_speed import with_surface_speed
+
+Findings = tuple[Diagnostic, ...]
+
+
+def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple[Trajectory | None, Findings]:
+    """The program compensated, on the machine, with its spin; or what stands against it."""
+    offset, told = work_offset(machine, options)
+    moved, faults = compensate(program, options.contours, options.actual_tools)
+    told += faults
+    if offset is None or moved is None:
+        return None, told
+    if options.surface_speed is not None:
+        limits = machine.spindle_least_speed, machine.spindle_speed
+        moved, faults = with_surface_speed(moved, options.surface_speed, limits)
+        told += faults
+        if moved is None:
+            return None, told
+    placed, faults = place(moved, machine, offset)
+    told += faults
+    if placed is None:
+        return None, told
+    turned, faults = with_spin(placed, machine, options.spin)
+    return turned, told + faults
+
+
+def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findings]:
+    """The work offset that was chosen, (4, 4), or why there is none."""
+    chosen = options.work_offset
+    if not isinstance(chosen, str):
+        return np.asarray(chosen, dtype=np.float64), ()
+    if chosen not in machine.work_offsets:
+        known = ", ".join(sorted(machine.work_offsets))
+        return None, (Diagnostic("K108", Place(machine.name), f"{chosen}, the machine file has {known}"),)
+    return machine.work_offsets[chosen], ()

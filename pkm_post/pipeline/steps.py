@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Steps: the order in which a program becomes files, and each step by itself.
+
+A program and a machine enter; the files leave, all of them or none. A step takes what the steps before it made, and
+the frame: what is the same for all of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pkm_post import outputs, planning, trajectory_file
+from pkm_post.certificate import certify
+from pkm_post.controllers import TABLES, Controller, controller_of
+from pkm_post.feed import Schedule, ToolPath
+from pkm_post.files import staged
+from pkm_post.model import Diagnostic, Machine, Motion, Place, Program, Refused, StrutMotion, Trajectory
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.findings import Certificate, Tolerances
+from pkm_post.pipeline.options import LINUXCNC, Options
+from pkm_post.pipeline.placed import trajectory_of
+from pkm_post.pipeline.run import Findings, Log, Progress, Run, quiet, unwatched
+from pkm_post.report import plots, summary
+
+SUFFIX = ".pmc"
+"""How the name of a motion program ends."""
+_TRAJECTORY, _FEED_PLAN, _INTERPOLATION = "trajectory", "reach and feed plan", "interpolation"
+_PROGRAM, _CERTIFICATE, _REPORT = "motion program", "certificate", "report"
+_SHARES = {_TRAJECTORY: 0.1, _FEED_PLAN: 1.0, _INTERPOLATION: 1.5, _PROGRAM: 0.1, _CERTIFICATE: 1.0, _REPORT: 1.0}
+"""The steps in their order, and roughly how long each takes beside the others."""
+_SHARE_OF_ANOTHER = 0.2
+"""The same for a file beside the program."""
+
+
+@dataclass(frozen=True)
+class Posted:
+    """What was made.
+
+    Attributes:
+        program: the motion program, or the first of its parts.
+        files: everything that was written, the program included.
+        report: the content of the report file.
+        diagnostics: warnings.
+        parts: the files of the motion program, in the order in which they run.
+    """
+
+    program: Path
+    files: tuple[Path, ...]
+    report: dict[str, Any]
+    diagnostics: Findings
+    parts: tuple[Path, ...]
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """What all steps need to know.
+
+    Attributes:
+        path: of the motion program; the other files take its folder and its stem.
+        machine: that the program is for.
+        controller: of the machine.
+        settings: of the controller, of a class of its own.
+        options: what the user chose.
+    """
+
+    path: Path
+    machine: Machine
+    controller: Controller
+    settings: Any
+    options: Options
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """What was asked for."""
+        return self.options.tolerances
+
+    def beside(self, ending: str) -> Path:
+        """The path of another file."""
+        return self.path.with_name(self.path.stem + ending)
+
+
+def post(
+    program: Program | None,
+    machine: Machine | None,
+    program_path: Path,
+    options: Options | None = None,
+    log: Log = quiet,
+    found: Findings = (),
+    progress: Progress = unwatched,
+) -> Posted:
+    """Make a certified motion program, with its trajectory, set-up file and report beside it.
+
+    Args:
+        program: cutter locations in {C}; None if what it was to be read from has errors.
+        machine: the machine to run it on; None if its file has errors.
+        program_path: where the motion program goes; the other files take its stem.
+        options: what the user chose.
+        log: takes a line for each step.
+        found: what was found in reading these; it is told with what is found here.
+        progress: is told of each step when it begins; what it raises ends the run, and nothing is written.
+
+    Raises:
+        Refused: something in the input, or the place to write to, does not allow it; nothing was written.
+    """
+    if program is None or machine is None or errors(found):
+        raise Refused(found)
+    options = options or Options()
+    run = Run(log, progress, _shares(options), list(found))
+    try:
+        with staged(program_path.parent) as folder:
+            parts, report = _all_steps(run, program, machine, folder / program_path.name, options)
+            progress("", 1.0)
+            names = sorted(path.name for path in folder.iterdir())
+    except OSError as fault:
+        raise Refused([*run.warnings, Diagnostic("F101", Place(str(program_path)), str(fault))]) from fault
+    files, programs = (tuple(program_path.parent / name for name in each) for each in (names, parts))
+    return Posted(program_path, files, report, tuple(run.warnings), programs)
+
+
+def step_names(options: Options | None = None) -> tuple[str, ...]:
+    """The steps that a run with these options takes, in their order."""
+    return tuple(_shares(options or Options()))
+
+
+def _shares(options: Options) -> dict[str, float]:
+    return _SHARES | {_another(name): _SHARE_OF_ANOTHER for name in options.also}
+
+
+def _another(name: str) -> str:
+    return f"also {name}"
+
+
+def _all_steps(
+    run: Run, program: Program, machine: Machine, path: Path, options: Options
+) -> tuple[list[str], dict[str, Any]]:
+    """The steps in their order; the names of the parts of the program, and the content of the report."""
+    controller = run.value(controller_of(machine))
+    frame = _Frame(path, machine, controller, run.value(controller.settings_of(machine)), options)
+    trajectory = _stored_trajectory(run, frame, program)
+    tool_path, schedule = _feed_plan(run, frame, trajectory)
+    motion, struts = _interpolation(run, frame, trajectory, tool_path, schedule)
+    names = _motion_program(run, frame, trajectory, struts)
+    played, certificate = _certificate(run, frame, trajectory, motion, names)
+    report = _report(run, frame, trajectory, motion, played, certificate)
+    for name in options.also:
+        _write_another(run, frame, name, trajectory, played)
+    return names, report
+
+
+def _stored_trajectory(run: Run, frame: _Frame, program: Program) -> Trajectory:
+    """The trajectory as its file says it: what is planned is what was stored."""
+    with run.step(_TRAJECTORY) as told:
+        placed = run.value(trajectory_of(program, frame.machine, frame.options))
+        stored = frame.beside(".pkmt")
+        trajectory_file.write(replace(placed, tolerances=frame.tolerances), stored)
+        trajectory = run.value(trajectory_file.read(stored))
+        told.append(f"{len(trajectory)} segments")
+    return trajectory
+
+
+def _feed_plan(run: Run, frame: _Frame, trajectory: Trajectory) -> tuple[ToolPath, Schedule]:
+    """The path with rounded corners, and when the tool is where on it."""
+    with run.step(_FEED_PLAN) as told:
+        tool_path = planning.tool_path(trajectory, frame.tolerances)
+        schedule, faults = planning.plan_feed(tool_path, trajectory, frame.machine)
+        run.accept(faults)
+        told.append(f"{schedule.rests_ms[-1] / 1000:.1f} s of motion")
+    return tool_path, schedule
+
+
+def _interpolation(
+    run: Run, frame: _Frame, trajectory: Trajectory, tool_path: ToolPath, schedule: Schedule
+) -> tuple[Motion, StrutMotion]:
+    """Tool poses and strut lengths by time, which the controller can take."""
+    with run.step(_INTERPOLATION) as told:
+        motion = planning.interpolate(tool_path, schedule, trajectory.events, frame.machine, frame.tolerances)
+        struts = planning.strut_motion(motion, frame.machine)
+        run.accept(frame.controller.faults(struts, frame.settings, frame.path.name))
+        told.append(f"{len(motion)} points")
+    return motion, struts
+
+
+def _motion_program(run: Run, frame: _Frame, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
+    """Write the program and the set-up it relies on; the names of its parts."""
+    with run.step(_PROGRAM) as told:
+        controller, settings, machine = frame.controller, frame.settings, frame.machine
+        parts = controller.program_parts(struts, settings, summary.heading(trajectory))
+        names = outputs.write_parts(frame.path, parts)
+        setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
+        if setup is not None:
+            outputs.write_parts(frame.beside(controller.SETUP_SUFFIX), (setup,))
+        told.append(f"{sum(map(len, parts)) / 1e6:.1f} MB" + f" in {len(parts)} parts" * (len(parts) > 1))
+    return names
+
+
+def _certificate(
+    run: Run, frame: _Frame, trajectory: Trajectory, motion: Motion, names: list[str]
+) -> tuple[StrutMotion, Certificate]:
+    """The program read back from its text, and what it does."""
+    with run.step(_CERTIFICATE) as told:
+        texts = outputs.read_parts(frame.path, names)
+        played = run.value(frame.controller.read_parts(texts, frame.settings))
+        measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances)
+        certificate = run.value(measured)
+        told.append(f"{certificate.instants} poses by forward kinematics")
+    return played, certificate
+
+
+def _report(
+    run: Run, frame: _Frame, trajectory: Trajectory, motion: Motion, played: StrutMotion, certificate: Certificate
+) -> dict[str, Any]:
+    """Write the report as JSON and picture; its content."""
+    with run.step(_REPORT) as told:
+        machine, tolerances = frame.machine, frame.tolerances
+        report = summary.report(trajectory, machine, certificate, tolerances, played, motion)
+        summary.write(report, frame.beside("-report.json"))
+        picture = frame.beside("-report.png")
+        run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))
+        told.extend(summary.verdict(certificate))
+    return report
+
+
+def _write_another(run: Run, frame: _Frame, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
+    """Write a file that was asked for beside the program."""
+    with run.step(_another(name)) as told:
+        if name == LINUXCNC:
+            run.accept(outputs.write_for_linuxcnc(frame.path, trajectory))
+            return
+        # the last line of the heading speaks of the program
+        found, faults = outputs.write_table(frame.path, TABLES[name], played, summary.heading(trajectory)[:-1])
+        run.accept(faults)
+        told.append(found)
