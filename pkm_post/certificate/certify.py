@@ -14,17 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.instants import Task
+from pkm_post.certificate.joints import Passed, pass_joints
 from pkm_post.certificate.knots import Knots
-from pkm_post.certificate.playback import (
-    INSTANTS,
-    SPEED_MISSED,
-    Played,
-    at_joints,
-    off_plan,
-    play,
-    strut_jerk,
-    tip_speeds,
-)
+from pkm_post.certificate.playback import Played, play
+from pkm_post.certificate.struts import off_plan, strut_jerk
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.findings import Certificate, Finding, Tolerances
@@ -56,14 +50,16 @@ def certify(
     faults = _structure_faults(struts, program_name, trajectory, machine, motion)
     if faults:
         return None, faults
-    knots = Knots.of(machine, motion)
-    played = play(struts, machine, TrajectoryRuler(trajectory, tolerances), motion, knots)
-    findings = _findings(played, struts, trajectory, machine, motion, knots, tolerances)
+    ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
+    task = Task(struts, machine, ruler, motion, Knots.of(machine, motion), ceiling)
+    passed = pass_joints(task, trajectory)
+    played = play(task, passed)
+    findings = _findings(task, played, passed, trajectory, tolerances)
     certificate = Certificate(
         findings=findings,
         duration=float(struts.time_ms[-1]) / 1000,
         intervals=len(struts) - 1,
-        instants=INSTANTS * (len(struts) - 1) + len(trajectory),
+        instants=played.instants + len(trajectory),
         time=struts.time_ms[:-1] / 1000,
         tip_deviation=played.tip,
         tip_tolerance=played.tip_tolerance,
@@ -73,30 +69,23 @@ def certify(
 
 
 def _findings(
-    played: Played,
-    struts: StrutMotion,
-    trajectory: Trajectory,
-    machine: Machine,
-    motion: Motion,
-    planned: Knots,
-    tolerances: Tolerances,
+    task: Task, played: Played, passed: Passed, trajectory: Trajectory, tolerances: Tolerances
 ) -> tuple[Finding, ...]:
     """One row for each quantity: code, name, unit, values, limit, and when and where they were taken."""
+    struts, machine, motion = task.struts, task.machine, task.motion
     intervals = _Series(struts.time_ms[:-1] / 1000, motion.segment[1:])
     joints = _Series(motion.joint_time, np.arange(len(trajectory)))
     knots = _Series(struts.time_ms / 1000, motion.segment)
-    excess = _excess(played, struts, trajectory, machine, motion)
     at_ends = trajectory.tip_tolerances(tolerances.tip)
-    passed = at_joints(struts, machine, trajectory, motion, planned)
     axis_limit = math.degrees(tolerances.axis)
     rows: tuple[_Row, ...] = (
         ("V107", "instants without a pose", "", 1.0 - played.found, 0.0, intervals),
         ("V101", "deviation of the tool tip", "mm", played.tip, played.tip_tolerance, intervals),
         ("V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), axis_limit, intervals),
-        ("V110", "tool tip off a programmed point", "mm", passed[0], at_ends, joints),
-        ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed[1]), axis_limit, joints),
-        ("V111", "strut off its plan", "mm", off_plan(struts, planned), tolerances.tip, knots),
-        ("V108", "tip speed above the feed", "mm/s", excess, 0.0, intervals),
+        ("V110", "tool tip off a programmed point", "mm", passed.tip, at_ends, joints),
+        ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed.axis), axis_limit, joints),
+        ("V111", "strut off its plan", "mm", off_plan(struts, task.knots), tolerances.tip, knots),
+        ("V108", "tip speed above the feed", "mm/s", played.tip_speed - task.ceiling, 0.0, intervals),
         ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, intervals),
         ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, intervals),
         ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, intervals),
@@ -144,15 +133,6 @@ def _structure_faults(
     if struts.speed[[0, -1]].any():
         faults.append(Diagnostic("V105", place, f"last speeds {struts.speed[-1].tolist()} mm/s"))
     return tuple(faults)
-
-
-def _excess(played: Played, struts: StrutMotion, trajectory: Trajectory, machine: Machine, motion: Motion) -> Array:
-    """Tip speed above what each interval may have, (K,); exact where it is highest."""
-    ceiling = _feed_ceiling(trajectory, motion)
-    excess = played.tip_speed - ceiling
-    near = np.flatnonzero(excess >= (excess - SPEED_MISSED * played.tip_speed).max() - SPEED_MISSED * played.tip_speed)
-    excess[near] = tip_speeds(struts, machine, motion, near) - ceiling[near]
-    return excess
 
 
 def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:

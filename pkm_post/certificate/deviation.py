@@ -3,8 +3,8 @@
 
 A pose is compared with the programmed pose of a segment that fits it best: the one with the least sum of squares of
 tip and axis deviation, each by its tolerance. Of several segments the one counts that the pose fits best. On a helix
-the point at the same angle stands for the nearest one. Looking at some segments only can make a deviation larger,
-never smaller.
+the point at the same angle stands for the nearest one. Looking at some segments only, or at one, can make a deviation
+larger, never smaller.
 """
 
 from __future__ import annotations
@@ -18,20 +18,27 @@ from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Kind, Trajectory
 from pkm_post.model.findings import Tolerances
 
-_WELL_WITHIN = 0.5
-"""Part of the tolerances below which it does not matter whether another segment would fit even better."""
+_NEARLY = 1e-3
+"""rad: arcs that leave no more open than this begin and end at one angle."""
+_TELLS_TURNS = 2.5
+"""Rise or turn of the tool axis, by the tolerances, from which on a pose within these tells which end is meant."""
 
 
 class TrajectoryRuler:
-    """Measures poses against the segments of one trajectory."""
+    """Measures poses against the segments of one trajectory.
+
+    Attributes:
+        axis_tolerance: how far the tool axis may be off, rad.
+    """
 
     def __init__(self, trajectory: Trajectory, tolerances: Tolerances) -> None:
         self._trajectory = trajectory
-        self._axis_tolerance = tolerances.axis
+        self.axis_tolerance = tolerances.axis
         self._tip_tolerance = trajectory.tip_tolerances(tolerances.tip)
         self._tip_before = trajectory.tip_before()
         self._axis_before = trajectory.axis_before()
         self._axis_turn = towards(self._axis_before, trajectory.axis)
+        self._bend = _bends(trajectory, self._tip_before)
 
     def deviation(self, tip: Array, axis: Array, first: Array, last: Array) -> tuple[Array, Array]:
         """Deviations of tip (mm) and axis (rad), (N,) each.
@@ -46,21 +53,19 @@ class TrajectoryRuler:
         self._improve(best, tip, axis, first, last, np.arange(len(tip)))
         return best[0], best[1]
 
-    def deviation_about(self, tip: Array, axis: Array, first: Array, last: Array, likely: Array) -> Array:
-        """Deviations of tip (mm) and axis (rad), and what that of the tip may be, (3, N).
-
-        Where half of the tolerances is kept from a likely segment, no other is looked at.
+    def deviation_from(self, tip: Array, axis: Array, segment: Array) -> Array:
+        """Deviations of tip (mm) and axis (rad) from one segment each, and what that of the tip may be, (3, N).
 
         Args:
             tip: (N, 3) tips.
             axis: (N, 3) unit axes.
-            first: (N,) first segment to look at.
-            last: (N,) last segment to look at.
-            likely: (N,) the segment to look at before all others.
+            segment: (N,) the segment to measure from.
         """
-        best = self._from_segments(tip, axis, likely)
-        self._improve(best, tip, axis, first, last, np.flatnonzero(self._fit(best) > _WELL_WITHIN))
-        return best
+        return self._from_segments(tip, axis, segment)
+
+    def bend(self, segment: Array) -> Array:
+        """Curvature of segments, as they were programmed, 1/mm; of any shape."""
+        return np.asarray(self._bend[segment])
 
     def _improve(self, best: Array, tip: Array, axis: Array, first: Array, last: Array, rows: Array) -> None:
         """Replace the rows of what was found by what segments from first to last say, where these fit better."""
@@ -76,7 +81,7 @@ class TrajectoryRuler:
     def _fit(self, found: Array) -> Array:
         """The larger of both deviations over their tolerances; infinite where nothing was found yet."""
         of_tip = np.divide(found[0], found[2], out=np.full(found.shape[1], np.inf), where=np.isfinite(found[2]))
-        return np.maximum(of_tip, found[1] / self._axis_tolerance)
+        return np.maximum(of_tip, found[1] / self.axis_tolerance)
 
     def _from_segments(self, tip: Array, axis: Array, segment: Array) -> Array:
         """Deviations from the segment of each pose, and what that of the tip may be, (3, N)."""
@@ -90,7 +95,7 @@ class TrajectoryRuler:
         curved = np.flatnonzero((trajectory.kind[segments] == Kind.ARC)[at])
         share = dot(away, taken(by_tip[:, None] * _over_square(chord), at))
         if len(curved):
-            share[curved] = by_tip[at[curved]] * self._share_of_arc(tip[curved], segment[curved])
+            share[curved] = by_tip[at[curved]] * self._share_of_arc(tip[curved], axis[curved], segment[curved])
         start = taken(self._axis_before[segments], at)
         turns = bool(turn.any())
         if turns:
@@ -102,16 +107,18 @@ class TrajectoryRuler:
         expected = along(start, share[:, None] * taken(turn, at)) if turns else start
         return np.stack([norm(off), angle_between(axis, expected), self._tip_tolerance[segments][at]])
 
-    def _weights(self, segments: Array) -> tuple[Array, Array]:
+    def _weights(self, segments: Array) -> tuple[Array, ...]:
         """How much the shares that are nearest for the tip alone and for the axis alone count.
 
         Along a segment tip and axis move evenly, so the least sum of squares is at the weighted mean of these shares.
         """
         by_tip = (self._trajectory.length[segments] / self._tip_tolerance[segments]) ** 2
-        by_axis = (self._trajectory.angle[segments] / self._axis_tolerance) ** 2
-        return by_tip / (by_tip + by_axis), by_axis / (by_tip + by_axis)
+        by_axis = (self._trajectory.angle[segments] / self.axis_tolerance) ** 2
+        both = by_tip + by_axis
+        moves = both > 0  # a turn about the tool axis alone moves neither; every share of it fits alike
+        return tuple(np.divide(one, both, out=np.zeros_like(both), where=moves) for one in (by_tip, by_axis))
 
-    def _share_of_arc(self, tip: Array, segment: Array) -> Array:
+    def _share_of_arc(self, tip: Array, axis: Array, segment: Array) -> Array:
         trajectory = self._trajectory
         turn, centre = trajectory.arc_axis[segment], trajectory.arc_centre[segment]
         start, here = across(self._tip_before[segment] - centre, turn), across(tip - centre, turn)
@@ -119,7 +126,23 @@ class TrajectoryRuler:
         # Angles are counted from the middle of what the arc leaves open, so that no point near an end wraps around.
         open_half = (2 * np.pi - sweep) / 2
         angle = np.arctan2(dot(cross(start, here), turn), dot(start, here))
-        return (np.mod(angle + open_half, 2 * np.pi) - open_half) / sweep
+        share = (np.mod(angle + open_half, 2 * np.pi) - open_half) / sweep
+        full = np.flatnonzero(sweep > 2 * np.pi - _NEARLY)
+        share[full] = self._in_full_turn(share[full], tip[full], axis[full], segment[full])
+        return share
+
+    def _in_full_turn(self, share: Array, tip: Array, axis: Array, segment: Array) -> Array:
+        """Shares of full turns, which begin and end at one angle: rise and tool axis tell which of both is meant."""
+        trajectory, start = self._trajectory, self._tip_before[segment]
+        turn = self._axis_turn[segment]
+        rise = dot(trajectory.tip[segment] - start, trajectory.arc_axis[segment])
+        risen = dot(tip - start, trajectory.arc_axis[segment])
+        by_rise, by_axis = 1 / self._tip_tolerance[segment] ** 2, 1 / self.axis_tolerance**2
+        along_both = by_rise * rise * risen + by_axis * dot(towards(self._axis_before[segment], axis), turn)
+        whole = by_rise * rise**2 + by_axis * dot(turn, turn)
+        tells = whole > _TELLS_TURNS**2
+        meant = np.divide(along_both, whole, out=share.copy(), where=tells)
+        return np.asarray(share + np.round(meant - share))
 
     def _on_arc(self, segment: Array, share: Array) -> Array:
         trajectory, start = self._trajectory, self._tip_before[segment]
@@ -129,6 +152,16 @@ class TrajectoryRuler:
         outward, end_radius = across(point - centre, turn), norm(across(end - centre, turn))
         growth = share * (end_radius / norm(outward) - 1)
         return point + growth[:, None] * outward
+
+
+def _bends(trajectory: Trajectory, before: Array) -> Array:
+    """Curvature of each segment, (N,) 1/mm: of a helix no more than that of its circle."""
+    bend, arcs = np.zeros(len(trajectory)), np.flatnonzero(trajectory.kind == Kind.ARC)
+    if len(arcs):
+        turn, centre = trajectory.arc_axis[arcs], trajectory.arc_centre[arcs]
+        ends = (norm(across(point[arcs] - centre, turn)) for point in (before, trajectory.tip))
+        bend[arcs] = 1 / np.minimum(*ends)
+    return bend
 
 
 def _over_square(vectors: Array) -> Array:

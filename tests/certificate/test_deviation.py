@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+import dataclasses
+
 import numpy as np
+import pytest
 from machines import example
-from programs import ON_PALLET, cone, square_with_arc
+from programs import ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.feed import ToolPath
 from pkm_post.geometry import norm, unit
+from pkm_post.model import Kind
 from pkm_post.model.findings import Tolerances
 from pkm_post.placement.place import place
 
@@ -55,6 +59,37 @@ def test_against_dense_sampling_of_the_path():
     nearest = np.array([norm(dense.tip[level] - point).min() for point in points])
     assert np.all(found <= nearest + 1e-9)
     np.testing.assert_allclose(found, nearest, atol=2e-3)
+
+
+def test_a_turn_about_the_tool_axis_alone_has_something_to_be_measured_by():
+    way, _ = place(program([[0, 0, 60], [10, 0, 60], [20, 0, 60]]), example(), ON_PALLET)
+    still = np.array([len(way) - 1])
+    columns = {name: getattr(way, name).copy() for name in ("tip", "axis", "spin", "length")}
+    columns["tip"][-1], columns["spin"][-1], columns["length"][-1] = way.tip[-2], 0.2, 0.0
+    trajectory = dataclasses.replace(way, **columns)
+    tip, axis = trajectory.tip[still] + [0, 0, 3e-4], trajectory.axis[still]
+    found = TrajectoryRuler(trajectory, TOLERANCES).deviation(tip, axis, still, still)
+    np.testing.assert_allclose(found, [[3e-4], [0]], atol=1e-12)
+
+
+@pytest.mark.parametrize("past", [-1e-3, 1e-6, 1e-4])
+@pytest.mark.parametrize(("rise", "tilt"), [(-4.0, 0.0), (0.0, 5.0)])
+def test_both_ends_of_a_full_turn_are_told_apart(past, rise, tilt):
+    start, centre = np.array([0.0, 0, 40]), np.array([5.0, 0, 40])
+    blank = np.full((2, 3), np.nan)
+    position, kind = [start, start + [0, 0, rise]], [Kind.RAPID, Kind.ARC]
+    axis = np.array([[0.0, 0, 1], [np.sin(np.radians(tilt)), 0, np.cos(np.radians(tilt))]])
+    around = program(position, axis, kind, centre=np.stack([blank[0], centre]), turn=np.stack([blank[0], [0, 0, 1]]))
+    trajectory, _ = place(around, example(), ON_PALLET)
+    last = np.array([len(trajectory) - 1])
+    tangent = np.array([0.0, -5, 0]) / 5  # of a turn about z that begins at -x of its centre
+    for end, pose in (
+        (trajectory.tip_before()[last], trajectory.axis_before()[last]),
+        (trajectory.tip[last], trajectory.axis[last]),
+    ):
+        off = TrajectoryRuler(trajectory, TOLERANCES).deviation(end + past * tangent, pose, last, last)
+        assert off[0][0] <= abs(past) + 1e-9
+        assert off[1][0] <= np.radians(5) * abs(past) / 10
 
 
 def test_more_segments_never_make_it_worse():

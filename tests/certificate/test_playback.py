@@ -8,17 +8,23 @@ from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
 from pkm_post import planning
+from pkm_post.certificate import joints, playback
 from pkm_post.certificate import knots as knots_module
-from pkm_post.certificate import playback
 from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.instants import Task, look
+from pkm_post.certificate.joints import pass_joints
 from pkm_post.certificate.knots import Knots
-from pkm_post.certificate.playback import SPEED_MISSED, at_joints, off_plan, play, tip_speeds
+from pkm_post.certificate.playback import play
+from pkm_post.certificate.struts import off_plan
 from pkm_post.kinematics import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.findings import Tolerances
 from pkm_post.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+FEED = 30.0
+SPEED_MISSED = 2e-4
+"""What the mean of two inverse Jacobians makes of a speed, as a part of it, at most."""
 SAME = 1e-9
 """mm and rad: what both ways of forward kinematics may differ by, a tenth of a hundredth of the last printed digit."""
 
@@ -51,55 +57,69 @@ def by_newton(knots):
     return dataclasses.replace(knots, alike=np.zeros_like(knots.alike))
 
 
-def played(job, knots, struts=None):
+def task_of(job, knots=None, struts=None):
     machine, trajectory, motion, printed = planned(job)
-    return play(struts or printed, machine, TrajectoryRuler(trajectory, TOLERANCES), motion, knots)
+    knots, ceiling = knots or Knots.of(machine, motion), np.full(len(printed) - 1, FEED)
+    return Task(struts or printed, machine, TrajectoryRuler(trajectory, TOLERANCES), motion, knots, ceiling)
+
+
+def passed(task, job):
+    return pass_joints(task, planned(job)[1])
+
+
+def seen(task, instants=9):
+    return look(task, np.arange(len(task.struts) - 1), instants)
+
+
+def assert_alike(one, other):
+    """The same deviations, to the tolerance of forward kinematics."""
+    assert one.found.all() and other.found.all()
+    np.testing.assert_allclose(one.worst[0] * one.tip_tolerance, other.worst[0] * other.tip_tolerance, atol=SAME)
+    np.testing.assert_allclose(one.worst[1] * TOLERANCES.axis, other.worst[1] * TOLERANCES.axis, atol=SAME)
 
 
 @pytest.mark.parametrize("job", JOBS)
 def test_linear_steps_and_newtons_method_agree(job):
-    machine, trajectory, motion, struts = planned(job)
-    knots = Knots.of(machine, motion)
-    assert knots.alike.mean() > 0.9
-    one, other = played(job, knots), played(job, by_newton(knots))
-    assert one.found.all()
-    assert other.found.all()
-    for name in ("tip", "axis", "strut_speed", "strut_acceleration", "shortest", "longest"):
-        np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=0, atol=SAME)
-    np.testing.assert_allclose(one.tip_speed, other.tip_speed, rtol=SPEED_MISSED, atol=1e-9)
-    rows = np.arange(len(struts) - 1)[::3]
-    np.testing.assert_allclose(tip_speeds(struts, machine, motion, rows), other.tip_speed[rows], rtol=1e-12, atol=1e-12)
-    for linear, exact in zip(
-        at_joints(struts, machine, trajectory, motion, knots),
-        at_joints(struts, machine, trajectory, motion, by_newton(knots)),
-        strict=True,
-    ):
+    one = task_of(job)
+    assert one.knots.alike.mean() > 0.9
+    other = task_of(job, by_newton(one.knots))
+    assert_alike(seen(one), seen(other))
+    np.testing.assert_allclose(seen(one).worst[2], seen(other).worst[2], rtol=SPEED_MISSED, atol=1e-9)
+    for name in ("tip", "axis"):
+        linear, exact = (getattr(passed(task, job), name) for task in (one, other))
         np.testing.assert_allclose(linear, exact, rtol=0, atol=SAME)
 
 
 def test_they_agree_on_a_program_that_is_far_off_its_plan_as_well():
-    machine, _, motion, struts = planned("lines that turn")
+    _, _, _, struts = planned("lines that turn")
     length = struts.length + np.random.default_rng(5).normal(scale=0.3, size=struts.length.shape)
-    wrong = StrutMotion(struts.time_ms, length, struts.speed, struts.events)
-    knots = Knots.of(machine, motion)
-    one, other = played("lines that turn", knots, wrong), played("lines that turn", by_newton(knots), wrong)
-    assert other.tip.min() > 0.01
-    np.testing.assert_allclose(one.tip, other.tip, rtol=0, atol=SAME)
-    np.testing.assert_allclose(one.axis, other.axis, rtol=0, atol=SAME)
+    one = task_of("lines that turn", struts=StrutMotion(struts.time_ms, length, struts.speed, struts.events))
+    other = dataclasses.replace(one, knots=by_newton(one.knots))
+    assert seen(other).worst[0].min() * TOLERANCES.tip > 0.01
+    assert_alike(seen(one), seen(other))
+
+
+def test_twice_as_many_instants_hide_a_quarter():
+    task = task_of("lines that turn")
+    coarse, fine = seen(task, 9).hidden[:2], seen(task, 17).hidden[:2]
+    assert (fine / coarse).max() < 0.5  # where a knot is that the struts' cubics hardly meet, it is not quite a quarter
+    assert np.median(fine / coarse) == pytest.approx(0.25, abs=0.001)
 
 
 @pytest.mark.parametrize("at_once", [9, 100, 10**6])
 def test_passes_of_other_sizes_find_the_same(monkeypatch, at_once):
-    machine, trajectory, motion, struts = planned("lines that turn")
-    knots = Knots.of(machine, motion)
-    expected, joints = played("lines that turn", knots), at_joints(struts, machine, trajectory, motion, knots)
-    monkeypatch.setattr(playback, "_AT_ONCE", at_once)
-    found = played("lines that turn", knots)
+    task = task_of("lines that turn")
+    at_joints = passed(task, "lines that turn")
+    expected = play(task, at_joints)
+    monkeypatch.setattr(playback, "_AT_ONCE", max(at_once, playback._CLOSER[-1]))
+    monkeypatch.setattr(joints, "_AT_ONCE", at_once)
+    again = passed(task, "lines that turn")
+    np.testing.assert_allclose(again.tip, at_joints.tip, rtol=0, atol=1e-11)
+    found = play(task, again)
     for field in dataclasses.fields(found):
         np.testing.assert_allclose(
             getattr(found, field.name), getattr(expected, field.name), rtol=0, atol=1e-11, err_msg=field.name
         )
-    np.testing.assert_allclose(at_joints(struts, machine, trajectory, motion, knots), joints, rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("at_once", [1, 7])
@@ -129,15 +149,13 @@ def test_the_plan_at_the_knots_is_that_of_the_struts():
     assert 1e-7 < off.max() < 2e-6  # half a digit of the lengths, and 4/27 of 128 ms times half one of the speeds
 
 
-def test_a_likely_segment_never_makes_a_deviation_smaller_and_leaves_large_ones_as_they_are():
-    _, trajectory, motion, _ = planned("lines that turn")
-    ruler = TrajectoryRuler(trajectory, TOLERANCES)
-    moved = motion.tip + np.random.default_rng(8).uniform(-1e-3, 1e-3, motion.tip.shape)
-    last = len(trajectory) - 1
-    near = np.maximum(motion.segment - 1, 0), np.minimum(motion.segment + 1, last)
-    tip, axis = ruler.deviation(moved, motion.axis, *near)
-    about = ruler.deviation_about(moved, motion.axis, *near, motion.segment)
-    best, found = (np.maximum(off[0] / TOLERANCES.tip, off[1] / TOLERANCES.axis) for off in ((tip, axis), about))
-    assert np.all(found >= best - 1e-9)
-    np.testing.assert_allclose(found[best > 0.5], best[best > 0.5], rtol=1e-9)
-    assert np.all(found[best <= 0.5] <= 0.5 + 1e-9)
+def test_a_joint_tells_how_far_the_tool_is_from_the_point_and_from_its_segments():
+    task = task_of("lines that turn")
+    found = passed(task, "lines that turn")
+    # the programmed point lies on both segments: neither is farther off by what it may be
+    by_point = np.maximum(found.tip / TOLERANCES.tip, found.axis / TOLERANCES.axis)
+    assert np.all(found.off.max(axis=0) <= by_point + SAME / TOLERANCES.tip)
+    assert found.off[0].max() > 0.5 * found.tip.max() / TOLERANCES.tip
+    time = task.motion.joint_time * 1000
+    assert np.all(task.struts.time_ms[found.intervals[0]] <= time)
+    assert np.all(time <= task.struts.time_ms[found.intervals[1] + 1])

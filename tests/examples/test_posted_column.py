@@ -45,7 +45,7 @@ def posted(tmp_path_factory):
 
 def test_certificate_holds_a_micron_and_a_thousandth_of_a_degree(posted):
     report = json.loads((posted[0] / "tapered_column-report.json").read_text())
-    assert report["tolerances"] == {"tip_mm": 0.001, "axis_deg": 0.001}
+    assert report["tolerances"] == {"tip_mm": 0.001, "tip_of_program_mm": [], "axis_deg": 0.001}
     assert report["certificate"]["holds"]
     findings = {finding["what"]: finding for finding in report["certificate"]["findings"]}
     assert 0 < findings["deviation of the tool tip"]["value"] <= 0.001

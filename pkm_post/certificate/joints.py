@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Joints: where a played motion is at the moments when it ought to pass from one segment to the next.
+
+Enters: a task of playback. Leaves: how far the tool is from each programmed point, and from the segments on both sides
+of it. Deviation from the trajectory alone would not notice a motion that turns back too early; and in the middle of a
+rounded corner, where it is farthest from both its segments, even instants seldom look.
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.certificate.instants import Task, cubics
+from pkm_post.geometry import angle_between, hermite_lengths, norm
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import NearPoses, forward, near_poses
+from pkm_post.model import Trajectory
+
+_AT_ONCE = 8192
+"""Joints in one pass: the working arrays of one pass stay in the processor's cache."""
+
+
+@dataclass(frozen=True)
+class Passed:
+    """Columns of N joints, each at the end of a segment.
+
+    Attributes:
+        tip: (N,) how far the tip is from the programmed point, mm; infinite where the struts have no pose.
+        axis: (N,) how far the tool axis is from the programmed one, rad.
+        off: (2, N) how far tip and axis are from either of the two segments there, at most, by what they may be.
+        tip_tolerance: (N,) what the tip may be, mm.
+        intervals: (2, N) first and last interval that touch it: two, where it is passed at a knot.
+    """
+
+    tip: Array
+    axis: Array
+    off: Array
+    tip_tolerance: Array
+    intervals: Array
+
+
+def pass_joints(task: Task, trajectory: Trajectory) -> Passed:
+    """Where the tool is at the joints of a trajectory."""
+
+    def part(first: int) -> tuple[Array, ...]:
+        return _passed(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
+
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        found = list(threads.map(part, range(0, len(trajectory), _AT_ONCE)))
+    return Passed(*(np.concatenate(columns, axis=-1) for columns in zip(*found, strict=True)))
+
+
+def _passed(task: Task, trajectory: Trajectory, rows: Array) -> tuple[Array, ...]:
+    struts, motion = task.struts, task.motion
+    time, tool_length = motion.joint_time[rows], trajectory.tool_length()[rows]
+    knot = np.clip(np.searchsorted(struts.time_ms, 1000 * time) - 1, 0, len(struts) - 2)
+    cubic = cubics(struts, knot)
+    share = ((time - struts.time_ms[knot] / 1000) / cubic[-1])[:, None]
+    length = hermite_lengths(*cubic, share)
+    programmed = NearPoses(trajectory.tip[rows], trajectory.axis[rows], trajectory.spin[rows])
+    inverses = task.knots.inverse[knot], task.knots.inverse[knot + 1]
+    pose, found = near_poses(task.machine, length, programmed, tool_length, inverses, share)
+    tip, axis = np.array(pose.tip), np.array(pose.axis)
+    odd = np.flatnonzero(~(found & task.knots.alike[knot] & (tool_length == motion.tool_length[knot + 1])))
+    if len(odd):
+        guess = programmed.tip[odd], programmed.axis[odd], programmed.spin[odd]
+        exact = forward(task.machine, length[odd, 0], tool_length[odd], *guess)
+        tip[odd], axis[odd], found[odd] = exact.tip, exact.axis, exact.converged
+    nowhere = np.where(found, 0.0, np.inf)
+    off_point = norm(tip - programmed.tip), angle_between(axis, programmed.axis)
+    off, tolerance = _off_both(task, tip, axis, rows, len(trajectory) - 1)
+    # the programmed point lies on both segments: it counts where it fits better than the best of each of them
+    at_point = np.stack([off_point[0] / tolerance.min(axis=0), off_point[1] / task.ruler.axis_tolerance])
+    by_point = at_point.max(axis=0) < off.max(axis=(0, 1))
+    worse = (off[1, 0] > off[0, 0]).astype(int)
+    return (
+        off_point[0] + nowhere,
+        off_point[1] + nowhere,
+        np.where(found, np.where(by_point, at_point, off.max(axis=0)), 0.0),
+        np.where(by_point, tolerance.min(axis=0), tolerance[worse, np.arange(len(rows))]),
+        np.stack([knot, np.minimum(knot + (share[:, 0] >= 1), len(struts) - 2)]),
+    )
+
+
+def _off_both(task: Task, tip: Array, axis: Array, rows: Array, last: int) -> tuple[Array, Array]:
+    """How far tip and axis of poses are from both segments at a joint, (2, 2, N) by what they may be, and that, (2, N).
+
+    Segments come first.
+    """
+    before, after = (task.ruler.deviation_from(tip, axis, segment) for segment in (rows, np.minimum(rows + 1, last)))
+    off = np.stack([before[:2], after[:2]])
+    off[0, 0], off[1, 0] = before[0] / before[2], after[0] / after[2]
+    off[:, 1] /= task.ruler.axis_tolerance
+    return off, np.stack([before[2], after[2]])

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Struts: what the cubics of a program ask of the struts, exactly, and how far they are off their plan.
+
+Enters: the strut motion as read back. Leaves: highest speeds and accelerations, longest and shortest lengths of every
+interval, from the closed forms of a cubic; jerk; and how far a strut can be off its plan. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.certificate.knots import Knots
+from pkm_post.geometry import hermite_accelerations
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import StrutMotion
+
+
+def extremes(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array, Array, Array]:
+    """Of N intervals of cubics: highest speed, highest acceleration, shortest and longest length, (N,) each.
+
+    Acceleration is linear in time: the speed is extreme at the ends, and where the acceleration is zero. The length is
+    extreme at the ends, and where the speed is zero: up to two times.
+    """
+    a0, a1 = hermite_accelerations(p0, v0, p1, v1, duration)
+    whole = duration[:, None]
+    jerk = (a1 - a0) / whole
+    turns = np.where(a0 * a1 < 0, np.divide(-a0, jerk, out=np.zeros_like(a0), where=jerk != 0), 0.0)
+    speeds = np.stack([v0, v1, v0 + a0 * turns / 2])
+    stops = np.clip(np.stack(_roots(jerk / 2, a0, v0)), 0.0, whole)  # an end, where there is none inside
+    at_stops = p0 + stops * (v0 + stops * (a0 / 2 + stops * jerk / 6))
+    lengths = np.concatenate([np.stack([p0, p1]), at_stops])
+    return (
+        np.abs(speeds).max(axis=(0, 2)),
+        np.abs(np.stack([a0, a1])).max(axis=(0, 2)),
+        lengths.min(axis=(0, 2)),
+        lengths.max(axis=(0, 2)),
+    )
+
+
+def _roots(square: Array, linear: Array, constant: Array) -> tuple[Array, Array]:
+    """Roots of quadratics; 0 where there is none."""
+    discriminant = linear**2 - 4 * square * constant
+    there = discriminant >= 0
+    # this sum cancels nothing; one root is the quotient by it, the other that of the product of both
+    half = -(linear + np.copysign(np.sqrt(np.where(there, discriminant, 0.0)), linear)) / 2
+    none = np.zeros_like(half)
+    one = np.divide(half, square, out=none.copy(), where=there & (np.abs(square) > 0))
+    other = np.divide(constant, half, out=none, where=there & (np.abs(half) > 0))
+    return one, other
+
+
+def off_plan(struts: StrutMotion, knots: Knots) -> Array:
+    """By how much a strut can leave its plan on either side of each knot, (K + 1,) mm.
+
+    A length that is wrong by dp and a speed that is wrong by dv move the cubic beside them by no more than
+    dp + 4/27 h dv. Tip and axis need not show it: the turn of the platform about the tool axis takes up what is left.
+    """
+    interval = np.diff(struts.time_ms / 1000)
+    longest = np.maximum(np.append(interval, 0.0), np.append(0.0, interval))[:, None]
+    wrong = np.abs(struts.length - knots.length) + 4 / 27 * longest * np.abs(struts.speed - knots.speed)
+    return np.asarray(wrong.max(axis=1))
+
+
+def strut_jerk(struts: StrutMotion) -> Array:
+    """Jerk of the fastest changing strut about each knot, (K + 1,) mm/s^3, with rests before and behind the program.
+
+    The mean acceleration of an interval is the change of its speeds by its duration. From one interval to the next
+    it changes by no more than the jerk times the time between their middles.
+    """
+    duration = np.diff(struts.time_ms / 1000)
+    still = np.zeros((1, 6))
+    mean = np.concatenate([still, np.diff(struts.speed, axis=0) / duration[:, None], still])
+    apart = (np.append(duration, 0.0) + np.append(0.0, duration)) / 2
+    return np.asarray(np.abs(np.diff(mean, axis=0)).max(axis=1) / apart)

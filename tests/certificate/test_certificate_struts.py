@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+import numpy as np
+
+from pkm_post.certificate.struts import extremes
+from pkm_post.geometry import hermite_accelerations, hermite_motion
+
+SHARES = np.linspace(0, 1, 4001)
+
+
+def ends(count, seed):
+    rng = np.random.default_rng(seed)
+    lengths, speeds = rng.normal(1000, 1, (2, count, 6)), rng.normal(0, 30, (2, count, 6))
+    return lengths[0], speeds[0], lengths[1], speeds[1], rng.uniform(0.001, 0.1, count)
+
+
+def test_closed_forms_are_what_dense_instants_find():
+    cubic = ends(300, 4)
+    speed, acceleration, shortest, longest = extremes(*cubic)
+    dense_length, dense_speed = hermite_motion(*cubic, SHARES)
+    found = np.abs(dense_speed).max(axis=(1, 2))
+    step = cubic[-1] / (len(SHARES) - 1)
+    bent = np.abs(np.stack(hermite_accelerations(*cubic))).max(axis=(0, 2))
+    # between dense instants: half a step of the steepest slope at most, and of an extreme much less
+    assert np.all(found <= speed * (1 + 1e-12)) and np.all(speed <= found + bent * step / 2)
+    assert np.array_equal(acceleration, bent)
+    low, high = dense_length.min(axis=(1, 2)), dense_length.max(axis=(1, 2))
+    assert np.all(shortest <= low + 1e-9) and np.all(low <= shortest + bent * step**2)
+    assert np.all(high <= longest + 1e-9) and np.all(longest <= high + bent * step**2)
+
+
+def test_straight_standing_and_even_motion():
+    zero, one = np.zeros((1, 6)), np.ones((1, 6))
+    for moved, speed in ((zero, zero), (one, 10 * one)):
+        found = extremes(1000 * one, speed, 1000 * one + moved, speed, np.array([0.1]))
+        np.testing.assert_allclose(np.concatenate(found), [speed[0, 0], 0, 1000, 1000 + moved[0, 0]], atol=1e-9)
+
+
+def test_an_even_acceleration_turns_a_strut_round_once():
+    # 10 mm/s against 100 mm/s^2: it stands after 0.1 s and 0.5 mm, and is back after 0.2 s.
+    one, duration = np.ones((1, 6)), np.array([0.2])
+    speed, acceleration, shortest, longest = extremes(1000 * one, 10 * one, 1000 * one, -10 * one, duration)
+    np.testing.assert_allclose(
+        [speed[0], acceleration[0], shortest[0], longest[0]], [10, 100, 1000, 1000.5], rtol=1e-12
+    )

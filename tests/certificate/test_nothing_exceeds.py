@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Nothing between the instants of the certificate exceeds its figures: dense instants say so, by Newton's method."""
+
+import dataclasses
+from functools import cache
+
+import numpy as np
+import pytest
+from machines import example
+from programs import ON_PALLET, cone, random_job, square_with_arc
+
+from pkm_post import planning
+from pkm_post.certificate import certify, joints
+from pkm_post.certificate import instants as instants_module
+from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.geometry import hermite_motion, norm
+from pkm_post.kinematics import forward
+from pkm_post.kinematics.jacobian import linearise
+from pkm_post.model import StrutMotion
+from pkm_post.model.findings import Tolerances
+from pkm_post.placement.place import place
+
+TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+DENSE = 1001
+"""Instants of an interval: a hundred and more for each one of the certificate."""
+WORST, RANDOM = 6, 6
+"""Intervals looked at of each job: those with the largest figures of tip and axis and speed each, and by chance."""
+FORWARD = 1e-9
+"""mm: forward kinematics ends when the struts are right to 1e-10 mm."""
+NOT_LOOSE = 1.03
+"""How much more than what dense instants find the figure of the tip may say, where corners are shallow."""
+WEIGHTS = np.geomspace(0.01, 100, 161)
+JOBS = {"cone": cone, "arcs and a helix": square_with_arc}
+
+
+def made(job):
+    """A job by name, or a random one by number; every third allows more at its corners (G64 P)."""
+    if job in JOBS:
+        return JOBS[job]()
+    found = random_job(np.random.default_rng(job))
+    return dataclasses.replace(found, tip_tolerance=np.full(len(found), 0.02)) if job % 3 == 0 else found
+
+
+@cache
+def certified(job):
+    """Machine, trajectory, plan, printed struts and certificate of a job; none where the machine cannot do it."""
+    machine = example()
+    trajectory, faults = place(made(job), machine, ON_PALLET)
+    if faults:
+        return None
+    path = planning.tool_path(trajectory, TOLERANCES)
+    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    if faults:
+        return None
+    motion = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
+    exact = planning.strut_motion(motion, machine)
+    struts = StrutMotion(exact.time_ms, np.round(exact.length, 6), np.round(exact.speed, 4), exact.events)
+    certificate, _ = certify(struts, "x.pmc", trajectory, machine, motion, TOLERANCES)
+    return machine, trajectory, motion, struts, certificate
+
+
+def dense(job, rows):
+    """Parts of the figures of their intervals that tip and axis are off, excess of the tip speed, lengths and speeds.
+
+    At many instants of some intervals, (N, DENSE) each.
+    """
+    machine, trajectory, motion, struts, certificate = certified(job)
+    after, knot = rows + 1, np.repeat(rows, DENSE)
+    duration = np.diff(struts.time_ms)[rows] / 1000
+    ends = struts.length[rows], struts.speed[rows], struts.length[after], struts.speed[after]
+    length, speed = hermite_motion(*ends, duration, np.linspace(0, 1, DENSE))
+    tool = motion.tool_length[knot + 1]
+    pose = forward(machine, length.reshape(-1, 6), tool, motion.tip[knot], motion.axis[knot], motion.spin[knot])
+    assert pose.converged.all()
+    told = np.column_stack([certificate.tip_deviation[knot] + FORWARD, certificate.axis_deviation[knot] + FORWARD])
+    off = off_by(trajectory, pose, motion.segment[knot], motion.segment[knot + 1], told)
+    jacobian, _ = linearise(machine, pose.tip, pose.rotation, tool)
+    twist = np.linalg.solve(jacobian, speed.reshape(-1, 6, 1))[..., 0]
+    fastest = np.array([trajectory.feed[motion.segment[row] : motion.segment[row + 1] + 1].max() for row in rows])
+    excess = norm(twist[:, :3]).reshape(-1, DENSE) - (1.01 * fastest + 0.05)[:, None]
+    return *off.T.reshape(2, -1, DENSE), excess, length, speed
+
+
+def off_by(trajectory, pose, first, last, told):
+    """Parts of what is told, (N, 2), that poses are off in tip and axis, from the programmed pose that fits best by it.
+
+    What is told is that there is a programmed pose from which neither is off by more. On a segment the candidates lie
+    between the one nearest for the tip and the one nearest for the axis: weights from one to the other find them.
+    """
+    off, free = np.full(told.shape, np.inf), dataclasses.replace(trajectory, tip_tolerance=np.zeros(len(trajectory)))
+    others = (TrajectoryRuler(free, Tolerances(TOLERANCES.tip * weight, TOLERANCES.axis)) for weight in WEIGHTS)
+    for ruler in (TrajectoryRuler(trajectory, TOLERANCES), *others):
+        open_yet = np.flatnonzero(off.max(axis=1) > 1)
+        for further in range((last - first)[open_yet].max(initial=-1) + 1):
+            segment = np.minimum(first + further, last)[open_yet]
+            parts = ruler.deviation_from(pose.tip[open_yet], pose.axis[open_yet], segment)[:2].T / told[open_yet]
+            better = parts.max(axis=1) < off[open_yet].max(axis=1)
+            off[open_yet[better]] = parts[better]
+    return off
+
+
+def chosen(job):
+    """Intervals of a job: the worst by what the certificate says of them, and some by chance."""
+    certificate = certified(job)[-1]
+    count = len(certificate.time)
+    by_tip = np.argsort(certificate.tip_deviation / certificate.tip_tolerance)[-WORST:]
+    by_axis = np.argsort(certificate.axis_deviation)[-WORST:]
+    chance = np.random.default_rng(count).integers(0, count, RANDOM)
+    return np.unique(np.concatenate([by_tip, by_axis, chance]))
+
+
+def told(certificate, name):
+    return next(finding for finding in certificate.findings if finding.name == name).value
+
+
+@pytest.mark.parametrize("job", [*JOBS, *range(16)])
+def test_dense_instants_find_nothing_above_the_figures(job):
+    if certified(job) is None:
+        assert job not in JOBS
+        pytest.skip("beyond the reach of the machine")
+    certificate, rows = certified(job)[-1], chosen(job)
+    tip, axis, excess, length, speed = dense(job, rows)
+    assert tip.max() <= 1
+    assert axis.max() <= 1
+    assert excess.max() <= told(certificate, "tip speed above the feed")
+    assert np.abs(speed).max() <= told(certificate, "strut speed") * (1 + 1e-12)
+    low, high = certified(job)[0].strut_stroke
+    assert low - length.min() <= told(certificate, "strut shorter than its stroke") + FORWARD
+    assert length.max() - high <= told(certificate, "strut longer than its stroke") + FORWARD
+
+
+def test_figures_say_little_more_than_there_is():
+    certificate, rows = certified("cone")[-1], chosen("cone")
+    worst = rows == np.argmax(certificate.tip_deviation)
+    assert dense("cone", rows)[0][worst].max() > 1 / NOT_LOOSE
+
+
+def test_even_instants_alone_would_say_too_little(monkeypatch):
+    # What the dense instants are there for: without what hides and without the joints, they find more than the figure.
+    monkeypatch.setattr(instants_module, "bow", lambda columns: np.zeros(columns.shape[1]))
+    blind = lambda task, tip, axis, rows, last: (np.zeros((2, 2, len(rows))), np.ones((2, len(rows))))  # noqa: E731
+    monkeypatch.setattr(joints, "_off_both", blind)
+    certified.cache_clear()
+    try:
+        assert dense("cone", chosen("cone"))[0].max() > 1.001
+    finally:
+        certified.cache_clear()
+
+
+def test_tolerance_at_the_worst_place_is_told_with_it():
+    certificate = certified(3)[-1]
+    assert set(np.unique(certificate.tip_tolerance)) <= {TOLERANCES.tip, 0.02}
+    finding = next(finding for finding in certificate.findings if finding.code == "V101")
+    row = np.argmax(certificate.tip_deviation / certificate.tip_tolerance)
+    assert (finding.value, finding.limit) == (certificate.tip_deviation[row], certificate.tip_tolerance[row])
+    assert finding.time == certificate.time[row]
