@@ -38,10 +38,7 @@ def command_inside(arguments: Sequence[str]) -> list[str]:
 
 def command_outside(arguments: Sequence[str]) -> list[str]:
     """How a command is started in a Python like this one, which is not FreeCAD's."""
-    start = (
-        "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
-    )
-    return [sys.executable, "-c", start, str(_ADDON), *arguments]
+    return [sys.executable, "-c", _START, str(_ADDON), *arguments]
 
 
 def _freecad_command() -> list[str]:

@@ -7,6 +7,7 @@ ended. Whoever ends this with Ctrl-C ends them all.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -67,7 +68,8 @@ class _Child:
 
     def _signal(self, number: int) -> None:
         if self.process is not None:
-            os.killpg(self.process.pid, number)
+            with contextlib.suppress(ProcessLookupError):  # it has ended meanwhile
+                os.killpg(self.process.pid, number)
 
 
 def run_many(commands: Sequence[Sequence[str]], at_a_time: int, doing: str) -> int:

@@ -23,6 +23,7 @@ from pkm_post.cli.pmac_stream import ROTARY_WORDS
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
     from pkm_post.pmac_link.ports import Port
+    from pkm_post.pmac_link.session import Session
 
 Value = TypeVar("Value")
 
@@ -84,7 +85,6 @@ def _port(text: str) -> Port:
 
 def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.pmac_link.faults import LinkLostError, PmacError
-    from pkm_post.pmac_link.session import Leftover, Session
 
     logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
     if namespace.port.is_power and namespace.name not in OF_POWER_PMAC:
@@ -93,17 +93,7 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     target = None if namespace.machine is None else _target(namespace)
     if target is None and namespace.machine is not None:
         return 1
-    port = replace(
-        namespace.port,
-        baud=namespace.baud,
-        parity=namespace.parity,
-        handshake=namespace.rtscts,
-        known_hosts=namespace.known_hosts,
-    )
-    rights = {"clears": Leftover.CLEAR, "joins": Leftover.JOIN}
-    leftover = next((rights[need] for need in namespace.needs if need in rights), Leftover.REFUSE)
-    session = Session(port, namespace.patience, leftover=leftover)
-    connected = False
+    session, connected = _session(namespace), False
     try:
         with session:
             connected = True
@@ -118,6 +108,22 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         print("interrupted; the controller goes on with what it does", file=sys.stderr)
         return 1
+
+
+def _session(namespace: argparse.Namespace) -> Session:
+    """A session with the port that was named, and with the rights of the action."""
+    from pkm_post.pmac_link.session import Leftover, Session
+
+    port = replace(
+        namespace.port,
+        baud=namespace.baud,
+        parity=namespace.parity,
+        handshake=namespace.rtscts,
+        known_hosts=namespace.known_hosts,
+    )
+    rights = {"clears": Leftover.CLEAR, "joins": Leftover.JOIN}
+    leftover = next((rights[need] for need in namespace.needs if need in rights), Leftover.REFUSE)
+    return Session(port, namespace.patience, leftover=leftover)
 
 
 def _target(namespace: argparse.Namespace) -> Target | None:

@@ -60,6 +60,15 @@ def _add_step(parser: argparse.ArgumentParser) -> None:
     _add_number(parser)
 
 
+def _add_continue(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.numerical_control.execute import NEAR_MM
+
+    told = "which stop of the program it stands at, from 1"
+    parser.add_argument("--stop", type=_count, required=True, metavar="N", help=told)
+    near = "how far each strut may be from where it stopped (%(default)s)"
+    parser.add_argument("--near", type=_positive, default=NEAR_MM, metavar="MM", help=near)
+
+
 def _add_number(parser: argparse.ArgumentParser) -> None:
     from pkm_post.numerical_control.plan import OWN_PROGRAM
 
@@ -122,5 +131,6 @@ _OWN: dict[str, Callable[[argparse.ArgumentParser], None]] = {
     "jog": _add_jog,
     "mdi": _add_mdi,
     "step": _add_step,
+    "continue": _add_continue,
     "override": _add_override,
 }

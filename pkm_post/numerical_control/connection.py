@@ -105,23 +105,24 @@ def connect(target: Target, tool_length: float, simulated_speed: float = 1.0) ->
 
     Raises:
         PmacError: no controller answers, or it lets nobody in.
+        ValueError: the length is not above zero.
     """
     training, port = None, target.port
     if port is None:
-        training = Training(target.settings, target.machine.strut_stroke, simulated_speed)
+        training = Training(target.machine, target.settings, tool_length, simulated_speed)
         port = port_named(training.port)
     # A stop must not fail because a download was cut, so what is left of one is made empty, and that is told.
     session = Session(port, leftover=Leftover.CLEAR)
+    number = _own_number(target.settings.program)
     try:
+        control = NumericalControl(session, target.machine, target.settings, tool_length, number)
         session.open()
+        return Connection(target, Worker(control), tuple(session.notes), session, training)
     except BaseException:
         session.close()
         if training is not None:
             training.close()
         raise
-    number = _own_number(target.settings.program)
-    control = NumericalControl(session, target.machine, target.settings, tool_length, number)
-    return Connection(target, Worker(control), tuple(session.notes), session, training)
 
 
 def _own_number(of_jobs: int) -> int:

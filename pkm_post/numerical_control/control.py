@@ -10,23 +10,22 @@ Enters: a session, a machine and what is in its spindle. Leaves: states and plan
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from pkm_post.controllers.pmac import Settings
 from pkm_post.model import Diagnostic, Machine, Trajectory
 from pkm_post.model.findings import Tolerances
 from pkm_post.numerical_control import execute as execution
-from pkm_post.numerical_control import mdi, moves
+from pkm_post.numerical_control import mdi, moves, stops
 from pkm_post.numerical_control.emergency import emergency_text
 from pkm_post.numerical_control.homing import Homing, HomingWatch, Phase, missing_homes, start_homing
 from pkm_post.numerical_control.plan import OWN_PROGRAM, Plan, planned
 from pkm_post.numerical_control.single_block import Blocks, blocks_of
 from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.download import Loaded, Progress, download
-from pkm_post.pmac_link.faults import LinkLostError, NotReadyError, PmacError
+from pkm_post.pmac_link.faults import CancelledError, LinkLostError, NotReadyError, PmacError
 from pkm_post.pmac_link.job import Job
 from pkm_post.pmac_link.readout import Pose, Readout, standing_pose
 from pkm_post.pmac_link.ready import NEAR_MM, check_setup
@@ -72,8 +71,6 @@ class NumericalControl:
         settings: Settings,
         tool_length: float,
         number: int = OWN_PROGRAM,
-        clock: Callable[[], float] = time.monotonic,
-        sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         """Make it; the session connects by itself when it is not open.
 
@@ -83,16 +80,17 @@ class NumericalControl:
             settings: of its controller.
             tool_length: gauge length of the tool in the spindle, mm; ``tool_length`` may be changed at any time.
             number: of the program of moves by hand and of single blocks.
-            clock: seconds of a clock that only grows.
-            sleep: waits so many seconds of it.
         """
         self._session, self._machine, self._settings, self._number = session, machine, settings, number
-        self._clock, self._sleep = clock, sleep
         self._watch: HomingWatch | None = None
         self._blocks: tuple[Blocks, int] | None = None
         self._last = State(None, None)
         self._may_move = False
         self.tool_length = tool_length
+
+    def give_way_when(self, is_waited_for: Callable[[], bool]) -> None:
+        """From now on leave what takes long, and start nothing, while ``is_waited_for`` says that a stop waits."""
+        self._session.give_way_when(is_waited_for)
 
     @property
     def tool_length(self) -> float:
@@ -110,6 +108,8 @@ class NumericalControl:
         """Read everything once; a lost link is a state, not an error."""
         try:
             status = read_status(self._session, self._settings)
+        except CancelledError:
+            return self._last  # a stop is in a hurry; the next reading tells
         except PmacError as fault:
             self._last = State(
                 self._last.status, self._last.pose, str(fault), self._emergency(), self._last.homing, self._block()
@@ -146,13 +146,20 @@ class NumericalControl:
         return self._moving(lambda: execution.execute(self._session, self._machine, self._settings, plan.job))
 
     def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
-        """Load a program and list it back, when the controller is set up for the machine; as ``download.download``."""
+        """Load a program and list it back, when the controller is set up for the machine; as ``download.download``.
+
+        A stop that waits ends it as ``is_cancelled`` does.
+        """
         check_setup(self._session, self._settings, self._machine.strut_stroke)
-        return download(self._session, job.program, progress, is_cancelled)
+        return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.is_waited_for())
 
     def start(self, job: Job, near: float = NEAR_MM) -> Status:
         """Start a program that is loaded, from its beginning; as ``operate.run``."""
         return self._moving(lambda: operate.run(self._session, self._settings, job.program, job.first, near))
+
+    def go_on(self, job: Job, stop: int, near: float = execution.NEAR_MM) -> Status:
+        """Go on behind a stop (M0, M1) of a program, numbered from 1, at which it stands; as ``stops.go_on``."""
+        return self._moving(lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
 
     def open_blocks(self, job: Job, at: int = 1) -> int:
         """Take a program for single block; how many blocks it has.
@@ -197,12 +204,12 @@ class NumericalControl:
 
     def abort(self, at_once: bool = False) -> Status:
         """End the program: held first unless at once; a homing is no longer watched."""
-        self._watch = None
-        return operate.abort(self._session, self._settings, at_once, self._clock, self._sleep)
+        self._watch, self._last = None, replace(self._last, homing=None)
+        return operate.abort(self._session, self._settings, at_once)
 
     def override(self, percent: float) -> Status:
         """Set the override, above 0 and up to 100 %."""
-        return operate.override(self._session, self._settings, percent, self._clock, self._sleep)
+        return operate.override(self._session, self._settings, percent)
 
     def home(self, trigger: str) -> None:
         """Send the line that starts the homing of the machine; ``poll`` watches it then."""

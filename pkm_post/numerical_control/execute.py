@@ -6,9 +6,6 @@ Enters: a session and a plan, which nothing but the checks of planning makes. Le
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-
 import numpy as np
 
 from pkm_post.controllers.pmac import Settings
@@ -39,10 +36,11 @@ def execute(session: Session, machine: Machine, settings: Settings, job: Job, ne
     Raises:
         NotReadyError: set-up or machine are not as they have to be; nothing was loaded, or nothing was started.
         DownloadError: it could not be loaded; nothing was started.
+        CancelledError: a stop came first; nothing was started.
     """
     check_start(read_status(session, settings), job.first, near)
     check_setup(session, settings, machine.strut_stroke)
-    download(session, job.program)
+    download(session, job.program, is_cancelled=session.is_waited_for)
     return operate.run(session, settings, job.program, job.first, near)
 
 
@@ -50,8 +48,6 @@ def wait_for_rest(
     session: Session,
     settings: Settings,
     seconds: float,
-    clock: Callable[[], float] = time.monotonic,
-    sleep: Callable[[float], None] = time.sleep,
 ) -> Status:
     """Watch until no program runs and the struts stand.
 
@@ -59,22 +55,20 @@ def wait_for_rest(
         session: an open session.
         settings: of the controller.
         seconds: how long that may take; a program that waits in a hold ends the waiting as well.
-        clock: seconds of a clock that only grows.
-        sleep: waits so many seconds of it.
 
     Raises:
         PmacError: it takes longer.
     """
-    until = clock() + seconds
+    until = session.now() + seconds
     while True:
         status = read_status(session, settings)
         if status.standing and (status.held or not status.running):
             return status
-        if clock() > until:
+        if session.now() > until:
             raise PmacError(
                 f"the machine does not come to rest within {seconds:g} s; HOLD IT, OR USE THE EMERGENCY STOP"
             )
-        sleep(_POLL_S)
+        session.sleep(_POLL_S)
 
 
 def off_target(status: Status, lengths: Array) -> float:

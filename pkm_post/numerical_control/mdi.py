@@ -2,8 +2,10 @@
 """MDI: one line of G-code typed by hand, as a trajectory from where the tool is.
 
 Each line stands by itself: nothing that an earlier line switched on holds, and a cutting move says its own feed. What
-the line does not say of the tool axis stays as it is. Enters: text in mm or inch as it says, the pose of the tool in
-{M}. Leaves: a trajectory in {M}, or what is wrong with the line.
+the line does not say of the tool axis stays as it is. A line may move nothing and switch spindle or coolant.
+
+Enters: text in mm or inch as it says, the pose of the tool in {M}. Leaves: a trajectory in {M}, or what is wrong with
+the line.
 """
 
 from __future__ import annotations
@@ -17,14 +19,17 @@ from pkm_post import gcode
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, EventKind, Machine, Place, Program, Tool, Trajectory
 from pkm_post.model.diagnostics import errors
+from pkm_post.numerical_control import moves
 from pkm_post.pipeline import Options, trajectory_of, work_offset
 from pkm_post.pmac_link.readout import Pose
 from pkm_post.spin import Policy, Rule
 
 SOURCE = "MDI"
 _SAYS_THE_SPIN = "RPY"
-_NO_MOVE = "J103"
-"""What placing tells of a program that moves nothing; its cure speaks of CAM."""
+_EMPTY, _NO_MOVE = "G420", "J103"
+"""What reading and placing tell of a program that moves nothing; the cures speak of files and of CAM."""
+_STAY = "G90 G21 G94 G1 X{:.6f} Y{:.6f} Z{:.6f} F60"
+"""Behind a line that moves nothing, so that what it switches takes place before a move to where the tool is."""
 
 Findings = tuple[Diagnostic, ...]
 
@@ -66,6 +71,8 @@ def line_trajectory(
     if offset is None:
         return None, told
     program, faults = _read(line, here, offset, tool_length, reading)
+    if any(fault.code == _EMPTY for fault in faults):
+        return _standing(line, machine, here, offset, tool_length, reading)
     told += faults
     if program is None or errors(told):
         return None, told
@@ -78,15 +85,35 @@ def line_trajectory(
     return replace(trajectory, spin=np.full(len(trajectory), here.spin)), told
 
 
+def _standing(
+    line: str, machine: Machine, here: Pose, machine_from_work: Array, tool_length: float, reading: Reading
+) -> tuple[Trajectory | None, Findings]:
+    """A line without a move: what it switches, while the machine stands."""
+    stay = _STAY.format(*_in_work(here, machine_from_work))
+    program, told = _read(f"{line}\n{stay}", here, machine_from_work, tool_length, reading)
+    if program is not None and program.events and not errors(told):
+        return moves.standing(machine, here, tool_length, program.events), told
+    told = tuple(fault for fault in told if fault.code != _EMPTY)
+    if not errors(told):
+        told += (Diagnostic("C201", Place(SOURCE, line=1), line.strip() or "an empty line"),)
+    return None, told
+
+
+def _in_work(here: Pose, machine_from_work: Array) -> tuple[float, float, float]:
+    """The tip in {C}, mm."""
+    x, y, z = (machine_from_work[:3, :3].T @ (here.tip - machine_from_work[:3, 3])).tolist()
+    return x, y, z
+
+
 def _read(
     line: str, here: Pose, machine_from_work: Array, tool_length: float, reading: Reading
 ) -> tuple[Program | None, Findings]:
     """The line as a program in {C}."""
-    turn, origin = machine_from_work[:3, :3], machine_from_work[:3, 3]
-    x, y, z = (turn.T @ (here.tip - origin)).tolist()
     # A diameter that is no number shows where cutter compensation used it.
     tool = Tool(0, "in the spindle", math.nan, 0.0, tool_length)
-    options = gcode.ReadOptions(default_tool=tool, start=(x, y, z), axis_words=reading.axis_words)
+    options = gcode.ReadOptions(
+        default_tool=tool, start=_in_work(here, machine_from_work), axis_words=reading.axis_words
+    )
     program, told = gcode.read(line, SOURCE, options)
     if program is None:
         return None, told
@@ -94,9 +121,9 @@ def _read(
         found = "cutter compensation with a tool of unknown diameter"
         return None, (*told, Diagnostic("G411", Place(SOURCE, line=1), found))
     if any(event.kind is EventKind.TOOL_CHANGE for event in program.events):
-        return None, (*told, Diagnostic("C203", Place(SOURCE, line=1), line.strip()))
+        return None, (*told, Diagnostic("C203", Place(SOURCE, line=1), line.splitlines()[0].strip()))
     tools = {number: replace(each, diameter=0.0) for number, each in program.tools.items()}
     if reading.axis_words == "none":
-        kept = np.tile(turn.T @ here.axis, (len(program), 1))
+        kept = np.tile(machine_from_work[:3, :3].T @ here.axis, (len(program), 1))
         return replace(program, tools=tools, tool_axis=kept), told
     return replace(program, tools=tools), told

@@ -8,14 +8,14 @@ lengths of which one grows. Units: mm, rad, mm/s; directions are those of {M}.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import angle_between, norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import follow, platform_rotation, strut_lengths
-from pkm_post.model import Diagnostic, Kind, Machine, Place, Tool, Trajectory
+from pkm_post.model import Diagnostic, Event, Kind, Machine, Place, Tool, Trajectory
 from pkm_post.pmac_link.readout import Pose, spin_of
 
 SOURCE = "jog"
@@ -23,8 +23,8 @@ _STEP_MM = 0.5
 """Of one strut, between the poses of its way: what is straight between them bends by less than a micron."""
 _NO_MOVE = 1e-9
 _MEASURABLE = 1e-6
-"""mm: a turn about the tool axis alone would give the certificate no way to measure along, so the tip rises by this,
-a hundredth of what an encoder counts."""
+"""mm: a code of the machine alone would give the plan no way to go, so the tip rises by this, a hundredth of what an
+encoder counts."""
 
 
 @dataclass(frozen=True)
@@ -88,15 +88,29 @@ def trajectory_of(
     return _through(machine, here, poses, tool_length, min(feed, machine.feed_speed))
 
 
+def standing(machine: Machine, here: Pose, tool_length: float, events: tuple[Event, ...]) -> Trajectory:
+    """What takes place while the machine stands; it needs a way to be planned along.
+
+    Args:
+        machine: the geometry and the highest feed.
+        here: where the tool is.
+        tool_length: gauge length of the tool in the spindle, mm.
+        events: what takes place, each at row 0.
+    """
+    tip = (here.tip + _MEASURABLE * here.axis)[None]
+    poses = tip, here.axis[None], np.array([here.spin])
+    trajectory, told = _through(machine, here, poses, tool_length, machine.feed_speed)
+    if trajectory is None:
+        raise ValueError(f"here: expected a pose, got {here}: {told}")
+    return replace(trajectory, events=events)
+
+
 def _of_tool(jog: Cartesian, here: Pose) -> tuple[Array, Array, Array]:
     values = np.array([*jog.shift, *jog.tilt, jog.spin])
     if not np.isfinite(values).all():
         raise ValueError(f"jog: expected finite numbers, got {values.tolist()}")
     axis = _about(1, jog.tilt[1]) @ _about(0, jog.tilt[0]) @ here.axis
-    tip = here.tip + values[:3]
-    if jog.spin and not values[:5].any():
-        tip = tip + _MEASURABLE * axis
-    return tip[None], (axis / norm(axis))[None], np.array([here.spin + jog.spin])
+    return (here.tip + values[:3])[None], (axis / norm(axis))[None], np.array([here.spin + jog.spin])
 
 
 def _about(coordinate: int, angle: float) -> Array:

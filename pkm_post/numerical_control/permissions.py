@@ -25,6 +25,7 @@ class Order(enum.Enum):
     BLOCKS = "blocks"
     START = "start"
     STEP = "step"
+    GO_ON = "go on"
     HOLD = "hold"
     RESUME = "resume"
     ABORT = "abort"
@@ -41,6 +42,7 @@ class Why(enum.Enum):
     NO_JOB = "no program was opened"
     NOT_LOADED = "the program is not loaded"
     NO_BLOCK = "no block comes next"
+    NO_STOP = "the program has no stop with moves behind it"
     RUNS = "a program runs"
     HELD = "a program is held"
     NOT_HELD = "no program is held"
@@ -60,6 +62,7 @@ AGAINST: dict[Order, tuple[Why, ...]] = {
     Order.BLOCKS: (*_ORDERS, Why.NO_JOB, *_AT_REST),
     Order.START: (*_ORDERS, Why.NO_JOB, Why.NOT_LOADED, *_READY),
     Order.STEP: (*_ORDERS, Why.NO_JOB, Why.NO_BLOCK, *_READY),
+    Order.GO_ON: (*_ORDERS, Why.NO_JOB, Why.NO_STOP, *_READY),
     Order.HOLD: (Why.NOT_CONNECTED,),
     Order.RESUME: (*_ORDERS, Why.BUSY, Why.NOT_HELD),
     Order.ABORT: (Why.NOT_CONNECTED,),
@@ -78,6 +81,7 @@ class Desk:
         busy: whether an order is being carried out.
         has_job: whether a program was opened.
         loaded: whether it is in the controller, as far as is known here.
+        has_stops: whether it has stops (M0, M1) to go on behind.
         stepping: whether its blocks were taken for single block.
         homing: whether a homing that was started here is watched.
     """
@@ -87,6 +91,7 @@ class Desk:
     busy: bool = False
     has_job: bool = False
     loaded: bool = False
+    has_stops: bool = False
     stepping: bool = False
     homing: bool = False
 
@@ -105,6 +110,7 @@ def facts(state: State, desk: Desk) -> frozenset[Why]:
         Why.NO_JOB: not desk.has_job,
         Why.NOT_LOADED: not desk.loaded,
         Why.NO_BLOCK: not desk.stepping or state.block is None or state.block[0] > state.block[1],
+        Why.NO_STOP: not desk.has_stops,
         Why.RUNS: status is not None and status.running and not held,
         Why.HELD: held,
         Why.NOT_HELD: not held,

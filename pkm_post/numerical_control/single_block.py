@@ -50,12 +50,7 @@ class Blocks:
         """
         if not 1 <= number <= len(self.motions):
             raise ValueError(f"number: expected a block from 1 to {len(self.motions)}, got {number}")
-        motion = self.motions[number - 1]
-        text = program_text(motion, self.settings, [f"block {number} of {len(self.motions)}"])
-        job, faults = read_job(text, self.settings, f"block {number}")
-        if job is None or not same(job.motion, motion):
-            raise ValueError(f"block {number}: expected a text that gives its motion back, got {faults}")
-        return job
+        return job_of(self.motions[number - 1], self.settings, f"block {number} of {len(self.motions)}")
 
 
 def blocks_of(job: Job, settings: Settings, number: int = OWN_PROGRAM) -> Blocks:
@@ -75,6 +70,23 @@ def blocks_of(job: Job, settings: Settings, number: int = OWN_PROGRAM) -> Blocks
     cuts = [int(knot) for knot in rests(job.motion, settings) if 0 < knot < last]
     events = tuple(event for event in job.motion.events if event.kind is not EventKind.STOP)
     return Blocks(parted(replace(job.motion, events=events), cuts), replace(settings, program=number))
+
+
+def job_of(motion: StrutMotion, settings: Settings, name: str) -> Job:
+    """A piece of a program as a program.
+
+    Args:
+        motion: of the piece.
+        settings: of the controller, with the number it runs under.
+        name: what it is.
+
+    Raises:
+        ValueError: its text does not give its motion back.
+    """
+    job, faults = read_job(program_text(motion, settings, [name]), settings, name)
+    if job is None or not same(job.motion, motion):
+        raise ValueError(f"{name}: expected a text that gives its motion back, got {faults}")
+    return job
 
 
 def same(one: StrutMotion, other: StrutMotion) -> bool:

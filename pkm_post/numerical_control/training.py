@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Training: a simulated machine in a thread of its own, to operate before a real one is at hand.
 
-Enters: the settings and the stroke of a machine. Leaves: the name of a port of this computer. Behind it a simulated
-Turbo PMAC is set up as posting would set up that of the machine, with its loops closed and without homes, as after the
-power came on.
+Enters: a machine, the settings of its controller, the tool in its spindle. Leaves: the name of a port of this computer.
+Behind it a simulated Turbo PMAC is set up as posting would set up that of the machine, with its loops closed and
+without homes, as after the power came on. When all struts have found their homes, it takes them to the pose of the
+machine at home, as PLC programs of machines do: where struts are counted from, they may be at the end of their stroke.
 """
 
 from __future__ import annotations
 
 import threading
 
+import numpy as np
+
 from pkm_post.controllers.pmac import Settings, setup_text
+from pkm_post.kinematics import strut_lengths
+from pkm_post.model import Machine
 from pkm_post.pmac_simulator import Controller, Server
 from pkm_post.pmac_simulator import Settings as SimulatorSettings
 from pkm_post.pmac_simulator.serve import LOOPBACK
@@ -22,10 +27,10 @@ _TICK_MS = 4.0
 """Coarser than the simulator's own: it shares its processor with a window."""
 _FLAG_MM = 5.0
 """From where a motor stands to its flag."""
-_DRIVES = "I{0}11={1:.0f} I{0}15={2:.6g} I{0}16={3:.6g} I{0}17={4:.6g} I{0}19={5:.6g} I{0}22={6:.6g} I{0}23={7:.6g}"
-_PER_COUNT = (32.0, 0.001, 0.2, 0.002, 0.0005, 0.02, 0.005)
+_DRIVES = "I{0}11={1:.0f} I{0}15={2:.6f} I{0}16={3:.6f} I{0}17={4:.6f} I{0}19={5:.6f} I{0}22={6:.6f} I{0}23={7:.6f}"
+_PER_COUNT = (32.0, 0.001, 0.2, 0.002, 0.0005, 0.05, 0.005)
 """Of one count/mm: following error of 2 mm in 16ths, then what mm/s and mm/s^2 are in counts and ms: aborts at 1000
-mm/s^2, up to 200 mm/s and 2000 mm/s^2 in programs, 500 mm/s^2, 20 mm/s by hand and 5 mm/s towards the flags."""
+mm/s^2, up to 200 mm/s and 2000 mm/s^2 in programs, 500 mm/s^2, 50 mm/s by themselves and 5 mm/s towards the flags."""
 _END_S = 10.0
 
 
@@ -36,15 +41,18 @@ class Training:
         port: where it is, as ``ports.port_named`` takes it.
     """
 
-    def __init__(self, settings: Settings, stroke: tuple[float, float], speed: float = 1.0) -> None:
+    def __init__(self, machine: Machine, settings: Settings, tool_length: float, speed: float = 1.0) -> None:
         """Begin to serve.
 
         Args:
-            settings: of the machine's controller.
-            stroke: shortest and longest strut, mm.
+            machine: the machine.
+            settings: of its controller.
+            tool_length: gauge length of the tool in the spindle, mm.
             speed: simulated seconds in a second.
         """
-        server = Server(_controller(settings, stroke), speed)
+        self._controller, self._is_home = _controller(settings, machine.strut_stroke), False
+        self._go_home = _way_home(machine, settings, tool_length)
+        server = Server(self._controller, speed)
         self.port = f"tcp:{LOOPBACK}:{server.add_tcp(0)}"
         self._server, self._over = server, threading.Event()
         self._thread = threading.Thread(target=self._run, name="simulated machine", daemon=True)
@@ -63,9 +71,30 @@ class Training:
 
     def _run(self) -> None:
         try:
-            self._server.run(self._over.is_set)
+            self._server.run(self._turn)
         finally:
             self._server.close()
+
+    def _turn(self) -> bool:
+        """Called by the server, in its thread, as a controller calls its PLC programs; whether to end."""
+        motors = self._controller.motors
+        if not motors.homed.all():
+            self._is_home = False
+        elif not self._is_home and not motors.moving().any():
+            self._is_home = True
+            self._controller.load(self._go_home)
+        return self._over.is_set()
+
+
+def _way_home(machine: Machine, settings: Settings, tool_length: float) -> list[str]:
+    """Lines that take the struts to the home of the machine; none when that is out of their stroke."""
+    pose = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin]), np.array([tool_length])
+    length = strut_lengths(machine, *pose)[0]
+    shortest, longest = machine.strut_stroke
+    if length.min() < shortest or length.max() > longest:
+        return []
+    counts = (length - settings.zero_length) * settings.counts_per_mm
+    return [f"#{motor}J={count:.0f}" for motor, count in enumerate(counts, start=1)]
 
 
 def _controller(settings: Settings, stroke: tuple[float, float]) -> Controller:

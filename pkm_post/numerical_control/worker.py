@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Worker: a thread that alone talks to the controller, for windows that must not wait.
 
-Orders go in as functions of the control, states and results come out. A stop goes before everything that waits. Between
-orders the state is read, ten times a second. Whoever looks on takes the newest state; it is replaced as a whole.
+Orders go in as functions of the control, states and results come out. A stop goes before everything that waits, and
+what is being done gives way to it: a download between its lines, an answer that takes long, a wait. Between orders the
+state is read, ten times a second. Whoever looks on takes the newest state; it is replaced as a whole.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ Order = tuple[Future[Any], Callable[[NumericalControl], Any]]
 
 POLL_S = 0.1
 _CLOSE_S = 30.0
-"""Seconds in which the order that is carried out has to end; each has deadlines of its own."""
+"""Seconds in which the order that is carried out has to end; it gives way, and each has deadlines of its own."""
 
 
 class Worker:
@@ -45,6 +46,8 @@ class Worker:
         self._change, self._ended = threading.Condition(), False
         self.state = State(None, None)
         self.failure: BaseException | None = None
+        self._stopping = False
+        control.give_way_when(self._is_waited_for)
         self._thread = threading.Thread(target=self._run, name="numerical control", daemon=True)
         self._thread.start()
 
@@ -53,7 +56,8 @@ class Worker:
 
         Args:
             order: is called with the control, in the thread.
-            urgent: a stop, hold or abort: what waits and is no stop is cancelled, and it comes next.
+            urgent: a stop, hold or abort: what waits and is no stop is cancelled, what is being done gives way, and it
+                comes next.
 
         Returns:
             What will hold the result, or the exception.
@@ -86,6 +90,10 @@ class Worker:
         if self.failure is not None:
             raise RuntimeError("the worker ended by a fault") from self.failure
 
+    def _is_waited_for(self) -> bool:
+        """Whether a stop waits, or the end; the end waits for a stop that is being done."""
+        return bool(self._stops) or (self._ended and not self._stopping)
+
     def _run(self) -> None:
         due = time.monotonic()
         try:
@@ -108,13 +116,18 @@ class Worker:
                 if not self._ended:
                     self._change.wait(max(due - time.monotonic(), 0.0))
                 return
+            self._stopping = waits is self._stops
             future, order = waits.popleft()
         if not future.set_running_or_notify_cancel():
             return
         try:
             future.set_result(order(self._control))
-        except Exception as fault:
+        except BaseException as fault:
             future.set_exception(fault)
+            if not isinstance(fault, Exception):
+                raise
+        finally:
+            self._stopping = False
 
 
 def _cancel(waiting: deque[Order]) -> None:

@@ -83,7 +83,7 @@ class TcpLink:
         try:
             connection.sendall(data, WITHOUT_SIGNAL)
         except OSError as fault:
-            raise LinkLostError(f"{self._host}: {fault or 'takes no bytes'}") from fault
+            raise LinkLostError(f"{self._host}: {fault}") from fault
 
     def restart(self) -> None:
         """As ``Link``."""

@@ -4,12 +4,14 @@
 ``Q`` is not offered: it would end a program at a knot where the struts run. A stop is ``H`` first, which slows the
 time base down along the path, then ``A``, which stops each strut by itself.
 
+The controller shows a command in its state a little after it has taken it, so each is watched for until it shows.
+
 Enters: a session, settings, a program. Leaves: the state that was reached.
 """
 
 from __future__ import annotations
 
-import time
+import logging
 from collections.abc import Callable
 
 from pkm_post.controllers.pmac import Settings
@@ -26,9 +28,12 @@ HOLD_S = 5.0
 """Seconds in which a hold has to bring the struts to rest."""
 OVERRIDE_S = 5.0
 """Seconds in which the time base has to get to an override."""
+SHOWN_S = 0.5
+"""Seconds in which the state has to show that a start, a hold or an abort was taken."""
 _OVERRIDE_REACHED = 0.1
 """%"""
 _POLL_S = 0.02
+_log = logging.getLogger(__name__)
 
 
 def run(session: Session, settings: Settings, program: Program, first: Array, near: float = NEAR_MM) -> Status:
@@ -44,19 +49,13 @@ def run(session: Session, settings: Settings, program: Program, first: Array, ne
     Raises:
         NotReadyError: the program is not there as it was written, or the machine is not ready.
         OutcomeUnknownError: the link failed at the start and the controller does not show that the program runs.
+        CancelledError: a stop came first; nothing was started.
     """
     there = listing_of(session, program)
     if not there.same:
         raise NotReadyError([f"program {program.number} in the controller is another one: {there.difference}"])
     check_start(read_status(session, settings), first, near)
-    try:
-        session.order(f"&{settings.coordinate_system}B{program.number}R")
-    except OutcomeUnknownError:
-        status = read_status(session, settings)
-        if not status.running:
-            raise
-        return status
-    return read_status(session, settings)
+    return _go(session, settings, f"B{program.number}R", lambda status: status.running)
 
 
 def hold(session: Session, settings: Settings) -> Status:
@@ -69,81 +68,81 @@ def resume(session: Session, settings: Settings) -> Status:
 
     Raises:
         NotReadyError: no program is held, or something is wrong.
-        OutcomeUnknownError: the link failed, and the program may go on or be held.
+        OutcomeUnknownError: the link failed, and the controller does not show that the program goes on.
+        CancelledError: a stop came first; the program is still held.
     """
     status = read_status(session, settings)
     reasons = list(status.words())
     if not status.held:
-        reasons.append("no program is held; R would start one")
+        reasons.append("no program is held; behind a stop (M0, M1) continue it, else start it from its beginning")
     if reasons:
         raise NotReadyError(reasons)
-    session.order(f"&{settings.coordinate_system}R")
-    return read_status(session, settings)
+    return _go(session, settings, "R", lambda status: status.running and not status.held)
 
 
-def override(
-    session: Session,
-    settings: Settings,
-    percent: float,
-    clock: Callable[[], float] = time.monotonic,
-    sleep: Callable[[float], None] = time.sleep,
-) -> Status:
+def override(session: Session, settings: Settings, percent: float) -> Status:
     """Set how fast time passes in programs, and see that it does.
 
     Args:
         session: an open session.
         settings: of the machine's controller.
         percent: above 0 and up to 100: programs were planned to the limits of the machine at 100 %.
-        clock: seconds of a clock that only grows.
-        sleep: waits so many seconds of it.
 
     Raises:
         ValueError: the percentage is out of range; to stop, hold.
         NotReadyError: a program is held; its time base stands at 0.
         PmacError: the time base does not go there.
+        CancelledError: a stop came before it got there.
     """
     if not 0 < percent <= 100:
         raise ValueError(f"percent: expected above 0 and up to 100, got {percent:g}")
     if read_status(session, settings).held:
         raise NotReadyError(["a program is held: resume it, or abort it, before the override is changed"])
     session.order(f"&{settings.coordinate_system}%{percent:.2f}")
-    until = clock() + OVERRIDE_S
-    while True:
-        status = read_status(session, settings)
-        if abs(status.override - percent) <= _OVERRIDE_REACHED:
-            return status
-        if clock() > until:
-            break
-        sleep(_POLL_S)
+
+    def is_reached(status: Status) -> bool:
+        return abs(status.override - percent) <= _OVERRIDE_REACHED
+
+    status = _watched(session, settings, is_reached, OVERRIDE_S, session.is_waited_for)
+    if is_reached(status):
+        return status
+    session.give_way()
     taken_from = f"I{50 + settings.coordinate_system}93"
     raise PmacError(
         f"the time base stays at {status.override:g} % after %{percent:g}: {taken_from} may take it from elsewhere"
     )
 
 
-def abort(
-    session: Session,
-    settings: Settings,
-    at_once: bool = False,
-    clock: Callable[[], float] = time.monotonic,
-    sleep: Callable[[float], None] = time.sleep,
-) -> Status:
+def abort(session: Session, settings: Settings, at_once: bool = False) -> Status:
     """End a program: held first, so that the struts stay on the path, then aborted.
+
+    Whatever becomes of the hold, ``A`` is sent: at once when another stop waits, for it is meant to be faster.
 
     Args:
         session: an open session.
         settings: of the machine's controller.
         at_once: without the hold: each strut stops on its own ramp, off the path.
-        clock: seconds of a clock that only grows.
-        sleep: waits so many seconds of it.
     """
     if not at_once:
-        status = hold(session, settings)
-        until = clock() + HOLD_S
-        while not status.standing and clock() < until:
-            sleep(_POLL_S)
-            status = read_status(session, settings)
+        try:
+            hold(session, settings)
+            _watched(session, settings, lambda status: status.standing, HOLD_S, session.is_waited_for)
+        except PmacError as fault:
+            _log.warning("aborted without coming to rest before: %s", fault)
     return _stop(session, settings, "A", lambda status: not status.running)
+
+
+def _go(session: Session, settings: Settings, order: str, goes: Callable[[Status], bool]) -> Status:
+    """Send what sets the machine in motion, once, unless a stop waits; when its answer is lost, the state tells."""
+    session.give_way()
+    try:
+        session.order(f"&{settings.coordinate_system}{order}")
+    except OutcomeUnknownError:
+        status = _watched(session, settings, goes, SHOWN_S)
+        if not goes(status):
+            raise
+        return status
+    return _watched(session, settings, goes, SHOWN_S)
 
 
 def _stop(session: Session, settings: Settings, order: str, stopped: Callable[[Status], bool]) -> Status:
@@ -154,9 +153,25 @@ def _stop(session: Session, settings: Settings, order: str, stopped: Callable[[S
             session.order(f"&{settings.coordinate_system}{order}")
         except LinkLostError as fault:
             lost = fault
-        status = read_status(session, settings)
+        status = _watched(session, settings, stopped, SHOWN_S)
         if stopped(status):
             return status
     raise PmacError(
         f"the controller does not stop after {order}, sent {REPEATS} times: USE THE EMERGENCY STOP"
     ) from lost
+
+
+def _watched(
+    session: Session,
+    settings: Settings,
+    holds: Callable[[Status], bool],
+    seconds: float,
+    is_over: Callable[[], bool] = lambda: False,
+) -> Status:
+    """The state as soon as something holds of it; the last one when the time, or the waiting, is over before."""
+    until = session.now() + seconds
+    while True:
+        status = read_status(session, settings)
+        if holds(status) or session.now() >= until or is_over():
+            return status
+        session.sleep(_POLL_S)

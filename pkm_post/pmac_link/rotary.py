@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotary: segments on their way through the rotary buffer, and what is known of it at any time.
+"""Rotary: segments go through the rotary buffer and are let go by R, one after the other.
 
-Lines are counted from the first that was sent: so many are surely in the controller, some behind them may be, so many
-were let go by R. The controller tells how many it has not begun; whatever was heard of a command that got lost, these
-numbers say whether it was carried out.
+So many lines were let go; the controller tells how many it has not begun (``rotary_buffer``). Whatever was heard of a
+command that got lost, these numbers say whether it was carried out.
 
 Enters: a session, segments, the size of the buffer. Leaves: a machine at rest, and where that is.
 """
@@ -18,19 +17,15 @@ from pkm_post.controllers.pmac import Settings
 from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.faults import CancelledError, LinkLostError, PmacError, RefusedError
 from pkm_post.pmac_link.gates import Segment
-from pkm_post.pmac_link.listing import words_of
 from pkm_post.pmac_link.ready import check_start
+from pkm_post.pmac_link.rotary_buffer import ATTEMPTS, RotaryBuffer
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
 
-ATTEMPTS = 5
-"""How often one segment is gone on with after a failure."""
 _NOT_OPEN, _NO_ROOM = 5, 6
 _POLL_S = 0.05
 _QUIET_POLLS = 20
 """So often the controller has to show that it stands where it should not."""
-_MARGIN = 2
-"""Lines that may lie in the buffer still though they are not ahead any more: the one that runs, the one after it."""
 _log = logging.getLogger(__name__)
 
 Progress = Callable[[int, int, int], None]
@@ -38,7 +33,7 @@ Progress = Callable[[int, int, int], None]
 
 
 class RotaryStream:
-    """What is known of the rotary buffer.
+    """A program on its way.
 
     Attributes:
         segments: of the program.
@@ -54,45 +49,17 @@ class RotaryStream:
         segments: tuple[Segment, ...],
         words: int,
         near: float,
-        sleep: Callable[[float], None],
     ) -> None:
         self.segments, self.resumptions, self.line = segments, 0, 0
         self.rest: Array = segments[0].rest
-        self._session, self._settings, self._near, self._sleep = session, settings, near, sleep
-        self._lines = [line for segment in segments for line in segment.lines]
+        self._session, self._settings, self._near = session, settings, near
         self._ends = list(accumulate(len(segment.lines) for segment in segments))
-        self._filled = [0, *accumulate(map(words_of, self._lines))]
-        self._words, self._room = words, words
-        self._loaded = self._unsure = self._let_go = 0  # lines; _unsure may have arrived behind those
-        self._connections = session.connections
+        self._buffer = RotaryBuffer(session, settings, [line for each in segments for line in each.lines], words)
+        self._let_go = 0  # lines
 
     def open(self) -> None:
         """An empty rotary buffer, open, and the coordinate system pointed to it."""
-        # Behind OPEN ROT, B0 would be a move. To begin all this anew does no harm: nothing was let go.
-        lines = ("CLOSE", "DELETE GATHER", f"&{self._settings.coordinate_system}B0", "OPEN ROT", "CLEAR")
-        if ahead := self._ordered(lines):
-            raise PmacError(f"{ahead} lines are in the rotary buffer after CLEAR")
-
-    def _ordered(self, lines: tuple[str, ...]) -> int:
-        """Have lines carried out, all again when the link fails; how many lines lie ahead then."""
-        for attempt in range(ATTEMPTS):
-            self._connections = self._session.connections
-            try:
-                for line in lines:
-                    self._session.order(line)
-                ahead = self._ahead()
-            except LinkLostError as lost:
-                _log.warning("the link failed: %s", lost)
-                if attempt == ATTEMPTS - 1:
-                    raise
-            else:
-                if self._is_still_open():
-                    return ahead
-        raise LinkLostError("the link fails again and again")
-
-    def _is_still_open(self) -> bool:
-        """A link that was called back has closed the buffer: a line would be carried out at once, not kept."""
-        return self._connections == self._session.connections
+        self._buffer.open()
 
     def run(self, progress: Progress, is_cancelled: Callable[[], bool]) -> None:
         """Send and let go segment by segment."""
@@ -115,8 +82,7 @@ class RotaryStream:
         """Come to rest, empty the buffer and close it; whether the controller has shown both."""
         try:
             self._come_to_rest(at_once)
-            lines = ("CLOSE", f"&{self._settings.coordinate_system}", "OPEN ROT", "CLEAR", "CLOSE")
-            return self._ordered(lines) == 0
+            return self._buffer.empty()
         except (PmacError, KeyboardInterrupt) as fault:
             _log.error("the rotary buffer could not be emptied: %s", fault)
             return False
@@ -129,55 +95,29 @@ class RotaryStream:
                 return
         except KeyboardInterrupt:
             pass  # this is how the user says that it has to be now
-        operate.abort(self._session, self._settings, sleep=self._sleep)
+        operate.abort(self._session, self._settings)
         self._wait(lambda: None)
 
     def _sent(self) -> int:
-        return max(
-            (segment.last for segment, end in zip(self.segments, self._ends, strict=True) if end <= self._loaded),
-            default=0,
-        )
+        """Lines of the program that are in the controller, in whole segments."""
+        there = [each.last for each, end in zip(self.segments, self._ends, strict=True) if end <= self._buffer.loaded]
+        return max(there, default=0)
 
     def _fill(self, end: int, check: Callable[[], None]) -> None:
         """Bring the lines up to ``end`` into the buffer, as it has room for them."""
         failures = 0
-        while self._loaded < end:
+        while self._buffer.loaded < end:
             check()
-            count = self._fitting(end)
-            if not self._is_still_open() and failures < ATTEMPTS:
-                failures += 1
-                self._settle(check)
-                continue
-            if not self._is_still_open():
-                raise LinkLostError("the link fails again and again")
-            if not count:
-                self._sleep(_POLL_S)
-                continue
-            batch = self._lines[self._loaded : self._loaded + count]
             try:
-                done = self._session.load(batch)
+                if not self._buffer.send(end):
+                    self._session.sleep(_POLL_S)
             except (LinkLostError, RefusedError) as fault:
-                if isinstance(fault, RefusedError) and fault.number not in (_NOT_OPEN, _NO_ROOM):
-                    raise
                 failures += 1
-                if failures > ATTEMPTS:
+                passes = isinstance(fault, LinkLostError) or fault.number in (_NOT_OPEN, _NO_ROOM)
+                if not passes or failures > ATTEMPTS:
                     raise
                 _log.warning("the stream was interrupted: %s", fault)
-                self._unsure = min(len(batch), self._session.lines_at_once(batch))
                 self._settle(check)
-            else:
-                self._room -= self._filled[self._loaded + done] - self._filled[self._loaded]
-                self._loaded += done
-
-    def _fitting(self, end: int) -> int:
-        """How many of the next lines the buffer has room for."""
-        if self._filled[self._loaded + 1] - self._filled[self._loaded] > self._room:
-            oldest = max(self._loaded - self._ahead() - _MARGIN, 0)
-            self._room = self._words - (self._filled[self._loaded] - self._filled[oldest])
-        count = self._loaded
-        while count < end and self._filled[count + 1] - self._filled[self._loaded] <= self._room:
-            count += 1
-        return count - self._loaded
 
     def _wait(self, check: Callable[[], None]) -> Status:
         """Until the controller has done what it was let go with, or was stopped, and the struts stand."""
@@ -189,15 +129,16 @@ class RotaryStream:
             if quiet and (quiet >= _QUIET_POLLS or self._is_done()):
                 return status
             check()
-            self._sleep(_POLL_S)
+            self._session.sleep(_POLL_S)
 
     def _is_done(self) -> bool:
-        left = self._loaded - self._let_go
-        return left <= self._ahead() <= left + self._unsure
+        left = self._buffer.loaded - self._let_go
+        return left <= self._buffer.ahead() <= left + self._buffer.unsure
 
     def _check_done(self) -> None:
         if not self._is_done():
-            raise PmacError(f"the program was stopped with {self._ahead()} lines of the rotary buffer ahead of it")
+            ahead = self._buffer.ahead()
+            raise PmacError(f"the program was stopped with {ahead} lines of the rotary buffer ahead of it")
 
     def _settle(self, check: Callable[[], None]) -> None:
         """After a failure: wait for rest, see how many lines are there, and open the buffer again.
@@ -206,12 +147,7 @@ class RotaryStream:
             PmacError: what the controller tells cannot be explained.
         """
         self._check(self._wait(check))
-        there = self._let_go + self._ordered(("CLOSE", f"&{self._settings.coordinate_system}", "OPEN ROT"))
-        if not self._loaded <= there <= self._loaded + self._unsure:
-            raise PmacError(
-                f"the controller has {there} lines, {self._loaded} to {self._loaded + self._unsure} were sent"
-            )
-        self._loaded, self._unsure, self._room = there, 0, 0
+        self._buffer.recount(self._let_go)
         self.resumptions += 1
 
     def _release(self, segment: Segment, end: int) -> None:
@@ -236,14 +172,7 @@ class RotaryStream:
 
     def _goes(self, before: int) -> bool:
         """Whether lines behind the first ``before`` were begun."""
-        return read_status(self._session, self._settings).running or self._loaded - self._ahead() > before
+        return read_status(self._session, self._settings).running or self._buffer.loaded - self._buffer.ahead() > before
 
     def _check(self, status: Status) -> None:
         check_start(status, self.rest, self._near)
-
-    def _ahead(self) -> int:
-        """Lines in the buffer that were not begun."""
-        told = self._session.ask(f"&{self._settings.coordinate_system}PR")
-        if len(told) != 1 or not told[0].strip().isdecimal():
-            raise LinkLostError(f"PR: expected a number of lines, got {told}")
-        return int(told[0])

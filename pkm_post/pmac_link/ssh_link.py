@@ -76,7 +76,7 @@ class SshLink:
         try:
             channel.sendall(data)
         except OSError as fault:
-            raise LinkLostError(f"{self._host}: {fault or 'takes no bytes'}") from fault
+            raise LinkLostError(f"{self._host}: {fault}") from fault
 
     def restart(self) -> None:
         """As ``links.Link``; logs in anew.
@@ -158,7 +158,7 @@ class SshLink:
 
     def _asked_password(self) -> bool:
         """Ask the user once for a password; whether there is one to try now."""
-        if self._password is not None or not sys.stdin.isatty():
+        if self._password is not None or not _has_listener():
             return False
         self._password = getpass.getpass(f"password of {self._user} at {self._host}: ")
         return True
@@ -176,6 +176,12 @@ class _Socket(socket.socket):
     def send(self, data: bytes, flags: int = 0) -> int:  # type: ignore[override]
         """As ``socket.socket``."""
         return super().send(data, flags | WITHOUT_SIGNAL)
+
+
+def _has_listener() -> bool:
+    """Whether somebody sits at a terminal; behind a window nobody does, and its thread would wait for ever."""
+    here = threading.current_thread() is threading.main_thread()
+    return here and sys.stdin is not None and sys.stdin.isatty()
 
 
 def _paramiko() -> ModuleType:

@@ -13,7 +13,6 @@ Enters: a session, settings, a program, the size of the rotary buffer. Leaves: w
 from __future__ import annotations
 
 import logging
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -55,7 +54,6 @@ def stream(
     near: float = NEAR_MM,
     progress: Progress = lambda done, sent, all_lines: None,
     is_cancelled: Callable[[], bool] = lambda: False,
-    sleep: Callable[[float], None] = time.sleep,
 ) -> Streamed:
     """Run a program from the rotary buffer.
 
@@ -68,14 +66,13 @@ def stream(
         near: how far each strut may be from the first point, and from the rest that it goes on from, mm.
         progress: is told how far it is.
         is_cancelled: asked again and again; the machine then rests at the end of the segment that runs.
-        sleep: waits so many seconds.
 
     Raises:
         NotReadyError: the program cannot be streamed, or the machine is not ready; nothing was sent.
         StreamError: it failed; says where the machine rests and whether anything is left in the buffer.
         CancelledError: it was stopped; the machine rests and nothing is left in the buffer.
     """
-    streaming = RotaryStream(session, settings, segments_of(program, settings, words), words, near, sleep)
+    streaming = RotaryStream(session, settings, segments_of(program, settings, words), words, near)
     streaming.rest = first
     check_start(read_status(session, settings), first, near)
     try:

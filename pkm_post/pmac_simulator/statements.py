@@ -40,6 +40,10 @@ class Statement:
     words: int
     arguments: tuple[Any, ...] = ()
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> Statement:
+        """Itself: it never changes, and a save and a reset copy all programs."""
+        return self
+
 
 Reader = Callable[[Scanner, str, str], Statement]
 

@@ -9,17 +9,24 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "pmac_link"))
 
+import numpy as np  # noqa: E402
 from rig import Wire  # noqa: E402
 
-from pkm_post.controllers.pmac import settings_of, setup_text  # noqa: E402
+from pkm_post.controllers.pmac import program_text, settings_of, setup_text  # noqa: E402
 from pkm_post.machine_file import machine_named  # noqa: E402
+from pkm_post.model import StrutMotion  # noqa: E402
 from pkm_post.numerical_control.control import NumericalControl  # noqa: E402
+from pkm_post.pmac_link.job import read_job  # noqa: E402
 from pkm_post.pmac_simulator import Controller, Line  # noqa: E402
 
 MACHINE, _ = machine_named("example_6tps")
 SETTINGS, _ = settings_of(MACHINE)
 TOOL = 120.0
 """mm; with this tool the struts are as long at home as the motors count from."""
+
+START = 1007.8869
+"""mm: the struts of the example at home."""
+PER_BLOCK = 25
 
 
 @functools.cache
@@ -66,4 +73,17 @@ def new_station():
     """A station that nobody has touched."""
     wire = Wire(copy.deepcopy(set_up()), "tcp", moves=True)
     session = wire.session()
-    return Station(wire, NumericalControl(session, MACHINE, SETTINGS, TOOL, clock=wire.clock, sleep=wire.sleep))
+    return Station(wire, NumericalControl(session, MACHINE, SETTINGS, TOOL))
+
+
+def job(settings, events):
+    """All struts out, to rest, back, to rest, and out again: half a second each."""
+    share = np.arange(PER_BLOCK + 1) / PER_BLOCK
+    out, rate = (1 - np.cos(np.pi * share)) / 2, np.pi / 2 * np.sin(np.pi * share) / 0.5
+    rate[[0, -1]] = 0.0
+    length = np.concatenate([out, 1 - out[1:], out[1:]])[:, None] * np.linspace(1, 2, 6) + START
+    speed = np.concatenate([rate, -rate[1:], rate[1:]])[:, None] * np.linspace(1, 2, 6)
+    motion = StrutMotion(20 * np.arange(3 * PER_BLOCK + 1), length, speed, events)
+    made, faults = read_job(program_text(motion, settings, ["job"]), settings, "job.pmc")
+    assert not faults
+    return made

@@ -5,12 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from rig import listed
 
 from pkm_post.kinematics import strut_lengths
 from pkm_post.model import Diagnostic
 from pkm_post.numerical_control.mdi import Reading
 from pkm_post.numerical_control.moves import Cartesian, OneStrut
-from pkm_post.pmac_link.faults import NotReadyError, PmacError
+from pkm_post.pmac_link.faults import CancelledError, NotReadyError, PmacError
 
 MICRON = 1e-3
 COUNT = 1e-4
@@ -133,7 +134,12 @@ def test_a_line_begins_where_the_tool_is_and_keeps_its_axis(station):
         ("T2 M6 G1 X10 F100", "C203"),
         ("G41 D1 G1 X10 F100", "G411"),
         ("G91 G1 X0 Y0 F100", "C201"),
-        ("M3 S1000", "G420"),
+        ("G17", "C201"),
+        ("S1000", "C201"),
+        ("M30", "C201"),
+        ("", "C201"),
+        ("T2 M6", "C203"),
+        ("G41 D1 M3 S500", "G411"),
         ("G1 Z-210 F600", "K102"),
         ("G0 X900", "K102"),
         ("HELLO", "G201"),
@@ -143,6 +149,33 @@ def test_a_line_that_is_refused_is_not_sent(station, line, code):
     plan, told = station.control.plan_line(line)
     assert plan is None and code in {fault.code for fault in told}
     assert b"OPEN" not in station.sent()
+
+
+@pytest.mark.parametrize(
+    ("line", "variable", "value"),
+    [("M3 S1000", 7001, 1), ("S300 M4", 7001, -1), ("M8", 7002, 1), ("G20 M7", 7002, 2), ("G91 M9", 7002, 0)],
+)
+@pytest.mark.parametrize("axis_words", ["none", "vector"])
+def test_a_line_that_switches_alone(station, line, variable, value, axis_words):
+    """The machine stands meanwhile, to less than its encoders count."""
+    before = station.control.poll().status.commanded
+    variables = station.wire.controller.variables
+    variables.write("P", variable, 9.0)
+    plan, told = station.control.plan_line(line, Reading(axis_words=axis_words))
+    assert told == ()
+    station.control.execute(plan)
+    furthest = np.zeros(6)
+    while (state := station.wait(0.02)).status.running:
+        furthest = np.maximum(furthest, np.abs(state.status.commanded - before))
+    assert variables.read("P", variable) == value
+    assert furthest.max() < COUNT and np.abs(state.status.commanded - before).max() < COUNT
+
+
+def test_a_line_of_a_dwell_alone_takes_its_time(station):
+    station.control.execute(station.control.plan_line("G4 P2")[0])
+    began = station.wire.now
+    station.to_rest()
+    assert station.wire.now - began >= 2.0
 
 
 def test_an_unknown_work_offset(station):
@@ -285,3 +318,22 @@ def test_a_start_that_may_have_been_carried_out_is_an_emergency(station):
         station.control.execute(plan)
     assert len(said) == 1
     assert station.control.poll().emergency
+
+
+def test_a_stop_ends_a_download_and_nothing_is_started(station):
+    """It gets through between two lines; nothing is left under the number."""
+    plan, _ = station.control.plan_jog(Cartesian((20, 0, 0)), FEED)
+    station.control.give_way_when(lambda: station.sent().endswith(b"\0") or b"PVT" in station.sent())
+    with pytest.raises(CancelledError, match="a stop came first|nothing is left under program 999"):
+        station.control.execute(plan)
+    assert b"B999R" not in station.sent() and not station.wire.controller.runs_program()
+    assert listed(station.wire.controller, 999) in ([], ["RETURN"])
+
+
+def test_a_reading_that_gives_way_to_a_stop_is_no_lost_link(station):
+    before = station.control.poll()
+    station.control.give_way_when(lambda: True)
+    station.wire.fault = lambda data, out: b""
+    assert station.control.poll() is before
+    station.control.give_way_when(lambda: False)
+    assert station.control.poll().lost

@@ -16,7 +16,7 @@ ALL_MOTORS = " ".join(f"#{motor}HM" for motor in range(1, 7))
     "trigger", ["ENABLE PLC 3", "enaplc12", "P101=1", "M40=-1.5", "&1B500R", "&2 B5 R", "#1HM", "#1HM #2HM", "#6home"]
 )
 def test_lines_that_may_start_it(trigger):
-    check_trigger(trigger)
+    assert check_trigger(trigger) is None
 
 
 @pytest.mark.parametrize(
@@ -113,4 +113,11 @@ def test_a_trigger_after_which_nothing_moves(station):
 def test_a_trigger_that_the_controller_refuses(station):
     with pytest.raises(RefusedError, match="&1B500R"):
         station.control.home("&1B500R")
+    assert station.control.poll().homing is None
+
+
+def test_an_abort_ends_the_watch(station):
+    station.control.home("P7000=1")
+    assert station.control.poll().homing.phase is Phase.SEARCHING
+    station.control.abort(at_once=True)
     assert station.control.poll().homing is None

@@ -66,6 +66,8 @@ def test_a_simulated_machine_is_homed_and_jogged():
         worker.submit(lambda control: control.home(HOMING)).result(LONGEST_S)
         until(lambda: worker.state.homing is not None and worker.state.homing.phase is not Phase.SEARCHING)
         assert worker.state.homing.phase is Phase.DONE and all(worker.state.status.homed)
+        # where the struts of this machine are counted from is its home, within a count of 0.1 um
+        assert worker.state.pose.tip == pytest.approx(MACHINE.home_tip, abs=1e-3)
         before = worker.state.pose.tip[0]
         plan, told = worker.submit(lambda control: control.plan_jog(Cartesian((2, 0, 0)), 10.0)).result(LONGEST_S)
         assert not told
@@ -76,8 +78,23 @@ def test_a_simulated_machine_is_homed_and_jogged():
         connection.close()
 
 
+def test_it_goes_home_where_struts_are_counted_from_the_end_of_their_stroke():
+    target, _ = target_of(None, "nategh_agheli_nominal")
+    assert set(target.settings.zero_length) == {target.machine.strut_stroke[0]}
+    connection = connect(target, 100.0, 4.0)
+    try:
+        worker = connection.worker
+        worker.submit(lambda control: control.home(HOMING)).result(LONGEST_S)
+        until(lambda: worker.state.homing is not None and worker.state.homing.phase is not Phase.SEARCHING)
+        assert worker.state.pose.tip == pytest.approx(target.machine.home_tip, abs=1e-2)
+        plan, told = worker.submit(lambda control: control.plan_jog(Cartesian((1, 0, 0)), 5.0)).result(LONGEST_S)
+        assert plan is not None and not told
+    finally:
+        connection.close()
+
+
 def test_a_simulated_machine_ends():
-    training = Training(SETTINGS, MACHINE.strut_stroke)
+    training = Training(MACHINE, SETTINGS, TOOL)
     number = port_named(training.port).number
     training.close()
     with pytest.raises(OSError):

@@ -68,6 +68,11 @@ def test_a_step_needs_a_block_that_comes_next(block, allows):
     assert refusal(Order.STEP, facts(state, OPENED)) is Why.NO_BLOCK  # those are blocks of another program
 
 
+def test_to_go_on_needs_a_stop():
+    assert refusal(Order.GO_ON, facts(AT_REST, LOADED)) is Why.NO_STOP
+    assert refusal(Order.GO_ON, facts(AT_REST, Desk(connected=True, has_job=True, has_stops=True))) is None
+
+
 def test_the_reason_that_matters_most_comes_first():
     found = facts(State(None, None), Desk())
     assert {refusal(order, found) for order in Order} == {Why.NOT_CONNECTED}

@@ -1,22 +1,25 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands ``pmac home``, ``jog``, ``mdi``, ``step`` and ``override`` against a simulated controller."""
+"""The commands ``pmac home``, ``jog``, ``mdi``, ``step``, ``continue``, ``override`` with a simulated controller."""
 
 import copy
 import io
 import re
-import threading
+import time
 
 import numpy as np
 import pytest
-from station import SETTINGS, set_up
+from rig import served
+from station import PER_BLOCK, SETTINGS, job, set_up
 
 from pkm_post.cli import main
 from pkm_post.cli.pmac_control import tell_emergency
 from pkm_post.controllers.pmac import program_text
 from pkm_post.model import Event, EventKind, StrutMotion
-from pkm_post.pmac_simulator import Server
 
 MACHINE = "example_6tps"
+LONGEST_S = 60.0
+FAST = 5.0
+"""Simulated seconds in a second, as far as this computer keeps up."""
 START = 1007.8869
 """mm: the struts of the example at home."""
 
@@ -25,14 +28,8 @@ START = 1007.8869
 def simulator():
     """A controller that serves in a thread, and the name of its port."""
     made = copy.deepcopy(set_up())
-    server, ended = Server(made), threading.Event()
-    port = f"tcp:127.0.0.1:{server.add_tcp(0)}"
-    thread = threading.Thread(target=server.run, args=(ended.is_set,))
-    thread.start()
-    yield made, port
-    ended.set()
-    thread.join()
-    server.close()
+    with served(made, speed=FAST) as port:
+        yield made, port
 
 
 def pmac(action, port, *arguments):
@@ -108,6 +105,31 @@ def test_from_rest_to_rest(simulator, capsys, monkeypatch, tmp_path):
     assert "there is no block 3: the program has 2" in capsys.readouterr().err
 
 
+def test_behind_a_stop(simulator, capsys, tmp_path):
+    made, port = simulator
+    motion = job(SETTINGS, (Event(PER_BLOCK, EventKind.STOP, 0.0),)).motion
+    file = tmp_path / "job.pmc"
+    file.write_text(program_text(motion, SETTINGS, ["job"]))
+    assert pmac("download", port, file) == 0 and pmac("run", port, file) == 0
+    until_it_rests(made)
+    assert pmac("resume", port) == 1
+    assert "no program is held; behind a stop (M0, M1) continue it" in capsys.readouterr().err
+    assert pmac("continue", port, file, "--stop", 2) == 1
+    assert "there is none with number 2" in capsys.readouterr().err
+    assert pmac("continue", port, file, "--stop", 1) == 0
+    assert "a program runs" in capsys.readouterr().out
+    until_it_rests(made)
+    commanded = made.motors.commanded / SETTINGS.counts_per_mm + SETTINGS.zero_length
+    assert np.allclose(commanded, motion.length[-1], atol=1e-4)
+
+
+def until_it_rests(made):
+    until = time.monotonic() + LONGEST_S
+    while made.runs_program():
+        assert time.monotonic() < until
+        time.sleep(0.01)
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -119,6 +141,8 @@ def test_from_rest_to_rest(simulator, capsys, monkeypatch, tmp_path):
         ["override", "120"],
         ["step", "x.pmc", "--block", "0"],
         ["mdi"],
+        ["continue", "x.pmc"],
+        ["continue", "x.pmc", "--stop", "0"],
     ],
 )
 def test_arguments_without_sense_by_hand(arguments):

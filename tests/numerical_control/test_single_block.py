@@ -3,35 +3,16 @@
 
 import numpy as np
 import pytest
+from station import PER_BLOCK, job
 
-from pkm_post.controllers.pmac import program_text
 from pkm_post.controllers.pvt.parts import joined
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.numerical_control.execute import off_target
 from pkm_post.numerical_control.single_block import blocks_of, same
 from pkm_post.pmac_link.faults import NotReadyError
-from pkm_post.pmac_link.job import read_job
 
 COUNT = 1e-4
 """mm: what the encoder of the example counts."""
-START = 1007.8869
-"""mm: the struts of the example at home."""
-PER_BLOCK = 25
-
-
-def job(settings, events):
-    """All struts out, to rest, back, to rest, and out again: half a second each."""
-    share = np.arange(PER_BLOCK + 1) / PER_BLOCK
-    out, rate = (1 - np.cos(np.pi * share)) / 2, np.pi / 2 * np.sin(np.pi * share) / 0.5
-    rate[[0, -1]] = 0.0
-    length = np.concatenate([out, 1 - out[1:], out[1:]])[:, None] * np.linspace(1, 2, 6) + START
-    speed = np.concatenate([rate, -rate[1:], rate[1:]])[:, None] * np.linspace(1, 2, 6)
-    motion = StrutMotion(20 * np.arange(3 * PER_BLOCK + 1), length, speed, events)
-    made, faults = read_job(program_text(motion, settings, ["job"]), settings, "job.pmc")
-    assert not faults
-    return made
-
-
 EVENTS = (
     Event(0, EventKind.SPINDLE, 1200.0),
     Event(PER_BLOCK, EventKind.STOP, 0.0),

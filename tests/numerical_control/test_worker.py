@@ -21,6 +21,10 @@ class Stub:
     def __init__(self):
         self.polls = 0
         self.done = []
+        self.gives_way = None
+
+    def give_way_when(self, is_waited_for):
+        self.gives_way = is_waited_for
 
     def poll(self):
         self.polls += 1
@@ -80,6 +84,59 @@ def test_a_stop_comes_first_and_cancels_what_waits(worker, stub):
     for order in waiting:
         with pytest.raises(CancelledError):
             order.result(LONGEST_S)
+
+
+def test_what_is_being_done_is_told_that_a_stop_waits(worker, stub):
+    begun = threading.Event()
+
+    def long(control):
+        before = stub.gives_way()
+        begun.set()
+        until(stub.gives_way)
+        return before
+
+    first = worker.submit(long)
+    assert begun.wait(LONGEST_S)
+    hold = worker.submit(lambda control: stub.gives_way(), urgent=True)
+    assert first.result(LONGEST_S) is False
+    assert hold.result(LONGEST_S) is False, "a stop does not wait for itself"
+
+
+def test_what_is_being_done_gives_way_to_the_end(stub):
+    worker = Worker(stub, period=0.005)
+    begun = threading.Event()
+    first = worker.submit(lambda control: begun.set() or until(stub.gives_way) or "given way")
+    assert begun.wait(LONGEST_S)
+    worker.close()
+    assert first.result(0) == "given way"
+
+
+def test_a_stop_that_is_being_done_does_not_give_way_to_the_end(stub):
+    worker = Worker(stub, period=0.005)
+    begun, ends = threading.Event(), threading.Event()
+
+    def stop(control):
+        begun.set()
+        until(lambda: worker._ended)
+        return stub.gives_way()
+
+    aborted = worker.submit(stop, urgent=True)
+    assert begun.wait(LONGEST_S)
+    threading.Timer(0.0, lambda: (worker.close(), ends.set())).start()
+    assert aborted.result(LONGEST_S) is False
+    assert ends.wait(LONGEST_S)
+
+
+def test_an_order_that_ends_the_thread_is_told_as_well(stub):
+    worker = Worker(stub, period=0.005)
+
+    def ends(control):
+        raise SystemExit(3)
+
+    with pytest.raises(SystemExit):
+        worker.submit(ends).result(LONGEST_S)
+    with pytest.raises(RuntimeError, match="ended by a fault"):
+        worker.close()
 
 
 def test_the_exception_of_an_order_is_that_of_its_result(worker):

@@ -7,6 +7,8 @@ Nothing waits in truth: a silent controller costs no time, so thousands of fault
 import copy
 import functools
 import random
+import threading
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from pkm_post.controllers.pmac import Settings, setup_text
@@ -14,9 +16,10 @@ from pkm_post.pmac_link.ethernet_conversation import EthernetConversation
 from pkm_post.pmac_link.faults import LinkLostError
 from pkm_post.pmac_link.serial_conversation import SerialConversation
 from pkm_post.pmac_link.session import Leftover, Session
-from pkm_post.pmac_simulator import Controller, Line, Packets
+from pkm_post.pmac_simulator import Controller, Line, Packets, Server
 
 STROKE = (450.0, 550.0)
+LONGEST_JOIN_S = 20.0
 SETTINGS = Settings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=10.0)
 
 
@@ -169,7 +172,8 @@ class WiredLink:
 
 def controller():
     """A simulated controller that was set up for ``SETTINGS``, its struts homed and in closed loop."""
-    return copy.deepcopy(_set_up())
+    made = _set_up()
+    return copy.deepcopy(made, {id(made._kept): made._kept})  # what was saved is never changed, only replaced
 
 
 @functools.cache
@@ -187,3 +191,25 @@ def listed(made, number=10):
     """What the controller has under a number, without a link."""
     program = made.memory.programs.get(number)
     return [] if program is None or not program.line_starts else program.listing(True)
+
+
+@contextmanager
+def served(made, kind="tcp", speed=1.0):
+    """A controller that serves in a thread; the name of its port.
+
+    Args:
+        made: the controller.
+        kind: ``"serial"`` or ``"tcp"``.
+        speed: simulated seconds in a second.
+    """
+    server, ended = Server(made, speed), threading.Event()
+    port = f"tcp:127.0.0.1:{server.add_tcp(0)}" if kind == "tcp" else f"serial:{server.add_pty()}"
+    thread = threading.Thread(target=server.run, args=(ended.is_set,))
+    thread.start()
+    try:
+        yield port
+    finally:
+        ended.set()
+        thread.join(LONGEST_JOIN_S)
+        server.close()
+        assert not thread.is_alive()

@@ -57,7 +57,7 @@ def lengths(wire):
 
 
 def streamed(session, wire, **arguments):
-    return stream(session, SETTINGS, JOB.program, JOB.first, WORDS, sleep=wire.sleep, **arguments)
+    return stream(session, SETTINGS, JOB.program, JOB.first, WORDS, **arguments)
 
 
 def tried(wire, is_reset=False, **arguments):

@@ -10,7 +10,7 @@ from pkm_post.controllers.pmac import program_text
 from pkm_post.model import StrutMotion
 from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.download import download
-from pkm_post.pmac_link.faults import NotReadyError, OutcomeUnknownError, PmacError
+from pkm_post.pmac_link.faults import CancelledError, NotReadyError, OutcomeUnknownError, PmacError
 from pkm_post.pmac_link.job import read_job
 from pkm_post.pmac_link.ready import check_setup, check_start
 from pkm_post.pmac_link.status import read_status
@@ -33,7 +33,11 @@ def loaded(wire):
 
 def test_the_set_up_is_as_the_machine_file_says(wire):
     with wire.session() as session:
-        check_setup(session, SETTINGS, STROKE)
+        wire.sent.clear()
+        assert check_setup(session, SETTINGS, STROKE) is None
+    for query in (b"#6->", b"I5190", b"I5150", b"I68", b"I127", b"I613", b"I614"):
+        assert query in wire.sent, "what is set up was asked for"
+    assert b"=" not in wire.sent, "and nothing was set"
 
 
 @pytest.mark.parametrize(
@@ -69,7 +73,7 @@ def test_a_program_runs_is_held_goes_on_and_is_aborted(wire, loaded):
     wire.sleep(1.0)
     assert np.allclose(read_status(loaded, SETTINGS).length, held.length, atol=MICRON)
     assert operate.resume(loaded, SETTINGS).running
-    status = operate.abort(loaded, SETTINGS, clock=wire.clock, sleep=wire.sleep)
+    status = operate.abort(loaded, SETTINGS)
     assert not status.running
     wire.sleep(1.0)
     assert read_status(loaded, SETTINGS).standing
@@ -139,6 +143,66 @@ def test_an_override_beyond_the_plan_is_refused(wire, loaded):
     wire.sleep(1.0)  # the time base goes there slowly
     with pytest.raises(NotReadyError, match="the override is 120 %"):
         operate.run(loaded, SETTINGS, SLOW, FIRST)
+
+
+def test_an_abort_is_sent_though_the_hold_shows_nothing(wire, loaded):
+    """Where the time base comes from elsewhere, H does nothing."""
+    operate.run(loaded, SETTINGS, SLOW, FIRST)
+    wire.controller.systems[0].hold = lambda: None
+    with pytest.raises(PmacError, match="does not stop after H, sent 3 times: USE THE EMERGENCY STOP"):
+        operate.hold(loaded, SETTINGS)
+    assert not operate.abort(loaded, SETTINGS).running
+    wire.sleep(10.0)
+    assert read_status(loaded, SETTINGS).standing
+
+
+def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):
+    """A start that is not seen at once is no start that failed, and a stop is not sent again for that."""
+    system, owed = wire.controller.systems[0], []
+
+    def later(command):
+        return lambda *arguments: owed.append((wire.now + 0.3, command, arguments))
+
+    system.run, system.hold, system.abort = later(system.run), later(system.hold), later(system.abort)
+    sleep = wire.sleep
+
+    def sleep_and_do(seconds):
+        sleep(seconds)
+        while owed and owed[0][0] <= wire.now:
+            _, command, arguments = owed.pop(0)
+            command(*arguments)
+
+    wire.sleep = loaded._sleep = sleep_and_do
+    assert operate.run(loaded, SETTINGS, SLOW, FIRST).running
+    assert operate.hold(loaded, SETTINGS).held
+    wire.sleep(2.0)
+    status = operate.resume(loaded, SETTINGS)
+    assert status.running and not status.held
+    assert not operate.abort(loaded, SETTINGS, at_once=True).running
+    assert [bytes(wire.sent).count(b"&1" + order) for order in (b"B10R", b"H", b"R", b"A")] == [1, 1, 1, 1]
+
+
+def test_a_stop_that_waits_ends_the_waiting_of_an_abort(wire, loaded):
+    """It may be the one that is to stop at once."""
+    operate.run(loaded, SETTINGS, SLOW, FIRST)
+    wire.sleep(0.5)
+    loaded.give_way_when(lambda: True)
+    began = wire.now
+    assert not operate.abort(loaded, SETTINGS).running
+    assert wire.now - began < 0.5, "a hold alone takes longer"
+
+
+def test_nothing_is_started_while_a_stop_waits(wire, loaded):
+    loaded.give_way_when(lambda: True)
+    with pytest.raises(CancelledError, match="a stop came first"):
+        operate.run(loaded, SETTINGS, SLOW, FIRST)
+    loaded.give_way_when(lambda: False)
+    operate.run(loaded, SETTINGS, SLOW, FIRST)
+    operate.hold(loaded, SETTINGS)
+    loaded.give_way_when(lambda: True)
+    with pytest.raises(CancelledError, match="a stop came first"):
+        operate.resume(loaded, SETTINGS)
+    assert read_status(loaded, SETTINGS).held
 
 
 def silent_after(wire, text):

@@ -2,6 +2,7 @@
 """Answers byte by byte. The transcripts are those of the manuals: handshake and checksums [TurboPMAC, I3, I4, I6]."""
 
 import random
+from collections import Counter
 
 import pytest
 
@@ -85,5 +86,9 @@ def test_one_changed_bit_is_never_an_answer_of_other_data():
 
 def test_any_bytes_are_taken():
     chance = random.Random(5)
+    ends = Counter()
     for _ in range(2000):
-        read(chance.randbytes(40).hex(), b"P1", summed=chance.random() < 0.5)
+        event, count, _ = read(chance.randbytes(40).hex(), b"P1", summed=chance.random() < 0.5)
+        ends[type(event)] += 1
+        assert count <= 40 and (event is not None or count == 40)
+    assert ends[Lost] > 1500 and set(ends) <= {Lost, Answer, Refusal, type(None)}

@@ -5,7 +5,7 @@ import pytest
 from rig import Wire, controller, listed
 
 from pkm_post.pmac_link.download import listing_of
-from pkm_post.pmac_link.faults import LinkLostError, NotReadyError, OutcomeUnknownError, RefusedError
+from pkm_post.pmac_link.faults import CancelledError, LinkLostError, NotReadyError, OutcomeUnknownError, RefusedError
 from pkm_post.pmac_link.listing import Program
 from pkm_post.pmac_link.session import ATTEMPTS, Leftover
 from pkm_post.pmac_simulator import Line
@@ -136,3 +136,38 @@ def test_what_programs_say_is_kept():
         wire.fault = lambda data, out: data if out or data[:1] != b"0" else b"\x02HELLO\r" + data
         assert session.ask("P1") == ("0",)
         assert session.messages == ["HELLO"]
+
+
+def test_a_query_that_takes_long_is_left_for_a_stop(wire):
+    """One that does not is waited for: to connect anew would take longer."""
+    with wire.session() as session:
+        session.give_way_when(lambda: True)
+        assert session.ask("P1") == ("0",)
+        wire.delay = lambda: 0.4 if wire.sent.endswith((b"P77", b"P77\r")) else 0.0
+        session.ask("P77")
+        connections = session.connections
+        lose(wire, b"P78")
+        with pytest.raises(CancelledError, match="a stop came first"):
+            session.ask("P78")
+        wire.fault = lambda data, out: data
+        session.order("P1=5")
+        assert session.ask("P1") == ("5",) and session.connections == connections + 1
+
+
+def test_a_link_that_does_not_come_back_is_left_for_a_stop(wire):
+    with wire.session() as session:
+        wire.fault = lambda data, out: b""
+        session.give_way_when(lambda: True)
+        began = wire.now
+        with pytest.raises(CancelledError):
+            session.ask("P1")
+        assert wire.now - began < 3.0
+
+
+def test_a_stop_is_not_left_for_another(wire):
+    """What changes something runs to its end, or nobody would know of it."""
+    with wire.session() as session:
+        session.give_way_when(lambda: True)
+        lose(wire, b"P5=1")
+        with pytest.raises(LinkLostError):
+            session.order("P5=1")

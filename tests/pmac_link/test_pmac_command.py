@@ -2,16 +2,16 @@
 """The commands ``pmac`` against a simulated controller behind a TCP port and behind a pseudo terminal."""
 
 import io
-import threading
 
 import numpy as np
 import pytest
+from rig import served
 
 from pkm_post.cli import main
 from pkm_post.controllers.pmac import program_text, settings_of, setup_text
 from pkm_post.machine_file import machine_named
 from pkm_post.model import StrutMotion
-from pkm_post.pmac_simulator import Controller, Server
+from pkm_post.pmac_simulator import Controller
 
 MACHINE = "example_6tps"
 
@@ -40,14 +40,8 @@ def simulator(request, machine):
     """A controller that serves in a thread, and the name of its port."""
     made = Controller()
     made.load(setup_text(settings_of(machine)[0], "test", machine.strut_stroke).splitlines())
-    server, ended = Server(made), threading.Event()
-    port = f"tcp:127.0.0.1:{server.add_tcp(0)}" if request.param == "tcp" else f"serial:{server.add_pty()}"
-    thread = threading.Thread(target=server.run, args=(ended.is_set,))
-    thread.start()
-    yield made, port
-    ended.set()
-    thread.join()
-    server.close()
+    with served(made, request.param) as port:
+        yield made, port
 
 
 def pmac(action, port, *arguments, machine=MACHINE):

@@ -23,7 +23,7 @@ def chance_line(chance):
     return "".join(chance.choice(WORDS) + chance.choice(["", " ", " "]) for _ in range(chance.randint(1, 6)))
 
 
-def still_alive(line):
+def assert_alive(line):
     line.receive(b"\x18\r\x01")
     line.receive(b"CLOSE\r")
     line.receive(b"I3=2\rI4=0\rI6=1\rP99=7\r")
@@ -38,7 +38,7 @@ def test_bytes_of_chance(seed):
     for _ in range(60):
         line.receive(chance.randbytes(chance.randint(1, 100)))
         line.controller.advance(chance.choice([0, 1, 5]))
-    still_alive(line)
+    assert_alive(line)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -49,7 +49,7 @@ def test_commands_of_chance(seed):
     for _ in range(150):
         machine.bytes(chance_line(chance).encode() + b"\r")
         machine.wait(chance.choice([0, 1, 20]))
-    still_alive(machine.line)
+    assert_alive(machine.line)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -63,7 +63,7 @@ def test_packets_of_chance(seed):
         length = chance.choice([len(data), chance.randrange(2000)])
         link.receive(head + bytes(4) + length.to_bytes(2, "big") + data)
         port.controller.advance(chance.choice([0, 1]))
-    still_alive(port)
+    assert_alive(port)
 
 
 @pytest.mark.parametrize("cut", range(1, 60))
@@ -74,7 +74,7 @@ def test_a_download_that_is_cut_anywhere_leaves_nothing_that_moves(cut):
     machine.wait(200)
     machine.bytes(b"\x18")  # what is left of a line
     assert not machine.runs() and machine.controller.motors.commanded.tolist() == [0.0] * 6
-    still_alive(machine.line)
+    assert_alive(machine.line)
 
 
 HUGE = "9" * 240
@@ -107,7 +107,7 @@ def test_numbers_beyond_all_bounds(line):
     for _ in range(20):
         machine.wait(10)
         machine.bytes(b"#1P #1V #1F #1? ??\r\x10\x06")
-    still_alive(machine.line)
+    assert_alive(machine.line)
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,7 @@ def test_programs_beyond_all_bounds(body):
     for _ in range(20):
         machine.wait(10)
         machine.bytes(b"#1P #1V #1F #1? ??\r")
-    still_alive(machine.line)
+    assert_alive(machine.line)
 
 
 def test_long_lines_by_ethernet_are_refused_as_well():

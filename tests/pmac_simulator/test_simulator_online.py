@@ -163,7 +163,9 @@ def test_the_set_up_file_of_a_machine_is_taken_as_it_is(pmac):
 
 
 def test_plc_words_are_taken_though_there_are_no_plc_programs(pmac):
-    pmac.lines("DISABLE PLC 1..31\nENABLE PLC 2,3\nENA PLCC0")
+    for line in ("DISABLE PLC 1..31", "ENABLE PLC 2,3", "ENA PLCC0"):
+        assert pmac.say(line) == ""
+    assert pmac.error("ENABLE PLC") == 3
 
 
 @pytest.mark.parametrize("entry", [{"memory_words": 999}, {"tick_ms": 0.0}, {"lag_ms": -1.0}])

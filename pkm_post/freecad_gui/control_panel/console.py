@@ -8,7 +8,6 @@ looks ten times a second. Nothing here waits: what takes long runs in the worker
 from __future__ import annotations
 
 import threading
-from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
@@ -16,23 +15,23 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore
 
-from pkm_post.freecad_gui.task import Task
+from pkm_post.freecad_gui.control_panel.beside import Beside, Then
 from pkm_post.model import Diagnostic
 from pkm_post.numerical_control.connection import Connection, Target, connect
 from pkm_post.numerical_control.control import NumericalControl, State
-from pkm_post.numerical_control.permissions import Desk
+from pkm_post.numerical_control.permissions import Desk, Why, facts
 from pkm_post.numerical_control.plan import Plan
+from pkm_post.numerical_control.stops import stops_of
 from pkm_post.pmac_link.faults import PmacError
 from pkm_post.pmac_link.job import Job
 
 translate = FreeCAD.Qt.translate
 
 Call = Callable[[NumericalControl], Any]
-Then = Callable[[Any], None]
 
 _LOOK_MS = 100
-_TOLD = (PmacError, OSError, UnicodeError)
-"""Faults of machine, link and files: a person reads them. All others are ours."""
+_TOLD = (PmacError, OSError, UnicodeError, ImportError)
+"""Faults of machine, link and files, and packages that are not installed: a person reads them. All others are ours."""
 
 
 class Console(QtCore.QObject):
@@ -42,8 +41,10 @@ class Console(QtCore.QObject):
         connection: to the machine; None while there is none.
         job: the program that was opened.
         loaded: whether it was loaded by this panel.
+        stops: how many stops (M0, M1) it has to go on behind.
         stepping: whether its blocks were taken for single block.
         progress: lines of it that are loaded, and of how many.
+        beside: does what needs no controller.
     """
 
     looked = QtCore.Signal()
@@ -54,12 +55,10 @@ class Console(QtCore.QObject):
     def __init__(self, parent: QtCore.QObject) -> None:
         super().__init__(parent)
         self.connection: Connection | None = None
-        self.job: Job | None = None
-        self.loaded, self.stepping, self.progress = False, False, (0, 0)
+        self.take_job(None)
         self._under_way: list[tuple[Future[Any], Then | None]] = []
-        self._waiting: deque[tuple[Callable[[], Any], Then]] = deque()
-        self._task: Task | None = None
-        self._then: Then | None = None
+        self.beside = Beside(self, lambda fault: self.told.emit(str(fault), True), _TOLD)
+        self.beside.changed.connect(self.looked)
         self._cancelled, self._homing, self._is_wanted = threading.Event(), False, True
         self._timer = QtCore.QTimer(self)
         self._timer.timeout.connect(self._look)
@@ -73,7 +72,7 @@ class Console(QtCore.QObject):
     @property
     def waits(self) -> bool:
         """Whether something is done beside the window: connecting, leaving, reading a file."""
-        return self._task is not None
+        return self.beside.is_busy
 
     @property
     def has_orders(self) -> bool:
@@ -88,14 +87,19 @@ class Console(QtCore.QObject):
             busy=self.has_orders or self.waits,
             has_job=self.job is not None,
             loaded=self.loaded,
+            has_stops=self.stops > 0,
             stepping=self.stepping,
             homing=self._homing,
         )
 
+    def found(self) -> frozenset[Why]:
+        """Everything that may stand against an order now."""
+        return facts(self.state, self.desk())
+
     def connect_to(self, target: Target, tool_length: float) -> None:
         """Connect beside the window; mm."""
         self._is_wanted = True
-        self.beside(lambda: connect(target, tool_length), self._connected)
+        self.beside.do(lambda: connect(target, tool_length), self._connected)
 
     def _connected(self, connection: Connection) -> None:
         self.connection = connection
@@ -114,38 +118,7 @@ class Console(QtCore.QObject):
         self._under_way, self._homing = [], False
         self.take_job(None)
         if connection is not None:
-            self.beside(connection.close, lambda _ended: None)
-
-    def beside(self, call: Callable[[], Any], then: Then) -> None:
-        """Have something done that needs no controller; one after the other.
-
-        Args:
-            call: is made in a thread of its own.
-            then: gets what it gave back, in the thread of the window.
-        """
-        self._waiting.append((call, then))
-        if self._task is None:
-            self._begin_next()
-        self.looked.emit()
-
-    def _begin_next(self) -> None:
-        call, self._then = self._waiting.popleft()
-        self._task = Task(call, self)
-        self._task.finished.connect(self._done)
-        self._task.start()
-
-    def _done(self) -> None:
-        task, then, self._task = self._task, self._then, None
-        assert task is not None and then is not None
-        task.deleteLater()
-        try:
-            then(task.value())
-        except _TOLD as fault:
-            self.told.emit(str(fault), True)
-        finally:
-            if self._waiting and self._task is None:
-                self._begin_next()
-            self.looked.emit()
+            self.beside.do(connection.close, lambda _ended: None)
 
     def order(self, call: Call, then: Then | None = None) -> None:
         """Have something done by the control; ``then`` gets the result, unless a stop comes between."""
@@ -212,7 +185,9 @@ class Console(QtCore.QObject):
 
     def take_job(self, job: Job | None) -> None:
         """Have another program opened, or none; blocks of the one before do not come next any more."""
-        self.job, self.loaded, self.stepping, self.progress = job, False, False, (0, 0)
+        self.job: Job | None = job
+        self.loaded, self.stepping, self.progress = False, False, (0, 0)
+        self.stops = 0 if job is None else len(stops_of(job))
 
     def _look(self) -> None:
         """Called by the timer."""

@@ -25,6 +25,7 @@ WHY = {
     Why.NO_JOB: QT_TRANSLATE_NOOP("ControlPanel", "no program was opened"),
     Why.NOT_LOADED: QT_TRANSLATE_NOOP("ControlPanel", "the program is not loaded"),
     Why.NO_BLOCK: QT_TRANSLATE_NOOP("ControlPanel", "no block comes next"),
+    Why.NO_STOP: QT_TRANSLATE_NOOP("ControlPanel", "the program has no stop with moves behind it"),
     Why.RUNS: QT_TRANSLATE_NOOP("ControlPanel", "a program runs"),
     Why.HELD: QT_TRANSLATE_NOOP("ControlPanel", "a program is held"),
     Why.NOT_HELD: QT_TRANSLATE_NOOP("ControlPanel", "no program is held"),
@@ -61,7 +62,7 @@ EMERGENCY = (
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
-        "1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
+        "1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.",  # noqa: E501 - one literal, for lupdate
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
@@ -77,7 +78,7 @@ EMERGENCY = (
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
-        "5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.",
+        "5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.",  # noqa: E501 - one literal, for lupdate
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
@@ -85,7 +86,7 @@ EMERGENCY = (
     ),
     QT_TRANSLATE_NOOP(
         "ControlPanel",
-        "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",
+        "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",  # noqa: E501 - one literal, for lupdate
     ),
 )
 

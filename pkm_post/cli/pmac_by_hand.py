@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""By hand: what the actions that move the machine by hand have in common.
+
+A plan is told, carried out and waited for, and where it has led is told; Ctrl-C while the machine moves holds it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pkm_post.cli.pmac_actions import Target
+    from pkm_post.model import Diagnostic
+    from pkm_post.numerical_control.control import NumericalControl
+    from pkm_post.numerical_control.plan import Plan
+    from pkm_post.pmac_link.session import Session
+    from pkm_post.pmac_link.status import Array, Status
+
+_SLOWEST_OVERRIDE = 0.05
+"""A move is waited for as long as it would take at this override, which somebody may set meanwhile."""
+_START_S = 30.0
+"""Added to that: the approach, and codes of the machine."""
+
+
+def control_of(session: Session, target: Target, namespace: argparse.Namespace) -> NumericalControl:
+    """The control of a machine with the tool that was said.
+
+    Raises:
+        NotReadyError: the number for moves by hand is that of the jobs.
+    """
+    from pkm_post.numerical_control.control import NumericalControl
+    from pkm_post.pmac_link.faults import NotReadyError
+
+    if namespace.number == target.settings.program:
+        raise NotReadyError([f"program {namespace.number} is that of the jobs: choose another --number"])
+    length = target.machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
+    return NumericalControl(session, target.machine, target.settings, length, namespace.number)
+
+
+def carry_out(
+    session: Session,
+    target: Target,
+    namespace: argparse.Namespace,
+    control: NumericalControl,
+    plan: Plan | None,
+    told: tuple[Diagnostic, ...],
+) -> int:
+    """Tell a plan, have it carried out, and tell where it has led."""
+    from pkm_post.numerical_control.execute import off_target
+    from pkm_post.pmac_link.readout import pose_text
+
+    for diagnostic in told:
+        print(diagnostic, file=sys.stderr)
+    if plan is None:
+        return 1
+    print(f"to {pose_text(plan.end)}; {plan.seconds:.1f} s")
+    if namespace.check:
+        return 0
+    with held_on_interrupt(control):
+        control.execute(plan)
+        status = wait_for_end(session, target, plan.seconds)
+    if ended_elsewhere(status, plan.lengths):
+        return 1
+    print(f"arrived; no strut is off by more than {off_target(status, plan.lengths):.4f} mm")
+    return 0
+
+
+def wait_for_end(session: Session, target: Target, seconds: float) -> Status:
+    """The state behind a move that takes so many seconds at 100 %."""
+    from pkm_post.numerical_control.execute import wait_for_rest
+
+    return wait_for_rest(session, target.settings, _START_S + seconds / _SLOWEST_OVERRIDE)
+
+
+def ended_elsewhere(status: Status, lengths: Array) -> bool:
+    """Whether a move ended otherwise than at the lengths it leads to, which is told."""
+    from pkm_post.numerical_control.execute import NEAR_MM, off_target
+
+    words = ["it is held; resume or abort it"] if status.held else list(status.words())
+    if not words and off_target(status, lengths) > NEAR_MM:
+        words = [f"it ended {off_target(status, lengths):.3f} mm of a strut from where it leads to"]
+    print(*words, sep="\n", end="\n" if words else "", file=sys.stderr)
+    return bool(words)
+
+
+@contextmanager
+def held_on_interrupt(control: NumericalControl) -> Iterator[None]:
+    """Ctrl-C while the machine moves by hand means: stop."""
+    from pkm_post.pmac_link.faults import CancelledError
+
+    try:
+        yield
+    except KeyboardInterrupt:
+        control.hold()
+        raise CancelledError("interrupted and held: resume or abort it") from None

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Connect page: which controller, which machine, which tool; or a simulated machine to train with.
+
+Names enter; a connection of the console comes of them, or what is wrong with them is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import FreeCAD
+from PySide import QtWidgets
+
+from pkm_post.freecad_gui.control_panel.buttons import plain_button, side_by_side
+from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.freecad_gui.post_fields import editable_box, quantity_field, show_quantity, with_button
+from pkm_post.freecad_gui.preferences import GROUP
+from pkm_post.machine_file.named import machine_named
+from pkm_post.machine_file.presets import presets
+from pkm_post.numerical_control.connection import target_of
+from pkm_post.numerical_control.control import State
+from pkm_post.numerical_control.permissions import Why
+
+translate = FreeCAD.Qt.translate
+
+_PORT, _MACHINE = "ControlPort", "ControlMachine"
+_PORT_AT_FIRST, _MACHINE_AT_FIRST = "tcp:192.6.94.5", "example_6tps"
+
+
+class ConnectPage(QtWidgets.QWidget):
+    """The page.
+
+    Attributes:
+        port, machine, tool_length: the fields.
+        taken_length: of the tool that poses are told for, mm.
+        connect, train, leave: the buttons.
+    """
+
+    def __init__(self, console: Console, leave: Callable[[], None]) -> None:
+        """Make it.
+
+        Args:
+            console: connects.
+            leave: ends the connection, when the user does not mind.
+        """
+        super().__init__()
+        self._console, kept = console, FreeCAD.ParamGet(GROUP)
+        self.port, self.machine = QtWidgets.QLineEdit(kept.GetString(_PORT, _PORT_AT_FIRST)), editable_box(presets())
+        self.machine.setEditText(kept.GetString(_MACHINE, _MACHINE_AT_FIRST))
+        self.port.setToolTip("serial:DEVICE, tcp:HOST[:PORT], ssh:USER@HOST[:PORT]")
+        self.tool_length, self.taken_length = quantity_field("mm"), 0.0
+        self.tool_length.setProperty("minimum", 0.0)
+        self.tool_length.setToolTip(translate("ControlPanel", "Gauge length of the tool in the spindle"))
+        self.tool_length.editingFinished.connect(self._take_tool_length)
+        self.machine.currentTextChanged.connect(self._offer_tool_length)
+        self.connect = plain_button(
+            translate("ControlPanel", "Connect"), translate("ControlPanel", "Connect to the machine"), self._connect
+        )
+        self.train = plain_button(
+            translate("ControlPanel", "Simulated machine"),
+            translate("ControlPanel", "Operate a simulated machine, to train; nothing real moves"),
+            self._train,
+        )
+        self.leave = plain_button(
+            translate("ControlPanel", "Disconnect"),
+            translate("ControlPanel", "End the connection; the controller goes on with what it does"),
+            leave,
+        )
+        self._lay_out()
+        self._offer_tool_length(self.machine.currentText())
+
+    def _lay_out(self) -> None:
+        layout = QtWidgets.QFormLayout(self)
+        layout.addRow(translate("ControlPanel", "Port"), self.port)
+        layout.addRow(translate("ControlPanel", "Machine"), with_button(self.machine, self._ask_machine))
+        layout.addRow(translate("ControlPanel", "Tool length"), self.tool_length)
+        layout.addRow(side_by_side(self.connect, self.train, self.leave))
+
+    def refresh(self, _state: State, found: frozenset[Why]) -> None:
+        """Show what can be done."""
+        connected, waits = Why.NOT_CONNECTED not in found, self._console.waits
+        for widget in (self.port, self.machine.parentWidget(), self.connect, self.train):
+            widget.setEnabled(not (connected or waits))
+        self.leave.setEnabled(connected)
+
+    def _connect(self) -> None:
+        port = self.port.text().strip()
+        if self._begin(port):
+            FreeCAD.ParamGet(GROUP).SetString(_PORT, port)
+
+    def _train(self) -> None:
+        self._begin(None)
+
+    def _begin(self, port: str | None) -> bool:
+        name, self.taken_length = self.machine.currentText().strip(), self.tool_length.property("rawValue")
+        if self.taken_length <= 0.0:
+            self._console.told.emit(translate("ControlPanel", "The length of the tool has to be above zero"), True)
+            return False
+        try:
+            target, told = target_of(port, name)
+        except ValueError as fault:  # the name of the port
+            self._console.told.emit(str(fault), True)
+            return False
+        for each in told:
+            self._console.told.emit(str(each), target is None)
+        if target is None:
+            return False
+        FreeCAD.ParamGet(GROUP).SetString(_MACHINE, name)
+        self._console.connect_to(target, self.taken_length)
+        return True
+
+    def _take_tool_length(self) -> None:
+        """A tool of another length is in the spindle: the tip is elsewhere then."""
+        length = self.tool_length.property("rawValue")
+        if self._console.connection is not None and length not in (0.0, self.taken_length):
+            self.taken_length = length
+            self._console.order(lambda control: setattr(control, "tool_length", length))
+
+    def _offer_tool_length(self, machine: str) -> None:
+        found, _ = machine_named(machine.strip())
+        if found is not None:
+            show_quantity(self.tool_length, found.rest_tool_length or 100.0, "mm")
+
+    def _ask_machine(self) -> None:
+        title, kinds = translate("ControlPanel", "Machine file"), translate("ControlPanel", "Machine files")
+        name = QtWidgets.QFileDialog.getOpenFileName(self, title, "", f"{kinds} (*.toml)")[0]
+        if name:
+            self.machine.setEditText(name)

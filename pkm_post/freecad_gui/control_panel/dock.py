@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Dock: numerical control as a window beside the 3D view, one for each main window.
+
+It is closed, and FreeCAD ends, only after the user has said what becomes of a machine that moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.freecad_gui.control_panel.face import Face
+from pkm_post.numerical_control.permissions import may_move
+
+translate = FreeCAD.Qt.translate
+
+NAME = "PKM_Control"
+
+
+class ControlPanel(QtWidgets.QDockWidget):
+    """The panel.
+
+    Attributes:
+        console: connection and orders.
+        face: what is seen.
+    """
+
+    def __init__(self, window: QtWidgets.QMainWindow) -> None:
+        super().__init__(translate("ControlPanel", "Numerical control"), window)
+        self.setObjectName(NAME)
+        self.console = Console(self)
+        self.face = Face(self.console, self.leave)
+        self.setWidget(self.face)
+        self._when_at_rest: Callable[[], Any] | None = None
+        self.console.looked.connect(self._close_at_rest)
+        window.installEventFilter(self)
+        self.face.refresh()
+
+    def leave(self) -> None:
+        """End the connection, unless the user wants to stay with a machine that moves."""
+        if self._may_leave(self.leave):
+            self.console.leave()
+
+    def closeEvent(self, event: Any) -> None:
+        """Called by Qt: the connection ends with the window."""
+        if not self._may_leave(self.close):
+            event.ignore()
+            return
+        self.console.leave()
+        super().closeEvent(event)
+
+    def eventFilter(self, watched: QtCore.QObject, event: QtCore.QEvent) -> bool:
+        """Called by Qt: FreeCAD does not end beside a machine that moves without a question."""
+        window = self.parent()
+        if event.type() == QtCore.QEvent.Type.Close and watched is window and not self._may_leave(window.close):
+            event.ignore()
+            return True
+        return False
+
+    def _may_leave(self, again: Callable[[], Any]) -> bool:
+        """Whether the connection may end now; ``again`` is called when the machine stands, if the user wishes that."""
+        if self.console.connection is None or not (may_move(self.console.state) or self.console.has_orders):
+            return True
+        box = QtWidgets.QMessageBox(self)
+        box.setIcon(QtWidgets.QMessageBox.Icon.Warning)
+        box.setWindowTitle(self.windowTitle())
+        box.setText(translate("ControlPanel", "The machine moves, or may move. What is to become of it?"))
+        roles = QtWidgets.QMessageBox.ButtonRole
+        hold = box.addButton(translate("ControlPanel", "Hold it, then close"), roles.AcceptRole)
+        goes_on = box.addButton(translate("ControlPanel", "Close; the machine goes on"), roles.DestructiveRole)
+        stay = box.addButton(QtWidgets.QMessageBox.StandardButton.Cancel)
+        box.setDefaultButton(stay)
+        show = getattr(box, "exec", None) or box.exec_  # Qt 6, Qt 5
+        show()
+        if box.clickedButton() is hold and self.console.connection is not None:
+            self._when_at_rest = again
+            self.console.stop(lambda control: control.hold())
+        return box.clickedButton() is goes_on
+
+    def _close_at_rest(self) -> None:
+        """What was put off until the machine stands."""
+        again = self._when_at_rest
+        if again is not None and not may_move(self.console.state) and not self.console.has_orders:
+            self._when_at_rest = None
+            again()
+
+
+def open_control() -> ControlPanel:
+    """Show the panel of the main window."""
+    window = FreeCADGui.getMainWindow()
+    panel = window.findChild(QtWidgets.QDockWidget, NAME)
+    if panel is None:
+        panel = ControlPanel(window)
+        window.addDockWidget(QtCore.Qt.DockWidgetArea.RightDockWidgetArea, panel)
+    panel.show()
+    panel.raise_()
+    return panel

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Face: what stands in the dock of numerical control, from top to bottom, and is brought up to date as one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import FreeCAD
+import numpy as np
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.freecad_gui.control_panel.connect_page import ConnectPage
+from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.freecad_gui.control_panel.follower import Follower
+from pkm_post.freecad_gui.control_panel.homing_page import HomingPage
+from pkm_post.freecad_gui.control_panel.jog_page import JogPage
+from pkm_post.freecad_gui.control_panel.mdi_page import MdiPage
+from pkm_post.freecad_gui.control_panel.program_page import ProgramPage
+from pkm_post.freecad_gui.control_panel.readout import PoseReadout, StrutTable
+from pkm_post.freecad_gui.control_panel.stop_bar import StopBar
+from pkm_post.freecad_gui.control_panel.words import activity_text, emergency_text
+from pkm_post.geometry.vectors import Array
+from pkm_post.numerical_control.connection import Connection
+from pkm_post.numerical_control.control import State
+
+translate = FreeCAD.Qt.translate
+
+_MOST_TOLD, _LINES_TOLD = 200, 6
+_RED = "background-color: #cc0000; color: white; font-weight: bold; padding: 4px;"
+_YELLOW = "background-color: #edd400; color: black; font-weight: bold; padding: 4px;"
+
+
+class Face(QtWidgets.QWidget):
+    """The parts.
+
+    Attributes:
+        training: that the machine is simulated.
+        banner: what is wrong with the link, and what to do then.
+        activity: what the controller does.
+        readout, struts, stops: pose, struts, and what stops.
+        connecting, homing, jog, mdi, program: the pages.
+        follows: whether the machine object of the document moves along.
+        messages: what was told, the newest last.
+    """
+
+    def __init__(self, console: Console, leave: Callable[[], None]) -> None:
+        super().__init__()
+        self._console, self._follower = console, Follower()
+        self._connection: Connection | None = None
+        self.training = QtWidgets.QLabel(
+            translate("ControlPanel", "SIMULATED MACHINE: for training. Nothing real moves.")
+        )
+        self.banner, self.activity, self.messages = QtWidgets.QLabel(), QtWidgets.QLabel(), QtWidgets.QListWidget()
+        self.readout, self.struts, self.stops = PoseReadout(), StrutTable(), StopBar(console)
+        self.follows = QtWidgets.QCheckBox(translate("ControlPanel", "The machine of the document follows"))
+        self.follows.toggled.connect(self._follow)
+        self.connecting, self.homing, self.jog = ConnectPage(console, leave), HomingPage(console), JogPage(console)
+        self.mdi, self.program = MdiPage(console, self.readout.work_offset), ProgramPage(console)
+        self.pages = self._pages()
+        self._set_up()
+        console.told.connect(self.tell)
+        console.looked.connect(self.refresh)
+
+    def _pages(self) -> QtWidgets.QTabWidget:
+        pages = QtWidgets.QTabWidget()
+        pages.addTab(self.connecting, translate("ControlPanel", "Connection"))
+        pages.addTab(self.homing, translate("ControlPanel", "Homing"))
+        pages.addTab(self.jog, translate("ControlPanel", "Jog"))
+        pages.addTab(self.mdi, translate("ControlPanel", "MDI"))
+        pages.addTab(self.program, translate("ControlPanel", "Program"))
+        return pages
+
+    def _set_up(self) -> None:
+        for label in (self.training, self.banner, self.activity):
+            label.setWordWrap(True)
+        self.training.setStyleSheet(_YELLOW)
+        self.messages.setWordWrap(True)
+        self.messages.setFixedHeight(_LINES_TOLD * self.fontMetrics().height())
+        self.messages.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        seen, above = QtWidgets.QWidget(), QtWidgets.QScrollArea()
+        inside = QtWidgets.QVBoxLayout(seen)
+        for part in (self.activity, self.readout, self.follows, self.struts, self.pages):
+            inside.addWidget(part)
+        above.setWidget(seen)
+        above.setWidgetResizable(True)
+        above.setFrameShape(QtWidgets.QFrame.Shape.NoFrame)
+        above.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        above.setMinimumWidth(seen.minimumSizeHint().width() + above.verticalScrollBar().sizeHint().width())
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.addWidget(self.training)
+        layout.addWidget(self.banner)
+        layout.addWidget(above, 1)
+        layout.addWidget(self.stops)
+        layout.addWidget(self.messages)
+
+    def tell(self, text: str, is_bad: bool) -> None:
+        """Add a message."""
+        item = QtWidgets.QListWidgetItem(text)
+        if is_bad:
+            item.setForeground(QtGui.QBrush(QtGui.QColor(204, 0, 0)))
+        self.messages.addItem(item)
+        while self.messages.count() > _MOST_TOLD:
+            self.messages.takeItem(0)
+        self.messages.scrollToBottom()
+
+    def refresh(self) -> None:
+        """Show the newest state."""
+        console = self._console
+        state, found, connection = console.state, console.found(), console.connection
+        if connection is not self._connection:
+            self._take(connection)
+        self._show_link(state)
+        self.activity.setText(activity_text(state) if connection else translate("ControlPanel", "Not connected"))
+        self.readout.refresh(state.pose, self._machine_from_work())
+        self.struts.refresh(state.status)
+        for part in (self.connecting, self.homing, self.jog, self.mdi, self.program, self.stops):
+            part.refresh(state, found)
+        self._follower.show(state.pose, self.connecting.taken_length)
+
+    def _take(self, connection: Connection | None) -> None:
+        """Another machine, or none."""
+        self._connection = connection
+        self.readout.work_offset.clear()
+        if connection is not None:
+            self.readout.work_offset.addItems(sorted(connection.target.machine.work_offsets))
+            self.pages.setCurrentWidget(self.homing)
+        self._follow(self.follows.isChecked())
+
+    def _machine_from_work(self) -> Array:
+        """The (4, 4) pose of the work frame that is chosen."""
+        if self._connection is None:
+            return np.eye(4)
+        return self._connection.target.machine.work_offsets.get(self.readout.work_offset.currentText(), np.eye(4))
+
+    def _show_link(self, state: State) -> None:
+        lines = []
+        if state.emergency:
+            lines.append(emergency_text(state.emergency))
+        if state.lost:
+            lines.append(translate("ControlPanel", "No link: {}").format(state.lost))
+        if self._console.waits:
+            lines.append(translate("ControlPanel", "One moment: connecting, leaving or reading"))
+        style = _RED if state.lost else _YELLOW
+        if self.banner.styleSheet() != style:
+            self.banner.setStyleSheet(style)
+        self.banner.setText("\n".join(lines))
+        self.banner.setVisible(bool(lines))
+        self.training.setVisible(self._connection is not None and self._connection.simulated)
+
+    def _follow(self, wished: bool) -> None:
+        if not wished or self._connection is None:
+            self._follower.end()
+        elif not self._follower.begin(FreeCAD.ActiveDocument, self._connection.target.machine):
+            told = translate("ControlPanel", "The active document has no machine object of this machine that is free")
+            self.tell(told, False)
+            self.follows.setChecked(False)

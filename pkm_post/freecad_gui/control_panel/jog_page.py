@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jog page: the tool or one strut moved by a step.
+
+Steps and speeds enter as quantities; a planned move of the console comes of a click. Directions are those of {M}.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import FreeCAD
+from PySide import QtWidgets
+
+from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all
+from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
+from pkm_post.numerical_control.control import State
+from pkm_post.numerical_control.moves import Cartesian, Jog, OneStrut
+from pkm_post.numerical_control.permissions import Order, Why
+from pkm_post.numerical_control.plan import Plan
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_TOOL = (
+    (QT_TRANSLATE_NOOP("ControlPanel", "X"), QT_TRANSLATE_NOOP("ControlPanel", "The tip along X of the machine")),
+    (QT_TRANSLATE_NOOP("ControlPanel", "Y"), QT_TRANSLATE_NOOP("ControlPanel", "The tip along Y of the machine")),
+    (QT_TRANSLATE_NOOP("ControlPanel", "Z"), QT_TRANSLATE_NOOP("ControlPanel", "The tip along Z of the machine")),
+    (
+        QT_TRANSLATE_NOOP("ControlPanel", "Tilt X"),
+        QT_TRANSLATE_NOOP("ControlPanel", "The tool axis about X of the machine; the tip stands"),
+    ),
+    (
+        QT_TRANSLATE_NOOP("ControlPanel", "Tilt Y"),
+        QT_TRANSLATE_NOOP("ControlPanel", "The tool axis about Y of the machine; the tip stands"),
+    ),
+    (
+        QT_TRANSLATE_NOOP("ControlPanel", "Spin"),
+        QT_TRANSLATE_NOOP("ControlPanel", "The platform about the tool axis; the tip stands"),
+    ),
+)
+"""Label and tip of each of the six numbers of a jog of the tool: three lengths, three angles."""
+_LENGTHS = 3
+_FIELDS = (
+    ("step", QT_TRANSLATE_NOOP("ControlPanel", "Step"), 1.0, "mm"),
+    ("turn", QT_TRANSLATE_NOOP("ControlPanel", "Turn"), 1.0, "deg"),
+    ("speed", QT_TRANSLATE_NOOP("ControlPanel", "Speed"), 5.0, "mm/s"),
+)
+_TURNING_AT_FIRST, _TURNING_MOST = 2.0, 90.0
+
+
+class JogPage(QtWidgets.QWidget):
+    """The page.
+
+    Attributes:
+        step, turn, speed, turning: step of lengths and angles, speed of the tip and of turns in place.
+        strut: the number of the strut that is jogged alone.
+        buttons: by name and direction, such as ``("X", 1)`` and ``("strut", -1)``.
+    """
+
+    def __init__(self, console: Console) -> None:
+        super().__init__()
+        self._console = console
+        self.step, self.turn, self.speed = (quantity_field(unit) for _, _, _, unit in _FIELDS)
+        self.turning, self.strut = QtWidgets.QDoubleSpinBox(), QtWidgets.QComboBox()
+        self.turning.setRange(0.01, _TURNING_MOST)
+        self.turning.setValue(_TURNING_AT_FIRST)
+        self.turning.setSuffix(" °/s")
+        self.strut.addItems([str(number) for number in range(1, 7)])
+        self.buttons: dict[tuple[str, int], OrderButton] = {}
+        layout = QtWidgets.QHBoxLayout(self)
+        layout.addLayout(self._fields(), 1)
+        layout.addLayout(self._grid(), 1)
+
+    def _fields(self) -> QtWidgets.QFormLayout:
+        form = QtWidgets.QFormLayout()
+        for name, label, value, unit in _FIELDS:
+            getattr(self, name).setProperty("minimum", 0.0)
+            show_quantity(getattr(self, name), value, unit)
+            form.addRow(translate("ControlPanel", label), getattr(self, name))
+        form.addRow(translate("ControlPanel", "Turning"), self.turning)
+        form.addRow(translate("ControlPanel", "Strut"), self.strut)
+        return form
+
+    def _grid(self) -> QtWidgets.QGridLayout:
+        grid = QtWidgets.QGridLayout()
+        for row, (label, tip) in enumerate(_TOOL):
+            make = lambda sign, row=row: self._of_tool(row, sign)  # noqa: E731 - one for each row
+            self._add_row(grid, row, label, translate("ControlPanel", label), translate("ControlPanel", tip), make)
+        tip = translate("ControlPanel", "One strut alone; it takes the platform with it")
+        self._add_row(grid, len(_TOOL), "strut", translate("ControlPanel", "Strut"), tip, self._of_strut)
+        return grid
+
+    def _add_row(
+        self, grid: QtWidgets.QGridLayout, row: int, name: str, label: str, tip: str, make: Callable[[int], Jog]
+    ) -> None:
+        grid.addWidget(QtWidgets.QLabel(label), row, 0)
+        for column, (sign, text) in enumerate(((-1, "−"), (1, "+")), start=1):
+            button = OrderButton(text, tip, Order.JOG, lambda sign=sign: self._jog(make(sign), name))
+            self.buttons[name, sign] = button
+            grid.addWidget(button, row, column)
+
+    def refresh(self, _state: State, found: frozenset[Why]) -> None:
+        """Show what can be done."""
+        refresh_all(self.buttons.values(), found)
+
+    def _of_tool(self, row: int, sign: int) -> Jog:
+        values = [0.0] * len(_TOOL)
+        size = self.step.property("rawValue") if row < _LENGTHS else math.radians(self.turn.property("rawValue"))
+        values[row] = sign * size
+        return Cartesian((values[0], values[1], values[2]), (values[3], values[4]), values[5])
+
+    def _of_strut(self, sign: int) -> Jog:
+        return OneStrut(int(self.strut.currentText()), sign * self.step.property("rawValue"))
+
+    def _jog(self, jog: Jog, name: str) -> None:
+        turns = isinstance(jog, Cartesian) and not any(jog.shift)
+        feed = self.turning.value() if turns else self.speed.property("rawValue")
+        if feed <= 0.0:
+            self._console.told.emit(translate("ControlPanel", "Not sent: the speed has to be above zero"), True)
+            return
+        self._console.move(lambda control: control.plan_jog(jog, feed), self._planned)
+
+    def _planned(self, plan: Plan | None) -> None:
+        if plan is None:
+            self._console.told.emit(translate("ControlPanel", "Not sent: the jog is refused"), True)

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""MDI page: lines of G-code typed by hand, and those that were typed before.
+
+A line enters; where it leads and how long it takes is told, and it is carried out when that is wished.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
+from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.freecad_gui.control_panel.readout import angle_text, length_text
+from pkm_post.numerical_control.control import State
+from pkm_post.numerical_control.mdi import Reading
+from pkm_post.numerical_control.permissions import Order, Why, refusal
+from pkm_post.numerical_control.plan import Plan
+from pkm_post.sources import AXIS_WORDS
+
+translate = FreeCAD.Qt.translate
+
+_KEPT = 100
+
+
+class HistoryLine(QtWidgets.QLineEdit):
+    """A line; the keys up and down bring back what was typed before.
+
+    Attributes:
+        history: what was typed, the newest last.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.history: list[str] = []
+        self._place = 0
+
+    def remember(self, text: str) -> None:
+        """Keep a line."""
+        self.history = [*(each for each in self.history if each != text), text][-_KEPT:]
+        self._place = len(self.history)
+
+    def keyPressEvent(self, event: Any) -> None:
+        """Called by Qt."""
+        steps = {QtCore.Qt.Key.Key_Up: -1, QtCore.Qt.Key.Key_Down: 1}
+        step = next((step for key, step in steps.items() if event.key() == key), 0)
+        if not step:
+            super().keyPressEvent(event)
+            return
+        self._place = min(max(self._place + step, 0), len(self.history))
+        self.setText(self.history[self._place] if self._place < len(self.history) else "")
+
+
+class MdiPage(QtWidgets.QWidget):
+    """The page.
+
+    Attributes:
+        line: what is typed.
+        axis_words: how it says the tool axis.
+        check, run: the buttons.
+        outcome: where the line leads.
+    """
+
+    def __init__(self, console: Console, work_offset: QtWidgets.QComboBox) -> None:
+        super().__init__()
+        self._console, self._work_offset = console, work_offset
+        self.line, self.axis_words, self.outcome = HistoryLine(), QtWidgets.QComboBox(), QtWidgets.QLabel()
+        self.line.setPlaceholderText("G1 X10 F300")
+        self.line.returnPressed.connect(self._enter)
+        self.axis_words.addItems(list(AXIS_WORDS))
+        self.axis_words.setCurrentText("none")
+        self.axis_words.setToolTip(
+            translate("ControlPanel", "How the line says the tool axis; none leaves it as it is")
+        )
+        self.outcome.setWordWrap(True)
+        self.check = OrderButton(
+            translate("ControlPanel", "Check"),
+            translate("ControlPanel", "Plan the line, and send nothing"),
+            Order.LINE,
+            lambda: self._plan(sends=False),
+        )
+        self.run = OrderButton(
+            translate("ControlPanel", "Run"),
+            translate("ControlPanel", "Plan the line and, if nothing stands against it, carry it out"),
+            Order.LINE,
+            lambda: self._plan(sends=True),
+        )
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.addWidget(self.line)
+        layout.addLayout(side_by_side(self.axis_words, self.check, self.run))
+        layout.addWidget(self.outcome)
+        layout.addStretch(1)
+
+    def refresh(self, _state: State, found: frozenset[Why]) -> None:
+        """Show what can be done."""
+        refresh_all((self.check, self.run), found)
+
+    def _enter(self) -> None:
+        if refusal(Order.LINE, self._console.found()) is None:
+            self._plan(sends=True)
+
+    def _plan(self, sends: bool) -> None:
+        line = " ".join(self.line.text().split())  # what was pasted may have had several lines
+        if not line:
+            return
+        self.line.remember(line)
+        self.outcome.setText("")
+        reading = Reading(self._work_offset.currentText(), self.axis_words.currentText())
+        self._console.move(lambda control: control.plan_line(line, reading), self._planned, sends)
+
+    def _planned(self, plan: Plan | None) -> None:
+        if plan is None:
+            self.outcome.setText(translate("ControlPanel", "Refused; nothing was sent"))
+            return
+        tip = ", ".join(f"{name} {length_text(float(value))}" for name, value in zip("XYZ", plan.end.tip, strict=True))
+        axis = " ".join(f"{name}{value:.5f}" for name, value in zip("IJK", plan.end.axis, strict=True))
+        told = translate("ControlPanel", "To {}, axis {}, spin {} in the machine frame; {:.1f} s")
+        self.outcome.setText(told.format(tip, axis, angle_text(plan.end.spin), plan.seconds))

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Program page: a motion program opened, loaded, started, or run from rest to rest.
+
+A file enters, is read beside the window, and goes to the controller when that is wished.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import FreeCAD
+from PySide import QtWidgets
+
+from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
+from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.model import Diagnostic
+from pkm_post.numerical_control.control import NumericalControl, State
+from pkm_post.numerical_control.execute import NEAR_MM as NEAR_BLOCK_MM
+from pkm_post.numerical_control.permissions import Order, Why
+from pkm_post.pmac_link.job import Job, read_job
+from pkm_post.pmac_link.ready import NEAR_MM
+
+translate = FreeCAD.Qt.translate
+
+_MOST_BLOCKS = 1_000_000
+
+
+class ProgramPage(QtWidgets.QWidget):
+    """The page.
+
+    Attributes:
+        name: of the file that was opened.
+        open, load, cancel, start, begin_at, step, go_on: the buttons.
+        block, stop: numbers of the block to begin at, and of the stop to go on behind.
+        bar: how much is loaded.
+    """
+
+    def __init__(self, console: Console) -> None:
+        super().__init__()
+        self._console, self._is_first = console, False
+        self.name, self.block, self.bar = QtWidgets.QLabel(), QtWidgets.QSpinBox(), QtWidgets.QProgressBar()
+        self.stop = QtWidgets.QSpinBox()
+        self.block.setRange(1, _MOST_BLOCKS)
+        self.stop.setMinimum(1)
+        self.open = plain_button(
+            translate("ControlPanel", "Open"), translate("ControlPanel", "Open a motion program"), self._ask
+        )
+        self.cancel = plain_button(
+            translate("ControlPanel", "Cancel"), translate("ControlPanel", "Stop loading"), console.cancel_load
+        )
+        rows = (
+            (translate("ControlPanel", "Load"), translate("ControlPanel", "Load it, list it back and compare"),
+             Order.LOAD, console.load),
+            (translate("ControlPanel", "Start"), translate("ControlPanel", "Start it from its beginning"),
+             Order.START, self._start),
+            (translate("ControlPanel", "Begin at block"), translate("ControlPanel", "Take it for single block"),
+             Order.BLOCKS, self._begin_at),
+            (translate("ControlPanel", "Next block"), translate("ControlPanel", "Run it to its next rest"),
+             Order.STEP, self._step),
+            (translate("ControlPanel", "Go on behind stop"),
+             translate("ControlPanel", "Start what stands behind the stop (M0, M1) at which the machine stands"),
+             Order.GO_ON, self._go_on),
+        )  # fmt: skip
+        self.load, self.start, self.begin_at, self.step, self.go_on = (OrderButton(*row) for row in rows)
+        layout = QtWidgets.QVBoxLayout(self)
+        for row in ((self.open, self.name), (self.load, self.cancel, self.start)):
+            layout.addLayout(side_by_side(*row))
+        layout.addWidget(self.bar)
+        layout.addLayout(side_by_side(self.begin_at, self.block, self.step))
+        layout.addLayout(side_by_side(self.go_on, self.stop))
+        layout.addStretch(1)
+
+    def refresh(self, _state: State, found: frozenset[Why]) -> None:
+        """Show what can be done, and how far loading is."""
+        console, (done, lines) = self._console, self._console.progress
+        refresh_all((self.load, self.start, self.begin_at, self.step, self.go_on), found)
+        self.open.setEnabled(not {Why.NOT_CONNECTED, Why.WATCH_ONLY} & found and not console.waits)
+        self.cancel.setEnabled(console.has_orders and not console.loaded and lines > 0)
+        self.bar.setRange(0, max(lines, 1))
+        self.bar.setValue(done)
+        if console.job is None:
+            self.name.setText(translate("ControlPanel", "no program was opened"))
+
+    def _ask(self) -> None:
+        title, kinds = translate("ControlPanel", "Open a motion program"), translate("ControlPanel", "Motion programs")
+        name = QtWidgets.QFileDialog.getOpenFileName(self, title, "", f"{kinds} (*.pmc)")[0]
+        if name:
+            self.read(Path(name))
+
+    def read(self, file: Path) -> None:
+        """Read a program file beside the window."""
+        connection = self._console.connection
+        assert connection is not None
+        settings = connection.target.settings
+
+        def reading() -> tuple[Job | None, tuple[Diagnostic, ...]]:
+            return read_job(file.read_text(encoding="ascii"), settings, file.name)
+
+        self._console.beside.do(reading, lambda read: self._take(file, *read))
+
+    def _take(self, file: Path, job: Job | None, told: tuple[Diagnostic, ...]) -> None:
+        for each in told:
+            self._console.told.emit(str(each), job is None)
+        if job is not None and self._console.connection is not None:
+            self._console.take_job(job)
+            self.stop.setMaximum(max(1, self._console.stops))
+            seconds = translate("ControlPanel", "{:.1f} s").format(job.motion.time_ms[-1] / 1000)
+            self.name.setText(f"{file.name}, {seconds}")
+            self.name.setToolTip(str(file))
+
+    def _start(self) -> None:
+        job = self._console.job
+        self._console.order(lambda control: control.start(job))
+
+    def _go_on(self) -> None:
+        job, stop = self._console.job, self.stop.value()
+        self._console.loaded = False  # its rest takes its place in the controller
+        self._console.order(lambda control: control.go_on(job, stop))
+
+    def _begin_at(self) -> None:
+        job, at = self._console.job, self.block.value()
+
+        def opening(control: NumericalControl) -> int:
+            count = control.open_blocks(job)
+            if at > 1:
+                control.open_blocks(job, min(at, count))
+            return count
+
+        self._console.order(opening, self._opened)
+
+    def _opened(self, count: int) -> None:
+        self._console.stepping = self._is_first = True
+        told = translate("ControlPanel", "The program has {} blocks; block {} comes next")
+        self._console.told.emit(told.format(count, min(self.block.value(), count)), False)
+
+    def _step(self) -> None:
+        # Only what comes first is begun by hand; the others begin where the one before them ended.
+        near = NEAR_MM if self._is_first else NEAR_BLOCK_MM
+        self._console.order(lambda control: control.step(near), self._stepped)
+
+    def _stepped(self, _lengths: Any) -> None:
+        self._is_first = False

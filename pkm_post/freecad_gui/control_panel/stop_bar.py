@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stop bar: hold, resume, abort and override; always in sight, and never grey while there is a connection."""
+
+from __future__ import annotations
+
+import FreeCAD
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
+from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.numerical_control.control import State
+from pkm_post.numerical_control.permissions import Order, Why, refusal
+
+translate = FreeCAD.Qt.translate
+
+_QUIET_MS = 300
+"""So long the slider has to rest before its override is sent."""
+
+
+class StopBar(QtWidgets.QWidget):
+    """The bar.
+
+    Attributes:
+        hold, resume, abort, at_once: the buttons.
+        override: the slider, per cent.
+    """
+
+    def __init__(self, console: Console) -> None:
+        super().__init__()
+        self._console = console
+        self.hold = OrderButton(
+            translate("ControlPanel", "Hold"),
+            translate("ControlPanel", "Slow down to rest, on the path"),
+            Order.HOLD,
+            lambda: console.stop(lambda control: control.hold()),
+        )
+        self.resume = OrderButton(
+            translate("ControlPanel", "Resume"),
+            translate("ControlPanel", "Go on after a hold"),
+            Order.RESUME,
+            lambda: console.order(lambda control: control.resume()),
+        )
+        self.abort = OrderButton(
+            translate("ControlPanel", "Abort"),
+            translate("ControlPanel", "Hold, then end the program"),
+            Order.ABORT,
+            lambda: console.abort(at_once=False),
+        )
+        self.at_once = OrderButton(
+            translate("ControlPanel", "Abort at once"),
+            translate("ControlPanel", "Each strut stops as fast as it can: the tool leaves its path"),
+            Order.ABORT,
+            lambda: console.abort(at_once=True),
+        )
+        for button in (self.hold, self.abort, self.at_once):
+            button.setStyleSheet("QPushButton:enabled { background-color: #cc0000; color: white; font-weight: bold; }")
+        self.override, self._percent = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal), QtWidgets.QLabel("100 %")
+        self.override.setRange(1, 100)
+        self.override.setValue(100)
+        self.override.setToolTip(translate("ControlPanel", "Override: how fast time passes in programs"))
+        self._quiet = QtCore.QTimer(self)
+        self._quiet.setSingleShot(True)
+        self._quiet.timeout.connect(self._send)
+        self.override.valueChanged.connect(self._changed)
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(side_by_side(self.hold, self.resume, self.abort, self.at_once))
+        layout.addLayout(
+            side_by_side(QtWidgets.QLabel(translate("ControlPanel", "Override")), self.override, self._percent)
+        )
+
+    def refresh(self, state: State, found: frozenset[Why]) -> None:
+        """Show what can be done, and the override of the controller while nobody sets another one."""
+        refresh_all((self.hold, self.resume, self.abort, self.at_once), found)
+        against = refusal(Order.OVERRIDE, found)
+        self.override.setEnabled(against in (None, Why.BUSY))
+        unset = not (self._quiet.isActive() or self.override.isSliderDown() or self._console.has_orders)
+        if unset and against is None and state.status is not None:
+            self._show(max(1, round(state.status.override)))
+
+    def _show(self, percent: int) -> None:
+        self.override.blockSignals(True)
+        self.override.setValue(percent)
+        self.override.blockSignals(False)
+        self._percent.setText(f"{percent} %")
+
+    def _changed(self, percent: int) -> None:
+        self._percent.setText(f"{percent} %")
+        self._quiet.start(_QUIET_MS)
+
+    def _send(self) -> None:
+        against = refusal(Order.OVERRIDE, self._console.found())
+        if against is Why.BUSY or self.override.isSliderDown():
+            self._quiet.start(_QUIET_MS)
+        elif against is None:
+            percent = float(self.override.value())
+            self._console.order(lambda control: control.override(percent))

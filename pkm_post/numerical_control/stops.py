@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stops: going on behind an M0 or M1, where the program ends until somebody starts it again.
+
+The controller shows a program at a stop as it shows one that has ended or was aborted: none runs. ``R`` would go on
+from wherever it is, and behind an abort that is in the middle of a move. So nothing is resumed: what stands behind the
+stop is loaded as a program of its own, under the number of the job, and started as any other, when the struts stand
+where the program stopped. What takes place at that knot before the stop was carried out, and is left out.
+
+Enters: the program, and which of its stops. Leaves: a job that begins behind it, and the state after the start.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from pkm_post.controllers.pmac import Settings
+from pkm_post.controllers.pvt.parts import parted
+from pkm_post.model import EventKind, Machine
+from pkm_post.numerical_control.execute import NEAR_MM, execute
+from pkm_post.numerical_control.single_block import job_of
+from pkm_post.pmac_link.faults import NotReadyError
+from pkm_post.pmac_link.job import Job
+from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.status import Array, Status
+
+
+@dataclass(frozen=True)
+class Stop:
+    """An M0 or M1 with moves behind it.
+
+    Attributes:
+        number: of the stop in its program, from 1.
+        event: its place among the events of the motion.
+        length: (6,) strut lengths at it, mm.
+    """
+
+    number: int
+    event: int
+    length: Array
+
+
+def stops_of(job: Job) -> tuple[Stop, ...]:
+    """The stops of a program; one at its very end is none, for nothing moves behind it."""
+    events, last = job.motion.events, len(job.motion) - 1
+    places = [index for index, each in enumerate(events) if each.kind is EventKind.STOP and each.row < last]
+    return tuple(Stop(number, index, job.motion.length[events[index].row]) for number, index in enumerate(places, 1))
+
+
+def job_behind(job: Job, stop: Stop, settings: Settings) -> Job:
+    """What stands behind a stop, as a program with the number of the job.
+
+    Args:
+        job: the program.
+        stop: one of ``stops_of``.
+        settings: of the controller it was written for.
+    """
+    row = job.motion.events[stop.event].row
+    rest = replace(job.motion, events=job.motion.events[stop.event + 1 :])
+    motion = parted(rest, [row])[-1] if row else rest
+    return job_of(motion, replace(settings, program=job.program.number), f"behind stop {stop.number}")
+
+
+def go_on(
+    session: Session, machine: Machine, settings: Settings, job: Job, number: int, near: float = NEAR_MM
+) -> Status:
+    """Load what stands behind a stop and start it.
+
+    Args:
+        session: an open session.
+        machine: the machine.
+        settings: of its controller.
+        job: the program that has stopped.
+        number: of the stop, from 1. It is said, and not found by where the struts stand: several stops may be at one
+            place, and a program that was never started may begin there.
+        near: how far each strut may be from it, mm.
+
+    Raises:
+        NotReadyError: there is no such stop, or the struts do not stand at it; or as ``execute.execute``.
+        DownloadError: it could not be loaded; nothing was started.
+    """
+    stops = stops_of(job)
+    if not 1 <= number <= len(stops):
+        told = f"the program has {len(stops)} stops (M0, M1) with moves behind them: there is none with number {number}"
+        raise NotReadyError([told])
+    return execute(session, machine, settings, job_behind(job, stops[number - 1], settings), near)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rotary buffer: lines on their way into it, and what is known of it at any time.
+
+Lines are counted from the first that was sent: so many are surely in the controller, some behind them may be. The
+controller tells how many it has not begun, and with these numbers which of the last ones arrived.
+
+Enters: a session, the lines, the size of the buffer in 48-bit words. Leaves: lines in the buffer.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from itertools import accumulate
+
+from pkm_post.controllers.pmac import Settings
+from pkm_post.pmac_link.faults import LinkLostError, PmacError
+from pkm_post.pmac_link.listing import words_of
+from pkm_post.pmac_link.session import Session
+
+ATTEMPTS = 5
+"""How often something is begun anew after a failure."""
+_MARGIN = 2
+"""Lines that may lie in the buffer still though they are not ahead any more: the one that runs, the one after it."""
+_log = logging.getLogger(__name__)
+
+
+class RotaryBuffer:
+    """What is known of the buffer.
+
+    Attributes:
+        loaded: lines that are, or were, surely in it.
+        unsure: lines behind those that may have arrived.
+    """
+
+    def __init__(self, session: Session, settings: Settings, lines: Sequence[str], words: int) -> None:
+        self.loaded = self.unsure = 0
+        self._session, self._lines, self._system = session, lines, f"&{settings.coordinate_system}"
+        self._filled = [0, *accumulate(map(words_of, lines))]
+        self._words, self._room = words, words
+        self._connections = session.connections
+
+    def open(self) -> None:
+        """Open it empty, the coordinate system pointed to it."""
+        # Behind OPEN ROT, B0 would be a move. To begin all this anew does no harm: nothing was let go.
+        if ahead := self._ordered("CLOSE", "DELETE GATHER", f"{self._system}B0", "OPEN ROT", "CLEAR"):
+            raise PmacError(f"{ahead} lines are in the rotary buffer after CLEAR")
+
+    def empty(self) -> bool:
+        """Empty and close it; whether the controller shows that."""
+        return self._ordered("CLOSE", self._system, "OPEN ROT", "CLEAR", "CLOSE") == 0
+
+    def ahead(self) -> int:
+        """Lines in it that were not begun."""
+        told = self._session.ask(f"{self._system}PR")
+        if len(told) != 1 or not told[0].strip().isdecimal():
+            raise LinkLostError(f"PR: expected a number of lines, got {told}")
+        return int(told[0])
+
+    def send(self, end: int) -> bool:
+        """Send as many of the lines up to ``end`` as there is room for; whether there was any.
+
+        Raises:
+            RefusedError: a line was refused; those before it may be in the buffer.
+            LinkLostError: the link failed, or was called back; ``recount`` has to come next.
+        """
+        batch = self._lines[self.loaded : self.loaded + self._fitting(end)]
+        if not self._is_still_open():
+            raise LinkLostError("the link was called back, which closed the rotary buffer")
+        if not batch:
+            return False
+        self.unsure = min(len(batch), self._session.lines_at_once(batch))
+        done = self._session.load(batch)
+        self._room -= self._filled[self.loaded + done] - self._filled[self.loaded]
+        self.loaded, self.unsure = self.loaded + done, 0
+        return True
+
+    def recount(self, begun: int) -> None:
+        """After a failure, at rest behind the line ``begun``: see how many lines are there, and open the buffer again.
+
+        Raises:
+            PmacError: what the controller tells cannot be explained.
+        """
+        there = begun + self._ordered("CLOSE", self._system, "OPEN ROT")
+        if not self.loaded <= there <= self.loaded + self.unsure:
+            raise PmacError(f"the controller has {there} lines, {self.loaded} to {self.loaded + self.unsure} were sent")
+        self.loaded, self.unsure, self._room = there, 0, 0
+
+    def _ordered(self, *lines: str) -> int:
+        """Have lines carried out, all again when the link fails; how many lines lie ahead then."""
+        for attempt in range(ATTEMPTS):
+            self._connections = self._session.connections
+            try:
+                for line in lines:
+                    self._session.order(line)
+                ahead = self.ahead()
+            except LinkLostError as lost:
+                _log.warning("the link failed: %s", lost)
+                if attempt == ATTEMPTS - 1:
+                    raise
+            else:
+                if self._is_still_open():
+                    return ahead
+        raise LinkLostError("the link fails again and again")
+
+    def _is_still_open(self) -> bool:
+        """A link that was called back has closed the buffer: a line would be carried out at once, not kept."""
+        return self._connections == self._session.connections
+
+    def _fitting(self, end: int) -> int:
+        """How many of the next lines there is room for."""
+        if self._filled[self.loaded + 1] - self._filled[self.loaded] > self._room:
+            oldest = max(self.loaded - self.ahead() - _MARGIN, 0)
+            self._room = self._words - (self._filled[self.loaded] - self._filled[oldest])
+        count = self.loaded
+        while count < end and self._filled[count + 1] - self._filled[self.loaded] <= self._room:
+            count += 1
+        return count - self.loaded

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the scenes of numerical control share: the panel, a simulated machine in it, waiting, answers, a program."""
+
+import numpy as np
+from gui import FOLDER, until
+from PySide import QtCore, QtWidgets
+
+PER_BLOCK = 100
+HOME_MM = 1007.8869
+"""The struts of the example at home."""
+
+
+def the_panel():
+    from pkm_post.freecad_gui.control_panel import open_control
+
+    return open_control()
+
+
+def newest():
+    return the_panel().console.state
+
+
+def messages():
+    messages = the_panel().face.messages
+    return [messages.item(row).text() for row in range(messages.count())]
+
+
+def idle():
+    """Until no order is under way and the machine stands, as the newest reading says."""
+    console = the_panel().console
+
+    def is_idle():
+        status = console.state.status
+        return not console.has_orders and status is not None and status.standing and not status.running
+
+    until(is_idle, 60)
+    read_again()
+    return until(is_idle, 60)
+
+
+def read_again():
+    """Until the state was read twice more: the first reading may have begun before."""
+    console = the_panel().console
+    for _ in range(2):
+        before = console.state
+        until(lambda before=before: console.state is not before)
+
+
+def press_in_box(choice):
+    """Press a button of the message box that will open, by its number in the box or as a standard button."""
+    asked = []
+
+    def look():
+        box = QtWidgets.QApplication.activeModalWidget()
+        if not isinstance(box, QtWidgets.QMessageBox):
+            QtCore.QTimer.singleShot(50, look)
+            return
+        asked.append(box.text())
+        by_text = {button.text().replace("&", ""): button for button in box.buttons()}
+        by_text[choice].click()
+
+    QtCore.QTimer.singleShot(0, look)
+    return asked
+
+
+def program_file(name, *events):
+    """All struts out, to rest, back, to rest: one second each."""
+    from pkm_post.controllers.pmac import program_text
+    from pkm_post.model import StrutMotion
+
+    settings = the_panel().console.connection.target.settings
+    share = np.arange(PER_BLOCK + 1) / PER_BLOCK
+    out, rate = (1 - np.cos(np.pi * share)) / 2, np.pi / 2 * np.sin(np.pi * share)
+    rate[[0, -1]] = 0.0
+    length = np.concatenate([out, 1 - out[1:]])[:, None] * np.ones(6) + HOME_MM
+    speed = np.concatenate([rate, -rate[1:]])[:, None] * np.ones(6)
+    motion = StrutMotion(10 * np.arange(2 * PER_BLOCK + 1), length, speed, events)
+    file = FOLDER / name
+    file.write_text(program_text(motion, settings, [name]), encoding="ascii")
+    return file
+
+
+def connect_and_home():
+    """Make a simulated machine and home it, until it can be jogged."""
+    face = the_panel().face
+    face.connecting.train.click()
+    until(lambda: face.homing.home.isEnabled())
+    press_in_box("OK")
+    face.homing.home.click()
+    return until(lambda: face.jog.buttons["Z", 1].isEnabled(), 60)

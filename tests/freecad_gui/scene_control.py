@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Numerical control: a simulated machine connected to, homed, jogged, moved by lines of G-code, and seen in 3D."""
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from control_machine import idle, messages, newest, press_in_box, read_again, the_panel
+from gui import main, picture_of_all, press, settle, step, until
+from PySide import QtCore, QtGui, QtWidgets
+
+
+@step
+def words_are_those_of_the_rooms_below():
+    from pkm_post.freecad_gui.control_panel import words
+    from pkm_post.numerical_control.emergency import STEPS
+    from pkm_post.numerical_control.homing import Phase
+    from pkm_post.numerical_control.permissions import Why
+    from pkm_post.pmac_link.status import MotorBits, SystemBits
+
+    return {
+        "why": {why: why.value for why in Why} == words.WHY,
+        "phases": {phase: phase.value for phase in Phase} == words.PHASES,
+        "motor": words.MOTOR == MotorBits.TOLD,
+        "system": words.SYSTEM == SystemBits.TOLD,
+        "emergency": words.EMERGENCY == STEPS,
+    }
+
+
+@step
+def panel_opens_without_a_connection():
+    FreeCADGui.activateWorkbench("PkmPostWorkbench")
+    FreeCAD.newDocument("Control")
+    press("PKM_Control")
+    face = the_panel().face
+    return {
+        "activity": face.activity.text(),
+        "stops": [button.isEnabled() for button in (face.stops.hold, face.stops.abort, face.stops.resume)],
+        "why": face.jog.buttons["X", 1].toolTip().splitlines()[-1],
+        "connect": [face.connecting.connect.isEnabled(), face.connecting.leave.isEnabled()],
+        "tool": face.connecting.tool_length.property("rawValue"),
+    }
+
+
+@step
+def names_that_are_wrong_are_told():
+    panel = the_panel()
+    page = panel.face.connecting
+    page.port.setText("usb:1")
+    page.connect.click()
+    page.machine.setEditText("no_such_machine")
+    page.train.click()
+    page.machine.setEditText("example_6tps")
+    told = messages()
+    page.port.setText("tcp:127.0.0.1:1")
+    page.connect.click()
+    until(lambda: not panel.console.waits, 60)
+    return {"told": told, "refused": messages()[-1], "connected": panel.console.connection is not None}
+
+
+@step
+def a_simulated_machine_is_connected_to_and_homed():
+    from pkm_post.numerical_control.homing import Phase
+
+    panel = the_panel()
+    face = panel.face
+    face.connecting.train.click()
+    until(lambda: newest().status is not None)
+    until(lambda: face.homing.home.isEnabled())
+    found = {
+        "training": [face.training.isVisible(), face.training.text()],
+        "homes": [face.struts.item(row, 2).text() for row in range(6)],
+        "jog": face.jog.buttons["X", 1].isEnabled(),
+        "why": face.jog.buttons["X", 1].toolTip().splitlines()[-1],
+        "hold": face.stops.hold.isEnabled(),
+    }
+    refused = press_in_box("Cancel")
+    face.homing.home.click()
+    found["asked"] = refused
+    found["homing before"] = newest().homing is None and not panel.console.has_orders
+    face.homing.trigger.setText("#1K")
+    face.homing.home.click()
+    found["trigger"] = messages()[-1]
+    face.homing.trigger.setText("#1HM #2HM #3HM #4HM #5HM #6HM")
+    press_in_box("OK")
+    face.homing.home.click()
+    until(lambda: newest().homing is not None and newest().homing.phase is not Phase.SEARCHING, 60)
+    found["homing"] = newest().homing.phase.name
+    idle()
+    settle()
+    found["told"] = face.homing.told.text()
+    found["homed"] = [face.struts.item(row, 2).text() for row in range(6)]
+    found["tip"] = list(newest().pose.tip)
+    return found
+
+
+def _jogged(name, sign=1):
+    before = newest().pose
+    the_panel().face.jog.buttons[name, sign].click()
+    idle()
+    after = newest().pose
+    return before, after
+
+
+@step
+def jogs_move_the_tool_by_the_step():
+    face = the_panel().face
+    face.jog.step.setProperty("rawValue", 2.0)
+    face.jog.speed.setProperty("rawValue", 10.0)
+    before, after = _jogged("X")
+    found = {"x": list(after.tip - before.tip)}
+    before, after = _jogged("Tilt X")
+    found["tilt"] = [*(after.tip - before.tip), *after.axis]
+    before, after = _jogged("Spin", -1)
+    found["spin"] = float(np.degrees(after.spin - before.spin))
+    lengths = newest().status.length
+    _jogged("strut")
+    found["strut"] = list(newest().status.length - lengths)
+    _jogged("strut", -1)
+    found["x label"] = face.readout.in_machine["X"].text()
+    return found
+
+
+@step
+def a_jog_out_of_reach_sends_nothing():
+    panel = the_panel()
+    panel.face.jog.step.setProperty("rawValue", 500.0)
+    executed = []
+    control = panel.console.connection.worker._control
+    before, execute = list(newest().status.commanded), control.execute
+    control.execute = lambda plan: executed.append(plan) or execute(plan)
+    panel.face.jog.buttons["X", 1].click()
+    idle()
+    control.execute = execute
+    panel.face.jog.step.setProperty("rawValue", 2.0)
+    moved = float(np.abs(newest().status.commanded - before).max())
+    return {"told": messages()[-2:], "executed": len(executed), "moved": moved}
+
+
+@step
+def a_stop_drops_a_jog_that_is_being_planned():
+    panel = the_panel()
+    before = newest().status.commanded
+    panel.face.jog.buttons["X", 1].click()
+    panel.face.stops.hold.click()
+    idle()
+    return {"moved": float(np.abs(newest().status.commanded - before).max()), "running": newest().status.running}
+
+
+@step
+def a_line_is_checked_and_run():
+    page = the_panel().face.mdi
+    panel = the_panel()
+    panel.face.pages.setCurrentWidget(page)
+    before = list(newest().pose.tip)
+    page.line.setText("G1 X0 Y3 F600")
+    page.check.click()
+    idle()
+    found = {"outcome": page.outcome.text(), "checked": list(newest().pose.tip - before)}
+    page.run.click()
+    idle()
+    offset = panel.console.connection.target.machine.work_offsets["G54"]
+    found["work"] = list(offset[:3, :3].T @ (newest().pose.tip - offset[:3, 3]))[:2]
+    page.line.setText("G1 X1..5")
+    page.run.click()
+    idle()
+    found["refused"] = [messages()[-1], page.outcome.text()]
+    page.line.clear()
+    event = QtCore.QEvent.Type.KeyPress
+    for _ in range(2):
+        key = QtGui.QKeyEvent(event, QtCore.Qt.Key.Key_Up, QtCore.Qt.KeyboardModifier.NoModifier)
+        QtWidgets.QApplication.sendEvent(page.line, key)
+    found["history"] = page.line.text()
+    return found
+
+
+@step
+def the_machine_of_the_document_follows():
+    from pkm_post.freecad_app.machine_object import create_machine
+
+    obj = create_machine(FreeCAD.ActiveDocument)
+    FreeCAD.ActiveDocument.recompute()
+    face = the_panel().face
+    tip = tuple(obj.Tip)
+    face.follows.setChecked(True)
+    settle()
+    scene = obj.ViewObject.Proxy.scene
+    begins = scene._platform.matrix.getValue().getValue()
+    _jogged("Y")
+    read_again()
+    settle()
+    ends = scene._platform.matrix.getValue().getValue()
+    face.messages.clear()
+    face.pages.setCurrentWidget(face.jog)
+    face.jog.step.setProperty("rawValue", 500.0)
+    _jogged("X")
+    face.jog.step.setProperty("rawValue", 2.0)
+    settle()
+    picture_of_all("control.png")
+    return {
+        "checked": face.follows.isChecked(),
+        "moved": ends[3][1] - begins[3][1],
+        "property": tuple(obj.Tip) == tip,
+        "played": obj.ViewObject.Proxy.played,
+    }
+
+
+@step
+def the_machine_of_the_document_shows_its_own_pose_again():
+    (machine,) = [item for item in FreeCAD.ActiveDocument.Objects if hasattr(item, "MachineFile")]
+    panel = the_panel()
+    panel.close()
+    until(lambda: not panel.console.waits, 60)
+    return {"open": panel.isVisible(), "played": machine.ViewObject.Proxy.played}
+
+
+main()

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Numerical control: programs of a simulated machine loaded, held, stepped, aborted; the panel closed, the link cut."""
+
+import FreeCADGui
+import numpy as np
+from control_machine import (
+    HOME_MM,
+    PER_BLOCK,
+    connect_and_home,
+    idle,
+    messages,
+    newest,
+    press_in_box,
+    program_file,
+    read_again,
+    the_panel,
+)
+from gui import main, picture, press, settle, step, until
+
+
+@step
+def a_simulated_machine_is_homed():
+    press("PKM_Control")
+    return {"can jog": connect_and_home()}
+
+
+@step
+def a_program_is_loaded_held_and_resumed():
+    panel = the_panel()
+    face, console = panel.face, panel.console
+    face.pages.setCurrentWidget(face.program)
+    lengths = newest().status.commanded
+    face.program.read(program_file("two.pmc"))
+    until(lambda: console.job is not None and not console.waits)
+    settle()
+    found = {
+        "name": face.program.name.text(),
+        "near": float(np.abs(lengths - HOME_MM).max()),
+        "start before": face.program.start.isEnabled(),
+    }
+    face.program.load.click()
+    idle()
+    found["loaded"], found["bar"] = messages()[-1], face.program.bar.value() == face.program.bar.maximum()
+    until(lambda: face.program.start.isEnabled())
+    face.stops.override.setValue(40)
+    until(lambda: newest().status.override == 40, 10)
+    idle()
+    found["override"] = newest().status.override
+    face.program.start.click()
+    until(lambda: newest().status.running)
+    settle()
+    found["while it runs"] = [face.jog.buttons["X", 1].isEnabled(), face.stops.hold.isEnabled()]
+    face.stops.hold.click()
+    until(lambda: newest().status.held and newest().status.standing)
+    read_again()
+    settle()
+    found["held"] = [face.activity.text(), face.stops.resume.isEnabled(), face.stops.override.isEnabled()]
+    found["resumable"] = until(lambda: face.stops.resume.isEnabled())
+    face.stops.resume.click()
+    until(lambda: newest().status.running and not newest().status.held)
+    idle()
+    found["ended"] = float(np.abs(newest().status.commanded - HOME_MM).max())
+    return found
+
+
+@step
+def it_runs_from_rest_to_rest():
+    panel = the_panel()
+    face, console = panel.face, panel.console
+    found = {"step before": face.program.step.isEnabled()}
+    face.stops.override.setValue(100)
+    until(lambda: newest().status.override == 100, 10)
+    idle()
+    face.program.begin_at.click()
+    until(lambda: newest().block is not None and not console.has_orders)
+    settle()
+    found["blocks"] = [messages()[-1], list(newest().block)]
+    out = []
+    for number in (2, 3):
+        until(lambda: face.program.step.isEnabled())
+        face.program.step.click()
+        until(lambda number=number: newest().block[0] == number, 30)
+        idle()
+        out.append(float((newest().status.commanded - HOME_MM).mean()))
+    settle()
+    found["out"], found["step"] = out, face.program.step.isEnabled()
+    return found
+
+
+def _begin_to_move(sign):
+    """Begin a jog of two seconds."""
+    panel = the_panel()
+    panel.face.jog.step.setProperty("rawValue", 20.0)
+    panel.face.jog.buttons["Z", sign].click()
+    until(lambda: newest().status.running)
+    read_again()
+
+
+@step
+def a_program_goes_on_behind_its_stop():
+    from pkm_post.model import Event, EventKind
+
+    panel = the_panel()
+    page, console = panel.face.program, panel.console
+    found = {"without stops": page.go_on.isEnabled()}
+    page.read(program_file("stop.pmc", Event(PER_BLOCK, EventKind.STOP, 0.0)))
+    until(lambda: console.stops == 1 and not console.waits)
+    settle()
+    page.load.click()
+    idle()
+    until(lambda: page.start.isEnabled())
+    out = []
+    for button in (page.start, page.go_on):
+        until(lambda button=button: button.isEnabled())
+        button.click()
+        until(lambda: newest().status.running)
+        idle()
+        out.append(float((newest().status.commanded - HOME_MM).mean()))
+    return found | {"out": out, "told": messages()[-1]}
+
+
+@step
+def an_abort_ends_a_jog():
+    panel, before = the_panel(), newest().pose.tip
+    _begin_to_move(-1)
+    panel.face.stops.abort.click()
+    idle()
+    left = 20.0 - float(np.linalg.norm(newest().pose.tip - before))
+    return {"left": left, "enabled": until(lambda: panel.face.jog.buttons["Z", 1].isEnabled())}
+
+
+@step
+def it_is_not_closed_beside_a_machine_that_moves():
+    panel = the_panel()
+    _begin_to_move(1)
+    asked = press_in_box("Cancel")
+    panel.close()
+    found = {"asked": list(asked), "open": panel.isVisible()}
+    asked = press_in_box("Cancel")
+    FreeCADGui.getMainWindow().close()
+    found["window"] = [list(asked), FreeCADGui.getMainWindow().isVisible()]
+    idle()
+    found["connected"] = panel.console.connection is not None
+    return found
+
+
+@step
+def it_holds_the_machine_and_closes_then():
+    panel, held = the_panel(), []
+    _begin_to_move(-1)
+    press_in_box("Hold it, then close")
+    panel.close()
+    found = {"open before": panel.isVisible()}
+
+    def is_closed():
+        status = panel.console.state.status  # to ask for the panel would show it again
+        held.append(status is not None and status.held)
+        return panel.console.connection is None and not panel.console.waits
+
+    until(is_closed, 60)
+    found["held"], found["open"] = any(held), panel.isVisible()
+    found["activity"] = panel.face.activity.text()
+    return found
+
+
+@step
+def a_lost_link_shows_what_to_do():
+    panel = the_panel()
+    face = panel.face
+    connect_and_home()
+    _begin_to_move(1)
+    panel.console.connection._session._pause = 0.01  # between calls; a second of silence tells nothing new
+    panel.console.connection._training.close()
+    until(lambda: bool(newest().emergency), 60)
+    until(lambda: "EMERGENCY STOP" in face.banner.text())
+    found = {
+        "banner": face.banner.text().splitlines(),
+        "red": "#cc0000" in face.banner.styleSheet(),
+        "jog": face.jog.buttons["X", 1].isEnabled(),
+        "hold": face.stops.hold.isEnabled(),
+    }
+    picture("lost.png")
+    press_in_box("Close; the machine goes on")
+    panel.close()
+    until(lambda: not panel.console.waits, 90)
+    found["open"] = panel.isVisible()
+    found["connected"] = panel.console.connection is not None
+    return found
+
+
+main()

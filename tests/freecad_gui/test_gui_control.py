@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of numerical control in a FreeCAD with a window, before a simulated machine over loopback."""
+
+import pytest
+
+from pkm_post.numerical_control.emergency import STEPS
+
+NEAR_MM = 1e-4
+"""What struts that stand a count of 0.1 um off, and certified to a micron, make of the tip."""
+NEAR_DEG = 1e-3
+
+
+@pytest.fixture(scope="module")
+def session(scene):
+    return scene("control")
+
+
+@pytest.fixture(scope="module")
+def programs(scene):
+    return scene("control_programs")
+
+
+def test_words_are_those_of_the_rooms_below(session):
+    found = session["words_are_those_of_the_rooms_below"]
+    assert found == dict.fromkeys(found, True) and len(found) == 5
+
+
+def test_panel_opens_without_a_connection(session):
+    found = session["panel_opens_without_a_connection"]
+    assert found["activity"] == "Not connected"
+    assert (found["stops"], found["connect"]) == ([False] * 3, [True, False])
+    assert found["why"] == "(there is no connection)"
+    assert found["tool"] == pytest.approx(120.0)  # of the example at rest
+
+
+def test_names_that_are_wrong_are_told(session):
+    found = session["names_that_are_wrong_are_told"]
+    port, machine = found["told"]
+    assert port.startswith("port: expected serial:DEVICE") and "M101" in machine
+    assert "port 1" in found["refused"] and not found["connected"]
+
+
+def test_a_simulated_machine_is_homed_after_a_question(session):
+    found = session["a_simulated_machine_is_connected_to_and_homed"]
+    assert found["training"] == [True, "SIMULATED MACHINE: for training. Nothing real moves."]
+    assert (found["homes"], found["homed"]) == (["no"] * 6, ["yes"] * 6)
+    assert (found["jog"], found["why"], found["hold"]) == (False, "(not all struts are homed)", True)
+    (asked,) = found["asked"]
+    assert "#1HM" in asked and found["homing before"]
+    assert found["trigger"].startswith("trigger: expected ENABLE PLC n")
+    assert (found["homing"], found["told"]) == ("DONE", "all struts have found their homes")
+    assert found["tip"] == pytest.approx([0, 0, 300], abs=NEAR_MM)  # home_tip of the example
+
+
+def test_jogs_move_the_tool_by_the_step(session):
+    found = session["jogs_move_the_tool_by_the_step"]
+    assert found["x"] == pytest.approx([2, 0, 0], abs=NEAR_MM)
+    # by one degree about X: sin and cos of it
+    assert found["tilt"] == pytest.approx([0, 0, 0, 0, -0.0174524, 0.9998477], abs=NEAR_MM)
+    assert found["spin"] == pytest.approx(-1.0, abs=NEAR_DEG)
+    assert found["strut"] == pytest.approx([2, 0, 0, 0, 0, 0], abs=NEAR_MM)
+    assert found["x label"] == "2.000 mm"
+
+
+def test_a_jog_out_of_reach_sends_nothing(session):
+    found = session["a_jog_out_of_reach_sends_nothing"]
+    assert "K103" in found["told"][0] and found["told"][1] == "Not sent: the jog is refused"
+    assert (found["executed"], found["moved"]) == (0, 0.0)
+
+
+def test_a_stop_drops_a_jog_that_is_being_planned(session):
+    assert session["a_stop_drops_a_jog_that_is_being_planned"] == {"moved": 0.0, "running": False}
+
+
+def test_a_line_is_checked_and_run(session):
+    found = session["a_line_is_checked_and_run"]
+    assert found["outcome"].startswith("To X 0.000 mm, Y 3.000 mm, Z 300.000 mm")
+    assert found["checked"] == [0, 0, 0]
+    assert found["work"] == pytest.approx([0, 3], abs=NEAR_MM)
+    assert "G102" in found["refused"][0] and found["refused"][1] == "Refused; nothing was sent"
+    assert found["history"] == "G1 X0 Y3 F600"
+
+
+def test_the_machine_of_the_document_follows(session):
+    found = session["the_machine_of_the_document_follows"]
+    assert found["checked"] and found["played"] and found["property"]
+    assert found["moved"] == pytest.approx(2.0, abs=1e-3)  # scenes are drawn in single precision
+    assert session.drew("control.png")
+
+
+def test_the_machine_of_the_document_shows_its_own_pose_again(session):
+    assert session["the_machine_of_the_document_shows_its_own_pose_again"] == {"open": False, "played": False}
+
+
+def test_a_program_is_loaded_held_and_resumed(programs):
+    found = programs["a_program_is_loaded_held_and_resumed"]
+    assert (found["name"], found["start before"]) == ("two.pmc, 2.0 s", False)
+    assert found["loaded"].startswith("Program 10:") and found["loaded"].endswith("listed back as sent")
+    assert found["bar"] and found["override"] == 40.0
+    assert found["while it runs"] == [False, True]
+    assert found["held"] == ["a program is held, override 0 %", True, False] and found["resumable"]
+    assert found["ended"] == pytest.approx(0.0, abs=NEAR_MM)
+
+
+def test_it_runs_from_rest_to_rest(programs):
+    found = programs["it_runs_from_rest_to_rest"]
+    assert found["blocks"] == ["The program has 2 blocks; block 1 comes next", [1, 2]]
+    assert found["out"] == pytest.approx([1.0, 0.0], abs=NEAR_MM)
+    assert (found["step before"], found["step"]) == (False, False)
+
+
+def test_a_program_goes_on_behind_its_stop(programs):
+    found = programs["a_program_goes_on_behind_its_stop"]
+    assert not found["without stops"]
+    assert found["out"] == pytest.approx([1.0, 0.0], abs=NEAR_MM)
+
+
+def test_an_abort_ends_a_jog(programs):
+    found = programs["an_abort_ends_a_jog"]
+    assert found["enabled"] and found["left"] > 1.0  # of 20 mm, which take two seconds
+
+
+def test_it_is_not_closed_beside_a_machine_that_moves(programs):
+    found = programs["it_is_not_closed_beside_a_machine_that_moves"]
+    question = "The machine moves, or may move. What is to become of it?"
+    assert (found["asked"], found["open"], found["connected"]) == ([question], True, True)
+    assert found["window"] == [[question], True]
+
+
+def test_it_holds_the_machine_and_closes_then(programs):
+    found = programs["it_holds_the_machine_and_closes_then"]
+    assert found == {"open before": True, "held": True, "open": False, "activity": "Not connected"}
+
+
+def test_a_lost_link_shows_what_to_do(programs):
+    found = programs["a_lost_link_shows_what_to_do"]
+    assert found["banner"][: len(STEPS)] == list(STEPS)
+    assert found["banner"][-1].startswith("No link: ")
+    assert (found["red"], found["jog"], found["hold"]) == (True, False, True)
+    assert (found["open"], found["connected"]) == (False, False)
+    assert programs.drew("lost.png")
