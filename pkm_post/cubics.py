@@ -78,7 +78,8 @@ class Cubics:
         """The same at some shares of the intervals, leaving out the acceleration; start and duration in s."""
         s, speed, _ = self._schedule.at((start[:, None] + duration[:, None] * shares).ravel())
         seen = glimpse(self._path, s)
-        inside = Inside(seen.tip, seen.axis, seen.spin, seen.tool_length, seen.pace * speed)
+        attitude = self._path.attitude or (seen.axis, seen.spin, seen.tool_length)
+        inside = Inside(seen.tip, *attitude, seen.pace * speed)
         found = stray(self._machine, first, last, inside, duration, shares)
         swing = _SPEED_SWING * self._path.feed[seen.segment].reshape(found.faster.shape)
         allowed = self._tip_tolerance_on(seen.segment).reshape(found.tip.shape)

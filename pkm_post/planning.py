@@ -22,6 +22,7 @@ from pkm_post.feed import (
     cell_times,
     even_marks,
     for_jerk,
+    glimpse_within,
     knots,
     limits,
     rough_limits,
@@ -84,8 +85,8 @@ def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
     parts = []
     for first in range(0, len(marks.s), _BLOCK):
         rows = slice(first, first + _BLOCK)
-        poses = path.within(marks.segment[rows], marks.u[rows])
-        parts.append((poses.tip, poses.axis, poses.spin, poses.tool_length))
+        seen = glimpse_within(path, marks.segment[rows], marks.u[rows])
+        parts.append((seen.tip, seen.axis, seen.spin, seen.tool_length))
     return Way.straight(*(np.concatenate(columns) for columns in zip(*parts, strict=True))), marks.segment
 
 

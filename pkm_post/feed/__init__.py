@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Feed: corner blending, look-ahead and timing. Arrays alone: no machine, no kinematics."""
 
-from pkm_post.feed.glimpse import Glimpse, glimpse
+from pkm_post.feed.glimpse import Glimpse, glimpse, glimpse_within
 from pkm_post.feed.jerk import Ceilings, for_jerk
 from pkm_post.feed.knots import even_marks, knots
 from pkm_post.feed.limits import PLANNED_SHARE, Bounded, limits, rough_limits
@@ -27,6 +27,7 @@ __all__ = [
     "even_marks",
     "for_jerk",
     "glimpse",
+    "glimpse_within",
     "knots",
     "limits",
     "rough_limits",

@@ -36,6 +36,7 @@ def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Arra
         error: for starts and ends of intervals, (N,) whole ms each, the error by tolerance of each; 1 is just right.
     """
     start, end = _even(rests_ms)
+    edges_ms = edges_ms[slice(*np.searchsorted(edges_ms, rests_ms[[0, -1]]))]
     found = [rests_ms]
     while len(start):
         found.append(start)

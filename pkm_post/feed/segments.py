@@ -91,8 +91,9 @@ class Segments:
 
     def tip_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
         """Tip with first and second derivative, (M, 3) each, at path lengths u of the segments named."""
-        tangent = self.tangent[segment]
-        tip = self.start[segment] + u[:, None] * tangent
+        tangent = np.take(self.tangent, segment, axis=0)
+        tip = u[:, None] * tangent
+        tip += np.take(self.start, segment, axis=0)
         first, second = tangent.copy(), np.zeros_like(tangent)
         rows = np.flatnonzero(self.arc[segment])
         if len(rows):
@@ -116,5 +117,7 @@ class Segments:
 
     def axis_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
         """Tool axis with first and second derivative, (M, 3) each."""
-        rate = self.axis_rate[segment]
-        return along_rates(self.axis[segment], u[:, None] * rate, rate, np.zeros_like(rate))
+        axis, rate = np.take(self.axis, segment, axis=0), np.take(self.axis_rate, segment, axis=0)
+        if not rate.any():  # as in all work with three axes
+            return axis, rate, np.zeros_like(rate)
+        return along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))

@@ -8,6 +8,7 @@ axis always turns along great circles, never through Euler angles [paper section
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,6 +64,15 @@ class ToolPath:
             tip_tolerance=trajectory.tip_tolerance,
         )
 
+    @functools.cached_property
+    def attitude(self) -> tuple[Array, Array, Array] | None:
+        """Tool axis (1, 3), spin (1,) and gauge length (1,) if the whole path has one of each, as with three axes."""
+        seg = self.segments
+        if seg.axis_rate.any() or seg.spin_rate.any():
+            return None
+        columns = seg.axis, seg.spin, self.tool_length
+        return (seg.axis[:1], seg.spin[:1], self.tool_length[:1]) if all((c == c[:1]).all() for c in columns) else None
+
     def at(self, s: Array) -> Poses:
         """Poses at path lengths s, (M,); at a joint the earlier segment counts."""
         segment = np.clip(np.searchsorted(self.starts, s) - 1, 0, len(self.segments) - 1)
@@ -98,11 +108,12 @@ class ToolPath:
         tip[1][rows] = (1 - w) * one[1] + w * two[1] + w1 * apart
         tip[2][rows] = (1 - w) * one[2] + w * two[2] + w1 * (2 * (two[1] - one[1]) - change) + w2 * apart
 
-        rate = seg.axis_at(before, at_end)[1]
-        change = seg.axis_rate[joint] - rate
-        tangent = along_rates(seg.axis[joint], x[:, None] * rate + h * change, rate + w * change, w1 * change)
-        for value, rounded in zip(axis, tangent, strict=True):
-            value[rows] = rounded
+        rate, rate_after = seg.axis_at(before, at_end)[1], seg.axis_rate[joint]
+        if rate.any() or rate_after.any():
+            change = rate_after - rate
+            tangent = along_rates(seg.axis[joint], x[:, None] * rate + h * change, rate + w * change, w1 * change)
+            for value, rounded in zip(axis, tangent, strict=True):
+                value[rows] = rounded
 
         turn = seg.spin_rate[before]
         change = seg.spin_rate[joint] - turn

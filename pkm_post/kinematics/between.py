@@ -14,7 +14,9 @@ for, every check does so, and goes down only to where one is possible.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,10 +65,9 @@ def survey(machine: Machine, way: Way, checks: tuple[Check, ...], faults_alone: 
     """
     turn = way.turn()
     if faults_alone:
-        return tuple(
-            _Survey(machine, way, replace(check, comfort=0.0), turn).strided(_STRIDE_FOR_FAULTS, 0.0)
-            for check in checks
-        )
+        surveys = [_Survey(machine, way, replace(check, comfort=0.0), turn) for check in checks]
+        with ThreadPoolExecutor(os.cpu_count()) as threads:
+            return tuple(threads.map(lambda one: one.strided(_STRIDE_FOR_FAULTS, 0.0), surveys))
     surveys = [_Survey(machine, way, check, turn) for check in checks]
     thorough = [one for one in surveys if one.check.comfort == np.inf]
     if thorough:

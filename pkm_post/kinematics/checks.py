@@ -27,6 +27,8 @@ SINGULAR = 1e-4
 _WELL_CONDITIONED = 0.1
 """Singular values this far above the limit need not be computed for every row."""
 
+_CHUNK = 4096
+"""Poses per pass: the working arrays of one pass stay in the processor's cache."""
 STRUTS = tuple(str(strut) for strut in range(1, 7))
 _SCREW_SLOPE = 4.0
 """How fast the screw's correction changes, in leads by turn of joint or platform, while every strut keeps 30 degrees
@@ -41,10 +43,14 @@ def arms_from_tip(machine: Machine, tool_length: Array) -> Array:
 
 def shortest_distance(machine: Machine, way: Way) -> float:
     """Lower bound of the distance of a strut's joints on the whole way, mm; not above 0 if none is proven."""
-    lengths = strut_lengths(machine, *way.rows(slice(None))) + machine.length_offset - abs(machine.screw_lead) / 2
-    change = way.travel[:, None] + way.turn()[:, None] * arms_from_tip(machine, way.tool_length)
-    inside = (lengths[:-1] + lengths[1:] - change[1:]) / 2
-    return float(min(lengths.min(), inside.min(initial=np.inf)))
+    arms, turn, shortest = arms_from_tip(machine, way.tool_length), way.turn(), np.inf
+    for first in range(0, len(way), _CHUNK):
+        rows = slice(first, first + _CHUNK + 1)  # with the first one of the next chunk
+        lengths = strut_lengths(machine, *way.rows(rows)) + machine.length_offset - abs(machine.screw_lead) / 2
+        change = way.travel[rows, None] + turn[rows, None] * arms
+        inside = (lengths[:-1] + lengths[1:] - change[1:]) / 2
+        shortest = min(shortest, lengths.min(), inside.min(initial=np.inf))
+    return float(shortest)
 
 
 def stroke_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:

@@ -18,7 +18,7 @@ import numpy as np
 
 from pkm_post.geometry import hermite_accelerations, hermite_motion
 from pkm_post.geometry.vectors import Array, length_of
-from pkm_post.kinematics.inverse import strut_lengths
+from pkm_post.kinematics.inverse import lengths_at_tips, strut_lengths
 from pkm_post.kinematics.jacobian import linearise
 from pkm_post.kinematics.orientation import angular_rates, platform_rotation
 from pkm_post.model import Machine, Poses
@@ -45,7 +45,7 @@ class Ends:
         return cls(length, speed, np.linalg.inv(jacobian))
 
     def __getitem__(self, rows: Array) -> Ends:
-        return Ends(self.length[rows], self.speed[rows], self.inverse[rows])
+        return Ends(*(np.take(column, rows, axis=0) for column in (self.length, self.speed, self.inverse)))
 
     def __add__(self, more: Ends) -> Ends:
         columns = zip((self.length, self.speed, self.inverse), (more.length, more.speed, more.inverse), strict=True)
@@ -62,6 +62,8 @@ def moving(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
 @dataclass(frozen=True)
 class Inside:
     """Where the tool ought to be at M instants of each of N intervals, interval by interval.
+
+    If axis, spin and gauge length are the same at all of them, one row of each stands for all.
 
     Attributes:
         tip: (N * M, 3) mm.
@@ -106,9 +108,10 @@ def stray(machine: Machine, start: Ends, end: Ends, inside: Inside, duration: Ar
     """
     shape = len(duration), len(share)
     lengths, speeds = hermite_motion(start.length, start.speed, end.length, end.speed, duration, share)
-    lengths -= strut_lengths(machine, inside.tip, inside.axis, inside.spin, inside.tool_length).reshape(*shape, 6)
+    lengths_at = lengths_at_tips if len(inside.axis) == 1 else strut_lengths
+    lengths -= lengths_at(machine, inside.tip, inside.axis, inside.spin, inside.tool_length).reshape(*shape, 6)
     tip_x, tip_y, tip_z, x, y, z = carried(start.inverse, end.inverse, lengths, share)
-    k, m, n = (column.reshape(shape) for column in inside.axis.T)
+    k, m, n = (column.reshape(shape) for column in np.broadcast_to(inside.axis, inside.tip.shape).T)
     across = length_of(y * n - z * m, z * k - x * n, x * m - y * k)
     speed = length_of(*carried(start.inverse[:, :3], end.inverse[:, :3], speeds, share))
     return Stray(length_of(tip_x, tip_y, tip_z), across, speed - inside.tip_speed.reshape(shape))

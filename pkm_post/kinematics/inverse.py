@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array, norm
+from pkm_post.geometry.vectors import Array, length_of, norm
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.kinematics.screw import screw_correction
 from pkm_post.model import Machine
@@ -62,6 +62,22 @@ def strut_lengths(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
         np.sqrt(np.maximum(squares, 0.0, out=squares), out=squares)
         squares += _counted_beyond_distance(machine, *pose)
     return lengths
+
+
+def lengths_at_tips(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+    """The same at tips (N, 3) that have one axis (1, 3), one spin (1,) and one gauge length (1,) in common.
+
+    The base joints lie still as seen from where the platform joints are for a tip at 0: distances of points are left.
+    """
+    if machine.screw_lead != 0.0:
+        each = len(tip)
+        axes, spins, reaches = np.repeat(axis, each, axis=0), np.repeat(spin, each), np.repeat(tool_length, each)
+        return strut_lengths(machine, tip, axes, spins, reaches)
+    fixed = -strut_vectors(machine, np.zeros((1, 3)), axis, spin, tool_length)[0]
+    x, y, z = np.ascontiguousarray(tip.T)
+    distances = np.stack([length_of(x - u, y - v, z - w) for u, v, w in fixed], axis=0)
+    distances -= machine.length_offset[:, None]
+    return distances.T
 
 
 def counted_lengths(machine: Machine, distance: Array, direction: Array, rotation: Array) -> Array:

@@ -21,7 +21,11 @@ _LIMIT = {"color": "0.3", "linestyle": "--", "linewidth": 0.8}
 _AXES_SHOWN = 150
 _AXIS_DRAWN = 15.0
 """mm"""
-_POINTS_SHOWN = 20000
+_COLUMNS = 1000
+"""Of dots, more than a plot over time has: of what falls into one, the picture shows the lowest and the highest."""
+_PATH = (0.03, 0.02, 0.87, 0.88)
+_PLOTS_OVER_TIME = {"left": 0.09, "right": 0.99, "bottom": 0.06, "top": 0.92, "hspace": 0.16}
+"""Shares of their parts of the figure; to have them looked for takes as long as to draw it."""
 
 
 def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
@@ -57,11 +61,11 @@ def draw(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(14, 9), layout="constrained")
+    figure = Figure(figsize=(14, 9))
     FigureCanvasAgg(figure)
     left, right = figure.subfigures(1, 2, width_ratios=[1, 1.25])
-    _path(left.add_subplot(projection="3d"), trajectory, motion)
-    lengths, speeds, deviations = right.subplots(3, 1, sharex=True)
+    _path(left.add_axes(_PATH, projection="3d"), trajectory, motion)
+    lengths, speeds, deviations = right.subplots(3, 1, sharex=True, gridspec_kw=_PLOTS_OVER_TIME)
     _lengths(lengths, struts, machine)
     _speeds(speeds, struts, machine)
     _deviations(deviations, certificate, tolerances)
@@ -80,8 +84,8 @@ def _path(axes: Any, trajectory: Trajectory, motion: Motion) -> None:
     cutting = np.flatnonzero(~rapid)
     some = cutting[np.unique(np.linspace(0, len(cutting) - 1, _AXES_SHOWN).astype(int))] if len(cutting) else cutting
     ends = motion.tip[some] + _AXIS_DRAWN * motion.axis[some]
-    for tip, end in zip(motion.tip[some], ends, strict=True):
-        axes.plot(*np.column_stack([tip, end]), color="0.5", linewidth=0.4)
+    gaps = np.full_like(ends, np.nan)
+    axes.plot(*np.stack([motion.tip[some], ends, gaps], axis=1).reshape(-1, 3).T, color="0.5", linewidth=0.4)
     axes.set_aspect("equal")
     axes.set(xlabel="x mm", ylabel="y mm", zlabel="z mm", title="tool tip and tool axis in the machine frame")
     axes.legend(fontsize="small", loc="upper left")
@@ -93,9 +97,8 @@ def _only(points: Array, chosen: Array) -> Array:
 
 
 def _lengths(axes: Any, struts: StrutMotion, machine: Machine) -> None:
-    rows = _shown(len(struts))
-    for strut in range(6):
-        axes.plot(struts.time_ms[rows] / 1000, struts.length[rows, strut], linewidth=0.8, label=f"strut {strut + 1}")
+    for strut, line in enumerate(struts.length.T, 1):
+        axes.plot(*shown(struts.time_ms / 1000, line), linewidth=0.8, label=f"strut {strut}")
     for limit in machine.strut_stroke:
         axes.axhline(limit, **_LIMIT)
     axes.set(ylabel="strut length mm", title="as read back from the motion program; dashed: limits")
@@ -103,28 +106,30 @@ def _lengths(axes: Any, struts: StrutMotion, machine: Machine) -> None:
 
 
 def _speeds(axes: Any, struts: StrutMotion, machine: Machine) -> None:
-    rows = _shown(len(struts))
-    axes.plot(struts.time_ms[rows] / 1000, struts.speed[rows], linewidth=0.6)
+    for line in struts.speed.T:
+        axes.plot(*shown(struts.time_ms / 1000, line), linewidth=0.6)
     for limit in (-machine.strut_speed, machine.strut_speed):
         axes.axhline(limit, **_LIMIT)
     axes.set(ylabel="strut speed mm/s")
 
 
 def _deviations(axes: Any, certificate: Certificate, tolerances: Tolerances) -> None:
-    rows = _shown(len(certificate.time))
-    axes.plot(
-        certificate.time[rows],
-        certificate.tip_deviation[rows] / certificate.tip_tolerance[rows],
-        linewidth=0.5,
-        label="tip",
-    )
-    axes.plot(certificate.time[rows], certificate.axis_deviation[rows] / tolerances.axis, linewidth=0.5, label="axis")
+    by_tolerance = {
+        "tip": certificate.tip_deviation / certificate.tip_tolerance,
+        "axis": certificate.axis_deviation / tolerances.axis,
+    }
+    for name, line in by_tolerance.items():
+        axes.plot(*shown(certificate.time, line), linewidth=0.5, label=name)
     axes.axhline(1.0, **_LIMIT)
     told = f"tip {1000 * tolerances.tip:g} um, axis {np.degrees(tolerances.axis):g} degrees"
     axes.set(xlabel="time s", ylabel="deviation by tolerance", title=f"tolerances: {told}", ylim=(0, 1.1))
     axes.legend(fontsize="small", loc="center right")
 
 
-def _shown(count: int) -> Array:
-    """Rows to draw: all, or as many evenly spread ones as a picture can show."""
-    return np.unique(np.linspace(0, count - 1, min(count, _POINTS_SHOWN)).astype(np.int64))
+def shown(time: Array, values: Array) -> tuple[Array, Array]:
+    """A line over increasing times, or the lowest and highest value of each column of dots where there are more."""
+    if len(time) <= 2 * _COLUMNS:
+        return time, values
+    first = np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], _COLUMNS)))
+    both = np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
+    return np.repeat(time[first], 2), np.stack(both, axis=1).ravel()

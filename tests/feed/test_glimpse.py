@@ -22,7 +22,18 @@ def longer_tool_in_between():
     return dataclasses.replace(made, tools=tools, events=change)
 
 
-PATHS = {"lines that turn": cone, "arcs and a helix": square_with_arc, "another tool": longer_tool_in_between}
+def upright_scan():
+    """A surface of sine waves, scanned with three axes."""
+    x = np.linspace(-20, 20, 101)
+    return program(np.column_stack([x, 5 * np.cos(x / 9), 30 + 4 * np.sin(x / 3)]))
+
+
+PATHS = {
+    "lines that turn": cone,
+    "arcs and a helix": square_with_arc,
+    "another tool": longer_tool_in_between,
+    "three axes": upright_scan,
+}
 
 
 def path_of(make, tip, axis):
@@ -60,3 +71,12 @@ def test_what_is_seen_of_a_place_does_not_depend_on_the_other_places(make):
         for field in dataclasses.fields(whole):
             found = np.concatenate([getattr(part, field.name) for part in parts])
             np.testing.assert_array_equal(found, getattr(whole, field.name))
+
+
+def test_a_path_has_one_attitude_when_its_axis_its_spin_and_its_tool_stay_the_same():
+    assert path_of(cone, 1e-3, 1e-5).attitude is None
+    assert path_of(longer_tool_in_between, 1e-3, 1e-5).attitude is None
+    path = path_of(upright_scan, 1e-3, 1e-5)
+    poses = path.at(places_on(path))
+    for found, each in zip(path.attitude, (poses.axis, poses.spin, poses.tool_length), strict=True):
+        np.testing.assert_array_equal(np.repeat(found, len(each), axis=0), each)

@@ -8,6 +8,7 @@ from screw_machines import screwed
 
 from pkm_post.geometry import norm
 from pkm_post.kinematics import platform_rotation, strut_lengths, strut_vectors
+from pkm_post.kinematics.inverse import lengths_at_tips
 from pkm_post.kinematics.screw import screw_correction
 
 PICOMETRE = 1e-9
@@ -104,6 +105,14 @@ def calibrated():
         base_joints=nominal.base_joints + rng.normal(0, 3, (6, 3)),
         platform_joints=nominal.platform_joints + rng.normal(0, 3, (6, 3)),
     )
+
+
+@pytest.mark.parametrize("machine", [example(), calibrated(), screwed(example())], ids=["plain", "calibrated", "screw"])
+def test_tips_with_one_attitude_in_common_have_the_lengths_of_their_poses(machine):
+    tip, axis, spin, tool_length = (column[:200] for column in many_poses(machine))
+    alike = [np.repeat(column[7:8], len(tip), axis=0) for column in (axis, spin, tool_length)]
+    found = lengths_at_tips(machine, tip, axis[7:8], spin[7:8], tool_length[7:8])
+    np.testing.assert_allclose(found, strut_lengths(machine, tip, *alike), rtol=0, atol=PICOMETRE)
 
 
 @pytest.mark.parametrize("machine", [example(), genhexkins(), nategh(), calibrated()], ids=range(4))

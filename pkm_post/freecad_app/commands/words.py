@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -69,13 +70,8 @@ class Words:
         code_of = {name: _code(name) for name in set(names)}
         codes = tuple(sorted(set(code_of.values())))
         number_of = {name: codes.index(code) for name, code in code_of.items()}
-        letters = sorted(set().union(*parameters))
-        return cls(
-            codes,
-            np.array([number_of[name] for name in names], dtype=np.int64),
-            {a: np.array([words.get(a, np.nan) for words in parameters], dtype=np.float64) for a in letters},
-            {a: np.array([a in words for words in parameters], dtype=bool) for a in letters},
-        )
+        code = np.fromiter(map(number_of.__getitem__, names), np.int64, len(names))
+        return cls(codes, code, *_columns(parameters))
 
     def __len__(self) -> int:
         return len(self.code)
@@ -100,6 +96,28 @@ class Words:
     def axis_words(self) -> Array:
         """Which moves have words of the tool axis, (n,); those of arcs are the centre."""
         return self.among("G0", "G1") & (self.count("IJK") > 0)
+
+
+def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict[str, Array]]:
+    """``values`` and ``given``, by letter in alphabetical order.
+
+    Most commands of a program have one of a few sets of letters: the numbers of all commands are one long column, and
+    each set says which of them belong to which letter.
+    """
+    sets = list(map(tuple, parameters))
+    number_of = {letters: number for number, letters in enumerate(dict.fromkeys(sets))}
+    number = np.fromiter(map(number_of.__getitem__, sets), np.int64, len(sets))
+    end = np.cumsum(np.fromiter(map(len, number_of), np.int64, len(number_of))[number])
+    numbers = np.fromiter(chain.from_iterable(map(dict.values, parameters)), np.float64)
+    letters = sorted(set().union(*number_of))
+    values = {letter: np.full(len(sets), np.nan) for letter in letters}
+    given = {letter: np.zeros(len(sets), dtype=bool) for letter in letters}
+    for having, which in number_of.items():
+        rows = np.flatnonzero(number == which)
+        for place, letter in enumerate(having):
+            values[letter][rows] = numbers[end[rows] - len(having) + place]
+            given[letter][rows] = True
+    return values, given
 
 
 def _code(name: str) -> str:
