@@ -45,22 +45,28 @@ def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str
     return table.measured(read_parts(target, names), played)
 
 
-def write_for_linuxcnc(path: Path, trajectory: Trajectory) -> Findings:
+def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float) -> Findings:
     """Write the trajectory for a control that has the kinematics and plans for itself."""
-    text, found = linuxcnc_text(trajectory)
+    text, found = linuxcnc_text(trajectory, tip_tolerance)
     if text is not None:
         path.with_name(f"{path.stem}-linuxcnc.ngc").write_text(text, encoding="ascii", newline="\n")
     return found
 
 
-def linuxcnc_text(trajectory: Trajectory) -> tuple[str | None, Findings]:
-    """The trajectory as G-code for LinuxCNC's hexapod: X Y Z A B C in {M}, or what stands against it."""
-    text, found = write(_as_program(trajectory), Form.LINUXCNC)
+def linuxcnc_text(trajectory: Trajectory, tip_tolerance: float) -> tuple[str | None, Findings]:
+    """The trajectory as G-code for LinuxCNC's hexapod: X Y Z A B C in {M}, or what stands against it.
+
+    Args:
+        trajectory: what is to be driven.
+        tip_tolerance: how far the tool tip may be from the path where the program does not say it, mm. It is written as
+            P of G64: without one LinuxCNC rounds corners as far as its speed needs.
+    """
+    text, found = write(_as_program(trajectory, tip_tolerance), Form.LINUXCNC)
     told = "(coordinates of the machine frame, work offsets are zero; not certified)\n"
     return (None if text is None else told + text), found
 
 
-def _as_program(trajectory: Trajectory) -> Program:
+def _as_program(trajectory: Trajectory, tip_tolerance: float) -> Program:
     """A trajectory as a program whose work frame is {M}."""
     return Program(
         kind=trajectory.kind,
@@ -71,7 +77,7 @@ def _as_program(trajectory: Trajectory) -> Program:
         arc_centre=trajectory.arc_centre,
         arc_axis=trajectory.arc_axis,
         exact_stop=trajectory.exact_stop,
-        tip_tolerance=trajectory.tip_tolerance,
+        tip_tolerance=trajectory.tip_tolerances(tip_tolerance),
         operation=trajectory.operation,
         line=trajectory.line,
         events=trajectory.events,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Write docs/diagnostics.md from the table of faults in pkm_post/model/diagnostics.py.
+"""Write docs/diagnostics.md from the table of faults in pkm_post/model/rules.py.
 
     python3 tools/make_diagnostics_doc.py
 
@@ -35,7 +35,7 @@ Every fault of the input has a code. It is told in one line:
 An error stops the job and no file is written. A warning is shown, and the job goes on. Codes are never given another
 meaning; a code that is no longer needed is not used again.
 
-This page is made from the table in `pkm_post/model/diagnostics.py` by `tools/make_diagnostics_doc.py`: do not edit it.
+This page is made from the table in `pkm_post/model/rules.py` by `tools/make_diagnostics_doc.py`: do not edit it.
 """
 
 

@@ -15,8 +15,10 @@ from pkm_post.gcode.path_modes import exact_codes
 from pkm_post.gcode.writer_arcs import WrittenArcs, written_arcs
 from pkm_post.gcode.writer_axes import FORMS, SWING, Form, impossible_axis, swings
 from pkm_post.gcode.writer_blocks import block_texts
+from pkm_post.gcode.writer_codes import codes_of
+from pkm_post.gcode.writer_columns import cutting
 from pkm_post.gcode.writer_events import between_blocks, heading
-from pkm_post.gcode.writer_words import Numbers, codes_of, cutting, feed_as_written, words_of
+from pkm_post.gcode.writer_words import Numbers, feed_as_written, words_of
 from pkm_post.model import Diagnostic, Place, Program
 
 __all__ = ["Form", "write"]

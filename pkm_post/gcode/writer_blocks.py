@@ -13,7 +13,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from pkm_post.gcode.writer_words import TEXTS, Codes, Word
+from pkm_post.gcode.writer_codes import TEXTS, Codes
+from pkm_post.gcode.writer_words import Word
 from pkm_post.model.program import Array
 
 _CHUNK = 1 << 13

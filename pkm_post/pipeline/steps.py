@@ -226,7 +226,7 @@ def _write_another(run: Run, frame: _Frame, name: str, trajectory: Trajectory, p
     """Write a file that was asked for beside the program."""
     with run.step(_another(name)) as told:
         if name == LINUXCNC:
-            run.accept(outputs.write_for_linuxcnc(frame.path, trajectory))
+            run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
             return
         # the last line of the heading speaks of the program
         found, faults = outputs.write_table(frame.path, TABLES[name], played, summary.heading(trajectory)[:-1])

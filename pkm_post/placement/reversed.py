@@ -28,8 +28,9 @@ from pkm_post.placement.links import Link, closed, links
 from pkm_post.placement.passes import passes
 from pkm_post.placement.reversed_events import misplaced, moved_events
 
-_POINT_COLUMNS = ("position", "tool_axis", "normal", "spin", "exact_stop")
-"""What is said of the end of a row. All other columns are of the way there."""
+_POINT_COLUMNS = ("position", "tool_axis", "normal", "spin", "exact_stop", "side_offset")
+"""What is said of the end of a row: on the row where compensation begins, only its end has the offset yet. All other
+columns are of the way there."""
 
 
 @dataclass(frozen=True)

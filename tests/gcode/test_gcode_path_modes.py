@@ -8,6 +8,7 @@ import pytest
 from programs import BALL, square_with_arc
 
 from pkm_post.gcode import Form, ReadOptions, read, write
+from pkm_post.gcode.chords import with_chords
 
 START = "T1 M6\nG0 X0 Y0 Z0\n"
 MICRON = 1e-3
@@ -73,3 +74,15 @@ def test_a_tolerance_below_the_last_decimal_is_not_lost():
     back, _ = read(text, "back.ngc", ReadOptions(default_tool=BALL))
     assert (back.tip_tolerance > 0).all()
     assert (back.tip_tolerance < 0.02 * MICRON).all()
+
+
+def test_chords_have_the_corners_of_their_arc_and_stop_where_it_stops():
+    given = square_with_arc()
+    on_arc = given.line == 4
+    given = replace(given, exact_stop=on_arc, exact_path=on_arc, tip_tolerance=np.where(on_arc, 0.05, 0.0))
+    made = with_chords(given, np.flatnonzero(on_arc))
+    chords = made.line == 4
+    assert chords.sum() > 20
+    np.testing.assert_array_equal(made.exact_path, chords)
+    np.testing.assert_array_equal(made.tip_tolerance, np.where(chords, 0.05, 0.0))
+    assert np.flatnonzero(made.exact_stop).tolist() == [np.flatnonzero(chords)[-1]]

@@ -8,6 +8,7 @@ import pytest
 from programs import program
 
 from pkm_post.model import Event, EventKind
+from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS
 from pkm_post.placement import joined, mirror, transform
 
 
@@ -33,3 +34,16 @@ def test_programs_of_other_operations_are_a_fault_of_the_caller():
     for programs in ([], [made, dataclasses.replace(made, operations=("Other",))]):
         with pytest.raises(ValueError, match="same operations"):
             joined(programs)
+
+
+def test_every_column_of_each_program_is_there():
+    rows = np.arange(3)
+    first = program([[0, 0, 30], [1, 2, 0], [3, 4, 0]])
+    told = {"exact_stop": rows == 1, "exact_path": rows == 2, "tip_tolerance": 0.01 * rows, "side_offset": 1.0 * rows}
+    told |= {"plane": [0, 1, 2], "normal": np.eye(3), "spin": 0.1 * rows}
+    assert set(told) == set(OPTIONAL_COLUMNS)
+    second = dataclasses.replace(first, **told)
+    both = joined([first, second, first])
+    for name in (*MOTION_COLUMNS, *OPTIONAL_COLUMNS, "position", "tool_axis"):
+        for begin, made in enumerate([first, second, first]):
+            np.testing.assert_array_equal(getattr(both, name)[3 * begin : 3 * begin + 3], getattr(made, name), name)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from programs import cone, program, square_with_arc
 
+from pkm_post.compensation import OffsetOptions, compensate
 from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.placement import mirror, passes, reversed_passes, transform
@@ -171,6 +172,32 @@ def test_a_mirror_and_a_reversal_keep_the_side_of_the_compensation():
     before = dataclasses.replace(open_profile(), side_offset=np.full(len(open_profile()), 3.0))
     after = turned(transform(before, mirror([0, 0, 0], [1, 0, 0]))[0])
     assert all(np.all(after.side_offset[first:behind] == 3.0) for first, behind in passes(after))
+
+
+def test_compensation_that_begins_and_ends_on_leads_does_so_on_the_other_one_then():
+    points = [(0, 0), (5, 0), (5, 20), (25, 20), (25, 0)]
+    x, y = np.array([points[0], points[0], *points, points[-1]]).T[:, :, None]
+    z, feed = np.array([CLEAR, 0.0, *[0.0] * 5, CLEAR])[:, None], np.array([0, PLUNGE, *[CUT] * 5, 0])[:, None]
+    side = np.array([0, 0, 0, 3.0, 3.0, 3.0, 0, 0])
+    before = dataclasses.replace(made_of(np.hstack([x, y, z, feed])), side_offset=side)
+    (there, _), (back, _) = (compensate(each, OffsetOptions(), {}) for each in (before, turned(before)))
+    expected = turned(there)
+    np.testing.assert_allclose(back.position, expected.position, atol=1e-9)
+    np.testing.assert_array_equal(back.kind, expected.kind)
+
+
+def test_what_a_program_says_of_corners_goes_with_the_way_and_a_stop_with_its_point():
+    before = open_profile()
+    (first, behind), rows = passes(before)[0], np.arange(len(before))
+    before = dataclasses.replace(
+        before, exact_path=rows == first + 1, tip_tolerance=np.where(rows == first, 0.05, 0.0), exact_stop=rows == first
+    )
+    after = turned(before)
+    begin, end = passes(after)[0]
+    assert np.flatnonzero(after.exact_path).tolist() == [begin + behind - first - 2]
+    assert np.flatnonzero(after.tip_tolerance).tolist() == [end - 1]
+    (stop,) = np.flatnonzero(after.exact_stop)
+    np.testing.assert_allclose(after.position[stop], before.position[first], atol=ROUNDING)
 
 
 def test_events_between_passes_stay_there_and_a_dwell_stays_at_its_point():

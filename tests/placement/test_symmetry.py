@@ -214,3 +214,13 @@ def test_a_mirror_turns_the_spin_round_and_a_rotation_keeps_it():
         (rotation((0, 0, 0), (0, 0, 1), np.pi), [0.1, -0.3]),
     ):
         assert transform(made, matrix)[0].spin.tolist() == spin
+
+
+def test_what_a_program_says_of_corners_stays_with_its_rows():
+    rows = np.arange(7)
+    made = dataclasses.replace(
+        square_with_arc(), exact_stop=rows == 2, exact_path=rows == 4, tip_tolerance=np.where(rows > 4, 0.05, 0.0)
+    )
+    after = moved(made, mirror((0, 0, 0), (1, 0, 0)))
+    for name in ("exact_stop", "exact_path", "tip_tolerance"):
+        np.testing.assert_array_equal(getattr(after, name), getattr(made, name))

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Codes of the blocks that say a program: corners, plane, cutter compensation and motion, where they change.
+
+A ``Program`` whose arcs can be said enters; columns of places in the table ``TEXTS`` leave, with the words P and D that
+go with codes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.gcode.writer_arcs import WrittenArcs
+from pkm_post.gcode.writer_columns import changed, cutting, newly_said, rounded, scattered, tool_changes
+from pkm_post.gcode.writer_words import Numbers, Word
+from pkm_post.model import Program
+from pkm_post.model.program import Array
+
+_FINER = 2
+"""More decimals of a tolerance than of coordinates: it may be smaller than their last one."""
+_BLEND = 1
+"""The place of G64, which is in force at the beginning, in ``TEXTS``."""
+
+
+@dataclass(frozen=True)
+class Codes:
+    """Codes of each row by their place in ``TEXTS``, (N,) each.
+
+    Attributes:
+        path: rounded corners, exact stop or exact path.
+        plane: of arcs and of cutter compensation.
+        side: cutter compensation.
+        motion: how the row gets to its end.
+        tolerance: the word that goes with ``path``.
+        diameter: the word that goes with ``side``.
+    """
+
+    path: Array
+    plane: Array
+    side: Array
+    motion: Array
+    tolerance: Word
+    diameter: Word
+
+    # The plane is chosen before compensation begins, which then holds it.
+    ORDER = ("path", "plane", "side", "motion")
+
+
+TEXTS: dict[str, tuple[str, ...]] = {
+    "path": ("", "G64", "G61", "G61.1"),
+    "plane": ("", "G19", "G18", "G17"),
+    # LinuxCNC refuses a compensation that starts while another one is on.
+    "side": ("", "G40", "G41.1", "G42.1", "G40\nG41.1", "G40\nG42.1"),
+    "motion": ("", "G0", "G1", "G2", "G3"),
+}
+"""For each group of codes its texts; the first one stands for no code."""
+
+_XY = 2
+"""The plane that is in force at the beginning, by its normal."""
+
+
+def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple[int, int]) -> Codes:
+    """The codes of all rows, as ``words_of`` gives the words.
+
+    Args:
+        program: its arcs can all be said.
+        arcs: how its arcs are said.
+        numbers: how numbers are written.
+        exact: the codes of exact stop and exact path, in tenths.
+    """
+    always, restart = np.ones(len(program), dtype=np.bool_), tool_changes(program)
+    diameter = rounded(2 * program.side_offset / numbers.scale, numbers.decimals)
+    compensated = diameter != 0
+    plane = np.where(compensated, program.plane, scattered(arcs.row, arcs.plane, len(program)))
+    needs_plane = compensated | scattered(arcs.row, np.ones(len(arcs.row), dtype=np.bool_), len(program))
+    rows = np.flatnonzero(needs_plane)
+    new_plane = scattered(rows, changed(plane[rows], _XY), len(program))
+
+    # A change of plane under a compensated path ends the compensation, and it begins again.
+    was_on = np.append(False, compensated[:-1])[: len(program)]
+    new_side = changed(diameter, 0.0) | (compensated & was_on & new_plane)
+    side = np.where(compensated, np.where(diameter > 0, 2, 3) + 2 * was_on, 1)
+
+    motion = np.where(cutting(program), 2, 1)
+    motion[arcs.row] = np.where(arcs.clockwise, 3, 4)
+    path, tolerance = _path(program, numbers, exact)
+    return Codes(
+        path=path,
+        plane=np.where(new_plane, 1 + plane, 0),
+        side=np.where(new_side, side, 0),
+        motion=np.where(newly_said(motion, always, restart), motion, 0),
+        tolerance=tolerance,
+        diameter=Word("D", numbers.decimals, np.abs(diameter), new_side & compensated),
+    )
+
+
+def _path(program: Program, numbers: Numbers, exact: tuple[int, int]) -> tuple[Array, Word]:
+    """The code for corners by its place in ``TEXTS``, and P with it; both where one of them is new."""
+    stop, path = (TEXTS["path"].index(f"G{code / 10:g}") for code in exact)
+    code = np.select([program.exact_stop, program.exact_path], [stop, path], _BLEND)
+    decimals = numbers.decimals + _FINER
+    least = np.where((code == _BLEND) & (program.tip_tolerance > 0), 10.0**-decimals, 0.0)
+    value = np.where(least > 0, np.maximum(rounded(program.tip_tolerance / numbers.scale, decimals), least), 0.0)
+    new = changed(code, _BLEND) | changed(value, 0.0)
+    return np.where(new, code, 0), Word("P", decimals, value, new & (value > 0))
