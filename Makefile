@@ -5,11 +5,12 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format fuzz soak conformance clean
+.PHONY: help demo test lint format translations fuzz soak conformance clean
 
 PYTHON ?= python3
 VENV := .venv
 FUZZ_VENV := .venv-fuzz
+TRANSLATIONS_VENV := .venv-translations
 CONFORMANCE := .conformance
 NPM_PACKAGES := kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 js-yaml@5.5.0
 FUZZ_SECONDS ?= 120
@@ -27,7 +28,7 @@ endef
 
 help: ## print this list
 	@echo "make TARGET, where TARGET is one of"
-	@sed -n 's/^\([a-z]*\):.*## /  \1\t/p' Makefile | expand -t 14
+	@sed -n 's/^\([a-z]*\):.*## /  \1\t/p' Makefile | expand -t 16
 	@echo "PKM_FREECAD=1.0 or 1.1 chooses the FreeCAD; 'tools/freecad --help' tells which one it is otherwise."
 
 demo: export PKM_MODULES = numpy matplotlib
@@ -48,6 +49,14 @@ format: $(VENV)/made ## lay out the Python files and sort their imports
 	@$(VENV)/bin/ruff check --quiet --select I --fix || true
 	@$(VENV)/bin/ruff format
 
+translations: $(TRANSLATIONS_VENV)/made ## gather the texts that users see, and compile their translations
+	@find pkm_post/freecad_app pkm_post/freecad_gui -name '*.py' | LC_ALL=C sort >$(TRANSLATIONS_VENV)/sources
+	@for texts in resources/translations/*.ts; do \
+		$(TRANSLATIONS_VENV)/bin/pyside6-lupdate -silent -no-obsolete -locations none -disable-heuristic sametext \
+			-disable-heuristic similartext @$(TRANSLATIONS_VENV)/sources -ts "$$texts"; \
+		$(TRANSLATIONS_VENV)/bin/pyside6-lrelease "$$texts"; \
+	done
+
 fuzz: $(FUZZ_VENV)/made ## feed the readers of part programs with bytes (FUZZ_SECONDS=120)
 	@PYTHONPATH=. $(FUZZ_VENV)/bin/python fuzz/part_programs.py -max_total_time=$(FUZZ_SECONDS) \
 		-timeout=20 -rss_limit_mb=2048 -print_final_stats=1
@@ -59,7 +68,7 @@ conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's 
 	@$(VENV)/bin/python tests/trajectory_file/conformance.py $(CONFORMANCE)
 
 clean: ## remove what the targets left in this directory
-	rm -rf out $(VENV) $(FUZZ_VENV) $(CONFORMANCE) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf out $(VENV) $(FUZZ_VENV) $(TRANSLATIONS_VENV) $(CONFORMANCE) .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +
 
 # Kaitai's compiler is a package of npm; it is not needed to use or to test PKM Post, so .ci/run does without.
@@ -74,7 +83,8 @@ $(CONFORMANCE)/made: Makefile
 # A virtual environment with the packages of one dependency group of pyproject.toml.
 $(VENV)/made: GROUP = dev
 $(FUZZ_VENV)/made: GROUP = fuzz
-$(VENV)/made $(FUZZ_VENV)/made: pyproject.toml
+$(TRANSLATIONS_VENV)/made: GROUP = translations
+$(VENV)/made $(FUZZ_VENV)/made $(TRANSLATIONS_VENV)/made: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed: make PYTHON=python3.NN" >&2; exit 1; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \

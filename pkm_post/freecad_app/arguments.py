@@ -87,10 +87,13 @@ def own_arguments(job: Any) -> argparse.Namespace:
 
 
 def own_text(job: Any) -> str:
-    """The text of these arguments that ``hexapod_pmac`` understands; empty if the job has none."""
+    """The text of these arguments for ``hexapod_pmac``, as it is if its quotes do not close; empty if there is none."""
     if job.PostProcessor not in POST_PROCESSORS:
         return ""
-    return rewritten(job.PostProcessorArgs, dict.fromkeys(_MORE.get(job.PostProcessor, {})))
+    try:
+        return rewritten(job.PostProcessorArgs, dict.fromkeys(_MORE.get(job.PostProcessor, {})))
+    except ValueError:  # who reads them tells what is wrong
+        return str(job.PostProcessorArgs)
 
 
 def rewritten(text: str, chosen: Mapping[str, str | None]) -> str:

@@ -22,6 +22,9 @@ from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job_to_post import at_fixture
+from pkm_post.freecad_app.object_properties import EDITABLE, READ_ONLY, Row
+from pkm_post.freecad_app.property_proxy import PropertyProxy
+from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import Way, reach_findings, reach_margins, strut_lengths
 from pkm_post.kinematics.way import Pose
@@ -29,65 +32,66 @@ from pkm_post.machine_file import machine_named
 from pkm_post.model import Machine, Refused
 from pkm_post.options import options_from
 
-Row = tuple[str, str, str, str, Any]
-"""A property: its type, name, group, what is said of it, and the value it has at first."""
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _VIEW = "pkm_post.freecad_gui.machine_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
-_READ_ONLY, _EDITABLE = 1, 0
 _EXAMPLE = "example_6tps"
 _M, _W, _P, _T, _R = "Machine", "Work Offset", "Pose", "Tool", "Result"
 _STRUTS = tuple(f"Strut{number}" for number in range(1, 7))
 
 PROPERTIES: tuple[Row, ...] = (
-    ("App::PropertyFile", "MachineFile", _M, "Name of a machine that comes with PKM Post, or path of a machine file",
-     ""),
-    ("App::PropertyLink", "Job", _W, "CAM job whose work offset is taken", None),
-    ("App::PropertyLinkGlobal", "Reference", _W, "Object of the model that the work offset places, if there is no job; "
-     "the origin of the document if there is none", None),
-    ("App::PropertyPlacement", "WorkOffset", _W, "Pose of the work frame on the table, in the machine frame",
-     App.Placement()),
-    ("App::PropertyVectorDistance", "Tip", _P, "Tool tip in the work frame", App.Vector()),
-    ("App::PropertyVector", "ToolAxis", _P, "From the tip towards the spindle, in the work frame", App.Vector(0, 0, 1)),
-    ("App::PropertyAngle", "Spin", _P, "Turn of the platform about the tool axis", 0.0),
-    ("App::PropertyLength", "ToolLength", _T, "Gauge length, from the spindle nose to the tip", 100.0),
-    ("App::PropertyLength", "ToolDiameter", _T, "Diameter of the cutter that is drawn", 10.0),
-    ("App::PropertyLength", "ToolCornerRadius", _T, "Its corner radius: half the diameter for a ball", 0.0),
+    ("App::PropertyFile", "MachineFile", _M,
+     QT_TRANSLATE_NOOP("App::Property", "Name of a machine that comes with PKM Post, or path of a machine file"), ""),
+    ("App::PropertyLink", "Job", _W, QT_TRANSLATE_NOOP("App::Property", "CAM job whose work offset is taken"), None),
+    ("App::PropertyLinkGlobal", "Reference", _W,
+     QT_TRANSLATE_NOOP("App::Property", "Object of the model that the work offset places, if there is no job; "
+                       "the origin of the document if there is none"), None),
+    ("App::PropertyPlacement", "WorkOffset", _W,
+     QT_TRANSLATE_NOOP("App::Property", "Pose of the work frame on the table, in the machine frame"), App.Placement()),
+    ("App::PropertyVectorDistance", "Tip", _P,
+     QT_TRANSLATE_NOOP("App::Property", "Tool tip in the work frame"), App.Vector()),
+    ("App::PropertyVector", "ToolAxis", _P,
+     QT_TRANSLATE_NOOP("App::Property", "From the tip towards the spindle, in the work frame"), App.Vector(0, 0, 1)),
+    ("App::PropertyAngle", "Spin", _P,
+     QT_TRANSLATE_NOOP("App::Property", "Turn of the platform about the tool axis"), 0.0),
+    ("App::PropertyLength", "ToolLength", _T,
+     QT_TRANSLATE_NOOP("App::Property", "Gauge length, from the spindle nose to the tip"), 100.0),
+    ("App::PropertyLength", "ToolDiameter", _T,
+     QT_TRANSLATE_NOOP("App::Property", "Diameter of the cutter that is drawn"), 10.0),
+    ("App::PropertyLength", "ToolCornerRadius", _T,
+     QT_TRANSLATE_NOOP("App::Property", "Its corner radius: half the diameter for a ball"), 0.0),
 )  # fmt: skip
 
 RESULTS: tuple[Row, ...] = (
-    *(("App::PropertyDistance", name, _R, "Length that the controller counts", 0.0) for name in _STRUTS),
-    ("App::PropertyDistance", "StrokeMargin", _R, "What is left of the strut nearest to an end of its stroke", 0.0),
-    ("App::PropertyAngle", "JointMargin", _R, "What is left of the joint nearest to its cone", 0.0),
-    ("App::PropertyFloat", "SingularMargin", _R, "Smallest singular value above the least allowed", 0.0),
-    ("App::PropertyStringList", "OutOfLimits", _R, "What is out of limits at this pose", []),
-    ("App::PropertyPlacement", "Frame", _R, "Where the machine frame is in the document", App.Placement()),
-)
+    *(("App::PropertyDistance", name, _R,
+       QT_TRANSLATE_NOOP("App::Property", "Length that the controller counts"), 0.0) for name in _STRUTS),
+    ("App::PropertyDistance", "StrokeMargin", _R,
+     QT_TRANSLATE_NOOP("App::Property", "What is left of the strut nearest to an end of its stroke"), 0.0),
+    ("App::PropertyAngle", "JointMargin", _R,
+     QT_TRANSLATE_NOOP("App::Property", "What is left of the joint nearest to its cone"), 0.0),
+    ("App::PropertyFloat", "SingularMargin", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Smallest singular value above the least allowed"), 0.0),
+    ("App::PropertyStringList", "OutOfLimits", _R,
+     QT_TRANSLATE_NOOP("App::Property", "What is out of limits at this pose"), []),
+    ("App::PropertyPlacement", "Frame", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Where the machine frame is in the document"), App.Placement()),
+)  # fmt: skip
 
 
-class MachineObject:
+class MachineObject(PropertyProxy):
     """The proxy. Faults of the machine file are exceptions that FreeCAD shows at the object."""
 
-    def __init__(self, obj: Any) -> None:
-        _add_missing_properties(obj)
-        obj.Proxy = self
+    properties = PROPERTIES
+    results = RESULTS
 
+    @briefly_refused
     def execute(self, obj: Any) -> None:
         """Compute what follows from the properties."""
         machine = machine_of(obj)
         _take_work_offset(obj, machine)
         obj.Frame = placement_of(_document_from_work(obj) @ np.linalg.inv(matrix_of(obj.WorkOffset)))
         _tell(obj, machine, pose_of(obj))
-
-    def onDocumentRestored(self, obj: Any) -> None:
-        """Give documents of older versions the properties they do not have yet."""
-        _add_missing_properties(obj)
-
-    def dumps(self) -> None:
-        """Nothing is saved beside the properties."""
-
-    def loads(self, state: object) -> None:
-        """Nothing was saved."""
 
 
 def create_machine(document: Any, machine: str = "", job: Any = None, label: str = "") -> Any:
@@ -111,7 +115,7 @@ def create_machine(document: Any, machine: str = "", job: Any = None, label: str
     if offsets:
         obj.WorkOffset = placement_of(offsets.get("G54", next(iter(offsets.values()))))
     _take_work_offset(obj, model)
-    _go_home(obj, model)
+    go_home(obj, model)
     if App.GuiUp:
         importlib.import_module(_VIEW).MachineView(obj.ViewObject)
     return obj
@@ -142,15 +146,6 @@ def pose_of(obj: Any) -> Pose:
     return tip[None], axis[None] / length, np.array([spin]), np.array([gauge])
 
 
-def _add_missing_properties(obj: Any) -> None:
-    for kind, name, group, text, value in (*PROPERTIES, *RESULTS):
-        if not hasattr(obj, name):
-            obj.addProperty(kind, name, group, text)
-            setattr(obj, name, value)
-    for _, name, *_ in RESULTS:
-        obj.setEditorMode(name, _READ_ONLY)
-
-
 def _machine_named(name: str) -> Machine:
     machine, faults = machine_named(name)
     if machine is None:
@@ -160,7 +155,7 @@ def _machine_named(name: str) -> Machine:
 
 def _take_work_offset(obj: Any, machine: Machine) -> None:
     """The work offset of the job, if there is one; it cannot be typed in then."""
-    obj.setEditorMode("WorkOffset", _EDITABLE if obj.Job is None else _READ_ONLY)
+    obj.setEditorMode("WorkOffset", EDITABLE if obj.Job is None else READ_ONLY)
     if obj.Job is None:
         return
     options = at_fixture(options_from(own_arguments(obj.Job)), obj.Job)
@@ -179,7 +174,8 @@ def _document_from_work(obj: Any) -> Array:
     return matrix_of(obj.Reference.getGlobalPlacement())
 
 
-def _go_home(obj: Any, machine: Machine) -> None:
+def go_home(obj: Any, machine: Machine) -> None:
+    """Set the pose that the machine has at home, with the tool length that it rests with."""
     work_from_machine = np.linalg.inv(matrix_of(obj.WorkOffset))
     obj.Tip = App.Vector(*(work_from_machine[:3, :3] @ machine.home_tip + work_from_machine[:3, 3]))
     obj.ToolAxis = App.Vector(*(work_from_machine[:3, :3] @ machine.home_axis))

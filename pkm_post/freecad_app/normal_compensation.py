@@ -23,12 +23,15 @@ from pkm_post.compensation import Cutter
 from pkm_post.freecad_app.contact_faces import Contacts, NamedFace, contacts, nearest_face
 from pkm_post.freecad_app.contact_guides import guides
 from pkm_post.freecad_app.contact_moves import Compensation, compensated
-from pkm_post.freecad_app.derived_operation import BASE_AND_ACTIVE, DerivedOperation, Row
+from pkm_post.freecad_app.derived_operation import BASE_AND_ACTIVE, DerivedOperation
 from pkm_post.freecad_app.model_faces import model_faces
+from pkm_post.freecad_app.object_properties import Row
 from pkm_post.freecad_app.tool_cutter import read_cutter
 from pkm_post.gcode.chords import with_chords
 from pkm_post.model import Diagnostic, Kind, Place, Program
 from pkm_post.surface_path.tool_axis import AxisRule
+
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _VIEW = "pkm_post.freecad_gui.normal_compensation_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
@@ -38,16 +41,25 @@ KEEP, FROM_NORMAL = "Of the operation", "From the normal"
 _G = "Normal Compensation"
 _PROPERTIES: tuple[Row, ...] = (
     *BASE_AND_ACTIVE,
-    ("App::PropertyLink", "Model", _G, "The model of the job, whose faces are touched", None),
-    ("App::PropertyLinkSubListGlobal", "Faces", _G, "The faces that may be touched; all of the model if empty", []),
-    ("App::PropertyLength", "Tolerance", _G, "How far a point may be from the face it touches", 0.01),
-    ("App::PropertyLength", "ChordTolerance", _G, "How far the tool may be off between two points", 0.05),
-    ("App::PropertyDistance", "StockToLeave", _G, "Stock left on the faces, along the normal", 0.0),
-    ("App::PropertyLength", "LeadLength", _G, "Length of feed moves off the faces before and after a cut", 0.0),
-    ("App::PropertyEnumeration", "ToolAxis", _G, "Where the tool axis comes from", [KEEP, FROM_NORMAL]),
-    ("App::PropertyAngle", "Lead", _G, "Lean from the normal forward, in the direction of feed", 0.0),
-    ("App::PropertyAngle", "Tilt", _G, "Lean from the normal to the left of the direction of feed", 0.0),
-)
+    ("App::PropertyLink", "Model", _G,
+     QT_TRANSLATE_NOOP("App::Property", "The model of the job, whose faces are touched"), None),
+    ("App::PropertyLinkSubListGlobal", "Faces", _G,
+     QT_TRANSLATE_NOOP("App::Property", "The faces that may be touched; all of the model if empty"), []),
+    ("App::PropertyLength", "Tolerance", _G,
+     QT_TRANSLATE_NOOP("App::Property", "How far a point may be from the face it touches"), 0.01),
+    ("App::PropertyLength", "ChordTolerance", _G,
+     QT_TRANSLATE_NOOP("App::Property", "How far the tool may be off between two points"), 0.05),
+    ("App::PropertyDistance", "StockToLeave", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Stock left on the faces, along the normal"), 0.0),
+    ("App::PropertyLength", "LeadLength", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Length of feed moves off the faces before and after a cut"), 0.0),
+    ("App::PropertyEnumeration", "ToolAxis", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Where the tool axis comes from"), [KEEP, FROM_NORMAL]),
+    ("App::PropertyAngle", "Lead", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Lean from the normal forward, in the direction of feed"), 0.0),
+    ("App::PropertyAngle", "Tilt", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Lean from the normal to the left of the direction of feed"), 0.0),
+)  # fmt: skip
 
 
 class NormalCompensation(DerivedOperation):

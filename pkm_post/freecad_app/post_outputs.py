@@ -26,7 +26,6 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.gcode import Form, write
 from pkm_post.model import Diagnostic, Place, Refused, Trajectory
 from pkm_post.model.diagnostics import errors
-from pkm_post.model.findings import Tolerances
 from pkm_post.options import options_from, tool_lengths_from
 from pkm_post.reach import reach
 
@@ -45,7 +44,7 @@ def _motion_program(job: Any, chosen: argparse.Namespace, path: FilePath) -> Wri
     under a name that no reader of the program looks for. So the other parts are not given to CAM.
     """
     options, lengths = options_from(chosen), tool_lengths_from(chosen)
-    with Progress("Post", len(pipeline.step_names(options)) + _MORE_STEPS) as bar:
+    with Progress(App.Qt.translate("Progress", "Post"), len(pipeline.step_names(options)) + _MORE_STEPS) as bar:
         posted = post_to(path, job, chosen.machine, options, lengths, print, lambda step, share: bar.step())
     if len(posted.parts) > 1:
         names = ", ".join(part.name for part in posted.parts)
@@ -60,8 +59,7 @@ def _trajectory(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written
     try:
         with staged(target.parent) as folder:
             stored = folder / target.name
-            tolerances = Tolerances(options.tip_tolerance, options.axis_tolerance)
-            trajectory_file.write(replace(trajectory, tolerances=tolerances), stored)
+            trajectory_file.write(replace(trajectory, tolerances=options.tolerances), stored)
             _value(trajectory_file.read(stored), found)
     except OSError as fault:
         raise Refused([*found, Diagnostic("F101", Place(str(target)), str(fault))]) from fault
@@ -81,7 +79,7 @@ _NO_PARENTHESES = str.maketrans("()", "[]")
 def _linuxcnc(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
     """G-code for LinuxCNC's hexapod."""
     trajectory, found = _reachable(job, chosen)
-    return _value(outputs.linuxcnc_text(trajectory), found)
+    return _value(outputs.linuxcnc_text(trajectory, options_from(chosen).tip_tolerance), found)
 
 
 def _gcode(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:

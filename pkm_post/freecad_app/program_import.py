@@ -14,6 +14,7 @@ from typing import Any
 import FreeCAD as App
 
 from pkm_post.freecad_app.program_object import create_program
+from pkm_post.freecad_app.transaction import transaction
 
 
 def open(filename: str) -> Any:  # noqa: A001 - FreeCAD wants this name
@@ -26,8 +27,7 @@ def open(filename: str) -> Any:  # noqa: A001 - FreeCAD wants this name
 def insert(filename: str, docname: str) -> None:
     """Add a part program to a document, which is made when there is none of that name."""
     document = App.getDocument(docname) if docname in App.listDocuments() else App.newDocument(docname)
-    document.openTransaction(f"Import {FilePath(filename).name}")
-    create_program(document, filename)
-    document.commitTransaction()
+    with transaction(document, f"Import {FilePath(filename).name}"):
+        create_program(document, filename)
     if App.GuiUp:
         importlib.import_module("FreeCADGui").SendMsgToActiveView("ViewFit")

@@ -9,10 +9,7 @@ the object is computed. ``decode`` makes an operation of a CAM job of it. Saved 
 
 from __future__ import annotations
 
-import contextlib
 import importlib
-import types
-from collections.abc import Iterator
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -20,13 +17,17 @@ import FreeCAD as App
 import numpy as np
 import Path
 import Path.Op.Custom
-from PathScripts import PathUtils
 
 from pkm_post.compensation import OffsetOptions, compensate
 from pkm_post.freecad_app.commands import commands_of
+from pkm_post.freecad_app.object_properties import Row
+from pkm_post.freecad_app.property_proxy import PropertyProxy
+from pkm_post.freecad_app.tool_controller import answered
 from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
 from pkm_post.model.diagnostics import Severity
 from pkm_post.sources import AXIS_WORDS, SUFFIXES, Reading, is_part_program, read_part_program
+
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 Findings = tuple[Diagnostic, ...]
 
@@ -34,19 +35,22 @@ _VIEW = "pkm_post.freecad_gui.program_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
 
 _G = "Program"
-_PROPERTIES: tuple[tuple[str, str, str, str, Any], ...] = (
-    ("App::PropertyFile", "File", _G, "The part program, G-code or CL data", ""),
-    ("App::PropertyEnumeration", "AxisWords", _G, "How G-code says the tool axis", list(AXIS_WORDS)),
-    ("App::PropertyStringList", "Found", _G, "What was found in reading the file", []),
-)
+_PROPERTIES: tuple[Row, ...] = (
+    ("App::PropertyFile", "File", _G, QT_TRANSLATE_NOOP("App::Property", "The part program, G-code or CL data"), ""),
+    ("App::PropertyEnumeration", "AxisWords", _G,
+     QT_TRANSLATE_NOOP("App::Property", "How G-code says the tool axis"), list(AXIS_WORDS)),
+)  # fmt: skip
+_RESULTS: tuple[Row, ...] = (
+    ("App::PropertyStringList", "Found", _G,
+     QT_TRANSLATE_NOOP("App::Property", "What was found in reading the file"), []),
+)  # fmt: skip
 
 
-class PartProgram:
+class PartProgram(PropertyProxy):
     """A part program. CAM draws its path; it is posted from its file, or from a job that it is decoded into."""
 
-    def __init__(self, obj: Any) -> None:
-        _add_missing_properties(obj)
-        obj.Proxy = self
+    properties = _PROPERTIES
+    results = _RESULTS
 
     def execute(self, obj: Any) -> None:
         """Read the file: FreeCAD calls this when a property has changed. A faulty file has no path, and says why."""
@@ -56,16 +60,6 @@ class PartProgram:
         _tell(found)
         if program is not None:
             obj.Path = Path.Path(commands_of(program))
-
-    def onDocumentRestored(self, obj: Any) -> None:
-        """Give documents of older versions the properties they do not have yet."""
-        _add_missing_properties(obj)
-
-    def dumps(self) -> None:
-        """Nothing is saved beside the properties."""
-
-    def loads(self, state: object) -> None:
-        """Nothing was saved."""
 
 
 def create_program(document: Any, file: str | FilePath, axis_words: str = "none") -> Any:
@@ -120,7 +114,7 @@ def decode(obj: Any, job: Any) -> Any:
     if first is not None:  # the job calls the tool of the controller by itself
         del commands[first]
     _tell(_left_out(program))
-    with _choosing(controller):
+    with answered(controller):
         operation = Path.Op.Custom.Create("Decoded", parentJob=job)
     operation.Label = FilePath(obj.File).stem
     operation.ToolController = controller
@@ -140,21 +134,12 @@ def _first_controller(program: Program, job: Any) -> Any:
     return fitting[0]
 
 
-@contextlib.contextmanager
-def _choosing(controller: Any) -> Iterator[None]:
-    """Let CAM take a tool controller: with several it asks, and without a window it has nobody to ask and fails."""
-    before = PathUtils.UserInput
-    PathUtils.UserInput = types.SimpleNamespace(selectedToolController=lambda: controller)
-    try:
-        yield
-    finally:
-        PathUtils.UserInput = before
-
-
 def _left_out(program: Program) -> Findings:
     """What commands of CAM cannot say."""
     rows = {
         "exact stops": program.exact_stop,
+        "exact paths": program.exact_path,
+        "tolerances of the path": program.tip_tolerance > 0,
         "surface normals": np.isfinite(program.normal).all(axis=1),
         "turns of the platform": np.isfinite(program.spin),
     }
@@ -169,11 +154,3 @@ def _tell(found: Findings) -> None:
     for each in found:
         show = App.Console.PrintError if each.severity is Severity.ERROR else App.Console.PrintWarning
         show(f"{each}\n")
-
-
-def _add_missing_properties(obj: Any) -> None:
-    for kind, name, group, text, value in _PROPERTIES:
-        if not hasattr(obj, name):
-            obj.addProperty(kind, name, group, text)
-            setattr(obj, name, value)
-    obj.setEditorMode("Found", 1)

@@ -16,6 +16,8 @@ from typing import Any, Self
 import FreeCAD as App
 from FreeCAD import Base
 
+translate = App.Qt.translate
+
 _WATCH = "pkm_post.freecad_gui.escape_watch"
 """The watch is a floor above: it is named and not imported."""
 
@@ -56,9 +58,11 @@ class Progress:
         """
         self._done += 1
         share = f"{100 * self._done // self._steps} %"
+        stopped = translate("Progress", "{}: stopped at {}").format(self._text, share)
         try:
             self._bar.next(True)
         except RuntimeError as stop:  # so FreeCAD tells that its own bar was stopped
-            raise Stopped(f"{self._text}: stopped at {share}") from stop
-        if self._watch and self._watch.pressed(f"{self._text}: {share} done. Escape stops it."):
-            raise Stopped(f"{self._text}: stopped at {share}")
+            raise Stopped(stopped) from stop
+        told = translate("Progress", "{}: {} done. Escape stops it.").format(self._text, share)
+        if self._watch and self._watch.pressed(told):
+            raise Stopped(stopped)

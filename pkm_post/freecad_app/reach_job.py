@@ -7,16 +7,13 @@ is set: that is where posting takes it from.
 
 from __future__ import annotations
 
-import shlex
 from typing import Any
 
-from pkm_post.freecad_app.arguments import POST_PROCESSORS, own_arguments
+from pkm_post.freecad_app.arguments import POST_PROCESSORS, own_arguments, rewritten
 from pkm_post.freecad_app.job_on_machine import job_and_machine
 from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.model import Refused
 from pkm_post.reach_study import Study, study, told_offset
-
-_WORK_OFFSET = "--work-offset"
 
 
 def study_job(job: Any, free: str = "") -> Study:
@@ -45,7 +42,8 @@ def place_job(job: Any, free: str = "xyzc") -> Study:
         free: letters of x, y, z and c in which the part may be moved.
 
     Raises:
-        ValueError: a freedom cannot be said by ``--work-offset``, or the job has another post-processor.
+        ValueError: a freedom or the way the part lies cannot be said by ``--work-offset``, or the job has another
+            post-processor.
         Refused: as ``study_job``.
     """
     if set(free) - set("xyzc"):
@@ -54,10 +52,8 @@ def place_job(job: Any, free: str = "xyzc") -> Study:
         known = ", ".join(POST_PROCESSORS)
         raise ValueError(f"expected a job for {known}, got one for {job.PostProcessor or 'none'}")
     found = study_job(job, free)
-    words = shlex.split(job.PostProcessorArgs)
-    if _WORK_OFFSET in words:
-        place = words.index(_WORK_OFFSET)
-        del words[place : place + 2]
-    kept = [word for word in words if not word.startswith(f"{_WORK_OFFSET}=")]
-    job.PostProcessorArgs = shlex.join([*kept, told_offset(found.machine_from_work)])
+    flag, equals, offset = told_offset(found.machine_from_work).partition("=")
+    if not equals:
+        raise ValueError(f"expected a work offset that is turned about z alone, got {flag}")
+    job.PostProcessorArgs = rewritten(job.PostProcessorArgs, {flag: offset})
     return found

@@ -17,64 +17,82 @@ import numpy as np
 
 from pkm_post.freecad_app.frames import apply
 from pkm_post.freecad_app.job_on_machine import job_on_machine
+from pkm_post.freecad_app.object_properties import HIDDEN, NO_RECOMPUTE, READ_ONLY, Row, add_missing
 from pkm_post.freecad_app.progress import Progress
+from pkm_post.freecad_app.property_proxy import PropertyProxy
+from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics.findings import SHOWN
 from pkm_post.model.diagnostics import errors
 from pkm_post.reach import Reach, reach
 
-Row = tuple[str, str, str, str, Any]
-"""A property: its type, name, group, what is said of it, and the value it has at first."""
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _VIEW = "pkm_post.freecad_gui.reach_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
-_READ_ONLY, _HIDDEN = 1, 2
-_NO_RECOMPUTE = 16
 _MOST_POINTS = 100_000
 """Of the way that is stored and drawn."""
 _C, _R, _W = "Reach", "Result", "Way"
 
 PROPERTIES: tuple[Row, ...] = (
-    ("App::PropertyLink", "Job", _C, "The CAM job that is checked", None),
-    ("App::PropertyLink", "Machine", _C, "The machine in the document; that of the job's arguments if there is none",
+    ("App::PropertyLink", "Job", _C, QT_TRANSLATE_NOOP("App::Property", "The CAM job that is checked"), None),
+    ("App::PropertyLink", "Machine", _C,
+     QT_TRANSLATE_NOOP("App::Property", "The machine in the document; that of the job's arguments if there is none"),
      None),
-    ("App::PropertyBool", "Active", _C, "Switch this off to check no more when the job changes", True),
-    ("App::PropertyEnumeration", "ColourBy", _C, "The check that the way is coloured by", ["shortest struts"]),
+    ("App::PropertyBool", "Active", _C,
+     QT_TRANSLATE_NOOP("App::Property", "Switch this off to check no more when the job changes"), True),
+    ("App::PropertyEnumeration", "ColourBy", _C,
+     QT_TRANSLATE_NOOP("App::Property", "The check that the way is coloured by"), ["shortest struts"]),
 )  # fmt: skip
 RESULTS: tuple[Row, ...] = (
-    ("App::PropertyBool", "Reachable", _R, "Whether the machine can follow; where it is slower, it can", False),
-    ("App::PropertyStringList", "Checks", _R, "What was checked; the lists below have an entry for each", []),
-    ("App::PropertyStringList", "Units", _R, "Of the margins", []),
-    ("App::PropertyFloatList", "LeastMargins", _R, "Least margin; negative is out of limits", []),
-    ("App::PropertyStringList", "ProvenMargins", _R, "What is proven between the points as well", []),
-    ("App::PropertyStringList", "WorstParts", _R, "What has the least margin", []),
-    ("App::PropertyStringList", "WorstOperations", _R, "Operation in which that is", []),
-    ("App::PropertyIntegerList", "WorstLines", _R, "Number of the command in the operation", []),
-    ("App::PropertyVectorList", "WorstPoints", _R, "Where the tool tip is then", []),
-    ("App::PropertyStringList", "Violations", _R, "What is out of limits, worst of each operation", []),
-    ("App::PropertyStringList", "Report", _R, "The report for people", []),
-)
+    ("App::PropertyBool", "Reachable", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Whether the machine can follow; where it is slower, it can"), False),
+    ("App::PropertyStringList", "Checks", _R,
+     QT_TRANSLATE_NOOP("App::Property", "What was checked; the lists below have an entry for each"), []),
+    ("App::PropertyStringList", "Units", _R, QT_TRANSLATE_NOOP("App::Property", "Of the margins"), []),
+    ("App::PropertyFloatList", "LeastMargins", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Least margin; negative is out of limits"), []),
+    ("App::PropertyStringList", "ProvenMargins", _R,
+     QT_TRANSLATE_NOOP("App::Property", "What is proven between the points as well"), []),
+    ("App::PropertyStringList", "WorstParts", _R,
+     QT_TRANSLATE_NOOP("App::Property", "What has the least margin"), []),
+    ("App::PropertyStringList", "WorstOperations", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Operation in which that is"), []),
+    ("App::PropertyIntegerList", "WorstLines", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Number of the command in the operation"), []),
+    ("App::PropertyVectorList", "WorstPoints", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Where the tool tip is then"), []),
+    ("App::PropertyStringList", "Violations", _R,
+     QT_TRANSLATE_NOOP("App::Property", "What is out of limits, worst of each operation"), []),
+    ("App::PropertyStringList", "Report", _R, QT_TRANSLATE_NOOP("App::Property", "The report for people"), []),
+)  # fmt: skip
 WAY: tuple[Row, ...] = (
-    ("App::PropertyVectorList", "Points", _W, "The way of the tool tip", []),
-    ("App::PropertyFloatList", "Margins", _W, "Margin at each point, of the check that it is coloured by", []),
-)
+    ("App::PropertyVectorList", "Points", _W, QT_TRANSLATE_NOOP("App::Property", "The way of the tool tip"), []),
+    ("App::PropertyFloatList", "Margins", _W,
+     QT_TRANSLATE_NOOP("App::Property", "Margin at each point, of the check that it is coloured by"), []),
+)  # fmt: skip
 
 
-class ReachObject:
+class ReachObject(PropertyProxy):
     """The proxy. A job that cannot be read or placed is an exception that FreeCAD shows at the object."""
 
+    properties = PROPERTIES
+    results = (*RESULTS, *WAY)
     _found: tuple[Reach, Array] | None = None
     """What was found last, and the rows of it that are stored; gone when the document is opened again."""
 
-    def __init__(self, obj: Any) -> None:
-        _add_missing_properties(obj)
-        obj.Proxy = self
+    def add_missing_properties(self, obj: Any) -> None:
+        """The way is for drawing: people do not see it; the colours change without a new check."""
+        add_missing(obj, PROPERTIES, attributes={"ColourBy": NO_RECOMPUTE})
+        add_missing(obj, RESULTS, READ_ONLY)
+        add_missing(obj, WAY, HIDDEN)
 
+    @briefly_refused
     def execute(self, obj: Any) -> None:
         """Check the job, if this is wanted."""
         if not obj.Active:
             return
-        _clear(obj)  # should there be an error, no old result is left to be believed
+        self.clear_results(obj)
         self._found = None
         if obj.Job is None:
             return
@@ -93,16 +111,6 @@ class ReachObject:
             _store_way(obj, *self._found)
         elif name == "ColourBy" and "Restore" not in obj.State and obj.ColourBy in getattr(obj, "Checks", ()):
             obj.touch()  # what was found has gone with the session
-
-    def onDocumentRestored(self, obj: Any) -> None:
-        """Give documents of older versions the properties they do not have yet."""
-        _add_missing_properties(obj)
-
-    def dumps(self) -> None:
-        """Nothing is saved beside the properties."""
-
-    def loads(self, state: object) -> None:
-        """Nothing was saved."""
 
 
 def create_reach(job: Any, machine: Any = None, label: str = "") -> Any:
@@ -141,21 +149,6 @@ def thinned(margin: Array, most: int) -> Array:
     here = np.flatnonzero(margin == least[np.minimum(stretch, len(least) - 1)])
     _, first = np.unique(stretch[here], return_index=True)
     return np.unique(np.concatenate([[0], here[first], [len(margin) - 1]]))
-
-
-def _add_missing_properties(obj: Any) -> None:
-    for kind, name, group, text, value in (*PROPERTIES, *RESULTS, *WAY):
-        if not hasattr(obj, name):
-            obj.addProperty(kind, name, group, text, _NO_RECOMPUTE if name == "ColourBy" else 0)
-            setattr(obj, name, value)
-    for rows, mode in ((RESULTS, _READ_ONLY), (WAY, _HIDDEN)):
-        for _, name, *_ in rows:
-            obj.setEditorMode(name, mode)
-
-
-def _clear(obj: Any) -> None:
-    for _, name, _, _, value in (*RESULTS, *WAY):
-        setattr(obj, name, value)
 
 
 def _least_by_row(found: Reach) -> Array:

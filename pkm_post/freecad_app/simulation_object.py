@@ -17,81 +17,88 @@ import numpy as np
 
 from pkm_post.freecad_app.frames import apply
 from pkm_post.freecad_app.job_on_machine import job_on_machine
+from pkm_post.freecad_app.object_properties import Row
+from pkm_post.freecad_app.property_proxy import PropertyProxy
+from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.freecad_app.simulated_motion import Problem, Simulation
 from pkm_post.freecad_app.simulation import simulation_of
 
-Row = tuple[str, str, str, str, Any]
-"""A property: its type, name, group, what is said of it, and the value it has at first."""
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _VIEW = "pkm_post.freecad_gui.simulation_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
-_READ_ONLY = 1
 _MOST_PROBLEMS = 1000
-"""That are stored; the player knows all of them."""
+"""That are stored, as the tool tip of their number says; the player knows all of them."""
 _S, _R, _T, _P = "Simulation", "Result", "Operations", "Problems"
 
 PROPERTIES: tuple[Row, ...] = (
-    ("App::PropertyLink", "Job", _S, "The CAM job that is simulated", None),
-    ("App::PropertyLink", "Machine", _S, "The machine in the document; that of the job's arguments if there is none",
+    ("App::PropertyLink", "Job", _S, QT_TRANSLATE_NOOP("App::Property", "The CAM job that is simulated"), None),
+    ("App::PropertyLink", "Machine", _S,
+     QT_TRANSLATE_NOOP("App::Property", "The machine in the document; that of the job's arguments if there is none"),
      None),
-    ("App::PropertyBool", "Active", _S, "Switch this off to plan no more when the job changes", True),
+    ("App::PropertyBool", "Active", _S,
+     QT_TRANSLATE_NOOP("App::Property", "Switch this off to plan no more when the job changes"), True),
 )  # fmt: skip
 RESULTS: tuple[Row, ...] = (
-    ("App::PropertyBool", "Followable", _R, "Whether the machine can follow; where it is slower, it can", False),
-    ("App::PropertyTime", "Duration", _R, "How long the struts move", 0.0),
-    ("App::PropertyTime", "DwellTime", _R, "How long the program waits beside that; stops and tool changes do not "
-     "count", 0.0),
-    ("App::PropertyInteger", "Blocks", _R, "Motions of the program", 0),
-    ("App::PropertyInteger", "Points", _R, "Knots in time that the controller would get", 0),
-    ("App::PropertyLength", "WayLength", _R, "Length of the way of the tool tip, rapid motions included", 0.0),
-    ("App::PropertyLength", "ShortestStrut", _R, "Least length that a strut has", 0.0),
-    ("App::PropertyLength", "LongestStrut", _R, "Greatest length that a strut has", 0.0),
-    ("App::PropertySpeed", "GreatestStrutSpeed", _R, "Greatest speed of a strut, in either direction", 0.0),
-    ("App::PropertyInteger", "FastestStrut", _R, "Number of the strut that has it", 0),
-    ("App::PropertyStringList", "Operations", _T, "The operations; the list below has an entry for each", []),
-    ("App::PropertyFloatList", "OperationTimes", _T, "How long each takes with its dwells, in s", []),
-    ("App::PropertyInteger", "ProblemCount", _P, f"How many there are; the first {_MOST_PROBLEMS} are in the lists", 0),
-    ("App::PropertyFloatList", "ProblemTimes", _P, "When each begins, in s", []),
-    ("App::PropertyFloatList", "WorstTimes", _P, "When each is worst, in s", []),
-    ("App::PropertyStringList", "WorstOperations", _P, "Operation in which that is", []),
-    ("App::PropertyIntegerList", "WorstLines", _P, "Number of the command in the operation", []),
-    ("App::PropertyVectorList", "WorstPoints", _P, "Where the tool tip is then", []),
-    ("App::PropertyStringList", "Problems", _P, "What the machine cannot follow, by time", []),
+    ("App::PropertyBool", "Followable", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Whether the machine can follow; where it is slower, it can"), False),
+    ("App::PropertyTime", "Duration", _R, QT_TRANSLATE_NOOP("App::Property", "How long the struts move"), 0.0),
+    ("App::PropertyTime", "DwellTime", _R,
+     QT_TRANSLATE_NOOP("App::Property", "How long the program waits beside that; stops and tool changes do not "
+                       "count"), 0.0),
+    ("App::PropertyInteger", "Blocks", _R, QT_TRANSLATE_NOOP("App::Property", "Motions of the program"), 0),
+    ("App::PropertyInteger", "Points", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Knots in time that the controller would get"), 0),
+    ("App::PropertyLength", "WayLength", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Length of the way of the tool tip, rapid motions included"), 0.0),
+    ("App::PropertyLength", "ShortestStrut", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Least length that a strut has"), 0.0),
+    ("App::PropertyLength", "LongestStrut", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Greatest length that a strut has"), 0.0),
+    ("App::PropertySpeed", "GreatestStrutSpeed", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Greatest speed of a strut, in either direction"), 0.0),
+    ("App::PropertyInteger", "FastestStrut", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Number of the strut that has it"), 0),
+    ("App::PropertyStringList", "Operations", _T,
+     QT_TRANSLATE_NOOP("App::Property", "The operations; the list below has an entry for each"), []),
+    ("App::PropertyFloatList", "OperationTimes", _T,
+     QT_TRANSLATE_NOOP("App::Property", "How long each takes with its dwells, in s"), []),
+    ("App::PropertyInteger", "ProblemCount", _P,
+     QT_TRANSLATE_NOOP("App::Property", "How many there are; the first 1000 are in the lists"), 0),
+    ("App::PropertyFloatList", "ProblemTimes", _P, QT_TRANSLATE_NOOP("App::Property", "When each begins, in s"), []),
+    ("App::PropertyFloatList", "WorstTimes", _P, QT_TRANSLATE_NOOP("App::Property", "When each is worst, in s"), []),
+    ("App::PropertyStringList", "WorstOperations", _P,
+     QT_TRANSLATE_NOOP("App::Property", "Operation in which that is"), []),
+    ("App::PropertyIntegerList", "WorstLines", _P,
+     QT_TRANSLATE_NOOP("App::Property", "Number of the command in the operation"), []),
+    ("App::PropertyVectorList", "WorstPoints", _P,
+     QT_TRANSLATE_NOOP("App::Property", "Where the tool tip is then"), []),
+    ("App::PropertyStringList", "Problems", _P,
+     QT_TRANSLATE_NOOP("App::Property", "What the machine cannot follow, by time"), []),
 )  # fmt: skip
 
 
-class SimulationObject:
+class SimulationObject(PropertyProxy):
     """The proxy. A job that cannot be read or placed is an exception that FreeCAD shows at the object.
 
     Attributes:
         plan: what was planned last; gone when the document is opened again.
     """
 
+    properties = PROPERTIES
+    results = RESULTS
     plan: Simulation | None = None
 
-    def __init__(self, obj: Any) -> None:
-        _add_missing_properties(obj)
-        obj.Proxy = self
-
+    @briefly_refused
     def execute(self, obj: Any) -> None:
         """Plan the motion of the job, if this is wanted."""
         if not obj.Active:
             return
-        _clear(obj)  # should there be an error, no old result is left to be believed
+        self.clear_results(obj)
         self.plan = None
         if obj.Job is not None:
             self.plan = simulation_of(job_on_machine(obj.Job, obj.Machine))
             _tell(obj, self.plan)
-
-    def onDocumentRestored(self, obj: Any) -> None:
-        """Give documents of older versions the properties they do not have yet."""
-        _add_missing_properties(obj)
-
-    def dumps(self) -> None:
-        """Nothing is saved beside the properties."""
-
-    def loads(self, state: object) -> None:
-        """Nothing was saved."""
 
 
 def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:
@@ -123,20 +130,6 @@ def plan_of(obj: Any) -> Simulation:
         obj.Proxy.plan = simulation_of(job_on_machine(obj.Job, obj.Machine))
     plan: Simulation = obj.Proxy.plan
     return plan
-
-
-def _add_missing_properties(obj: Any) -> None:
-    for kind, name, group, text, value in (*PROPERTIES, *RESULTS):
-        if not hasattr(obj, name):
-            obj.addProperty(kind, name, group, text)
-            setattr(obj, name, value)
-    for _, name, *_ in RESULTS:
-        obj.setEditorMode(name, _READ_ONLY)
-
-
-def _clear(obj: Any) -> None:
-    for _, name, _, _, value in RESULTS:
-        setattr(obj, name, value)
 
 
 def _tell(obj: Any, plan: Simulation) -> None:

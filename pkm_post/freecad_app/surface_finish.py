@@ -9,17 +9,15 @@ format.
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from types import SimpleNamespace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import FreeCAD as App
 import Path
 import Path.Op.Base
-from PathScripts import PathUtils
 
 from pkm_post.compensation import Cutter
 from pkm_post.freecad_app.commands import commands_of
@@ -28,10 +26,12 @@ from pkm_post.freecad_app.face_surface import face_surface
 from pkm_post.freecad_app.job import document_name
 from pkm_post.freecad_app.model_faces import model_faces
 from pkm_post.freecad_app.progress import Progress
+from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.freecad_app.surface_check import check_faces
 from pkm_post.freecad_app.surface_finish_inputs import read_inputs
 from pkm_post.freecad_app.surface_finish_settings import add_missing_properties
-from pkm_post.model import Diagnostic, Place, Program
+from pkm_post.freecad_app.tool_controller import answered
+from pkm_post.model import Diagnostic, Place, Program, Refused
 from pkm_post.surface_path import Poses, Settings, cover, program_of
 
 _VIEW = "pkm_post.freecad_gui.surface_finish_view"
@@ -69,6 +69,7 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
             "bullnose",
         )
 
+    @briefly_refused
     def execute(self, obj: Any) -> Any:
         """Compute the path anew; should there be an error, no old path is left to be posted."""
         obj.Path = Path.Path()
@@ -102,7 +103,7 @@ def create_surface_finish(
         controller: the tool controller; if none is given, CAM chooses or asks, and takes the first without a window.
     """
     obj = job.Document.addObject("Path::FeaturePython", "SurfaceFinish")
-    with _chosen(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):
+    with answered(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):
         obj.Proxy = SurfaceFinish(obj, "SurfaceFinish", job)
     obj.Label, obj.Base = label, [(thing, tuple(names)) for thing, names in faces]
     if controller is not None:
@@ -110,18 +111,6 @@ def create_surface_finish(
     if App.GuiUp:
         importlib.import_module(_VIEW).SurfaceFinishView(obj.ViewObject)
     return obj
-
-
-@contextlib.contextmanager
-def _chosen(controller: Any) -> Iterator[None]:
-    """Answer for the user which tool controller is meant: without a window CAM has nobody to ask."""
-    before = PathUtils.UserInput
-    if controller is not None:
-        PathUtils.UserInput = SimpleNamespace(selectedToolController=lambda: controller)
-    try:
-        yield
-    finally:
-        PathUtils.UserInput = before
 
 
 def _place(obj: Any) -> Place:
@@ -145,7 +134,7 @@ def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace
     every, _ = model_faces(job.Model, (), _place(obj))
     names = {named.name for named in faces}
     others = [named.face for named in every or () if named.name not in names]
-    with Progress(f"{obj.Label}: gouges", _STEPS) as bar:
+    with Progress(App.Qt.translate("Progress", "{}: gouges").format(obj.Label), _STEPS) as bar:
         checked = check_faces(
             program, cutter, [named.face for named in faces], others, bool(obj.FlipNormals), spacing,
             obj.ChordTolerance.Value / 10.0, _REACH, _steps(bar),
@@ -182,7 +171,7 @@ def _steps(bar: Progress) -> Callable[[float], None]:
 def _value(value: Any, diagnostics: Iterable[Diagnostic], about: str = "") -> Any:
     """The value, its warnings shown; or an exception that FreeCAD shows at the object."""
     if value is None:
-        raise ValueError("\n".join(f"{about}{fault}" for fault in diagnostics))
+        raise Refused([replace(fault, found=f"{about}{fault.found}") for fault in diagnostics])
     for warning in diagnostics:
         App.Console.PrintWarning(f"{about}{warning}\n")
     return value

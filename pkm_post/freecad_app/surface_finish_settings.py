@@ -13,14 +13,13 @@ from typing import Any
 
 import FreeCAD as App
 
+from pkm_post.freecad_app.object_properties import READ_ONLY, Row, add_missing
 from pkm_post.model import Diagnostic, Place
 from pkm_post.surface_path import AxisRule, CutMode, LeadMove, Lines, Order, Settings, Stepover, Tolerances
 
-Row = tuple[str, str, str, str, Any]
-"""A property: its type, name, group, what is said of it, and the value it has at first, or its choices."""
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 DISTANCE, SCALLOP = "Distance", "Scallop height"
-_READ_ONLY = 1
 
 
 def _choices(kind: type[enum.Enum]) -> list[str]:
@@ -30,50 +29,68 @@ def _choices(kind: type[enum.Enum]) -> list[str]:
 _P, _S, _A, _L = "Pattern", "Stepover and Tolerances", "Tool Axis", "Approach and Leads"
 _C, _R = "Check", "Result"
 PROPERTIES: tuple[Row, ...] = (
-    ("App::PropertyEnumeration", "Lines", _P, "What the passes run along", _choices(Lines)),
-    ("App::PropertyEnumeration", "Order", _P, "How passes follow each other", _choices(Order)),
-    ("App::PropertyVector", "PlaneNormal", _P, "Normal of the parallel planes", App.Vector(1, 0, 0)),
-    ("App::PropertyBool", "Reversed", _P, "Begin at the other side of the face", False),
-    ("App::PropertyEnumeration", "CutMode", _P, "Where the material is; in a zigzag on its first pass",
-     _choices(CutMode)),
-    ("App::PropertyBool", "FlipNormals", _P, "The material is on the other side of the faces", False),
-    ("App::PropertyEnumeration", "StepoverMode", _S, "What says how far passes are apart", [DISTANCE, SCALLOP]),
-    ("App::PropertyLength", "Stepover", _S, "Largest distance of passes along the surface", 1.0),
-    ("App::PropertyLength", "ScallopHeight", _S, "Largest height of what is left between passes", 0.01),
-    ("App::PropertyLength", "ChordTolerance", _S, "How far straight moves may take the cutter off the surface", 0.01),
-    ("App::PropertyAngle", "AxisTolerance", _S, "How far the tool axis may be off between two points", 0.1),
-    ("App::PropertyAngle", "Lead", _A, "Lean from the normal forward, in the direction of feed", 0.0),
-    ("App::PropertyAngle", "Tilt", _A, "Lean from the normal to the left of the direction of feed", 0.0),
-    ("App::PropertyVector", "ConeAxis", _A, "Middle of the cone in which the tool axis stays", App.Vector(0, 0, 1)),
-    ("App::PropertyAngle", "ConeLimit", _A, "Half angle of that cone; 180 degrees for no limit", 180.0),
-    ("App::PropertyString", "Machine", _A, "Name or file of a machine whose reach limits the tilt from upright", ""),
-    ("App::PropertyLength", "ApproachDistance", _L, "Where rapid motion ends, along the tool axis", 2.0),
-    ("App::PropertyEnumeration", "LeadMove", _L, "How the cutter comes to the surface and leaves it",
-     _choices(LeadMove)),
-    ("App::PropertyLength", "LeadLength", _L, "Length of a straight lead, radius of an arc", 2.0),
-    ("App::PropertyLength", "CheckSpacing", _C, "Distance of the points of the model at which gouges and material left "
-     "are measured; 0 to measure nothing", 0.0),
+    ("App::PropertyEnumeration", "Lines", _P,
+     QT_TRANSLATE_NOOP("App::Property", "What the passes run along"), _choices(Lines)),
+    ("App::PropertyEnumeration", "Order", _P,
+     QT_TRANSLATE_NOOP("App::Property", "How passes follow each other"), _choices(Order)),
+    ("App::PropertyVector", "PlaneNormal", _P,
+     QT_TRANSLATE_NOOP("App::Property", "Normal of the parallel planes"), App.Vector(1, 0, 0)),
+    ("App::PropertyBool", "Reversed", _P,
+     QT_TRANSLATE_NOOP("App::Property", "Begin at the other side of the face"), False),
+    ("App::PropertyEnumeration", "CutMode", _P,
+     QT_TRANSLATE_NOOP("App::Property", "Where the material is; in a zigzag on its first pass"), _choices(CutMode)),
+    ("App::PropertyBool", "FlipNormals", _P,
+     QT_TRANSLATE_NOOP("App::Property", "The material is on the other side of the faces"), False),
+    ("App::PropertyEnumeration", "StepoverMode", _S,
+     QT_TRANSLATE_NOOP("App::Property", "What says how far passes are apart"), [DISTANCE, SCALLOP]),
+    ("App::PropertyLength", "Stepover", _S,
+     QT_TRANSLATE_NOOP("App::Property", "Largest distance of passes along the surface"), 1.0),
+    ("App::PropertyLength", "ScallopHeight", _S,
+     QT_TRANSLATE_NOOP("App::Property", "Largest height of what is left between passes"), 0.01),
+    ("App::PropertyLength", "ChordTolerance", _S,
+     QT_TRANSLATE_NOOP("App::Property", "How far straight moves may take the cutter off the surface"), 0.01),
+    ("App::PropertyAngle", "AxisTolerance", _S,
+     QT_TRANSLATE_NOOP("App::Property", "How far the tool axis may be off between two points"), 0.1),
+    ("App::PropertyAngle", "Lead", _A,
+     QT_TRANSLATE_NOOP("App::Property", "Lean from the normal forward, in the direction of feed"), 0.0),
+    ("App::PropertyAngle", "Tilt", _A,
+     QT_TRANSLATE_NOOP("App::Property", "Lean from the normal to the left of the direction of feed"), 0.0),
+    ("App::PropertyVector", "ConeAxis", _A,
+     QT_TRANSLATE_NOOP("App::Property", "Middle of the cone in which the tool axis stays"), App.Vector(0, 0, 1)),
+    ("App::PropertyAngle", "ConeLimit", _A,
+     QT_TRANSLATE_NOOP("App::Property", "Half angle of that cone; 180 degrees for no limit"), 180.0),
+    ("App::PropertyString", "Machine", _A,
+     QT_TRANSLATE_NOOP("App::Property", "Name or file of a machine whose reach limits the tilt from upright"), ""),
+    ("App::PropertyLength", "ApproachDistance", _L,
+     QT_TRANSLATE_NOOP("App::Property", "Where rapid motion ends, along the tool axis"), 2.0),
+    ("App::PropertyEnumeration", "LeadMove", _L,
+     QT_TRANSLATE_NOOP("App::Property", "How the cutter comes to the surface and leaves it"), _choices(LeadMove)),
+    ("App::PropertyLength", "LeadLength", _L,
+     QT_TRANSLATE_NOOP("App::Property", "Length of a straight lead, radius of an arc"), 2.0),
+    ("App::PropertyLength", "CheckSpacing", _C,
+     QT_TRANSLATE_NOOP("App::Property", "Distance of the points of the model at which gouges and material left "
+                       "are measured; 0 to measure nothing"), 0.0),
 )  # fmt: skip
 
 RESULTS: tuple[Row, ...] = (
-    ("App::PropertyInteger", "PassCount", _R, "Number of passes", 0),
-    ("App::PropertyInteger", "ClampedAxes", _R, "Points at which the tool axis was moved into its cone", 0),
-    ("App::PropertyFloat", "MaximumGouge", _R, "Deepest cut into the model, mm; -1 if not measured", -1.0),
-    ("App::PropertyVector", "GougePoint", _R, "Where that is", App.Vector()),
-    ("App::PropertyFloat", "MaximumExcess", _R, "Most material left on the faces, mm; -1 if not measured", -1.0),
-    ("App::PropertyVector", "ExcessPoint", _R, "Where that is", App.Vector()),
-    ("App::PropertyAngle", "UsedConeLimit", _R, "Half angle of the cone, with what the machine allows", 180.0),
-)
+    ("App::PropertyInteger", "PassCount", _R, QT_TRANSLATE_NOOP("App::Property", "Number of passes"), 0),
+    ("App::PropertyInteger", "ClampedAxes", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Points at which the tool axis was moved into its cone"), 0),
+    ("App::PropertyFloat", "MaximumGouge", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Deepest cut into the model, mm; -1 if not measured"), -1.0),
+    ("App::PropertyVector", "GougePoint", _R, QT_TRANSLATE_NOOP("App::Property", "Where that is"), App.Vector()),
+    ("App::PropertyFloat", "MaximumExcess", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Most material left on the faces, mm; -1 if not measured"), -1.0),
+    ("App::PropertyVector", "ExcessPoint", _R, QT_TRANSLATE_NOOP("App::Property", "Where that is"), App.Vector()),
+    ("App::PropertyAngle", "UsedConeLimit", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Half angle of the cone, with what the machine allows"), 180.0),
+)  # fmt: skip
 
 
 def add_missing_properties(obj: Any) -> None:
     """Give the object the properties that it does not have yet; documents of older versions lack some."""
-    for kind, name, group, text, value in (*PROPERTIES, *RESULTS):
-        if not hasattr(obj, name):
-            obj.addProperty(kind, name, group, text)
-            setattr(obj, name, value)
-    for _, name, *_ in RESULTS:
-        obj.setEditorMode(name, _READ_ONLY)
+    add_missing(obj, PROPERTIES)
+    add_missing(obj, RESULTS, READ_ONLY)
 
 
 def read_settings(obj: Any, cone: float, place: Place) -> tuple[Settings | None, tuple[Diagnostic, ...]]:

@@ -22,7 +22,7 @@ from pkm_post.freecad_app.symmetry_properties import MIRROR, MIRROR_RESULTS, ROT
 from pkm_post.freecad_app.symmetry_reference import axis_of, plane_of
 from pkm_post.freecad_app.symmetry_report import report
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Diagnostic, Program
+from pkm_post.model import Diagnostic, Place, Program
 from pkm_post.placement import joined, mirror, reversed_passes, rotation, transform
 
 _VIEW = "pkm_post.freecad_gui.symmetry_view"
@@ -50,9 +50,13 @@ class _SymmetricOperation(DerivedOperation):
 
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
         """The copies, one after the other, and the report of them."""
-        self.follow(obj)
+        try:
+            self.follow(obj)
+            matrices = self.matrices(obj)
+        except ValueError as wrong:
+            return None, (Diagnostic("J121", Place(program.source, obj.Label), str(wrong)),)
         copies, told = [], list[Diagnostic]()
-        for matrix in self.matrices(obj):
+        for matrix in matrices:
             copy, faults = transform(program, matrix)
             told += faults
             if copy is None:

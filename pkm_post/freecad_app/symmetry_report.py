@@ -18,7 +18,7 @@ from PathScripts import PathUtils
 from pkm_post.freecad_app.derived_operation import program_of
 from pkm_post.freecad_app.material_side import base_side, is_symmetric, spindle_sense_of
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Program
+from pkm_post.model import Kind, Program
 from pkm_post.placement import (
     Coverage,
     Joint,
@@ -74,7 +74,18 @@ def report(obj: Any, base: Program, copies: Sequence[Program], made: Program) ->
 def _beside(obj: Any, base: Program, copy: Program) -> tuple[Joint, ...]:
     obj.GapToBase, obj.OverlapWithBase = beside_plane(base, obj.Point, obj.Normal)
     obj.ReversedPasses = len(passes(copy)) if obj.KeepClimb else 0
+    obj.SwappedArcs = _swapped_arcs(base, copy, bool(obj.KeepClimb))
     return (joint(base, copy),) if len(passes(base)) else ()
+
+
+def _swapped_arcs(base: Program, copy: Program, run_back: bool) -> int:
+    """How many arcs turn the other way about their coordinate; those that are run back as well turn as before."""
+    arc = base.kind == Kind.ARC
+    senses = []
+    for axis in (base.arc_axis[arc], copy.arc_axis[arc]):
+        along = np.argmax(np.abs(axis), axis=1)
+        senses.append(axis[np.arange(len(axis)), along] > 0)
+    return int(np.sum((senses[0] != senses[1]) != run_back))
 
 
 def _around(obj: Any, programs: list[Program]) -> tuple[Joint, ...]:
@@ -100,7 +111,7 @@ def family_of(obj: Any) -> Family:
         obj: a symmetric operation, or one that has copies.
 
     Raises:
-        ValueError: the commands of the original cannot be read.
+        Refused: the commands of the original cannot be read.
     """
     root, job = _root(obj), PathUtils.findParentJob(obj)
     operations = [root] if job is None else job.Operations.Group

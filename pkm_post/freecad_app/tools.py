@@ -12,6 +12,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+import FreeCAD as App
+
 from pkm_post.model import Diagnostic, Place, Tool
 from pkm_post.model.tool import corner_reach
 
@@ -26,7 +28,7 @@ def set_gauge_length(tool_controller: Any, mm: float) -> None:
         mm: gauge length of its tool.
     """
     if not hasattr(tool_controller, GAUGE_LENGTH):
-        text = "Distance from the spindle nose to the tip of the tool"
+        text = App.Qt.QT_TRANSLATE_NOOP("App::Property", "Distance from the spindle nose to the tip of the tool")
         tool_controller.addProperty("App::PropertyLength", GAUGE_LENGTH, "PKM Post", text)
     setattr(tool_controller, GAUGE_LENGTH, mm)
 

@@ -14,6 +14,7 @@ import FreeCADGui
 from PySide import QtCore
 
 from pkm_post.freecad_app.kinds import is_job, is_operation, is_simulation
+from pkm_post.freecad_app.transaction import transaction
 from pkm_post.freecad_gui.workbench import ICONS
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -31,6 +32,7 @@ class Command:
         tip: what it does, in a sentence.
         selectable: whether an object can be its subject.
         action: does it to the object selected.
+        keys: keyboard shortcut; all begin with P, K, since CAM has P and one other key.
         alone: whether it can be done without a selection as well; the action gets None then.
     """
 
@@ -40,14 +42,17 @@ class Command:
     tip: str
     selectable: Callable[[FreeCAD.DocumentObject], bool]
     action: Callable[[FreeCAD.DocumentObject], None]
+    keys: str
     alone: bool = False
 
     def GetResources(self) -> dict[str, str]:
-        """Texts and icon."""
+        """Texts, icon and shortcut. FreeCAD itself translates the texts, anew when another language is chosen."""
         return {
             "Pixmap": str(ICONS / self.icon),
-            "MenuText": translate(self.name, self.text),
-            "ToolTip": translate(self.name, self.tip),
+            "MenuText": self.text,
+            "ToolTip": self.tip,
+            "StatusTip": self.tip,
+            "Accel": self.keys,
         }
 
     def IsActive(self) -> bool:
@@ -61,13 +66,8 @@ class Command:
         """Run the command; on a fault everything is as before."""
         subject = next(iter(FreeCADGui.Selection.getSelection()), None)
         document = subject.Document if subject else FreeCAD.ActiveDocument
-        document.openTransaction(self.text)
-        try:
+        with transaction(document, translate(self.name, self.text)):
             self.action(subject)
-        except Exception:
-            document.abortTransaction()
-            raise
-        document.commitTransaction()
         document.recompute()
 
 
@@ -92,13 +92,13 @@ class PanelCommand(Command):
         """Add the object and open its panel; on a fault everything is as before."""
         (subject,) = FreeCADGui.Selection.getSelection()
         document, before = subject.Document, set(subject.Document.Objects)
-        document.openTransaction(self.text)
+        document.openTransaction(translate(self.name, self.text))
         try:
             self.action(subject)
             document.recompute()
             (made,) = set(document.Objects) - before
             FreeCADGui.getDocument(document.Name).setEdit(made.ViewObject, 0)
-        except Exception:
+        except BaseException:
             document.abortTransaction()
             raise
 
@@ -196,6 +196,13 @@ def _edit(item: FreeCAD.DocumentObject | None) -> None:
     open_editor(item)
 
 
+def _control(_item: FreeCAD.DocumentObject | None) -> None:
+    """Open the panel of numerical control."""
+    from pkm_post.freecad_gui.control_panel import open_control
+
+    open_control()
+
+
 COMMANDS = (
     PanelCommand(
         "PKM_Mirror",
@@ -204,6 +211,7 @@ COMMANDS = (
         QT_TRANSLATE_NOOP("PKM_Mirror", "Add the mirror image of the selected operation: plane, climb milling, report"),
         is_operation,
         _mirror,
+        "P, K, M",
     ),
     PanelCommand(
         "PKM_Rotate",
@@ -212,6 +220,7 @@ COMMANDS = (
         QT_TRANSLATE_NOOP("PKM_Rotate", "Add the selected operation turned, once or several times about an axis"),
         is_operation,
         _rotate,
+        "P, K, R",
     ),
     Command(
         "PKM_NormalCompensation",
@@ -223,6 +232,7 @@ COMMANDS = (
         ),
         is_operation,
         _compensate,
+        "P, K, N",
     ),
     Command(
         "PKM_SurfaceFinish",
@@ -233,6 +243,7 @@ COMMANDS = (
         ),
         lambda item: _job_of(item) is not None,
         _finish,
+        "P, K, F",
     ),
     Command(
         "PKM_Machine",
@@ -241,6 +252,7 @@ COMMANDS = (
         QT_TRANSLATE_NOOP("PKM_Machine", "Add the machine around the part, with the work offset of the selected job"),
         is_job,
         _machine,
+        "P, K, H",
         alone=True,
     ),
     Command(
@@ -250,6 +262,7 @@ COMMANDS = (
         QT_TRANSLATE_NOOP("PKM_Reach", "Check whether the machine can follow the selected job, and colour its way"),
         is_job,
         _reach,
+        "P, K, C",
     ),
     Command(
         "PKM_Simulate",
@@ -258,6 +271,7 @@ COMMANDS = (
         QT_TRANSLATE_NOOP("PKM_Simulate", "Play the planned motion of the selected job on its machine"),
         lambda item: is_job(item) or is_simulation(item),
         _simulate,
+        "P, K, S",
     ),
     WindowCommand(
         "PKM_Editor",
@@ -266,6 +280,7 @@ COMMANDS = (
         QT_TRANSLATE_NOOP("PKM_Editor", "Edit G-code or CL data, with its faults told while it is typed"),
         lambda item: True,
         _edit,
+        "P, K, E",
     ),
     Command(
         "PKM_Post",
@@ -274,6 +289,16 @@ COMMANDS = (
         QT_TRANSLATE_NOOP("PKM_Post", "Write the certified motion program of the selected job"),
         is_job,
         _post,
+        "P, K, P",
+    ),
+    WindowCommand(
+        "PKM_Control",
+        "control.svg",
+        QT_TRANSLATE_NOOP("PKM_Control", "Numerical control"),
+        QT_TRANSLATE_NOOP("PKM_Control", "Operate a machine, or a simulated one: look, home, jog, run programs"),
+        lambda item: True,
+        _control,
+        "P, K, O",
     ),
 )
 

@@ -8,7 +8,7 @@ that nothing can be changed while events are let through.
 from __future__ import annotations
 
 import FreeCADGui
-from PySide import QtCore, QtWidgets
+from PySide import QtCore, QtGui, QtWidgets
 
 
 class EscapeWatch(QtCore.QObject):
@@ -32,7 +32,13 @@ class EscapeWatch(QtCore.QObject):
         return self._was_pressed
 
     def eventFilter(self, _target: QtCore.QObject, event: QtCore.QEvent) -> bool:
-        """Take Escape out of the stream of events."""
+        """Take Escape out of the stream of events.
+
+        PySide2 may hand over what stood before where the event stands now: a widget that is gone. To ask it for an
+        attribute that it has not would end FreeCAD, so its class is looked at, and nothing else.
+        """
+        if not issubclass(type(event), QtGui.QKeyEvent):
+            return False
         if event.type() == QtCore.QEvent.Type.KeyPress and event.key() == QtCore.Qt.Key.Key_Escape:
             self._was_pressed = True
             return True

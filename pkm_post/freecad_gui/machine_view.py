@@ -9,11 +9,17 @@ from __future__ import annotations
 
 from typing import Any
 
+import FreeCAD
+
 from pkm_post.freecad_app.frames import matrix_of
-from pkm_post.freecad_app.machine_object import machine_of, pose_of
+from pkm_post.freecad_app.machine_object import go_home, machine_of, pose_of
+from pkm_post.freecad_app.transaction import transaction
+from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.machine_scene import MachineScene
 from pkm_post.freecad_gui.views import DrawnView
 from pkm_post.model import Refused
+
+translate = FreeCAD.Qt.translate
 
 _MACHINE, _TOOL = ("MachineFile",), ("ToolLength", "ToolDiameter", "ToolCornerRadius")
 _POSE = ("Tip", "ToolAxis", "Spin", "ToolLength", "WorkOffset", "Frame")
@@ -43,6 +49,12 @@ class MachineView(DrawnView):
         elif name in (*_POSE, *_TOOL):
             self._follow(obj, tool_too=name in _TOOL)
 
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """The pose at home, and what there is to do with the job."""
+        add_entry(menu, translate("PKM_Machine", "Move it home"), lambda: _bring_home(vobj.Object), self.icon)
+        super().setupContextMenu(vobj, menu)
+        add_commands(menu, vobj.Object.Job, "PKM_Reach", "PKM_Simulate", "PKM_Post")
+
     def refresh(self) -> None:
         """Build the scene anew."""
         self._root.removeAllChildren()
@@ -63,3 +75,11 @@ class MachineView(DrawnView):
         if tool_too:
             self.scene.take_tool(obj.ToolDiameter.Value, obj.ToolCornerRadius.Value, obj.ToolLength.Value)
         self.scene.show(pose_of(obj))
+
+
+def _bring_home(obj: Any) -> None:
+    """Set the pose of the machine at home, in one step to undo."""
+    document = obj.Document
+    with transaction(document, translate("PKM_Machine", "Move it home")):
+        go_home(obj, machine_of(obj))
+    document.recompute()

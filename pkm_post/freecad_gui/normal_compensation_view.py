@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from pkm_post.freecad_gui.context_menu import add_commands
 from pkm_post.freecad_gui.views import View
 
 
@@ -20,3 +21,8 @@ class NormalCompensationView(View):
     def claimChildren(self) -> list[Any]:
         """The operation below."""
         return [] if self.Object.Base is None else [self.Object.Base]
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """What can be made of the operation."""
+        super().setupContextMenu(vobj, menu)
+        add_commands(menu, vobj.Object, "PKM_Mirror", "PKM_Rotate")

@@ -22,6 +22,7 @@ from pkm_post.freecad_gui.deletion_watch import DeletionWatch
 from pkm_post.freecad_gui.film import Film, ask_for_animation, ask_for_pictures
 from pkm_post.freecad_gui.job_places import show_place
 from pkm_post.freecad_gui.player_content import PlayerContent
+from pkm_post.freecad_gui.player_text import told
 from pkm_post.freecad_gui.recompute_watch import RecomputeWatch
 from pkm_post.freecad_gui.stage import Stage
 from pkm_post.model import Place, Refused
@@ -103,25 +104,13 @@ class Player(QtWidgets.QDockWidget):
         if self._stage is not None:
             self._stage.show(self.seconds)
         self._content.show_time(self.seconds)
-        place = self.simulation.trajectory.place(self.simulation.block_at(self.seconds))
-        line = translate("PKM_Simulate", "{}, line {}").format(place.operation, place.line)
-        more = [self.problem.text] if self.problem else []
-        shown = f"{self.seconds:.3f} s / {self.simulation.duration:.3f} s", line, *more, *self._too_fast()
-        self.controls.tell("   ".join(shown))
+        override = self.controls.override.value() / 100.0
+        self.controls.tell(told(self.simulation, self.seconds, self.problem, override))
 
     def leave_for(self, seconds: float) -> None:
         """Show another time than that of a problem."""
         self.problem = None
         self.go_to(seconds)
-
-    def _too_fast(self) -> list[str]:
-        """Which strut would be faster than it can be, with the override that is chosen."""
-        override, limit = self.controls.override.value() / 100.0, self.simulation.machine.strut_speed
-        speeds = self.simulation.greatest_speeds * override
-        if override <= 1.0 or speeds.max() <= limit:
-            return []
-        told = translate("PKM_Simulate", "At this override strut {} would have to do {:.4g} of {:.4g} mm/s")
-        return [told.format(int(speeds.argmax()) + 1, float(speeds.max()), limit)]
 
     def toggle(self) -> None:
         """Play or pause; at the end, from the beginning."""

@@ -30,7 +30,6 @@ from pkm_post.options import ALSO, FIXTURE_OF_THE_JOB, HEADED, SPIN_WORDS
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-_CONTEXT = "PostChoices"
 FLAGS = ("--machine", "--work-offset", "--tip-tolerance", "--axis-tolerance", "--spin", "--also")
 """The arguments that have fields."""
 _SPINS = {
@@ -104,12 +103,12 @@ class PostChoices(QtWidgets.QWidget):
         self.machine, self.work_offset = editable_box(presets()), editable_box(())
         self.tip_tolerance, self.axis_tolerance = quantity_field("mm"), quantity_field("deg")
         self.heading, self.spin = quantity_field("deg"), QtWidgets.QComboBox()
-        self.also = {name: QtWidgets.QCheckBox(translate(_CONTEXT, _ALSO[name])) for name in ALSO}
+        self.also = {name: QtWidgets.QCheckBox(translate("PostChoices", _ALSO[name])) for name in ALSO}
         self.also_box = below_each_other(self.also.values())
         self.more, self.folder = QtWidgets.QLineEdit(), QtWidgets.QLineEdit()
         for word in SPIN_WORDS:
-            self.spin.addItem(translate(_CONTEXT, _SPINS[word]), word)
-        self.work_offset.lineEdit().setPlaceholderText(translate(_CONTEXT, "the fixture of the job"))
+            self.spin.addItem(translate("PostChoices", _SPINS[word]), word)
+        self.work_offset.lineEdit().setPlaceholderText(translate("PostChoices", "the fixture of the job"))
         self.machine.currentTextChanged.connect(self._offer_work_offsets)
         self.spin.currentIndexChanged.connect(self._show_heading)
         self._lay_out()
@@ -120,9 +119,9 @@ class PostChoices(QtWidgets.QWidget):
         layout, asked = QtWidgets.QFormLayout(self), {"machine": self._ask_machine, "folder": self._ask_folder}
         for name, label, tip in _ROWS:
             field = getattr(self, name)
-            field.setToolTip(translate(_CONTEXT, tip))
+            field.setToolTip(translate("PostChoices", tip))
             row = with_button(field, asked[name]) if name in asked else field
-            layout.addRow(translate(_CONTEXT, label), row)
+            layout.addRow(translate("PostChoices", label), row)
 
     def show_text(self, text: str) -> None:
         """Show what arguments say; those that are not understood stay as they are, in the line for all others."""
@@ -171,13 +170,13 @@ class PostChoices(QtWidgets.QWidget):
         self.heading.setEnabled(self.spin.currentData() in HEADED)
 
     def _ask_machine(self) -> None:
-        title, kinds = translate(_CONTEXT, "Machine file"), translate(_CONTEXT, "Machine files")
+        title, kinds = translate("PostChoices", "Machine file"), translate("PostChoices", "Machine files")
         name = QtWidgets.QFileDialog.getOpenFileName(self, title, "", f"{kinds} (*.toml)")[0]
         if name:
             self.machine.setEditText(name)
 
     def _ask_folder(self) -> None:
-        title = translate(_CONTEXT, "Folder for the files")
+        title = translate("PostChoices", "Folder for the files")
         name = QtWidgets.QFileDialog.getExistingDirectory(self, title, self.folder.text())
         if name:
             self.folder.setText(str(Path(name)))

@@ -19,7 +19,6 @@ from pkm_post.pipeline import Posted
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-_CONTEXT = "PostOutcome"
 _HEAD = (
     QT_TRANSLATE_NOOP("PostOutcome", "Measured"),
     QT_TRANSLATE_NOOP("PostOutcome", "Worst"),
@@ -61,13 +60,13 @@ class PostOutcome(QtWidgets.QWidget):
 
     def show_refused(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show why nothing was written."""
-        self.show_nothing(translate(_CONTEXT, "Refused. Nothing was written."))
+        self.show_nothing(translate("PostOutcome", "Refused. Nothing was written."))
         self._show_diagnostics(diagnostics)
 
     def show_posted(self, posted: Posted) -> None:
         """Show the certificate."""
         certificate, seconds = posted.report["certificate"], posted.report["machining_time"]["total_s"]
-        told = translate(_CONTEXT, "Certified: every limit is kept at {} poses. {} s at the machine, {} files.")
+        told = translate("PostOutcome", "Certified: every limit is kept at {} poses. {} s at the machine, {} files.")
         self.verdict.setText(told.format(certificate["instants"], seconds, len(posted.files)))
         self._show_diagnostics(posted.diagnostics)
         _fill(self.findings, certificate["findings"])
@@ -94,7 +93,7 @@ class _Picture(QtWidgets.QLabel):
         """Show a picture."""
         self._name = name
         self.setPixmap(QtGui.QPixmap(name).scaledToWidth(_WIDTH, QtCore.Qt.TransformationMode.SmoothTransformation))
-        self.setToolTip(translate(_CONTEXT, "Click to see it in full size"))
+        self.setToolTip(translate("PostOutcome", "Click to see it in full size"))
 
     def mousePressEvent(self, _event: Any) -> None:
         """Show it as it is."""
@@ -103,7 +102,7 @@ class _Picture(QtWidgets.QLabel):
 
 def _table() -> QtWidgets.QTableWidget:
     table = QtWidgets.QTableWidget(0, len(_HEAD))
-    table.setHorizontalHeaderLabels([translate(_CONTEXT, text) for text in _HEAD])
+    table.setHorizontalHeaderLabels([translate("PostOutcome", text) for text in _HEAD])
     table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
     table.verticalHeader().hide()

@@ -19,6 +19,7 @@ from pkm_post.freecad_app.job_to_post import read_for_post
 from pkm_post.freecad_app.post_job import file_name
 from pkm_post.freecad_app.post_processor import program_path
 from pkm_post.freecad_app.progress import Stopped
+from pkm_post.freecad_app.transaction import transaction
 from pkm_post.freecad_gui.deletion_watch import DeletionWatch
 from pkm_post.freecad_gui.post_choices import PostChoices
 from pkm_post.freecad_gui.post_outcome import PostOutcome
@@ -32,7 +33,6 @@ from pkm_post.options import READING, options_from, tool_lengths_from
 translate = FreeCAD.Qt.translate
 
 NAME = "PkmPostPanel"
-_CONTEXT = "PostPanel"
 _PER_MILLE = 1000
 
 
@@ -49,16 +49,20 @@ class PostPanel:
         self.job, self._task, self._target = job, None, Path()
         self.form = QtWidgets.QWidget()
         self.form.setObjectName(NAME)
-        self.form.setWindowTitle(translate(_CONTEXT, "Post to a hexapod"))
+        self.form.setWindowTitle(translate("PostPanel", "Post to a hexapod"))
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "pkm_post.svg")))
         self.choices = PostChoices(own_text(job) or default_arguments(), str(_folder_of(job)))
         self.outcome, self.bar, self.step = PostOutcome(), QtWidgets.QProgressBar(), QtWidgets.QLabel()
         self.bar.setRange(0, _PER_MILLE)
         self.outcome.chosen.connect(self._select)
-        self.post = _button(translate(_CONTEXT, "Post"), self.begin)
-        self.stop = _button(translate(_CONTEXT, "Cancel"), self.cancel)
-        self.folder = _button(translate(_CONTEXT, "Open folder"), self._open_folder)
-        self.simulate = _button(translate(_CONTEXT, "Simulate"), self._simulate)
+        self.post = _button(translate("PostPanel", "Post"), self.begin)
+        self.post.setToolTip(translate("PostPanel", "Write the certified motion program and what goes with it"))
+        self.stop = _button(translate("PostPanel", "Cancel"), self.cancel)
+        self.stop.setToolTip(translate("PostPanel", "Stop behind the step that is being done, and write nothing"))
+        self.folder = _button(translate("PostPanel", "Open folder"), self._open_folder)
+        self.folder.setToolTip(translate("PostPanel", "Show the files that were written"))
+        self.simulate = _button(translate("PostPanel", "Simulate"), self._simulate)
+        self.simulate.setToolTip(translate("PostPanel", "Play the planned motion of the job"))
         self._lay_out()
         self._show_running(False)
         self.folder.setEnabled(False)
@@ -96,9 +100,8 @@ class PostPanel:
         text, job = self.choices.text(), self.job
         chosen = job_arguments(job, text)
         self._target = Path(self.choices.folder.text().strip() or ".").absolute() / file_name(job)
-        job.Document.openTransaction("Post to a hexapod")
-        remember(job, text, str(self._target))
-        job.Document.commitTransaction()
+        with transaction(job.Document, translate("PostPanel", "Post to a hexapod")):
+            remember(job, text, str(self._target))
         return read_for_post(job, chosen.machine, options_from(chosen), tool_lengths_from(chosen))
 
     def cancel(self) -> None:
@@ -106,7 +109,7 @@ class PostPanel:
         if self._task is not None:
             self._task.stop()
             self.stop.setEnabled(False)
-            self.step.setText(translate(_CONTEXT, "Stops behind this step"))
+            self.step.setText(translate("PostPanel", "Stops behind this step"))
 
     def _end(self) -> None:
         task, self._task = self._task, None
@@ -128,9 +131,9 @@ class PostPanel:
         if isinstance(fault, Refused):
             self.outcome.show_refused(fault.diagnostics)
         elif isinstance(fault, Stopped):
-            self.outcome.show_nothing(translate(_CONTEXT, "Stopped. Nothing was written."))
+            self.outcome.show_nothing(translate("PostPanel", "Stopped. Nothing was written."))
         else:
-            self.outcome.show_nothing(translate(_CONTEXT, "An error of the program; the Report view has it."))
+            self.outcome.show_nothing(translate("PostPanel", "An error of the program; the Report view has it."))
 
     def _show_running(self, runs: bool) -> None:
         for part in (self.choices, self.post, self.simulate):
@@ -170,6 +173,7 @@ class PostPanel:
         """Close the panel; what is being posted is stopped before."""
         self._watch.end()
         if self._task is not None:
+            self._task.finished.disconnect(self._end)  # it has nothing to be shown in any more
             self._task.finish()
         FreeCADGui.Control.closeDialog()
         return True
@@ -178,8 +182,8 @@ class PostPanel:
 def open_panel(job: Any) -> PostPanel | None:
     """Show the panel for a job; None if another task panel is open."""
     if FreeCADGui.Control.activeDialog():
-        text = translate(_CONTEXT, "Another task panel is open: close it first.")
-        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), translate(_CONTEXT, "Post to a hexapod"), text)
+        text = translate("PostPanel", "Another task panel is open: close it first.")
+        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), translate("PostPanel", "Post to a hexapod"), text)
         return None
     panel = PostPanel(job)
     FreeCADGui.Control.showDialog(panel)

@@ -17,7 +17,6 @@ translate = FreeCAD.Qt.translate
 GROUP = "User parameter:BaseApp/Preferences/Mod/PkmPost"
 PAGES = "PKM Post"
 """The group of pages in FreeCAD's preferences."""
-_CONTEXT = "PostPreferences"
 _ARGUMENTS, _FOLDER = "Arguments", "Folder"
 
 
@@ -40,10 +39,12 @@ class PostPreferences:
         from pkm_post.freecad_gui.post_choices import PostChoices
 
         self.form = QtWidgets.QWidget()
-        self.form.setWindowTitle(translate(_CONTEXT, "Posting"))
+        self.form.setWindowTitle(translate("PostPreferences", "Posting"))
         self.choices = PostChoices("", "")
-        self.choices.folder.setPlaceholderText(translate(_CONTEXT, "the folder of the document"))
-        told = translate(_CONTEXT, "What the post panel shows at first for a job that has no arguments of its own.")
+        self.choices.folder.setPlaceholderText(translate("PostPreferences", "the folder of the document"))
+        told = translate(
+            "PostPreferences", "What the post panel shows at first for a job that has no arguments of its own."
+        )
         layout = QtWidgets.QVBoxLayout(self.form)
         layout.addWidget(QtWidgets.QLabel(told))
         layout.addWidget(self.choices)

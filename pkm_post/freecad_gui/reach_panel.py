@@ -19,7 +19,6 @@ from pkm_post.freecad_gui.workbench import ICONS
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-_CONTEXT = "PKM_Reach"
 HEAD = (
     QT_TRANSLATE_NOOP("PKM_Reach", "Check"),
     QT_TRANSLATE_NOOP("PKM_Reach", "Least margin"),
@@ -76,16 +75,17 @@ def _verdict(obj: Any) -> str:
 def _table(obj: Any) -> QtWidgets.QTableWidget:
     table = QtWidgets.QTableWidget(len(obj.Checks), len(HEAD))
     table.setObjectName("PkmReachTable")
-    table.setHorizontalHeaderLabels([translate(_CONTEXT, text) for text in HEAD])
+    table.setHorizontalHeaderLabels([translate("PKM_Reach", text) for text in HEAD])
     table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
     table.verticalHeader().hide()
+    where = translate("PKM_Reach", "{}, line {}")
     columns = (
         obj.Checks,
         [f"{margin:.4g} {unit}".rstrip() for margin, unit in zip(obj.LeastMargins, obj.Units, strict=True)],
         obj.ProvenMargins,
         obj.WorstParts,
-        [f"{name}, line {line}" for name, line in zip(obj.WorstOperations, obj.WorstLines, strict=True)],
+        [where.format(name, line) for name, line in zip(obj.WorstOperations, obj.WorstLines, strict=True)],
     )
     for column, texts in enumerate(columns):
         for row, text in enumerate(texts):

@@ -9,13 +9,17 @@ from __future__ import annotations
 
 from typing import Any
 
+import FreeCAD
 import FreeCADGui
 import numpy as np
 from pivy import coin
 
+from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.margin_colours import colours_of, largest, legend
 from pkm_post.freecad_gui.marks import OUT, marks
 from pkm_post.freecad_gui.views import DrawnView
+
+translate = FreeCAD.Qt.translate
 
 _LINE_WIDTH, _MARK_SIZE = 3.0, 11.0
 _WORST_IN_LIMITS = (0.1, 0.2, 0.8)
@@ -51,6 +55,12 @@ class ReachView(DrawnView):
     def doubleClicked(self, vobj: Any) -> bool:
         """Open the findings."""
         return bool(vobj.Document.setEdit(vobj, 0))
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """The findings, and what else there is to do with the job."""
+        add_entry(menu, translate("PKM_Reach", "Open the findings"), lambda: self.doubleClicked(vobj), self.icon)
+        super().setupContextMenu(vobj, menu)
+        add_commands(menu, vobj.Object.Job, "PKM_Simulate", "PKM_Post")
 
     def setEdit(self, vobj: Any, _mode: int = 0) -> bool:
         """Open the findings."""

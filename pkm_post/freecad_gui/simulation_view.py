@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
-from PySide import QtGui
 
+from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.marks import OUT, marks
 from pkm_post.freecad_gui.views import DrawnView
 
@@ -57,7 +57,7 @@ class SimulationView(DrawnView):
         return True
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """The player is in the menu as well."""
-        action = QtGui.QAction(translate("PKM_Simulate", "Open the player"), menu)
-        action.triggered.connect(lambda: self.doubleClicked(vobj))
-        menu.addAction(action)
+        """The player, and what else there is to do with the job."""
+        add_entry(menu, translate("PKM_Simulate", "Open the player"), lambda: self.doubleClicked(vobj), self.icon)
+        super().setupContextMenu(vobj, menu)
+        add_commands(menu, vobj.Object.Job, "PKM_Reach", "PKM_Post")

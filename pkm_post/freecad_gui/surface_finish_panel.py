@@ -20,7 +20,6 @@ translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 _CHOICE, _QUANTITY, _FLAG = "choice", "quantity", "flag"
-_CONTEXT = "PKM_SurfaceFinish"
 ROWS: tuple[tuple[str, str, str], ...] = (
     (_CHOICE, "CoolantMode", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Coolant")),
     (_CHOICE, "Lines", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Lines")),
@@ -41,6 +40,25 @@ ROWS: tuple[tuple[str, str, str], ...] = (
     (_QUANTITY, "CheckSpacing", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Check points, distance")),
 )
 """Kind of field, property and label, from top to bottom."""
+CHOICES: tuple[str, ...] = (
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "None"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Flood"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Mist"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Along U"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Along V"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Parallel planes"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Zigzag"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "One way"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Spiral"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Climb"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Conventional"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "As it comes"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Distance"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Scallop height"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Tangent"),
+    QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Arc"),
+)
+"""What the properties with choices may be; documents keep the English words."""
 
 
 class SurfaceFinishPage(CamGui.TaskPanelPage):
@@ -51,13 +69,13 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
         form = QtWidgets.QWidget()
         layout = QtWidgets.QFormLayout(form)
         form.controllers = QtWidgets.QComboBox()
-        layout.addRow(translate(_CONTEXT, "Tool controller"), form.controllers)
+        layout.addRow(translate("PKM_SurfaceFinish", "Tool controller"), form.controllers)
         form.fields = {}
         for kind, name, label in ROWS:
             field = _FIELDS[kind]()
-            field.setToolTip(self.obj.getDocumentationOfProperty(name))
+            field.setToolTip(translate("App::Property", self.obj.getDocumentationOfProperty(name)))
             form.fields[name] = field
-            layout.addRow(translate(_CONTEXT, label), field)
+            layout.addRow(translate("PKM_SurfaceFinish", label), field)
         form.quantities = {
             name: CamUtil.QuantitySpinBox(form.fields[name], self.obj, name)
             for kind, name, _ in ROWS
@@ -69,11 +87,12 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
         """Show what the properties are."""
         labels = [controller.Label for controller in PathUtils.getToolControllers(obj)]
         current = obj.ToolController.Label if obj.ToolController else ""
-        _show(self.form.controllers, labels, current)
+        _show(self.form.controllers, labels, labels, current)
         for kind, name, _ in ROWS:
             field = self.form.fields[name]
             if kind == _CHOICE:
-                _show(field, obj.getEnumerationsOfProperty(name), getattr(obj, name))
+                words = obj.getEnumerationsOfProperty(name)
+                _show(field, [translate("PKM_SurfaceFinish", word) for word in words], words, getattr(obj, name))
             elif kind == _FLAG:
                 field.setChecked(getattr(obj, name))
             else:
@@ -89,7 +108,7 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
             if kind == _QUANTITY:
                 self.form.quantities[name].updateProperty()
                 continue
-            value = field.currentText() if kind == _CHOICE else field.isChecked()
+            value = field.currentData() if kind == _CHOICE else field.isChecked()
             if getattr(obj, name) != value:
                 setattr(obj, name, value)
 
@@ -101,12 +120,13 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
         ]
 
 
-def _show(box: Any, texts: list[str], current: str) -> None:
-    """Fill a box with choices, telling nobody."""
+def _show(box: Any, texts: list[str], words: list[str], current: str) -> None:
+    """Fill a box with choices, telling nobody; each shows a text and stands for a word."""
     box.blockSignals(True)
     box.clear()
-    box.addItems(texts)
-    box.setCurrentIndex(max(box.findText(current), 0))
+    for text, word in zip(texts, words, strict=True):
+        box.addItem(text, word)
+    box.setCurrentIndex(max(box.findData(current), 0))
     box.blockSignals(False)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import Path.Op.Gui.Base as CamGui
 import Path.Op.Gui.Selection as CamSelection
 
+from pkm_post.freecad_gui.context_menu import add_commands, add_switch
 from pkm_post.freecad_gui.surface_finish_panel import SurfaceFinishPage
 from pkm_post.freecad_gui.workbench import ICONS
 
@@ -30,6 +31,12 @@ class SurfaceFinishView(CamGui.ViewProvider):
     def getSelectionFactory(self) -> Any:
         """Faces can be picked, as for CAM's own surface operation."""
         return CamSelection.select("Surface")
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """CAM's own entry, which opens the panel, and what can be made of the operation."""
+        super().setupContextMenu(vobj, menu)
+        add_switch(menu, vobj.Object)
+        add_commands(menu, vobj.Object, "PKM_Mirror", "PKM_Rotate")
 
     def dumps(self) -> None:
         """Nothing is saved: where the icon lies is another place on another computer."""

@@ -29,6 +29,11 @@ def text_of(side: str) -> str:
     return str(translate("SymmetryPanel", _SIDES[side]))
 
 
+def said_of(obj: Any, name: str) -> str:
+    """What is said of a property, as the tool tip of its field."""
+    return str(translate("App::Property", obj.getDocumentationOfProperty(name)))
+
+
 def quantity(unit: str, changed: Callable[..., None]) -> Any:
     """A field with a unit, or for a number if there is none; it tells when it was edited."""
     field = FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox")

@@ -15,8 +15,9 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_gui.symmetry_fields import Three, angles_of, quantity, text_of, told_angles
-from pkm_post.freecad_gui.symmetry_frames import AXIS, PLANE
+from pkm_post.freecad_gui.symmetry_fields import angles_of, quantity, said_of, text_of, told_angles
+from pkm_post.freecad_gui.symmetry_frames import PLANE
+from pkm_post.freecad_gui.symmetry_place import SymmetryPlace
 from pkm_post.freecad_gui.symmetry_text import report_lines
 
 translate = FreeCAD.Qt.translate
@@ -31,6 +32,7 @@ class SymmetryPanel:
     Attributes:
         obj: the mirrored or turned operation.
         form: the widget, with the fields as attributes of the panel.
+        place: the fields for the plane or the axis.
         opened: the panel that is open.
     """
 
@@ -38,7 +40,6 @@ class SymmetryPanel:
 
     def __init__(self, obj: Any) -> None:
         self.obj = obj
-        self.frame = PLANE if hasattr(obj, PLANE.direction) else AXIS
         if not obj.Document.HasPendingTransaction:  # a command leaves that of a new object open
             obj.Document.openTransaction(translate("SymmetryPanel", "Edit symmetric operation"))
         self.form = QtWidgets.QWidget()
@@ -47,8 +48,8 @@ class SymmetryPanel:
         self._fields = QtWidgets.QFormLayout(self.form)
         self._later = QtCore.QTimer(self.form, singleShot=True, interval=_A_MOMENT)
         self._later.timeout.connect(self.compute)
-        self._add_frame()
-        if self.frame is PLANE:
+        self.place = SymmetryPlace(obj, self._fields, self.apply, self._later.start)
+        if self.place.frame is PLANE:
             self._add_climb()
         else:
             self._add_turns()
@@ -59,24 +60,11 @@ class SymmetryPanel:
         FreeCADGui.Selection.addObserver(self)
         SymmetryPanel.opened = self
 
-    def _add_frame(self) -> None:
-        choices = [translate("SymmetryPanel", text) for text, _ in self.frame.choices]
-        picked, typed = translate("SymmetryPanel", "Picked"), translate("SymmetryPanel", "Typed in")
-        self.choice = QtWidgets.QComboBox()
-        self.choice.addItems([*choices, picked, typed])
-        self.choice.currentIndexChanged.connect(self.choose)
-        self.picked = QtWidgets.QLabel(wordWrap=True)
-        self.direction, self.point = Three("", self.apply), Three("mm", self.apply)
-        self._fields.addRow(translate("SymmetryPanel", self.frame.label), self.choice)
-        self._fields.addRow(self.picked)
-        self._fields.addRow(translate("SymmetryPanel", "Direction"), self.direction)
-        self._fields.addRow(translate("SymmetryPanel", "Point"), self.point)
-
     def _add_climb(self) -> None:
         self.keep_climb = QtWidgets.QCheckBox(
             translate("SymmetryPanel", "Keep climb milling: run passes the other way")
         )
-        self.keep_climb.setToolTip(self.obj.getDocumentationOfProperty("KeepClimb"))
+        self.keep_climb.setToolTip(said_of(self.obj, "KeepClimb"))
         self.keep_climb.toggled.connect(self.apply)
         self._fields.addRow(self.keep_climb)
 
@@ -86,6 +74,8 @@ class SymmetryPanel:
         self.angles = QtWidgets.QLineEdit()
         self.angles.setPlaceholderText(translate("SymmetryPanel", "such as 90; 180; 270, in place of the two above"))
         self.angles.editingFinished.connect(self.apply)
+        for name, field in (("Angle", self.angle), ("Copies", self.copies), ("Angles", self.angles)):
+            field.setToolTip(said_of(self.obj, name))
         self._fields.addRow(translate("SymmetryPanel", "Angle"), self.angle)
         self._fields.addRow(translate("SymmetryPanel", "Copies"), self.copies)
         self._fields.addRow(translate("SymmetryPanel", "Angles"), self.angles)
@@ -93,19 +83,16 @@ class SymmetryPanel:
     def _add_side(self) -> None:
         self.side = QtWidgets.QComboBox()
         self.side.addItems([text_of(name) for name in self.obj.getEnumerationsOfProperty("MaterialSide")])
-        self.side.setToolTip(self.obj.getDocumentationOfProperty("MaterialSide"))
+        self.side.setToolTip(said_of(self.obj, "MaterialSide"))
         self.side.currentIndexChanged.connect(self.apply)
         self._fields.addRow(translate("SymmetryPanel", "Material"), self.side)
 
     def show(self) -> None:
         """Show what the properties are, and the report."""
-        obj, frame = self.obj, self.frame
+        obj = self.obj
         blockers = [QtCore.QSignalBlocker(field) for field in self.form.findChildren(QtWidgets.QWidget)]
-        direction = tuple(getattr(obj, frame.direction))
-        chosen = self._chosen(direction)
-        self.choice.setCurrentIndex(chosen)
-        self._show_frame()
-        if frame is PLANE:
+        self.place.show()
+        if self.place.frame is PLANE:
             self.keep_climb.setChecked(obj.KeepClimb)
         else:
             self.angle.setProperty("rawValue", obj.Angle.Value)
@@ -115,73 +102,16 @@ class SymmetryPanel:
         self.report.setText("\n".join(report_lines(obj)))
         del blockers
 
-    def _show_frame(self) -> None:
-        """Show direction and point, what of them can be typed in, and what was picked."""
-        chosen = self.choice.currentIndex()
-        self._tell(self._told_pick())
-        self.direction.show_values(getattr(self.obj, self.frame.direction), enabled=chosen == self._pick_index + 1)
-        self.point.show_values(self.obj.Point, enabled=chosen != self._pick_index)
-
-    def _chosen(self, direction: tuple[float, ...]) -> int:
-        """Which choice is shown: who picks or types goes on with it, whatever the direction is."""
-        if getattr(self.obj, self.frame.link):
-            return self._pick_index
-        if self.choice.currentIndex() >= self._pick_index:
-            return int(self.choice.currentIndex())
-        known: list[tuple[float, ...]] = [each for _, each in self.frame.choices]
-        return known.index(direction) if direction in known else len(known) + 1
-
-    def _tell(self, text: str) -> None:
-        """Say what is picked, or what could be."""
-        self.picked.setText(text)
-        self.picked.setVisible(bool(text))
-
-    def _told_pick(self) -> str:
-        link = getattr(self.obj, self.frame.link)
-        if link:
-            return " ".join([link[0].Label, *link[1]]).strip()
-        return translate("SymmetryPanel", self.frame.hint) if self.choice.currentIndex() == self._pick_index else ""
-
-    @property
-    def _pick_index(self) -> int:
-        return len(self.frame.choices)
-
-    def choose(self, index: int) -> None:
-        """Take the plane or axis that is chosen, or wait for one to be picked."""
-        if index != self._pick_index:
-            setattr(self.obj, self.frame.link, None)
-        if index < self._pick_index:
-            setattr(self.obj, self.frame.direction, FreeCAD.Vector(*self.frame.choices[index][1]))
-        self._show_frame()
-        self._later.start()
-
     def addSelection(self, document: str, name: str, element: str, _point: Any) -> None:
         """Take what is picked in the 3D view or in the tree while the panel waits for it."""
-        item = FreeCAD.getDocument(document).getObject(name)
-        if self.choice.currentIndex() != self._pick_index or item.Document != self.obj.Document:
-            return
-        if self.obj == item or self.obj in item.OutListRecursive:
-            self._tell(translate("SymmetryPanel", "It depends on this operation"))
-            return
-        link = (item, [element])
-        try:
-            self.frame.read(link)
-        except ValueError as unfit:
-            self._tell(str(unfit))
-            return
-        setattr(self.obj, self.frame.link, link)
-        self._tell(self._told_pick())
-        self._later.start()
+        self.place.pick(FreeCAD.getDocument(document).getObject(name), element)
 
     def apply(self, *_: Any) -> None:
         """Set the properties that differ from the fields."""
         sides = self.obj.getEnumerationsOfProperty("MaterialSide")
         values: dict[str, Any] = {"MaterialSide": sides[self.side.currentIndex()]}
-        if self.direction.isEnabled() and self.direction.vector().Length > 0:
-            values[self.frame.direction] = self.direction.vector()
-        if self.point.isEnabled():
-            values["Point"] = self.point.vector()
-        if self.frame is PLANE:
+        values |= self.place.values()
+        if self.place.frame is PLANE:
             values["KeepClimb"] = self.keep_climb.isChecked()
         else:
             values |= {"Angle": FreeCAD.Units.Quantity(self.angle.property("rawValue"), FreeCAD.Units.Angle)}
@@ -199,8 +129,7 @@ class SymmetryPanel:
         self._later.stop()
         self.obj.Document.recompute()
         self.report.setText("\n".join(report_lines(self.obj)))
-        if getattr(self.obj, self.frame.link):  # other fields may be being typed in
-            self._show_frame()
+        self.place.follow()
 
     def accept(self) -> bool:
         """Keep everything, as one step of undo."""
@@ -214,10 +143,15 @@ class SymmetryPanel:
         self._close(self.obj.Document.abortTransaction)
         return True
 
-    def _close(self, end: Callable[[], None]) -> None:
+    def release(self) -> None:
+        """Compute nothing any more, and take nothing that is picked."""
         self._later.stop()
-        FreeCADGui.Selection.removeObserver(self)
-        SymmetryPanel.opened = None
+        if SymmetryPanel.opened is self:
+            FreeCADGui.Selection.removeObserver(self)
+            SymmetryPanel.opened = None
+
+    def _close(self, end: Callable[[], None]) -> None:
+        self.release()
         document = self.obj.Document
         end()  # first: leaving the edit mode would commit
         FreeCADGui.getDocument(document.Name).resetEdit()

@@ -51,6 +51,8 @@ def _mirror(obj: Any) -> list[str]:
     if obj.ReversedPasses:
         text = translate("SymmetryPanel", "Passes that are run the other way: {}")
         lines.append(text.format(obj.ReversedPasses))
+    if obj.SwappedArcs:
+        lines.append(translate("SymmetryPanel", "Arcs that turn the other way: {}").format(obj.SwappedArcs))
     if obj.GapToBase.Value:
         lines.append(translate("SymmetryPanel", "Between original and copy: {}").format(obj.GapToBase.UserString))
     if obj.OverlapWithBase.Value:

@@ -7,12 +7,17 @@ format.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
+import FreeCAD
 import FreeCADGui
 
+from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.views import View
 from pkm_post.freecad_gui.workbench import ICONS
+
+translate = FreeCAD.Qt.translate
 
 
 class SymmetryView(View):
@@ -26,6 +31,12 @@ class SymmetryView(View):
         """Open the panel."""
         return bool(vobj.Document.setEdit(vobj, 0))
 
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """The panel, and further copies."""
+        add_entry(menu, translate("SymmetryPanel", "Edit"), lambda: self.doubleClicked(vobj), Path(self.getIcon()).name)
+        super().setupContextMenu(vobj, menu)
+        add_commands(menu, vobj.Object, "PKM_Mirror", "PKM_Rotate")
+
     def setEdit(self, vobj: Any, _mode: int = 0) -> bool:
         """Open the panel."""
         from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
@@ -34,6 +45,10 @@ class SymmetryView(View):
         return True
 
     def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
-        """Close the panel."""
+        """Close the panel; FreeCAD asks for that as well when another object is edited, or the document closed."""
+        from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
+        if SymmetryPanel.opened is not None:
+            SymmetryPanel.opened.release()
         FreeCADGui.Control.closeDialog()
         return True

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 from pivy import coin
 
+from pkm_post.freecad_gui.context_menu import add_switch
 from pkm_post.freecad_gui.workbench import ICONS
 
 
@@ -39,6 +40,11 @@ class View:
     def claimChildren(self) -> list[Any]:
         """No children: what an object is made from has its own place in the tree."""
         return []
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """FreeCAD asks for the entries of the menu beside its own: a switch, where the object has one."""
+        if hasattr(vobj.Object, "Active"):
+            add_switch(menu, vobj.Object)
 
     def dumps(self) -> None:
         """Nothing is saved."""

@@ -6,17 +6,23 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar
 
+import FreeCAD
 import FreeCADGui
 
-ICONS = Path(__file__).parents[2] / "resources" / "icons"
+_RESOURCES = Path(__file__).parents[2] / "resources"
+ICONS = _RESOURCES / "icons"
+TRANSLATIONS = _RESOURCES / "translations"
 
 
 class PkmPostWorkbench(FreeCADGui.Workbench):
     """Symmetry and posting for machines with six struts, beside CAM."""
 
     MenuText = "PKM Post"
-    ToolTip = "Post CAM jobs to hexapod machine tools"
     Icon = str(ICONS / "pkm_post.svg")
+
+    def __init__(self):
+        # FreeCAD takes it from the class, as it is
+        PkmPostWorkbench.ToolTip = FreeCAD.Qt.translate("Workbench", "Post CAM jobs to hexapod machine tools")
 
     def Initialize(self):
         """Called by FreeCAD when the workbench is first shown."""
@@ -45,10 +51,12 @@ class CamMenu:
 
 
 def install() -> None:
-    """Register workbench, commands and preferences; called once from InitGui.py."""
+    """Register translations, workbench, commands and preferences; called once from InitGui.py."""
     from pkm_post.freecad_gui import preferences
     from pkm_post.freecad_gui.commands import register
 
+    FreeCADGui.addLanguagePath(str(TRANSLATIONS))
+    FreeCADGui.updateLocale()  # FreeCAD has chosen its language before it looks for add-ons
     register()
     preferences.install()
     FreeCADGui.addWorkbench(PkmPostWorkbench())

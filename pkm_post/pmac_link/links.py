@@ -6,8 +6,9 @@ Enters and leaves: bytes. Reading and writing have deadlines; a link that is gon
 
 from __future__ import annotations
 
+import abc
 import socket
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from pkm_post.pmac_link.faults import LinkLostError
 
@@ -48,51 +49,75 @@ class Link(Protocol):
         """Close it; more than once does no harm."""
 
 
-class TcpLink:
-    """A TCP connection."""
+class SocketLink(abc.ABC):
+    """What links over a network have in common.
+
+    Attributes:
+        host: name or address.
+        number: of the TCP port.
+        timeout: seconds to connect, and to send.
+    """
 
     def __init__(self, host: str, number: int, timeout: float) -> None:
-        """Make a link, not yet connected.
+        """Make a link, not yet connected."""
+        self.host, self.number, self.timeout = host, number, timeout
 
-        Args:
-            host: name or address.
-            number: of the TCP port.
-            timeout: seconds to connect, and to send.
+    @abc.abstractmethod
+    def connection(self) -> Any:
+        """What is connected: a socket, or what behaves like one.
+
+        Raises:
+            LinkLostError: nothing is.
         """
-        self._host, self._number, self._timeout = host, number, timeout
-        self._socket: socket.socket | None = None
 
     def read(self, timeout: float) -> bytes:
         """As ``Link``."""
-        connection = self._connection()
+        connection = self.connection()
         connection.settimeout(max(timeout, 1e-3))
         try:
-            data = connection.recv(CHUNK)
+            data = bytes(connection.recv(CHUNK))
         except TimeoutError:
             return b""
         except OSError as fault:
-            raise LinkLostError(f"{self._host}: {fault}") from fault
+            raise LinkLostError(f"{self.host}: {fault}") from fault
         if not data:
-            raise LinkLostError(f"{self._host} closed the connection")
+            raise LinkLostError(f"{self.host} closed the connection")
         return data
 
     def write(self, data: bytes) -> None:
         """As ``Link``."""
-        connection = self._connection()
-        connection.settimeout(self._timeout)
+        connection = self.connection()
+        connection.settimeout(self.timeout)
         try:
-            connection.sendall(data, WITHOUT_SIGNAL)
+            self.send_all(connection, data)
         except OSError as fault:
-            raise LinkLostError(f"{self._host}: {fault}") from fault
+            raise LinkLostError(f"{self.host}: {fault}") from fault
+
+    def send_all(self, connection: Any, data: bytes) -> None:
+        """Send every byte."""
+        connection.sendall(data)
+
+
+class TcpLink(SocketLink):
+    """A TCP connection."""
+
+    def __init__(self, host: str, number: int, timeout: float) -> None:
+        """Make a link, not yet connected."""
+        super().__init__(host, number, timeout)
+        self._socket: socket.socket | None = None
+
+    def send_all(self, connection: socket.socket, data: bytes) -> None:
+        """A peer that has gone is told by an exception, not by a signal."""
+        connection.sendall(data, WITHOUT_SIGNAL)
 
     def restart(self) -> None:
         """As ``Link``."""
         self.close()
         try:
-            self._socket = socket.create_connection((self._host, self._number), self._timeout)
+            self._socket = socket.create_connection((self.host, self.number), self.timeout)
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         except OSError as fault:
-            raise LinkLostError(f"{self._host}, port {self._number}: {fault}") from fault
+            raise LinkLostError(f"{self.host}, port {self.number}: {fault}") from fault
 
     def close(self) -> None:
         """As ``Link``."""
@@ -100,9 +125,10 @@ class TcpLink:
             self._socket.close()
             self._socket = None
 
-    def _connection(self) -> socket.socket:
+    def connection(self) -> socket.socket:
+        """As ``SocketLink``."""
         if self._socket is None:
-            raise LinkLostError(f"{self._host} is not connected")
+            raise LinkLostError(f"{self.host} is not connected")
         return self._socket
 
 

@@ -20,7 +20,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from pkm_post.pmac_link.faults import LinkLostError, NoAccessError
-from pkm_post.pmac_link.links import CHUNK, WITHOUT_SIGNAL
+from pkm_post.pmac_link.links import WITHOUT_SIGNAL, SocketLink
 
 if TYPE_CHECKING:
     import paramiko
@@ -36,7 +36,7 @@ _COLUMNS = 1000
 """Of the terminal: a line that is longer may be echoed in several."""
 
 
-class SshLink:
+class SshLink(SocketLink):
     """A shell over ssh."""
 
     def __init__(self, host: str, number: int, user: str, known_hosts: Path | None, timeout: float) -> None:
@@ -49,34 +49,11 @@ class SshLink:
             known_hosts: file with the host keys that are trusted; the user's own unless given.
             timeout: seconds for each step of connecting, and to send.
         """
-        self._host, self._number, self._user = host, number, user
-        self._known_hosts, self._timeout = known_hosts, timeout
+        super().__init__(host, number, timeout)
+        self._user, self._known_hosts = user, known_hosts
         self._password = os.environ.get(PASSWORD)
         self._client: paramiko.SSHClient | None = None
         self._channel: paramiko.Channel | None = None
-
-    def read(self, timeout: float) -> bytes:
-        """As ``links.Link``."""
-        channel = self._open_channel()
-        channel.settimeout(max(timeout, 1e-3))
-        try:
-            data = channel.recv(CHUNK)
-        except TimeoutError:
-            return b""
-        except OSError as fault:
-            raise LinkLostError(f"{self._host}: {fault}") from fault
-        if not data:
-            raise LinkLostError(f"{self._host} closed the connection")
-        return data
-
-    def write(self, data: bytes) -> None:
-        """As ``links.Link``."""
-        channel = self._open_channel()
-        channel.settimeout(self._timeout)
-        try:
-            channel.sendall(data)
-        except OSError as fault:
-            raise LinkLostError(f"{self._host}: {fault}") from fault
 
     def restart(self) -> None:
         """As ``links.Link``; logs in anew.
@@ -91,17 +68,17 @@ class SshLink:
             self._log_in(ssh)
         except ssh.AuthenticationException as fault:
             if not self._asked_password():
-                raise NoAccessError(f"{self._host} does not let {self._user} in: {fault} {_CURE}") from fault
+                raise NoAccessError(f"{self.host} does not let {self._user} in: {fault} {_CURE}") from fault
             self.restart()
         except ssh.BadHostKeyException as fault:
-            raise NoAccessError(f"{self._host} IS NOT WHO IT WAS: its host key has changed. {fault}") from fault
+            raise NoAccessError(f"{self.host} IS NOT WHO IT WAS: its host key has changed. {fault}") from fault
         except (OSError, EOFError, ssh.SSHException) as fault:
             if _NOTHING_TO_OFFER in str(fault) and self._asked_password():
                 self.restart()
                 return
             if _NOTHING_TO_OFFER in str(fault):
-                raise NoAccessError(f"{self._host} wants a key or a password of {self._user}: {_CURE}") from fault
-            raise LinkLostError(f"{self._host}, port {self._number}: {fault}") from fault
+                raise NoAccessError(f"{self.host} wants a key or a password of {self._user}: {_CURE}") from fault
+            raise LinkLostError(f"{self.host}, port {self.number}: {fault}") from fault
 
     def close(self) -> None:
         """As ``links.Link``."""
@@ -109,9 +86,10 @@ class SshLink:
             self._client.close()
         self._client = self._channel = None
 
-    def _open_channel(self) -> paramiko.Channel:
+    def connection(self) -> paramiko.Channel:
+        """As ``links.SocketLink``."""
         if self._channel is None:
-            raise LinkLostError(f"{self._host} is not connected")
+            raise LinkLostError(f"{self.host} is not connected")
         return self._channel
 
     def _log_in(self, ssh: ModuleType) -> None:
@@ -119,14 +97,14 @@ class SshLink:
         client = self._client = ssh.SSHClient()
         client.set_log_channel(_LOG.name)
         self._trust(client, ssh)
-        connection = _Socket(socket.create_connection((self._host, self._number), self._timeout))
+        connection = _Socket(socket.create_connection((self.host, self.number), self.timeout))
         # Some steps of paramiko have no deadline of their own; closing ends them.
-        deadline = threading.Timer(4 * self._timeout, client.close)
+        deadline = threading.Timer(4 * self.timeout, client.close)
         deadline.start()
         try:
             client.connect(
-                self._host, self._number, self._user, self._password, sock=connection,
-                timeout=self._timeout, banner_timeout=self._timeout, auth_timeout=self._timeout,
+                self.host, self.number, self._user, self._password, sock=connection,
+                timeout=self.timeout, banner_timeout=self.timeout, auth_timeout=self.timeout,
             )  # fmt: skip
             self._channel = client.invoke_shell(term="dumb", width=_COLUMNS)
         except BaseException:
@@ -138,7 +116,7 @@ class SshLink:
 
     def _trust(self, client: paramiko.SSHClient, ssh: ModuleType) -> None:
         """Make a client trust the keys that are known, and no other."""
-        host, number = self._host, self._number
+        host, number = self.host, self.number
 
         class Refuse(ssh.MissingHostKeyPolicy):  # type: ignore[misc,name-defined]
             def missing_host_key(self, client: paramiko.SSHClient, name: str, key: paramiko.PKey) -> None:
@@ -160,7 +138,7 @@ class SshLink:
         """Ask the user once for a password; whether there is one to try now."""
         if self._password is not None or not _has_listener():
             return False
-        self._password = getpass.getpass(f"password of {self._user} at {self._host}: ")
+        self._password = getpass.getpass(f"password of {self._user} at {self.host}: ")
         return True
 
 

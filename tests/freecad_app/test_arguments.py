@@ -45,6 +45,11 @@ def test_what_only_another_post_processor_understands_is_left_out(job):
     assert own_text(job) == ""
 
 
+def test_a_quote_that_does_not_close_is_left_to_who_reads_it(job):
+    job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--machine 'my machine.toml"
+    assert own_text(job) == job.PostProcessorArgs
+
+
 def test_cam_posts_what_the_job_remembers(job, tmp_path):
     add_operation(job)
     job.PostProcessor, text = "linuxcnc", "--work-offset=0,0,250 --tip-tolerance=0.01"

@@ -38,7 +38,14 @@ def test_post_processors_are_where_newer_versions_of_freecad_look():
 
 def test_dependencies():
     depends = {depend["package"]: depend["optional"] for depend in PACKAGE.Depend}
-    assert depends == {"CAM": False, "numpy": False, "lark": True, "pyserial": True, "matplotlib": True, "paramiko": True}
+    assert depends == {
+        "CAM": False,
+        "numpy": False,
+        "lark": True,
+        "pyserial": True,
+        "matplotlib": True,
+        "paramiko": True,
+    }
 
 
 def test_licence_and_icons_are_there():

@@ -132,13 +132,16 @@ def test_decoded_with_the_controller_of_its_tool(document, tmp_path):
     assert decode(obj, job).ToolController == controller
 
 
-def test_what_an_operation_cannot_say_is_told(document, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("code", "lost"), [("G61", "exact stops"), ("G61.1", "exact paths"), ("G64 P0.05", "tolerances of the path")]
+)
+def test_what_an_operation_cannot_say_is_told(document, tmp_path, monkeypatch, code, lost):
     told = []
     monkeypatch.setattr("pkm_post.freecad_app.program_object._tell", told.extend)
-    obj = create_program(document, written(tmp_path, "a.ngc", GCODE.replace("G17", "G17 G61")))
+    obj = create_program(document, written(tmp_path, "a.ngc", GCODE.replace("G17", f"{code}\nG17", 1)))
     decode(obj, new_job(document))
     assert [each.code for each in told] == ["J120"]
-    assert "exact stops" in told[0].found
+    assert lost in told[0].found
 
 
 def test_faulty_program_is_not_decoded(document, tmp_path):

@@ -40,6 +40,13 @@ def test_passes_of_a_mirror_are_run_the_other_way(quarter):
     assert copy.ReversedPasses == 1
 
 
+@pytest.mark.parametrize(("keep", "swapped"), [(False, 1), (True, 0)])
+def test_arcs_that_turn_the_other_way_are_counted(quarter, keep, swapped):
+    copy = recomputed(create_mirror(quarter, (0, 1, 0), keep_climb=keep))
+    assert [name for name, _ in moves(copy)][3] == ("G2" if swapped else "G3")
+    assert copy.SwappedArcs == swapped
+
+
 @pytest.mark.parametrize(("keep", "found"), [(False, "Conventional"), (True, "Climb")])
 def test_climb_milling_is_kept_where_it_is_asked_for(quarter, keep, found):
     copy = climbing(create_mirror(quarter, (0, 1, 0), keep_climb=keep))

@@ -49,13 +49,13 @@ def mirror_from_its_button():
     panel = panel_of()
     told = {
         "open": opened(document),
-        "choices": [panel.choice.itemText(index) for index in range(panel.choice.count())],
-        "chosen": panel.choice.currentText(),
+        "choices": [panel.place.choice.itemText(index) for index in range(panel.place.choice.count())],
+        "chosen": panel.place.choice.currentText(),
         "report": panel.report.text(),
     }
-    panel.choice.setCurrentIndex(2)
-    panel.point.fields[0].setProperty("rawValue", 5.0)
-    panel.point.fields[0].editingFinished.emit()
+    panel.place.choice.setCurrentIndex(2)
+    panel.place.point.fields[0].setProperty("rawValue", 5.0)
+    panel.place.point.fields[0].editingFinished.emit()
     panel.side.setCurrentIndex(1)
     panel.keep_climb.setChecked(True)
     told["computed later"] = until(lambda: made.ReversedPasses == 1 and "1" in panel.report.text())
@@ -102,7 +102,7 @@ def edit_by_double_click():
     before = document.UndoCount
     view.Proxy.doubleClicked(view)
     settle()
-    panel_of().choice.setCurrentIndex(0)
+    panel_of().place.choice.setCurrentIndex(0)
     panel_of().compute()
     inside = list(made.Normal)
     panel_of().reject()
@@ -110,9 +110,9 @@ def edit_by_double_click():
     told = {"inside": inside, "rejected": list(made.Normal), "undo": document.UndoCount - before}
     view.Proxy.doubleClicked(view)
     settle()
-    panel_of().choice.setCurrentIndex(4)
+    panel_of().place.choice.setCurrentIndex(4)
     for values in ((0.0, 0.0, 0.0), (1.0, 1.0, 0.0)):
-        for field, value in zip(panel_of().direction.fields, values, strict=True):
+        for field, value in zip(panel_of().place.direction.fields, values, strict=True):
             field.setProperty("rawValue", value)
         if not any(values):
             panel_of().apply()
@@ -138,23 +138,23 @@ def plane_by_a_picked_face_and_a_datum_plane():
     made.ViewObject.Proxy.doubleClicked(made.ViewObject)
     settle()
     panel = panel_of()
-    panel.choice.setCurrentIndex(3)
-    told = {"hint": panel.picked.text()}
+    panel.place.choice.setCurrentIndex(3)
+    told = {"hint": panel.place.picked.text()}
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Edge1")
-    told["unfit"] = panel.picked.text()
+    told["unfit"] = panel.place.picked.text()
     FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Face2")
-    told["face"] = panel.picked.text()
+    told["face"] = panel.place.picked.text()
     panel.compute()
     told["plane of face"] = [list(made.Point), list(made.Normal)]
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(body, "Datum.")
     panel.compute()
-    told["datum"] = panel.picked.text()
+    told["datum"] = panel.place.picked.text()
     told["plane of datum"] = [list(made.Point), [abs(round(each, 9)) for each in made.Normal]]
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(made)
-    told["itself"] = panel.picked.text()
+    told["itself"] = panel.place.picked.text()
     panel.accept()
     settle()
     told["link"] = made.Plane[0].Label
@@ -162,6 +162,27 @@ def plane_by_a_picked_face_and_a_datum_plane():
     document.recompute()
     told["follows"] = round(made.Point.y, 9)
     return told
+
+
+@step
+def another_edit_leaves_nothing_behind():
+    from pkm_post.freecad_app.symmetry import create_mirror
+
+    document, base = quadrant("left")
+    made = create_mirror(base, (0, 1, 0))
+    document.recompute()
+    made.ViewObject.Proxy.doubleClicked(made.ViewObject)
+    settle()
+    panel = panel_of()
+    FreeCADGui.getDocument(document.Name).resetEdit()
+    settle()
+    told = {"panel": panel_of() is not None, "dialog": bool(FreeCADGui.Control.activeDialog())}
+    picks = []
+    panel.place.pick = lambda *args: picks.append(args)
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(base)
+    settle()
+    return told | {"picks": len(picks), "open": opened(document)}
 
 
 @step
@@ -185,7 +206,7 @@ def turns_with_their_report():
     told["list report"] = panel.report.text()
     panel.angles.setText("")
     panel.angles.editingFinished.emit()
-    panel.choice.setCurrentIndex(3)
+    panel.place.choice.setCurrentIndex(3)
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Edge1")
     panel.compute()

@@ -66,6 +66,11 @@ def test_plane_is_picked_and_followed(session):
     assert found["follows"] == 9
 
 
+def test_a_panel_that_another_edit_closes_watches_no_longer(session):
+    found = session["another_edit_leaves_nothing_behind"]
+    assert found == {"panel": False, "dialog": False, "picks": 0, "open": False}
+
+
 def test_turns_by_number_and_by_list(session):
     found = session["turns_with_their_report"]
     # FreeCAD 1.0 writes a space before the sign of degrees, later ones do not.

@@ -22,6 +22,7 @@ def test_workbench_has_its_commands(session):
         "Simulate",
         "Program editor",
         "Post to a hexapod",
+        "Numerical control",
     ]
     assert all(found["icons"])
 

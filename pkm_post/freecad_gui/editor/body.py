@@ -132,7 +132,8 @@ class Body(QtWidgets.QWidget):
         self.findings.show_all(checked.diagnostics)
         lines = self.text.toPlainText().split("\n")
         self.text.set_marks(marks_of(checked.diagnostics, lines, self.language()))
-        self.size.setText("" if size is None else f"{size.blocks} blocks, {size.arcs} arcs, {size.length:.1f} mm")
+        text = translate("PKM_Editor", "{} blocks, {} arcs, {:.1f} mm")
+        self.size.setText("" if size is None else text.format(size.blocks, size.arcs, size.length))
         self._show_block()
 
     def _jump(self, line: int, column: int) -> None:

@@ -60,13 +60,38 @@ class ProgramEditor(QtWidgets.QDockWidget):
         bar, keys = QtWidgets.QToolBar(parent), QtGui.QKeySequence.StandardKey
         find, renumber = self.body.find_bar, self.body.renumber
         rows: tuple[tuple[str, str, Any, Callable[[], Any]], ...] = (
-            (translate(NAME, "Open"), translate(NAME, "Open a part program"), keys.Open, self.ask_and_open),
-            (translate(NAME, "Save"), translate(NAME, "Save the part program"), keys.Save, self.save),
-            (translate(NAME, "Save as"), translate(NAME, "Save under another name"), keys.SaveAs, self.save_as),
-            (translate(NAME, "Find"), translate(NAME, "Find and replace"), keys.Find, find.begin),
-            (translate(NAME, "Renumber"), translate(NAME, "Give each block a line number"), None, renumber),
-            (translate(NAME, "Decode"), translate(NAME, "Make it an operation of a CAM job"), None, self.decode),
-            (translate(NAME, "Post"), translate(NAME, "Write a certified motion program"), None, self.post),
+            (
+                translate("PKM_Editor", "Open"),
+                translate("PKM_Editor", "Open a part program"),
+                keys.Open,
+                self.ask_and_open,
+            ),
+            (translate("PKM_Editor", "Save"), translate("PKM_Editor", "Save the part program"), keys.Save, self.save),
+            (
+                translate("PKM_Editor", "Save as"),
+                translate("PKM_Editor", "Save under another name"),
+                keys.SaveAs,
+                self.save_as,
+            ),
+            (translate("PKM_Editor", "Find"), translate("PKM_Editor", "Find and replace"), keys.Find, find.begin),
+            (
+                translate("PKM_Editor", "Renumber"),
+                translate("PKM_Editor", "Give each block a line number"),
+                None,
+                renumber,
+            ),
+            (
+                translate("PKM_Editor", "Decode"),
+                translate("PKM_Editor", "Make it an operation of a CAM job"),
+                None,
+                self.decode,
+            ),
+            (
+                translate("PKM_Editor", "Post"),
+                translate("PKM_Editor", "Write a certified motion program"),
+                None,
+                self.post,
+            ),
         )
         for text, tip, key, call in rows:
             action = bar.addAction(text)
@@ -88,7 +113,9 @@ class ProgramEditor(QtWidgets.QDockWidget):
 
     def ask_and_open(self) -> None:
         """Open a file that the user chooses."""
-        name = QtWidgets.QFileDialog.getOpenFileName(self, translate(NAME, "Open"), self._folder(), _name_filter())[0]
+        name = QtWidgets.QFileDialog.getOpenFileName(
+            self, translate("PKM_Editor", "Open"), self._folder(), _name_filter()
+        )[0]
         if name:
             self.open_file(Path(name))
 
@@ -99,7 +126,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         try:
             self._content = Content.of(file.read_bytes())
         except OSError as fault:
-            QtWidgets.QMessageBox.warning(self, translate(NAME, "Open"), str(fault))
+            QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Open"), str(fault))
             return False
         self.body.text.edits.load(self._content.text)
         self.body.set_file(file.absolute())
@@ -112,7 +139,9 @@ class ProgramEditor(QtWidgets.QDockWidget):
 
     def save_as(self) -> bool:
         """Write the text to a file that the user chooses; whether it is written."""
-        name = QtWidgets.QFileDialog.getSaveFileName(self, translate(NAME, "Save"), self._folder(), _name_filter())[0]
+        name = QtWidgets.QFileDialog.getSaveFileName(
+            self, translate("PKM_Editor", "Save"), self._folder(), _name_filter()
+        )[0]
         if not name:
             return False
         return self._write(Path(name) if is_part_program(Path(name)) else Path(f"{name}.ngc"))
@@ -123,7 +152,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
             with staged(file.parent) as folder:
                 (folder / file.name).write_bytes(self._content.written(self.body.text.toPlainText()))
         except OSError as fault:
-            QtWidgets.QMessageBox.warning(self, translate(NAME, "Save"), str(fault))
+            QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Save"), str(fault))
             return False
         if file != self.body.file:
             self.body.set_file(file.absolute())
@@ -134,10 +163,12 @@ class ProgramEditor(QtWidgets.QDockWidget):
 
     def decode(self) -> Any:
         """Make the program an operation of a CAM job; the operation, or None when that was not possible."""
-        title = translate(NAME, "Decode into a job")
+        title = translate("PKM_Editor", "Decode into a job")
         job = linked.chosen_job(self, title)
         if job is None:
-            QtWidgets.QMessageBox.warning(self, title, translate(NAME, "No CAM job of the active document was chosen."))
+            QtWidgets.QMessageBox.warning(
+                self, title, translate("PKM_Editor", "No CAM job of the active document was chosen.")
+            )
         elif self._saved():
             try:
                 return linked.decode_file(self.body.file, self.body.axis_words.currentText(), job)
@@ -166,7 +197,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         if not self._document.isModified():
             return True
         buttons = QtWidgets.QMessageBox.StandardButton
-        question = translate(NAME, "Save the changes of the part program?")
+        question = translate("PKM_Editor", "Save the changes of the part program?")
         choice = buttons.Save | buttons.Discard | buttons.Cancel
         answer = QtWidgets.QMessageBox.question(self, self.windowTitle(), question, choice)
         return self.save() if answer == buttons.Save else answer == buttons.Discard
@@ -194,4 +225,5 @@ def open_editor(item: Any = None) -> ProgramEditor:
 
 
 def _name_filter() -> str:
-    return f"{translate(NAME, 'Part programs')} ({' '.join(f'*{suffix}' for suffix in SUFFIXES)})"
+    kind = translate("PKM_Editor", "Part programs")  # lupdate does not look into f-strings
+    return f"{kind} ({' '.join(f'*{suffix}' for suffix in SUFFIXES)})"

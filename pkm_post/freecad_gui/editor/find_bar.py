@@ -93,6 +93,7 @@ class FindBar(QtWidgets.QWidget):
 
     def replace(self) -> None:
         """Replace what is selected, if it is what is wanted, and go to the next place."""
+        self._text.edits.finish()
         cursor = self._text.textCursor()
         if cursor.hasSelection() and cursor.selectedText().casefold() == self.wanted.text().casefold():
             cursor.insertText(self.instead.text())

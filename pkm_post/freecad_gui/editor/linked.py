@@ -14,6 +14,9 @@ from PySide import QtWidgets
 
 from pkm_post.freecad_app.kinds import is_job, is_program
 from pkm_post.freecad_app.program_object import create_program, decode
+from pkm_post.freecad_app.transaction import transaction
+
+translate = FreeCAD.Qt.translate
 
 
 def object_of(file: Path | None) -> Any:
@@ -62,11 +65,5 @@ def decode_file(file: Path, axis_words: str, job: Any) -> Any:
         Refused: as ``decode``; the document is as it was.
     """
     document = job.Document
-    document.openTransaction("Decode into a job")
-    try:
-        operation = decode(object_of(file) or create_program(document, file, axis_words), job)
-    except Exception:
-        document.abortTransaction()
-        raise
-    document.commitTransaction()
-    return operation
+    with transaction(document, translate("PKM_Editor", "Decode into a job")):
+        return decode(object_of(file) or create_program(document, file, axis_words), job)

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Symmetry place: the fields for the plane of a mirror or the axis of a turn.
+
+The object enters; its point, its direction and what was picked change with the fields. The plane or axis is one of
+those of the document, or picked in the 3D view, or typed in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import FreeCAD
+from PySide import QtWidgets
+
+from pkm_post.freecad_gui.symmetry_fields import Three, said_of
+from pkm_post.freecad_gui.symmetry_frames import AXIS, PLANE
+
+translate = FreeCAD.Qt.translate
+
+
+class SymmetryPlace:
+    """Rows of a form.
+
+    Attributes:
+        frame: what is chosen, a plane or an axis.
+        choice, picked, direction, point: the fields.
+    """
+
+    def __init__(
+        self, obj: Any, form: QtWidgets.QFormLayout, typed: Callable[..., None], chosen: Callable[[], None]
+    ) -> None:
+        """Add the rows.
+
+        Args:
+            obj: the mirrored or turned operation.
+            form: gets the rows.
+            typed: called when something was typed in.
+            chosen: called when the object has another plane or axis.
+        """
+        self._obj, self._changed = obj, chosen
+        self.frame = PLANE if hasattr(obj, PLANE.direction) else AXIS
+        self._pick_index = len(self.frame.choices)
+        self.choice, self.picked = QtWidgets.QComboBox(), QtWidgets.QLabel(wordWrap=True)
+        self.direction, self.point = Three("", typed), Three("mm", typed)
+        picked, by_hand = translate("SymmetryPanel", "Picked"), translate("SymmetryPanel", "Typed in")
+        self.choice.addItems([*(translate("SymmetryPanel", text) for text, _ in self.frame.choices), picked, by_hand])
+        self.choice.currentIndexChanged.connect(self.choose)
+        tips = ((self.frame.link, self.choice), (self.frame.direction, self.direction), ("Point", self.point))
+        for name, field in tips:
+            field.setToolTip(said_of(obj, name))
+        form.addRow(translate("SymmetryPanel", self.frame.label), self.choice)
+        form.addRow(self.picked)
+        form.addRow(translate("SymmetryPanel", "Direction"), self.direction)
+        form.addRow(translate("SymmetryPanel", "Point"), self.point)
+
+    def show(self) -> None:
+        """Show what the properties are."""
+        self.choice.setCurrentIndex(self._chosen())
+        self._show_values()
+
+    def follow(self) -> None:
+        """Show what came of a pick; other fields may be being typed in."""
+        if self._link():
+            self._show_values()
+
+    def values(self) -> dict[str, Any]:
+        """The properties that are typed in here."""
+        values = {}
+        if self.direction.isEnabled() and self.direction.vector().Length > 0:
+            values[self.frame.direction] = self.direction.vector()
+        if self.point.isEnabled():
+            values["Point"] = self.point.vector()
+        return values
+
+    def choose(self, index: int) -> None:
+        """Take the plane or axis that is chosen, or wait for one to be picked."""
+        if index != self._pick_index:
+            setattr(self._obj, self.frame.link, None)
+        if index < self._pick_index:
+            setattr(self._obj, self.frame.direction, FreeCAD.Vector(*self.frame.choices[index][1]))
+        self._show_values()
+        self._changed()
+
+    def pick(self, item: Any, element: str) -> None:
+        """Take what is picked, if it is waited for."""
+        if self.choice.currentIndex() != self._pick_index or item.Document != self._obj.Document:
+            return
+        if self._obj == item or self._obj in item.OutListRecursive:
+            self._tell(translate("SymmetryPanel", "It depends on this operation"))
+            return
+        link = (item, [element])
+        try:
+            self.frame.read(link)
+        except ValueError as unfit:
+            self._tell(str(unfit))
+            return
+        setattr(self._obj, self.frame.link, link)
+        self._tell(self._told_pick())
+        self._changed()
+
+    def _link(self) -> Any:
+        return getattr(self._obj, self.frame.link)
+
+    def _chosen(self) -> int:
+        """Which choice is shown: who picks or types goes on with it, whatever the direction is."""
+        if self._link():
+            return self._pick_index
+        if self.choice.currentIndex() >= self._pick_index:
+            return int(self.choice.currentIndex())
+        direction = tuple(getattr(self._obj, self.frame.direction))
+        known: list[tuple[float, ...]] = [each for _, each in self.frame.choices]
+        return known.index(direction) if direction in known else len(known) + 1
+
+    def _show_values(self) -> None:
+        """Show direction and point, what of them can be typed in, and what was picked."""
+        chosen = self.choice.currentIndex()
+        self._tell(self._told_pick())
+        self.direction.show_values(getattr(self._obj, self.frame.direction), enabled=chosen == self._pick_index + 1)
+        self.point.show_values(self._obj.Point, enabled=chosen != self._pick_index)
+
+    def _tell(self, text: str) -> None:
+        """Say what is picked, or what could be."""
+        self.picked.setText(text)
+        self.picked.setVisible(bool(text))
+
+    def _told_pick(self) -> str:
+        link = self._link()
+        if link:
+            return " ".join([link[0].Label, *link[1]]).strip()
+        return translate("SymmetryPanel", self.frame.hint) if self.choice.currentIndex() == self._pick_index else ""

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is refused is told without the way through the code; what is our own fault is told with it."""
+
+import pytest
+from cam_jobs import add_operation
+
+from pkm_post.freecad_app.reach_object import create_reach
+from pkm_post.freecad_app.refusals import briefly_refused
+from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.model import Diagnostic, Place, Refused
+
+REFUSED = Refused([Diagnostic("J121", Place("part.FCStd", "Mirror"), "no direction")])
+
+
+@pytest.mark.parametrize(("fault", "last"), [(REFUSED, "brief"), (ValueError("expected 3, got 2"), "deep")])
+def test_only_what_is_refused_is_told_briefly(fault, last):
+    def deep():
+        raise fault
+
+    @briefly_refused
+    def execute(proxy, obj):
+        deep()
+
+    with pytest.raises(type(fault)) as told:
+        execute(None, None)
+    assert told.traceback[-1].name == last
+    assert told.value is fault
+
+
+def test_a_machine_that_is_not_there_is_told_at_the_object(job):
+    job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--machine no_such_machine"
+    reach = create_reach(job)
+    job.Document.recompute()
+    assert not reach.isValid()
+    assert "M101" in reach.getStatusString()
+
+
+def test_a_plane_without_a_direction_is_told_at_the_object(job):
+    copy = create_mirror(add_operation(job), (0, 0, 0))
+    job.Document.recompute()
+    assert not copy.isValid()
+    assert "J121" in copy.getStatusString()

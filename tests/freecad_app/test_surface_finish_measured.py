@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Surface Finish measured: gouges and material left, and the tapered column as a whole."""
+
+import math
+
+import FreeCAD as App
+import numpy as np
+import Part
+import pytest
+from part_jobs import corner, job_on, load_example
+from surface_finishes import AT_G54, CHORD, MICRON, cutting, finish, gap_to, poses, valid
+
+from pkm_post.freecad_app.post_job import post_job
+
+
+def step():
+    """A floor at z = 10 beside a wall at x = 10."""
+    return Part.makeBox(40, 20, 10).fuse(Part.makeBox(10, 20, 30)).removeSplitter()
+
+
+def test_gouge_and_material_left_are_reported_with_their_places(document):
+    # A ball of R 5, upright over a floor up to the wall beside it: its axis comes to the wall, and it cuts R deep.
+    floor = lambda face: face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9  # noqa: E731,E501
+    job = job_on(document, step())
+    operation = valid(finish(job, floor, Stepover=2.0, CheckSpacing=1.0))
+    assert operation.MaximumGouge == pytest.approx(5.0, abs=0.01)
+    assert operation.GougePoint.x == pytest.approx(10.0)
+    assert operation.GougePoint.z > 10.0
+    assert operation.MaximumExcess < 5.0 - math.sqrt(5.0**2 - 1.0) + MICRON
+    assert operation.ExcessPoint.z == pytest.approx(10.0)
+    operation.CheckSpacing = 0
+    job.Document.recompute()
+    assert (operation.MaximumGouge, operation.MaximumExcess) == (-1.0, -1.0)
+
+
+@pytest.fixture(scope="module")
+def column():
+    """The wall of the column finished with its bull nose, 31 degrees off it and 8 degrees forward."""
+    example = load_example()
+    document = App.newDocument("column")
+    solid = example.solid(example.Column())
+    job = job_on(document, solid, "bullnose.fcstd", Diameter=16, **corner(16.0, 4.0))
+    operation = finish(
+        job,
+        lambda face: face.Surface.TypeId != "Part::GeomPlane",
+        Lead=8.0,
+        Tilt=59.0,
+        Stepover=4.0,
+        ChordTolerance=CHORD,
+        Reversed=True,
+        Order="One way",
+        CutMode="Climb",
+        LeadMove="Arc",
+    )
+    yield valid(operation), job, example.wall(solid)
+    App.closeDocument(document.Name)
+
+
+def test_column_is_neither_gouged_nor_left_beyond_the_tolerance(column):
+    """Measured by OpenCASCADE, at the ends and in the middle of moves."""
+    operation, _, wall = column
+    gaps = [gap_to(wall, tip, axis) for tip, axis in list(zip(*cutting(operation), strict=True))[::23]]
+    assert len(gaps) > 200
+    assert min(gaps) > -CHORD
+    assert max(gaps) < CHORD
+
+
+def test_column_is_checked_by_the_operation_itself(column):
+    operation, job, _ = column
+    operation.CheckSpacing = 6.0
+    job.Document.recompute()
+    assert valid(operation).MaximumGouge < CHORD
+    # scallops of passes 4 mm apart, cut by a corner of 4 mm
+    assert operation.MaximumExcess < 4.0 - math.sqrt(4.0**2 - 2.0**2) + CHORD
+
+
+def test_column_is_climbed_round_from_the_top(column):
+    tips, _ = poses(column[0], ("G1",))
+    turn = np.cross(tips[:-1], tips[1:])[:, 2]
+    assert np.mean(turn < 0) > 0.99
+    assert tips[100, 2] > tips[-100, 2]
+
+
+def test_column_keeps_its_tilt_from_the_wall(column):
+    operation, _, _ = column
+    _, axes = poses(operation, ("G1",))
+    tilt = np.degrees(np.arccos(axes[:, 2]))
+    assert tilt.max() < 25.0
+
+
+def test_column_is_posted_to_a_certified_program(column, tmp_path):
+    operation, job, _ = column
+    posted = post_job(job, "example_6tps", tmp_path, AT_G54)
+    assert {"pmc", "pkmt", "json"} <= {path.suffix[1:] for path in posted.files}
+    assert posted.program.stat().st_size > 100_000
+    assert operation.isValid()

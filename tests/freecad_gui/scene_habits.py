@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Habits: shortcuts and status tips of the commands, and the menus of the objects in the tree."""
+
+import FreeCAD
+import FreeCADGui
+from gui import FOLDER, main, new_document, settle, step
+from PySide import QtWidgets
+
+PROGRAM = "G21 G90 G17\nT1 M6\nG0 X0 Y0 Z30\nG1 Z5 F600\nG1 X10 F900\nM2\n"
+
+
+def _menu(obj):
+    """The menu as FreeCAD asks for it, and its entries by their texts."""
+    menu = QtWidgets.QMenu(FreeCADGui.getMainWindow())
+    obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, menu)
+    return menu, {action.text(): action for action in menu.actions()}
+
+
+def _texts(obj):
+    return list(_menu(obj)[1])
+
+
+def _choose(obj, text):
+    menu, entries = _menu(obj)
+    entries[text].trigger()
+    settle()
+    menu.deleteLater()
+
+
+@step
+def commands_have_tips_and_keys():
+    FreeCADGui.activateWorkbench("PkmPostWorkbench")
+    settle()
+    names = [name for name in FreeCADGui.listCommands() if name.startswith("PKM_")]
+    taken = {
+        FreeCADGui.Command.get(name).getShortcut().replace(" ", "")
+        for name in FreeCADGui.listCommands()
+        if not name.startswith("PKM_")
+    }
+    found = {}
+    for name in names:
+        info = FreeCADGui.Command.get(name).getInfo()
+        found[name] = {
+            "keys": FreeCADGui.Command.get(name).getShortcut().replace(" ", ""),
+            "tip": info["toolTip"],
+            "status": info["statusTip"],
+        }
+    return {"commands": found, "others": sorted(taken)}
+
+
+@step
+def operations_have_menus():
+    from pkm_post.freecad_app.normal_compensation import create_normal_compensation
+    from pkm_post.freecad_app.surface_finish import create_surface_finish
+    from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
+    from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
+    document = new_document("operations")
+    job, base = document.getObject("Job"), document.getObject("Custom")
+    made = {
+        "mirror": create_mirror(base, normal=(0, 1, 0)),
+        "rotation": create_rotation(base, axis=(0, 0, 1), angle=1.0),
+        "finish": create_surface_finish(job, []),
+    }
+    made["compensation"] = create_normal_compensation(base)
+    made["finish"].Active = made["compensation"].Active = False  # no faces are chosen for them
+    told = {name: _texts(obj) for name, obj in made.items()}
+    _choose(made["mirror"], "Edit")
+    told["edited"] = SymmetryPanel.opened.obj.Name == made["mirror"].Name
+    SymmetryPanel.opened.reject()
+    settle()
+    return told
+
+
+@step
+def menu_switches_an_operation_off():
+    from pkm_post.freecad_app.symmetry import create_mirror
+
+    document = new_document("switch")
+    mirror = create_mirror(document.getObject("Custom"), normal=(0, 1, 0))
+    document.recompute()
+    seen = [(mirror.Active, _menu(mirror)[1]["Active"].isChecked(), len(mirror.Path.Commands))]
+    _choose(mirror, "Active")
+    seen.append((mirror.Active, _menu(mirror)[1]["Active"].isChecked(), len(mirror.Path.Commands)))
+    document.undo()
+    document.recompute()
+    seen.append((mirror.Active, _menu(mirror)[1]["Active"].isChecked(), len(mirror.Path.Commands)))
+    return seen
+
+
+@step
+def objects_of_a_job_have_menus():
+    from pkm_post.freecad_app.machine_object import create_machine
+    from pkm_post.freecad_app.reach_object import create_reach
+    from pkm_post.freecad_app.simulation_object import create_simulation
+
+    document = new_document("job")
+    job = document.getObject("Job")
+    machine = create_machine(document, job=job)
+    reach, simulation = create_reach(job, machine), create_simulation(job, machine)
+    document.recompute()
+    told = {"machine": _texts(machine), "reach": _texts(reach), "simulation": _texts(simulation)}
+    told["alone"] = _texts(create_machine(document))
+    _choose(reach, "Open the findings")
+    told["findings"] = FreeCADGui.Control.activeDialog() is not False
+    FreeCADGui.getDocument("job").resetEdit()
+    settle()
+    _choose(reach, "Simulate")
+    told["plays"] = [dock.subject.Name for dock in _docks("PkmPlayer")]
+    for dock in _docks("PkmPlayer"):
+        dock.close()
+    settle()
+    return told
+
+
+def _docks(name):
+    return FreeCADGui.getMainWindow().findChildren(QtWidgets.QDockWidget, name)
+
+
+@step
+def machine_is_moved_home():
+    machine = FreeCAD.getDocument("job").getObject("Machine")
+    home, document = FreeCAD.Vector(machine.Tip), machine.Document
+    machine.Tip, machine.Spin = home + FreeCAD.Vector(10, 20, 5), 7.0
+    document.recompute()
+    _choose(machine, "Move it home")
+    moved = [(machine.Tip - home).Length, machine.Spin.Value]
+    document.undo()
+    return {"moved": moved, "undone": [(machine.Tip - home).Length, machine.Spin.Value]}
+
+
+@step
+def program_has_a_menu():
+    from pkm_post.freecad_app.program_object import create_program
+
+    document = new_document("program")
+    file = FOLDER / "program.ngc"
+    file.write_text(PROGRAM, encoding="ascii")
+    part = create_program(document, str(file))
+    document.recompute()
+    told = {"texts": _texts(part), "before": len(document.getObject("Job").Operations.Group)}
+    _choose(part, "Open in the editor")
+    told["opened"] = [dock.body.file.name for dock in _docks("PKM_Editor")]
+    _choose(part, "Decode into a job")
+    told["after"] = len(document.getObject("Job").Operations.Group)
+    return told
+
+
+@step
+def command_of_a_menu_takes_its_object():
+    document = new_document("other")
+    from pkm_post.freecad_app.symmetry import create_rotation
+    from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
+    rotation = create_rotation(document.getObject("Custom"), axis=(0, 0, 1), angle=1.0)
+    document.recompute()
+    FreeCADGui.Selection.clearSelection()
+    _choose(rotation, "Mirror operation")
+    made = SymmetryPanel.opened.obj
+    told = {"base": made.Base.Name, "rotation": rotation.Name}
+    SymmetryPanel.opened.accept()
+    settle()
+    return told
+
+
+main()

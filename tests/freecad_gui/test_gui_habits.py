@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tips, shortcuts and the menus of objects in a FreeCAD with a window."""
+
+import pytest
+
+COPIES = ["Mirror operation", "Rotate operation"]
+
+
+@pytest.fixture(scope="module")
+def session(scene):
+    return scene("habits")
+
+
+def test_every_command_says_what_it_does(session):
+    commands = session["commands_have_tips_and_keys"]["commands"]
+    assert len(commands) > 8
+    for told in commands.values():
+        assert len(told["status"]) > 20
+        assert told["status"] in told["tip"]
+
+
+def test_every_command_has_keys_of_its_own(session):
+    found = session["commands_have_tips_and_keys"]
+    keys = [told["keys"] for told in found["commands"].values()]
+    assert all(key.startswith("P,K,") for key in keys)
+    assert len(set(keys)) == len(keys)
+    # another command with the beginning of these keys would make both ambiguous
+    beginnings = {key[:length] for key in keys for length in (1, 3, len(key))}
+    assert beginnings.isdisjoint(found["others"])
+
+
+def test_operations_have_menus(session):
+    found = session["operations_have_menus"]
+    assert found["mirror"] == found["rotation"] == ["Edit", "Active", *COPIES]
+    assert found["finish"] == ["Edit", "Active", *COPIES]
+    assert found["compensation"] == ["Active", *COPIES]
+    assert found["edited"]
+
+
+def test_menu_switches_an_operation_off_in_one_step(session):
+    on, off, again = session["menu_switches_an_operation_off"]
+    assert on[:2] == again[:2] == [True, True]
+    assert off[:2] == [False, False]
+    assert off[2] < on[2] == again[2]
+
+
+def test_objects_of_a_job_have_menus(session):
+    found = session["objects_of_a_job_have_menus"]
+    assert found["machine"] == ["Move it home", "Reach", "Simulate", "Post to a hexapod"]
+    assert found["alone"] == ["Move it home"]
+    assert found["reach"] == ["Open the findings", "Active", "Simulate", "Post to a hexapod"]
+    assert found["simulation"] == ["Open the player", "Active", "Reach", "Post to a hexapod"]
+    assert found["findings"]
+    assert found["plays"] == ["Simulation"]
+
+
+def test_machine_is_moved_home_in_one_step(session):
+    found = session["machine_is_moved_home"]
+    assert found["moved"] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert found["undone"] == pytest.approx([525.0**0.5, 7.0], abs=1e-9)
+
+
+def test_program_has_a_menu(session):
+    found = session["program_has_a_menu"]
+    assert found["texts"] == ["Open in the editor", "Decode into a job", "Post program"]
+    assert found["opened"] == ["program.ngc"]
+    assert found["after"] == found["before"] + 1
+
+
+def test_command_of_a_menu_takes_its_object(session):
+    found = session["command_of_a_menu_takes_its_object"]
+    assert found["base"] == found["rotation"]

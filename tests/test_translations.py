@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Every text that users see is in each translation and translated, and nothing else is; no Qt is needed to see that."""
+
+import ast
+import re
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCES = [file for room in ("freecad_app", "freecad_gui") for file in (ROOT / "pkm_post" / room).rglob("*.py")]
+TRANSLATIONS = sorted((ROOT / "resources" / "translations").glob("*.ts"))
+MARKS = ("translate", "QT_TRANSLATE_NOOP")
+
+
+def calls(tree, names):
+    """The calls of functions or methods with one of these names."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+            if name in names:
+                yield name, node
+
+
+def literal(node):
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
+
+
+def trees():
+    return [(file.relative_to(ROOT), ast.parse(file.read_text(encoding="utf-8"))) for file in SOURCES]
+
+
+def marked():
+    """Context and text of every text in the sources; a text without a literal context is one that lupdate loses."""
+    found, lost = set(), []
+    for file, tree in trees():
+        for name, call in calls(tree, MARKS):
+            if len(call.args) < 2:
+                continue  # str.translate
+            context, text = literal(call.args[0]), literal(call.args[1])
+            if context is not None and text is not None:
+                found.add((context, text))
+            elif text is not None or name == "QT_TRANSLATE_NOOP" or isinstance(call.args[1], ast.JoinedStr):
+                lost.append(f"{file}:{call.lineno}")
+    return found, lost
+
+
+def messages(file):
+    """Context, text and the element of the translation."""
+    for context in ElementTree.parse(file).getroot().iter("context"):
+        for message in context.iter("message"):
+            yield context.findtext("name"), message.findtext("source"), message.find("translation")
+
+
+def test_lupdate_sees_every_text():
+    found, lost = marked()
+    assert lost == []
+    assert len(found) > 400
+
+
+def test_there_is_simplified_chinese():
+    # FreeCAD asks for *_zh-CN.qm, with the name that it has for the language itself
+    assert "pkm_post_zh-CN.ts" in [file.name for file in TRANSLATIONS]
+
+
+@pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)
+def test_translation_has_the_texts_of_the_sources_and_no_others(file):
+    listed = [(context, text) for context, text, _ in messages(file)]
+    assert len(listed) == len(set(listed))
+    assert marked()[0] - set(listed) == set(), "run make translations, and translate what is new"
+    assert set(listed) - marked()[0] == set(), "run make translations"
+
+
+@pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)
+def test_translation_is_finished(file):
+    open_ones = [text for _, text, translation in messages(file) if translation.get("type") or not translation.text]
+    assert open_ones == []
+
+
+@pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)
+def test_places_for_numbers_and_names_are_kept(file):
+    holes, bad = re.compile(r"\{[^}]*\}"), []
+    for _, text, translation in messages(file):
+        if holes.findall(text) != holes.findall(translation.text or ""):
+            bad.append(text)
+        if text.count("\n") != (translation.text or "").count("\n"):
+            bad.append(text)
+    assert bad == []
+
+
+@pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)
+def test_compiled_file_has_every_translation(file):
+    # Qt writes each translation with its length in bytes before it, and as UTF-16, the most significant byte first
+    compiled = file.with_suffix(".qm").read_bytes()
+    missing = []
+    for _, text, translation in messages(file):
+        written = (translation.text or "").encode("utf-16-be")
+        if b"\x03" + len(written).to_bytes(4, "big") + written not in compiled:
+            missing.append(text)
+    assert missing == [], "run make translations"
+
+
+def test_commands_say_their_own_name_as_context():
+    # FreeCAD looks up the texts of a command by its name
+    (tree,) = (tree for file, tree in trees() if file.name == "commands.py" and file.parent.name == "freecad_gui")
+    rows = [call for _, call in calls(tree, ("Command", "WindowCommand", "PanelCommand"))]
+    assert len(rows) > 8
+    for row in rows:
+        contexts = {literal(call.args[0]) for _, call in calls(row, ("QT_TRANSLATE_NOOP",))}
+        assert contexts == {literal(row.args[0])}
+
+
+def test_what_is_said_of_properties_is_marked():
+    # FreeCAD looks up the tool tips of properties in this context
+    rows = []
+    for file, tree in trees():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Tuple) and len(node.elts) == 5 and _is_property(node.elts[0]):
+                rows.append((f"{file}:{node.lineno}", node.elts[3]))
+    assert len(rows) > 90
+    unmarked = [
+        place for place, said in rows if not (isinstance(said, ast.Call) and literal(said.args[0]) == "App::Property")
+    ]
+    assert unmarked == []
+
+
+def _is_property(node):
+    return (literal(node) or "").startswith("App::Property") or getattr(node, "id", "") == "_LINK"
