@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Command: what FreeCAD wants of a command, and the three ways in which ours run.
+
+A command that changes a document runs in one transaction, so that one undo takes it back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import FreeCAD
+import FreeCADGui
+
+from pkm_post.freecad_app.transaction import transaction
+from pkm_post.freecad_gui.workbench import ICONS
+
+translate = FreeCAD.Qt.translate
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command as FreeCAD wants it.
+
+    Attributes:
+        name: its name in FreeCAD.
+        icon: file name in resources/icons.
+        text: menu text.
+        tip: what it does, in a sentence.
+        selectable: whether an object can be its subject.
+        action: does it to the object selected.
+        keys: keyboard shortcut; all begin with P, K, since CAM has P and one other key.
+        alone: whether it can be done without a selection as well; the action gets None then.
+    """
+
+    name: str
+    icon: str
+    text: str
+    tip: str
+    selectable: Callable[[FreeCAD.DocumentObject], bool]
+    action: Callable[[FreeCAD.DocumentObject], None]
+    keys: str
+    alone: bool = False
+
+    def GetResources(self) -> dict[str, str]:
+        """Texts, icon and shortcut. FreeCAD itself translates the texts, anew when another language is chosen."""
+        return {
+            "Pixmap": str(ICONS / self.icon),
+            "MenuText": self.text,
+            "ToolTip": self.tip,
+            "StatusTip": self.tip,
+            "Accel": self.keys,
+        }
+
+    def IsActive(self) -> bool:
+        """Whether exactly one object is selected that the command is for, or none if it needs none."""
+        selected = FreeCADGui.Selection.getSelection()
+        if self.alone and not selected:
+            return FreeCAD.ActiveDocument is not None
+        return len(selected) == 1 and self.selectable(selected[0])
+
+    def Activated(self) -> None:
+        """Run the command; on a fault everything is as before."""
+        subject = next(iter(FreeCADGui.Selection.getSelection()), None)
+        document = subject.Document if subject else FreeCAD.ActiveDocument
+        with transaction(document, translate(self.name, self.text)):
+            self.action(subject)
+        document.recompute()
+
+
+@dataclass(frozen=True)
+class WindowCommand(Command):
+    """A command that opens a window: it needs no document and changes none. Its action gets what is selected."""
+
+    def IsActive(self) -> bool:
+        """Always."""
+        return True
+
+    def Activated(self) -> None:
+        """Open the window."""
+        self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
+
+
+@dataclass(frozen=True)
+class PanelCommand(Command):
+    """A command whose object is edited in a panel at once: that ends the transaction, so that both are one step."""
+
+    def Activated(self) -> None:
+        """Add the object and open its panel; on a fault everything is as before."""
+        (subject,) = FreeCADGui.Selection.getSelection()
+        document, before = subject.Document, set(subject.Document.Objects)
+        document.openTransaction(translate(self.name, self.text))
+        try:
+            self.action(subject)
+            document.recompute()
+            (made,) = set(document.Objects) - before
+            FreeCADGui.getDocument(document.Name).setEdit(made.ViewObject, 0)
+        except BaseException:
+            document.abortTransaction()
+            raise

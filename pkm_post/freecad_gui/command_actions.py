@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Command actions: what each command does to the object that is selected.
+
+What changes a document is written into macros, as the call into ``freecad_app`` that does it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore
+
+from pkm_post.freecad_app.kinds import is_job, is_simulation
+
+_A_MOMENT = 50
+"""ms between two looks at a document that is being computed."""
+
+
+def _do(module: str, call: str, operation: FreeCAD.DocumentObject) -> None:
+    FreeCADGui.addModule(module)
+    subject = f"FreeCAD.getDocument({operation.Document.Name!r}).getObject({operation.Name!r})"
+    FreeCADGui.doCommand(f"{module}.{call.format(subject)}")
+
+
+def mirror(operation: FreeCAD.DocumentObject) -> None:
+    """Add the mirror image of an operation."""
+    _do("pkm_post.freecad_app.symmetry", "create_mirror({}, normal=(0, 1, 0))", operation)
+
+
+def rotate(operation: FreeCAD.DocumentObject) -> None:
+    """Add an operation turned."""
+    _do("pkm_post.freecad_app.symmetry", "create_rotation({}, axis=(0, 0, 1), angle=3.141592653589793)", operation)
+
+
+def compensate(operation: FreeCAD.DocumentObject) -> None:
+    """Add Normal Compensation over an operation."""
+    _do("pkm_post.freecad_app.normal_compensation", "create_normal_compensation({})", operation)
+
+
+def job_of(item: FreeCAD.DocumentObject) -> FreeCAD.DocumentObject | None:
+    """A job itself, or the job whose model an object is, as clone or as original."""
+    if is_job(item):
+        return item
+    jobs = [other for other in item.Document.Objects if is_job(other)]
+    models = [(job, clone) for job in jobs for clone in job.Model.Group]
+    return next((job for job, clone in models if item in (clone, job.Proxy.baseObject(job, clone))), None)
+
+
+def finish(item: FreeCAD.DocumentObject) -> None:
+    """Add the operation over the faces that are selected, and open its panel when the command is done."""
+    module, document = "pkm_post.freecad_app.surface_finish", f"FreeCAD.getDocument({item.Document.Name!r})"
+    job, subject = (f"{document}.getObject({each.Name!r})" for each in (job_of(item), item))
+    names = [name for each in FreeCADGui.Selection.getSelectionEx() for name in each.SubElementNames]
+    faces = [] if is_job(item) else [name for name in names if name.startswith("Face")]
+    FreeCADGui.addModule(module)
+    chosen = f"[({subject}, {faces!r})]" if faces else "[]"
+    FreeCADGui.doCommand(f"{module}.create_surface_finish({job}, {chosen})")
+    made = job_of(item).Operations.Group[-1]
+    QtCore.QTimer.singleShot(0, lambda: made.ViewObject.Document.setEdit(made.ViewObject, 0))
+
+
+def machine(job: FreeCAD.DocumentObject | None) -> None:
+    """Add a machine to the document, for the selected job if there is one."""
+    module = "pkm_post.freecad_app.machine_object"
+    FreeCADGui.addModule(module)
+    document = FreeCAD.ActiveDocument if job is None else job.Document
+    subject = f"FreeCAD.getDocument({document.Name!r})"
+    chosen = "" if job is None else f", job={subject}.getObject({job.Name!r})"
+    FreeCADGui.doCommand(f"{module}.create_machine({subject}{chosen})")
+
+
+def _create_on_machine(job: FreeCAD.DocumentObject, module: str, call: str) -> None:
+    """Add what is made of a job and, if there is one, the machine of the document."""
+    from pkm_post.freecad_app.reach_object import machine_for
+
+    machine, document = machine_for(job), f"FreeCAD.getDocument({job.Document.Name!r})"
+    FreeCADGui.addModule(module)
+    chosen = "" if machine is None else f", machine={document}.getObject({machine.Name!r})"
+    FreeCADGui.doCommand(f"{module}.{call}({document}.getObject({job.Name!r}){chosen})")
+
+
+def reach(job: FreeCAD.DocumentObject) -> None:
+    """Add the checks of a job, on its machine in the document if there is one."""
+    _create_on_machine(job, "pkm_post.freecad_app.reach_object", "create_reach")
+
+
+def simulate(item: FreeCAD.DocumentObject) -> None:
+    """Add the simulation of a job if there is none yet, and open its player when the command is done."""
+    from pkm_post.freecad_gui.player import open_player
+
+    if not is_simulation(item) and _simulation_of(item) is None:
+        _create_on_machine(item, "pkm_post.freecad_app.simulation_object", "create_simulation")
+    shown = item if is_simulation(item) else _simulation_of(item)
+    _when_computed(item.Document, lambda: open_player(shown))
+
+
+def _simulation_of(job: FreeCAD.DocumentObject) -> FreeCAD.DocumentObject | None:
+    return next((other for other in job.InList if is_simulation(other)), None)
+
+
+def post(job: FreeCAD.DocumentObject) -> None:
+    """Open the panel that posts a job."""
+    from pkm_post.freecad_gui.post_panel import open_panel
+
+    open_panel(job)
+
+
+def edit(item: FreeCAD.DocumentObject | None) -> None:
+    """Open the editor, with the part program that is selected."""
+    from pkm_post.freecad_gui.editor import open_editor
+
+    open_editor(item)
+
+
+def control(_item: FreeCAD.DocumentObject | None) -> None:
+    """Open the panel of numerical control."""
+    from pkm_post.freecad_gui.control_panel import open_control
+
+    open_control()
+
+
+def _when_computed(document: FreeCAD.Document, task: Callable[[], Any]) -> None:
+    """Do something when the window is idle and the document computed: the progress bar of that lets timers go on."""
+
+    def try_it() -> None:
+        if document.Recomputing:
+            QtCore.QTimer.singleShot(_A_MOMENT, try_it)
+        else:
+            task()
+
+    QtCore.QTimer.singleShot(0, try_it)
