@@ -39,11 +39,18 @@ def idle():
 
 
 def read_again():
-    """Until the state was read twice more: the first reading may have begun before."""
-    console = the_panel().console
+    """Until the state was read twice more, as the first reading may have begun before, and the panel shows it."""
+    console, looks = the_panel().console, []
     for _ in range(2):
         before = console.state
         until(lambda before=before: console.state is not before)
+
+    def look():
+        looks.append(True)
+
+    console.looked.connect(look)
+    until(lambda: looks)
+    console.looked.disconnect(look)
 
 
 def press_in_box(choice):

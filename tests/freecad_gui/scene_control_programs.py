@@ -48,8 +48,9 @@ def a_program_is_loaded_held_and_resumed():
     found["override"] = newest().status.override
     face.program.start.click()
     until(lambda: newest().status.running)
-    settle()
-    found["while it runs"] = [face.jog.buttons["X", 1].isEnabled(), face.stops.hold.isEnabled()]
+    jog = face.jog.buttons["X", 1]
+    until(lambda: not jog.isEnabled(), 3)  # the panel looks ten times a second
+    found["while it runs"] = [newest().status.running, jog.isEnabled(), face.stops.hold.isEnabled()]
     face.stops.hold.click()
     until(lambda: newest().status.held and newest().status.standing)
     read_again()

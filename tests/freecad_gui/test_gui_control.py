@@ -97,7 +97,7 @@ def test_a_program_is_loaded_held_and_resumed(programs):
     assert (found["name"], found["start before"]) == ("two.pmc, 2.0 s", False)
     assert found["loaded"].startswith("Program 10:") and found["loaded"].endswith("listed back as sent")
     assert found["bar"] and found["override"] == 40.0
-    assert found["while it runs"] == [False, True]
+    assert found["while it runs"] == [True, False, True]
     assert found["held"] == ["a program is held, override 0 %", True, False] and found["resumable"]
     assert found["ended"] == pytest.approx(0.0, abs=NEAR_MM)
 
