@@ -72,7 +72,7 @@ def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Run a program from rest to rest; each line of the standard input starts a block."""
-    from pkm_post.numerical_control.execute import NEAR_MM
+    from pkm_post.numerical_control.defaults import NEAR_MM
     from pkm_post.numerical_control.single_block import blocks_of
     from pkm_post.pmac_link.faults import NotReadyError
 

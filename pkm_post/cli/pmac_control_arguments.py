@@ -7,6 +7,8 @@ import argparse
 import math
 from collections.abc import Callable
 
+from pkm_post.cli.reading import axis_words
+
 _HIGHEST_PROGRAM = 999
 """From 1000 on live the subprograms of the codes."""
 
@@ -37,12 +39,10 @@ def _add_jog(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_mdi(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.sources import AXIS_WORDS
-
     parser.add_argument("line", metavar="LINE", help="a line of G-code; it stands by itself")
     parser.add_argument("--work-offset", default="G54", metavar="NAME", help="frame of the line (%(default)s)")
     told = "how the line says the tool axis; none leaves it as it is (%(default)s)"
-    parser.add_argument("--axis-words", choices=AXIS_WORDS, default="none", help=told)
+    parser.add_argument("--axis-words", type=axis_words, default="none", metavar="WORDS", help=told)
     _add_by_hand(parser)
 
 
@@ -61,7 +61,7 @@ def _add_step(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_continue(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.numerical_control.execute import NEAR_MM
+    from pkm_post.numerical_control.defaults import NEAR_MM
 
     told = "which stop of the program it stands at, from 1"
     parser.add_argument("--stop", type=_count, required=True, metavar="N", help=told)
@@ -70,7 +70,7 @@ def _add_continue(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_number(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.numerical_control.plan import OWN_PROGRAM
+    from pkm_post.numerical_control.defaults import OWN_PROGRAM
 
     told = "number of the program in the controller that is used for it (%(default)s)"
     parser.add_argument("--number", type=_program, default=OWN_PROGRAM, metavar="PROG", help=told)

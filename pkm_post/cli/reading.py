@@ -17,7 +17,7 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
     """Add what the user may say of a part program."""
     parser.add_argument(
         "--axis-words",
-        type=_axis_words,
+        type=axis_words,
         default="none",
         metavar="WORDS",
         help="how the G-code says the tool axis: vector (I J K after G43.5), AC, BC or AB (rotary words after G43.4),"
@@ -60,7 +60,8 @@ def one_of(allowed: Collection[str], text: str) -> str:
     return text
 
 
-def _axis_words(text: str) -> str:
+def axis_words(text: str) -> str:
+    """How the tool axis is said, for ``argparse``."""
     from pkm_post.sources import AXIS_WORDS
 
     return one_of(AXIS_WORDS, text)

@@ -14,7 +14,7 @@ from pkm_post.controllers import pmac, power_pmac
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Diagnostic, Machine
 from pkm_post.numerical_control.control import NumericalControl
-from pkm_post.numerical_control.plan import OWN_PROGRAM
+from pkm_post.numerical_control.defaults import OWN_PROGRAM
 from pkm_post.numerical_control.training import Training
 from pkm_post.numerical_control.worker import Worker
 from pkm_post.pmac_link.ports import Port, port_named

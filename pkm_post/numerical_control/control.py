@@ -17,11 +17,11 @@ from typing import TypeVar
 from pkm_post.controllers.pmac import Settings
 from pkm_post.model import Diagnostic, Machine, Trajectory
 from pkm_post.model.findings import Tolerances
+from pkm_post.numerical_control import defaults, mdi, moves, stops
 from pkm_post.numerical_control import execute as execution
-from pkm_post.numerical_control import mdi, moves, stops
 from pkm_post.numerical_control.emergency import emergency_text
 from pkm_post.numerical_control.homing import Homing, HomingWatch, Phase, missing_homes, start_homing
-from pkm_post.numerical_control.plan import OWN_PROGRAM, Plan, planned
+from pkm_post.numerical_control.plan import Plan, planned
 from pkm_post.numerical_control.single_block import Blocks, blocks_of
 from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.download import Loaded, Progress, download
@@ -70,7 +70,7 @@ class NumericalControl:
         machine: Machine,
         settings: Settings,
         tool_length: float,
-        number: int = OWN_PROGRAM,
+        number: int = defaults.OWN_PROGRAM,
     ) -> None:
         """Make it; the session connects by itself when it is not open.
 
@@ -157,7 +157,7 @@ class NumericalControl:
         """Start a program that is loaded, from its beginning; as ``operate.run``."""
         return self._moving(lambda: operate.run(self._session, self._settings, job.program, job.first, near))
 
-    def go_on(self, job: Job, stop: int, near: float = execution.NEAR_MM) -> Status:
+    def go_on(self, job: Job, stop: int, near: float = defaults.NEAR_MM) -> Status:
         """Go on behind a stop (M0, M1) of a program, numbered from 1, at which it stands; as ``stops.go_on``."""
         return self._moving(lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
 
@@ -177,7 +177,7 @@ class NumericalControl:
         self._blocks = blocks, at
         return len(blocks)
 
-    def step(self, near: float = execution.NEAR_MM) -> Array:
+    def step(self, near: float = defaults.NEAR_MM) -> Array:
         """Start the block that comes next; the one behind it comes next then.
 
         Returns:

@@ -10,6 +10,7 @@ import numpy as np
 
 from pkm_post.controllers.pmac import Settings
 from pkm_post.model import Machine
+from pkm_post.numerical_control.defaults import NEAR_MM
 from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.download import download
 from pkm_post.pmac_link.faults import PmacError
@@ -18,8 +19,6 @@ from pkm_post.pmac_link.ready import check_setup, check_start
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
 
-NEAR_MM = 0.05
-"""How far a strut may be from where the move was planned from: what following errors of standing struts make."""
 _POLL_S = 0.05
 
 

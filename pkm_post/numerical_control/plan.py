@@ -22,14 +22,13 @@ from pkm_post.kinematics import Solution, Way, faults_of, follow, platform_rotat
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.findings import Certificate, Tolerances
+from pkm_post.numerical_control.defaults import OWN_PROGRAM
 from pkm_post.pmac_link.job import Job, read_job
 from pkm_post.pmac_link.readout import Pose, spin_of
 from pkm_post.report.summary import heading
 
 Findings = tuple[Diagnostic, ...]
 
-OWN_PROGRAM = 999
-"""Number of the program of a move by hand, unless the user says otherwise; jobs have others."""
 _SHARES = np.linspace(0.0, 1.0, 9)[1:]
 
 

@@ -20,7 +20,7 @@ from pkm_post.controllers.pmac import Settings, program_text
 from pkm_post.controllers.pvt.parts import parted
 from pkm_post.controllers.pvt.writer import rests
 from pkm_post.model import EventKind, StrutMotion
-from pkm_post.numerical_control.plan import OWN_PROGRAM
+from pkm_post.numerical_control.defaults import OWN_PROGRAM
 from pkm_post.pmac_link.job import Job, read_job
 
 

@@ -16,7 +16,7 @@ from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.model import Diagnostic
 from pkm_post.numerical_control.control import NumericalControl, State
-from pkm_post.numerical_control.execute import NEAR_MM as NEAR_BLOCK_MM
+from pkm_post.numerical_control.defaults import NEAR_MM as NEAR_BLOCK_MM
 from pkm_post.numerical_control.permissions import Order, Why
 from pkm_post.pmac_link.job import Job, read_job
 from pkm_post.pmac_link.ready import NEAR_MM
