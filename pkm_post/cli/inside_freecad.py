@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 _ADDON = Path(__file__).resolve().parents[2]
+_DOCUMENT = ".fcstd"
 _START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
 """As ``-m pkm_post``, wherever the add-on is."""
 
@@ -18,6 +19,17 @@ _START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli imp
 def is_inside() -> bool:
     """Whether this process is FreeCAD's."""
     return "FreeCAD" in sys.modules
+
+
+def needs_freecad(files: Sequence[Path]) -> bool:
+    """Whether this process cannot read one of the files; documents are told by their names, which needs no NumPy."""
+    if is_inside():
+        return False
+    if any(file.suffix.lower() == _DOCUMENT for file in files):
+        return True
+    from pkm_post.sources import is_part_program
+
+    return not all(map(is_part_program, files))
 
 
 def run_inside(arguments: Sequence[str]) -> int:

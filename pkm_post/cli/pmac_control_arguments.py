@@ -7,7 +7,7 @@ import argparse
 import math
 from collections.abc import Callable
 
-from pkm_post.cli.reading import axis_words
+from pkm_post.cli.reading import NO_AXIS_WORDS, axis_words
 
 _HIGHEST_PROGRAM = 999
 """From 1000 on live the subprograms of the codes."""
@@ -42,7 +42,7 @@ def _add_mdi(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("line", metavar="LINE", help="a line of G-code; it stands by itself")
     parser.add_argument("--work-offset", default="G54", metavar="NAME", help="frame of the line (%(default)s)")
     told = "how the line says the tool axis; none leaves it as it is (%(default)s)"
-    parser.add_argument("--axis-words", type=axis_words, default="none", metavar="WORDS", help=told)
+    parser.add_argument("--axis-words", type=axis_words, default=NO_AXIS_WORDS, metavar="WORDS", help=told)
     _add_by_hand(parser)
 
 

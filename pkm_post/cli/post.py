@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, run_inside
+from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside
 from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, reading_from
@@ -63,22 +63,16 @@ def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     at_a_time = min(namespace.jobs, len(files))
     if at_a_time > 1:
         return _post_in_processes(files, arguments, at_a_time)
-    if _needs_freecad(files):
+    if needs_freecad(files):
         return run_inside(arguments)
     return max([_post_one(file, namespace) for file in files])
-
-
-def _needs_freecad(files: Sequence[Path]) -> bool:
-    from pkm_post.sources import is_part_program
-
-    return not is_inside() and not all(map(is_part_program, files))
 
 
 def _post_in_processes(files: Sequence[Path], arguments: Sequence[str], at_a_time: int) -> int:
     """The same command for each file, in a process of its own."""
     commands = []
     for number, file in enumerate(files):
-        start = command_inside if is_inside() or _needs_freecad([file]) else command_outside
+        start = command_inside if is_inside() or needs_freecad([file]) else command_outside
         commands.append(start([*arguments, f"{_ONLY}={number}"]))
     return run_many(commands, at_a_time, "posted") if all(commands) else 1
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inside_freecad import is_inside, run_inside
+from pkm_post.cli.inside_freecad import needs_freecad, run_inside
 from pkm_post.cli.reading import add_reading, reading_from
 from pkm_post.options import add_options, options_from, tool_lengths_from
 
@@ -49,14 +49,13 @@ def _freedoms(text: str) -> str:
 
 
 def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    if needs_freecad(namespace.files):
+        return run_inside(arguments)
     from pkm_post.machine_file import machine_named
     from pkm_post.model import Refused
     from pkm_post.model.diagnostics import errors
     from pkm_post.reach_study import study
-    from pkm_post.sources import is_part_program
 
-    if not is_inside() and not all(map(is_part_program, namespace.files)):
-        return run_inside(arguments)
     machine, faults = machine_named(namespace.machine)
     _tell(faults)
     failed = machine is None

@@ -12,13 +12,16 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pkm_post.sources import Reading
 
+NO_AXIS_WORDS = "none"
+"""The default: the tool stands upright."""
+
 
 def add_reading(parser: argparse.ArgumentParser) -> None:
     """Add what the user may say of a part program."""
     parser.add_argument(
         "--axis-words",
         type=axis_words,
-        default="none",
+        default=NO_AXIS_WORDS,
         metavar="WORDS",
         help="how the G-code says the tool axis: vector (I J K after G43.5), AC, BC or AB (rotary words after G43.4),"
         " RPY (A B C of LinuxCNC's hexapod), or none, the default",
@@ -61,7 +64,9 @@ def one_of(allowed: Collection[str], text: str) -> str:
 
 
 def axis_words(text: str) -> str:
-    """How the tool axis is said, for ``argparse``."""
+    """How the tool axis is said, for ``argparse``; it looks at a default as well, where there may be no NumPy."""
+    if text == NO_AXIS_WORDS:
+        return text
     from pkm_post.sources import AXIS_WORDS
 
     return one_of(AXIS_WORDS, text)
