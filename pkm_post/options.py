@@ -12,6 +12,8 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.argument_types import number, numbered, positive
+
 if TYPE_CHECKING:
     from pkm_post.model.findings import Tolerances
     from pkm_post.pipeline import Options
@@ -26,48 +28,21 @@ READING = "reading"
 Pose = tuple[float, float, float, float]
 
 
-def _number(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"expected a number, got {text!r}")
-    return value
-
-
-def _positive(text: str) -> float:
-    value = _number(text)
-    if value <= 0:
-        raise argparse.ArgumentTypeError(f"expected a number above 0, got {text!r}")
-    return value
-
-
 def _work_offset(text: str) -> str | Pose:
     """A name, or x, y, z in mm and the turn about z in degrees."""
-    numbers = text.split(",")
-    if len(numbers) == 1:
+    words = text.split(",")
+    if len(words) == 1:
         return text
-    if len(numbers) not in (3, 4):
+    if len(words) not in (3, 4):
         raise argparse.ArgumentTypeError(f"expected X,Y,Z or X,Y,Z,DEG, got {text!r}")
-    x, y, z, turn = [*(_number(number) for number in numbers), 0.0][:4]
+    x, y, z, turn = [*map(number, words), 0.0][:4]
     return x, y, z, turn
 
 
-def _tool_length(text: str) -> tuple[int, float]:
-    number, _, length = text.partition("=")
-    if not number.isdecimal():
-        raise argparse.ArgumentTypeError(f"expected NUMBER=MM, got {text!r}")
-    return int(number), _positive(length)
-
-
-def _actual_tool(text: str) -> tuple[int, float, float]:
-    """Tool number, diameter and corner radius."""
-    number, _, sizes = text.partition("=")
-    diameter, _, corner = sizes.partition(",")
-    if not number.isdecimal():
-        raise argparse.ArgumentTypeError(f"expected NUMBER=D[,R], got {text!r}")
-    return int(number), _positive(diameter), _number(corner) if corner else 0.0
+def _sizes(text: str) -> tuple[float, float]:
+    """Diameter and corner radius."""
+    diameter, _, corner = text.partition(",")
+    return positive(diameter), number(corner) if corner else 0.0
 
 
 _SPINS = {
@@ -91,7 +66,7 @@ def _spin(text: str) -> tuple[str, float, str]:
     if rule not in _SPINS or (given and not _SPINS[rule]):
         raise argparse.ArgumentTypeError(f"expected one of {_spin_words()}, got {text!r}")
     if _SPINS[rule] == "DEG":
-        return rule, _number(value) if given else 0.0, _OBJECTIVES[0]
+        return rule, number(value) if given else 0.0, _OBJECTIVES[0]
     if given and value not in _OBJECTIVES:
         raise argparse.ArgumentTypeError(f"expected one of {', '.join(_OBJECTIVES)} behind =, got {value!r}")
     return rule, 0.0, value or _OBJECTIVES[0]
@@ -128,19 +103,19 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--tip-tolerance": {
         "metavar": "MM",
-        "type": _positive,
+        "type": positive,
         "default": 0.001,
         "help": "how far the tool tip may be from the programmed path (default: %(default)s)",
     },
     "--axis-tolerance": {
         "metavar": "DEG",
-        "type": _positive,
+        "type": positive,
         "default": 0.001,
         "help": "how far the tool axis may be from the programmed axis (default: %(default)s)",
     },
     "--tool-length": {
         "metavar": "NUMBER=MM",
-        "type": _tool_length,
+        "type": numbered(positive, "NUMBER=MM"),
         "action": "append",
         "default": [],
         "help": "gauge length of a tool, instead of the GaugeLength of its tool controller; may be repeated",
@@ -163,7 +138,7 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--actual-tool": {
         "metavar": "NUMBER=D[,R]",
-        "type": _actual_tool,
+        "type": numbered(_sizes, "NUMBER=D[,R]"),
         "action": "append",
         "default": [],
         "help": "diameter and corner radius in mm of a cutter that is not the one a program with surface normals was"
@@ -171,7 +146,7 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--surface-speed": {
         "metavar": "M/MIN",
-        "type": _positive,
+        "type": positive,
         "help": "speed of the cutting edge over the work: each cut gets its own spindle speed (default: as programmed)",
     },
     "--keep-chip-load": {
@@ -233,7 +208,7 @@ def options_from(namespace: argparse.Namespace) -> Options:
         surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
         also=namespace.also,
         actual_tools={
-            number: Tool(number, "", diameter, corner, 0.0) for number, diameter, corner in namespace.actual_tool
+            tool: Tool(tool, "", diameter, corner, 0.0) for tool, (diameter, corner) in namespace.actual_tool
         },
     )
 

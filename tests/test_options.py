@@ -77,7 +77,7 @@ def test_the_numbers_of_the_spin():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--actual-tool", "3"], "expected a number, got ''"),
+        (["--actual-tool", "3"], "expected NUMBER=D[,R], got '3'"),
         (["--actual-tool", "T3=10"], "expected NUMBER=D[,R], got 'T3=10'"),
         (["--spin", "fast"], "expected one of zero, file, x-in-plane[=DEG]"),
         (["--spin", "zero=1"], "got 'zero=1'"),
@@ -88,7 +88,7 @@ def test_the_numbers_of_the_spin():
         (["--axis-tolerance", "x"], "expected a number, got 'x'"),
         (["--work-offset", "1,2"], "expected X,Y,Z or X,Y,Z,DEG, got '1,2'"),
         (["--work-offset", "1,2,"], "expected a number, got ''"),
-        (["--tool-length", "120"], "expected a number, got ''"),
+        (["--tool-length", "120"], "expected NUMBER=MM, got '120'"),
         (["--tool-length", "T1=120"], "expected NUMBER=MM, got 'T1=120'"),
         (["--tool-length", "1=-5"], "expected a number above 0, got '-5'"),
     ],

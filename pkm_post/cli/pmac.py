@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import argparse
 import logging
-import math
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from pkm_post.argument_types import count, positive
 from pkm_post.cli import pmac_control, pmac_control_arguments, pmac_simulate
 from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, JobTarget, Target
 from pkm_post.cli.pmac_stream import ROTARY_WORDS
@@ -49,29 +49,29 @@ def _add_port(parser: argparse.ArgumentParser) -> None:
 
     forms = "serial:DEVICE, tcp:HOST[:PORT] or, for a Power PMAC, ssh:USER@HOST[:PORT]"
     parser.add_argument("--port", required=True, type=_port, metavar="PORT", help=forms)
-    parser.add_argument("--baud", type=int, default=38400, help="of a serial line (%(default)s)")
+    parser.add_argument("--baud", type=count, default=38400, help="of a serial line (%(default)s)")
     parser.add_argument("--parity", choices=PARITIES, default="none", help="of a serial line (%(default)s)")
     parser.add_argument("--rtscts", action="store_true", help="the serial line has RTS and CTS")
     known = "host keys that are trusted over ssh (~/.ssh/known_hosts)"
     parser.add_argument("--known-hosts", type=Path, metavar="FILE", help=known)
-    parser.add_argument("--patience", type=_positive, default=2.0, metavar="S", help="longest silence (%(default)s)")
+    parser.add_argument("--patience", type=positive, default=2.0, metavar="S", help="longest silence (%(default)s)")
 
 
 def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
     if name == "stream":
         rotary = "size of the rotary buffer, as it was defined (%(default)s)"
-        parser.add_argument("--rotary", type=_words, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
+        parser.add_argument("--rotary", type=count, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
     if name in ("run", "stream"):
         near = "how far each strut may be from the first point (%(default)s)"
-        parser.add_argument("--near", type=_positive, default=1.0, metavar="MM", help=near)
+        parser.add_argument("--near", type=positive, default=1.0, metavar="MM", help=near)
     elif name == "abort":
         parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
     elif name == "monitor":
-        parser.add_argument("--tool-length", type=_positive, metavar="MM", help="gauge length (that of the rest pose)")
+        parser.add_argument("--tool-length", type=positive, metavar="MM", help="gauge length (that of the rest pose)")
         parser.add_argument(
-            "--rate", type=_positive, default=10.0, metavar="HZ", help="readings per second (%(default)s)"
+            "--rate", type=positive, default=10.0, metavar="HZ", help="readings per second (%(default)s)"
         )
-        parser.add_argument("--seconds", type=_positive, metavar="S", help="how long (until Ctrl-C)")
+        parser.add_argument("--seconds", type=positive, metavar="S", help="how long (until Ctrl-C)")
 
 
 def _port(text: str) -> Port:
@@ -154,19 +154,3 @@ def _told(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
     for fault in faults:
         print(fault, file=sys.stderr)
     return value
-
-
-def _words(text: str) -> int:
-    if not (text.isdecimal() and int(text) > 0):
-        raise argparse.ArgumentTypeError(f"expected a number of words above zero, got {text!r}")
-    return int(text)
-
-
-def _positive(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = 0.0
-    if not 0 < number < math.inf:
-        raise argparse.ArgumentTypeError(f"expected a number above zero, got {text!r}")
-    return number

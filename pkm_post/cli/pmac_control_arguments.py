@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Callable
 
+from pkm_post.argument_types import count, fitting, number, positive, whole
 from pkm_post.cli.reading import NO_AXIS_WORDS, axis_words
 
 _HIGHEST_PROGRAM = 999
 """From 1000 on live the subprograms of the codes."""
+_percent = fitting(number, lambda percent: 0 < percent <= 100, "a number above 0 and up to 100")
 
 
 def add_own(parser: argparse.ArgumentParser, name: str) -> None:
@@ -26,15 +27,15 @@ def _add_home(parser: argparse.ArgumentParser) -> None:
 
 def _add_jog(parser: argparse.ArgumentParser) -> None:
     for name in ("x", "y", "z"):
-        parser.add_argument(f"--{name}", type=_number, default=0.0, metavar="MM", help=f"the tip along {name.upper()}")
+        parser.add_argument(f"--{name}", type=number, default=0.0, metavar="MM", help=f"the tip along {name.upper()}")
     for name in ("x", "y"):
         told = f"the tool axis about {name.upper()}, the tip stands"
-        parser.add_argument(f"--tilt-{name}", type=_number, default=0.0, metavar="DEG", help=told)
-    parser.add_argument("--spin", type=_number, default=0.0, metavar="DEG", help="the platform about the tool axis")
+        parser.add_argument(f"--tilt-{name}", type=number, default=0.0, metavar="DEG", help=told)
+    parser.add_argument("--spin", type=number, default=0.0, metavar="DEG", help="the platform about the tool axis")
     parser.add_argument("--strut", type=int, choices=range(1, 7), help="one strut instead of the tool")
-    parser.add_argument("--by", type=_number, default=0.0, metavar="MM", help="how much longer that strut becomes")
+    parser.add_argument("--by", type=number, default=0.0, metavar="MM", help="how much longer that strut becomes")
     told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
-    parser.add_argument("--feed", type=_positive, default=300.0, metavar="MM/MIN", help=told)
+    parser.add_argument("--feed", type=positive, default=300.0, metavar="MM/MIN", help=told)
     _add_by_hand(parser)
 
 
@@ -47,15 +48,15 @@ def _add_mdi(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_by_hand(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--tool-length", type=_positive, metavar="MM", help="gauge length (that of the rest pose)")
+    parser.add_argument("--tool-length", type=positive, metavar="MM", help="gauge length (that of the rest pose)")
     parser.add_argument("--check", action="store_true", help="plan and check it, and send nothing")
     _add_number(parser)
 
 
 def _add_step(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--block", type=_count, default=1, metavar="N", help="begin at this block (%(default)s)")
+    parser.add_argument("--block", type=count, default=1, metavar="N", help="begin at this block (%(default)s)")
     near = "how far each strut may be from where a block begins (%(default)s)"
-    parser.add_argument("--near", type=_positive, default=1.0, metavar="MM", help=near)
+    parser.add_argument("--near", type=positive, default=1.0, metavar="MM", help=near)
     parser.set_defaults(tool_length=None)
     _add_number(parser)
 
@@ -64,56 +65,20 @@ def _add_continue(parser: argparse.ArgumentParser) -> None:
     from pkm_post.numerical_control.defaults import NEAR_MM
 
     told = "which stop of the program it stands at, from 1"
-    parser.add_argument("--stop", type=_count, required=True, metavar="N", help=told)
+    parser.add_argument("--stop", type=count, required=True, metavar="N", help=told)
     near = "how far each strut may be from where it stopped (%(default)s)"
-    parser.add_argument("--near", type=_positive, default=NEAR_MM, metavar="MM", help=near)
+    parser.add_argument("--near", type=positive, default=NEAR_MM, metavar="MM", help=near)
 
 
 def _add_number(parser: argparse.ArgumentParser) -> None:
     from pkm_post.numerical_control.defaults import OWN_PROGRAM
 
     told = "number of the program in the controller that is used for it (%(default)s)"
-    parser.add_argument("--number", type=_program, default=OWN_PROGRAM, metavar="PROG", help=told)
+    parser.add_argument("--number", type=whole(1, _HIGHEST_PROGRAM), default=OWN_PROGRAM, metavar="PROG", help=told)
 
 
 def _add_override(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("percent", type=_percent, metavar="PERCENT", help="above 0 and up to 100")
-
-
-def _number(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise argparse.ArgumentTypeError(f"expected a number, got {text!r}")
-    return number
-
-
-def _positive(text: str) -> float:
-    number = _number(text)
-    if number <= 0:
-        raise argparse.ArgumentTypeError(f"expected a number above zero, got {text!r}")
-    return number
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"expected a whole number above 0, got {text!r}")
-    return int(text)
-
-
-def _program(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= _HIGHEST_PROGRAM:
-        raise argparse.ArgumentTypeError(f"expected a whole number from 1 to {_HIGHEST_PROGRAM}, got {text!r}")
-    return int(text)
-
-
-def _percent(text: str) -> float:
-    number = _number(text)
-    if not 0 < number <= 100:
-        raise argparse.ArgumentTypeError(f"expected above 0 and up to 100, got {text!r}")
-    return number
+    parser.add_argument("percent", type=_percent, metavar="PERCENT", help="a number above 0 and up to 100")
 
 
 def _trigger(text: str) -> str:

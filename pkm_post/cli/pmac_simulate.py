@@ -9,6 +9,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.argument_types import between, whole, whole_from
+
 if TYPE_CHECKING:
     from pkm_post.pmac_simulator import Controller, Server
 
@@ -21,35 +23,24 @@ def add_action(actions: Any) -> None:
     simulate = actions.add_parser("simulate", help="be a Turbo PMAC with six motors, for tests and training")
     door = simulate.add_mutually_exclusive_group(required=True)
     door.add_argument("--pty", action="store_true", help="be connected to a pseudo terminal, as to a serial port")
-    door.add_argument("--tcp", type=_port, metavar="PORT", help="listen at this port of this computer; 0 takes any")
+    door.add_argument(
+        "--tcp",
+        type=whole(0, HIGHEST_PORT, "a port"),
+        metavar="PORT",
+        help="listen at this port of this computer; 0 takes any",
+    )
     simulate.add_argument("--setup", type=Path, metavar="FILE", help="lines of a set-up file to carry out first")
-    simulate.add_argument("--speed", type=_speed, default=1.0, help="simulated seconds in a second (1)")
+    simulate.add_argument(
+        "--speed", type=between(LOWEST_SPEED, HIGHEST_SPEED), default=1.0, help="simulated seconds in a second (1)"
+    )
     simulate.add_argument("--memory", type=_words, metavar="WORDS", help="memory for programs, in 48-bit words")
     simulate.set_defaults(run=_simulate)
-
-
-def _port(text: str) -> int:
-    if not (text.isdecimal() and int(text) <= HIGHEST_PORT):
-        raise argparse.ArgumentTypeError(f"expected a port from 0 to {HIGHEST_PORT}, got {text!r}")
-    return int(text)
 
 
 def _words(text: str) -> int:
     from pkm_post.pmac_simulator.settings import LEAST_MEMORY
 
-    if not (text.isdecimal() and int(text) >= LEAST_MEMORY):
-        raise argparse.ArgumentTypeError(f"expected {LEAST_MEMORY} words or more, got {text!r}")
-    return int(text)
-
-
-def _speed(text: str) -> float:
-    try:
-        speed = float(text)
-    except ValueError:
-        speed = 0.0
-    if not LOWEST_SPEED <= speed <= HIGHEST_SPEED:
-        raise argparse.ArgumentTypeError(f"expected a number from {LOWEST_SPEED} to {HIGHEST_SPEED}, got {text!r}")
-    return speed
+    return whole_from(LEAST_MEMORY, f"{LEAST_MEMORY} words or more")(text)
 
 
 def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:

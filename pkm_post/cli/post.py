@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.argument_types import count
 from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside
 from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
@@ -37,7 +38,7 @@ def add_commands(commands: Any) -> None:
     post.add_argument("--job", metavar="NAME", help="post this job of the document only, by name or label")
     post.add_argument(
         "--jobs",
-        type=_count,
+        type=count,
         default=os.cpu_count() or 1,
         metavar="N",
         help="how many of several files to post at the same time (default: the number of processors, %(default)s)",
@@ -48,15 +49,9 @@ def add_commands(commands: Any) -> None:
     post.set_defaults(run=_post)
 
 
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"expected a whole number above 0, got {text!r}")
-    return int(text)
-
-
 def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     files = namespace.files if namespace.only is None else [namespace.files[namespace.only]]
-    twice = [stem for stem, count in Counter(file.stem for file in files).items() if count > 1]
+    twice = [stem for stem, times in Counter(file.stem for file in files).items() if times > 1]
     if twice:
         print(f"several files would be posted as {', '.join(twice)}: post them to different folders", file=sys.stderr)
         return 2

@@ -12,6 +12,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from pkm_post.argument_types import fitting, number, positive
+
+_angle = fitting(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
+
 
 def add_commands(commands: Any) -> None:
     """Add the command to a parser."""
@@ -19,22 +23,22 @@ def add_commands(commands: Any) -> None:
     mapping.add_argument("machine", metavar="NAME_OR_FILE")
     mapping.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the CSV and the picture")
     mapping.add_argument(
-        "--length", type=float, default=120.0, metavar="MM", help="gauge length (default: %(default)s)"
+        "--length", type=positive, default=120.0, metavar="MM", help="gauge length (default: %(default)s)"
     )
     for name, default in (("x", "-300:300:50"), ("y", "-300:300:50"), ("z", "0:500:100")):
         mapping.add_argument(f"--{name}", type=_range, default=default, metavar="FROM:TO:STEP", help="mm, %(default)s")
-    mapping.add_argument("--widest", type=float, default=60.0, metavar="DEG", help="largest angle (%(default)s)")
+    mapping.add_argument("--widest", type=_angle, default=60.0, metavar="DEG", help="largest angle (%(default)s)")
     mapping.set_defaults(run=_map)
 
 
 def _range(text: str) -> list[float]:
     try:
-        first, last, step = (float(number) for number in text.split(":"))
+        first, last, step = (float(word) for word in text.split(":"))
     except ValueError:
         step = math.nan
     if not (step > 0 and math.isfinite(last - first) and last >= first):
         raise argparse.ArgumentTypeError(f"expected FROM:TO:STEP, got {text!r}")
-    return [first + number * step for number in range(math.floor((last - first) / step * (1 + 1e-12)) + 1)]
+    return [first + place * step for place in range(math.floor((last - first) / step * (1 + 1e-12)) + 1)]
 
 
 def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:

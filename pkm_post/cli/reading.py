@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from pkm_post.argument_types import numbered, positive
 
 if TYPE_CHECKING:
     from pkm_post.sources import Reading
@@ -30,7 +31,7 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
         "--tool",
         dest="tools",
         action="append",
-        type=_tool_diameter,
+        type=numbered(positive, "NUMBER=MM"),
         default=[],
         metavar="NUMBER=MM",
         help="diameter of a tool, for G41 and G42; may be repeated",
@@ -70,14 +71,3 @@ def axis_words(text: str) -> str:
     from pkm_post.sources import AXIS_WORDS
 
     return one_of(AXIS_WORDS, text)
-
-
-def _tool_diameter(text: str) -> tuple[int, float]:
-    number, _, diameter = text.partition("=")
-    try:
-        value = int(number), float(diameter)
-    except ValueError:
-        value = 0, math.nan
-    if not 0 < value[1] < math.inf:
-        raise argparse.ArgumentTypeError(f"expected NUMBER=MM, got {text!r}")
-    return value

@@ -5,17 +5,14 @@ Its bits stand in other places than those of a Turbo PMAC, in two words of 32, a
 the names of its data structure. Bits are counted from the least significant one of all hexadecimal digits.
 [EPICSpmac, pmacHardwarePower]
 
-Enters: a session. Leaves: counts, bits, and what they mean.
+Enters: the settings of a controller, and what it answers. Leaves: the query that ``status.read_status`` asks, counts,
+bits, and what they mean.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from pkm_post.controllers.power_pmac import Settings
-from pkm_post.pmac_link.faults import LinkLostError
-from pkm_post.pmac_link.session import Session
-from pkm_post.pmac_link.status import MOTORS, MotorBits, Status, SystemBits, hexadecimal
+from pkm_post.pmac_link.status import MOTORS, MotorBits, Status, SystemBits, hexadecimal, lengths_and_errors
 
 _ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus")
 _STATUS_BITS = 64
@@ -51,34 +48,32 @@ class PowerSystemBits(SystemBits):
     }
 
 
-def read_power_status(session: Session, settings: Settings) -> Status:
-    """As ``status.read_status``."""
+def query(settings: Settings) -> str:
+    """The line that asks for everything."""
     system = settings.coordinate_system
-    query = " ".join(
+    return " ".join(
         [
             *(f"#{motor}? #{motor}p #{motor}f" for motor in MOTORS),
             f"&{system}? &{system}%",
             *(f"Coord[{system}].{name}" for name in _ELEMENTS),
         ]
     )
-    told = session.ask(query)
-    try:
-        return _status(told, settings)
-    except ValueError as fault:
-        raise LinkLostError(f"{query!r}: {fault}") from None
 
 
-def _status(told: tuple[str, ...], settings: Settings) -> Status:
+def status_of(told: tuple[str, ...], settings: Settings) -> Status:
+    """What the lines of the answer mean.
+
+    Raises:
+        ValueError: they make no sense.
+    """
     expected = 3 * len(MOTORS) + 2 + len(_ELEMENTS)
     if len(told) != expected:
         raise ValueError(f"expected {expected} lines, got {len(told)}")
     motors = tuple(_motor(hexadecimal(line, PowerMotorBits.DIGITS)) for line in told[0:18:3])
-    counts = np.array([[float(line) for line in told[column:18:3]] for column in (1, 2)])
-    length = counts[0] / settings.counts_per_mm + np.array(settings.zero_length)
     bits = hexadecimal(told[18], PowerSystemBits.DIGITS)
     for place, value in enumerate(told[20:], start=_STATUS_BITS):
         bits |= int(float(value) != 0) << place
-    return Status(motors, PowerSystemBits(bits), float(told[19]), length, counts[1] / settings.counts_per_mm)
+    return Status(motors, PowerSystemBits(bits), float(told[19]), *lengths_and_errors(told, settings))
 
 
 def _motor(value: int) -> PowerMotorBits:

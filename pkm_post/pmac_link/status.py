@@ -7,9 +7,9 @@ hexadecimal digits of an answer.  [TurboPMAC, #n?, &n??]
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from pkm_post.pmac_link.faults import LinkLostError
 from pkm_post.pmac_link.session import Session
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+AnySettings = TypeVar("AnySettings", Settings, PowerSettings)
 
 MOTORS = range(1, 7)
 
@@ -144,26 +145,49 @@ def read_status(session: Session, settings: Settings | PowerSettings) -> Status:
         LinkLostError: the answer makes no sense.
     """
     if isinstance(settings, PowerSettings):
-        from pkm_post.pmac_link.power_status import read_power_status  # it is made of what is here
+        from pkm_post.pmac_link import power_status  # it is made of what is here
 
-        return read_power_status(session, settings)
-    system = f"&{settings.coordinate_system}"
-    query = " ".join(f"#{motor}? #{motor}P #{motor}F" for motor in MOTORS) + f" {system}?? {system}%"
+        return _asked(session, power_status.query(settings), settings, power_status.status_of)
+    return _asked(session, _query(settings), settings, _status_of)
+
+
+def _asked(
+    session: Session, query: str, settings: AnySettings, status_of: Callable[[tuple[str, ...], AnySettings], Status]
+) -> Status:
+    """The state that an answer tells; a ValueError says that it makes no sense."""
     told = session.ask(query)
     try:
-        return _status(told, settings)
+        return status_of(told, settings)
     except ValueError as fault:
         raise LinkLostError(f"{query!r}: {fault}") from None
 
 
-def _status(told: tuple[str, ...], settings: Settings) -> Status:
+def _query(settings: Settings) -> str:
+    system = f"&{settings.coordinate_system}"
+    return " ".join(f"#{motor}? #{motor}P #{motor}F" for motor in MOTORS) + f" {system}?? {system}%"
+
+
+def _status_of(told: tuple[str, ...], settings: Settings) -> Status:
     if len(told) != 20:
         raise ValueError(f"expected 20 lines, got {len(told)}")
     motors = tuple(MotorBits(hexadecimal(line, MotorBits.DIGITS)) for line in told[0:18:3])
-    counts = np.array([[float(line) for line in told[column:18:3]] for column in (1, 2)])
-    length = counts[0] / settings.counts_per_mm + np.array(settings.zero_length)
     system = SystemBits(hexadecimal(told[18], SystemBits.DIGITS))
-    return Status(motors, system, float(told[19]), length, counts[1] / settings.counts_per_mm)
+    return Status(motors, system, float(told[19]), *lengths_and_errors(told, settings))
+
+
+def lengths_and_errors(told: tuple[str, ...], settings: Settings | PowerSettings) -> tuple[Array, Array]:
+    """Lengths and following errors of the struts, (6,) each in mm.
+
+    Args:
+        told: for each strut three lines, bits and the counts of position and following error; any more behind them.
+        settings: of the controller.
+
+    Raises:
+        ValueError: a count is no number.
+    """
+    counts = np.array([[float(line) for line in told[column : 3 * len(MOTORS) : 3]] for column in (1, 2)])
+    position, error = counts / settings.counts_per_mm
+    return position + np.array(settings.zero_length), error
 
 
 def hexadecimal(text: str, digits: int) -> int:

@@ -11,7 +11,7 @@ from rig import SETTINGS, Wire, controller
 from pkm_post.kinematics.inverse import strut_lengths
 from pkm_post.pmac_link.faults import LinkLostError
 from pkm_post.pmac_link.readout import Readout, pose_text, state_text
-from pkm_post.pmac_link.status import MotorBits, Status, SystemBits, _status, read_status
+from pkm_post.pmac_link.status import MotorBits, Status, SystemBits, _status_of, read_status
 
 NANOMETRE = 1e-6
 GOOD = "880000000401"
@@ -74,7 +74,7 @@ def test_bits_are_where_the_manual_has_them():
 
 def test_counts_become_lengths():
     told = [GOOD, "12345.5", "-20"] * 6 + ["0" * 18, "50"]
-    state = _status(tuple(told), SETTINGS)
+    state = _status_of(tuple(told), SETTINGS)
     assert isinstance(state, Status)
     assert state.length[0] == pytest.approx(501.23455) and state.following_error[5] == pytest.approx(-0.002)
 

@@ -86,6 +86,18 @@ def test_the_command_writes_data_and_picture(tmp_path, capsys):
 def test_the_command_tells_faults(tmp_path, capsys):
     assert main(["reach-map", "no_such_machine", "--out", str(tmp_path)]) == 1
     assert "M101" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--x", "1:0:5"], "expected FROM:TO:STEP, got '1:0:5'"),
+        (["--length", "0"], "expected a number above 0, got '0'"),
+        (["--widest", "nan"], "expected a number, got 'nan'"),
+        (["--widest", "180"], "expected an angle above 0 and below 180, got '180'"),
+    ],
+)
+def test_arguments_without_sense_are_told(arguments, message, capsys):
     with pytest.raises(SystemExit):
-        main(["reach-map", "example_6tps", "--x", "1:0:5"])
-    assert "expected FROM:TO:STEP" in capsys.readouterr().err
+        main(["reach-map", "example_6tps", *arguments])
+    assert message in capsys.readouterr().err
