@@ -17,14 +17,14 @@ _ROOM = 1.1
 
 
 def bow(columns: Array) -> Array:
-    """Most by which (3, N, M) columns leave the chords between neighbours of M >= 4 even instants, (N,)."""
-    second = np.diff(columns, 2, axis=2)
+    """Most by which (3, M, N) columns leave the chords between neighbours of M >= 4 even instants, (N,)."""
+    second = np.diff(columns, 2, axis=1)
     # f'' of a cubic is linear: at both ends, where there is no second difference, it is one step further on
-    onward = length_of(*(second[..., -1] - second[..., 0])) / (second.shape[2] - 1)
-    return np.asarray(_ROOM / 8 * (length_of(*second).max(axis=1) + onward))
+    onward = length_of(*(second[:, -1] - second[:, 0])) / (second.shape[1] - 1)
+    return np.asarray(_ROOM / 8 * (length_of(*second).max(axis=0) + onward))
 
 
 def arch(columns: Array, bend: Array | float) -> Array:
     """Most by which a curve of curvature ``bend`` leaves the chords of steps as long as those of the columns, (N,)."""
-    step = np.square(np.diff(columns, axis=2)).sum(axis=0).max(axis=1)
+    step = np.square(np.diff(columns, axis=1)).sum(axis=0).max(axis=0)
     return np.asarray(_ROOM / 8 * step * bend)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pkm_post.certificate.course import Course
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.instants import Task
 from pkm_post.certificate.joints import Passed, pass_joints
@@ -51,7 +52,9 @@ def certify(
     if faults:
         return None, faults
     ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
-    task = Task(struts, machine, ruler, motion, Knots.of(machine, motion), ceiling)
+    knots = Knots.of(machine, motion)
+    course = Course.of(machine, struts, motion, knots)
+    task = Task(struts, machine, ruler, motion, knots, course, ceiling)
     passed = pass_joints(task, trajectory)
     played = play(task, passed)
     findings = _findings(task, played, passed, trajectory, tolerances)

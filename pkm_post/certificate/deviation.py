@@ -29,12 +29,13 @@ class TrajectoryRuler:
 
     Attributes:
         axis_tolerance: how far the tool axis may be off, rad.
+        tip_tolerance: (N,) how far the tip may be off each segment, mm.
     """
 
     def __init__(self, trajectory: Trajectory, tolerances: Tolerances) -> None:
         self._trajectory = trajectory
         self.axis_tolerance = tolerances.axis
-        self._tip_tolerance = trajectory.tip_tolerances(tolerances.tip)
+        self.tip_tolerance = trajectory.tip_tolerances(tolerances.tip)
         self._tip_before = trajectory.tip_before()
         self._axis_before = trajectory.axis_before()
         self._axis_turn = towards(self._axis_before, trajectory.axis)
@@ -105,14 +106,14 @@ class TrajectoryRuler:
         if len(curved):
             off[curved] = tip[curved] - self._on_arc(segment[curved], share[curved])
         expected = along(start, share[:, None] * taken(turn, at)) if turns else start
-        return np.stack([norm(off), angle_between(axis, expected), self._tip_tolerance[segments][at]])
+        return np.stack([norm(off), angle_between(axis, expected), self.tip_tolerance[segments][at]])
 
     def _weights(self, segments: Array) -> tuple[Array, ...]:
         """How much the shares that are nearest for the tip alone and for the axis alone count.
 
         Along a segment tip and axis move evenly, so the least sum of squares is at the weighted mean of these shares.
         """
-        by_tip = (self._trajectory.length[segments] / self._tip_tolerance[segments]) ** 2
+        by_tip = (self._trajectory.length[segments] / self.tip_tolerance[segments]) ** 2
         by_axis = (self._trajectory.angle[segments] / self.axis_tolerance) ** 2
         both = by_tip + by_axis
         moves = both > 0  # a turn about the tool axis alone moves neither; every share of it fits alike
@@ -137,7 +138,7 @@ class TrajectoryRuler:
         turn = self._axis_turn[segment]
         rise = dot(trajectory.tip[segment] - start, trajectory.arc_axis[segment])
         risen = dot(tip - start, trajectory.arc_axis[segment])
-        by_rise, by_axis = 1 / self._tip_tolerance[segment] ** 2, 1 / self.axis_tolerance**2
+        by_rise, by_axis = 1 / self.tip_tolerance[segment] ** 2, 1 / self.axis_tolerance**2
         along_both = by_rise * rise * risen + by_axis * dot(towards(self._axis_before[segment], axis), turn)
         whole = by_rise * rise**2 + by_axis * dot(turn, turn)
         tells = whole > _TELLS_TURNS**2

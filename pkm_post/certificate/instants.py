@@ -2,9 +2,10 @@
 """Instants: where the cubics of some intervals bring the tool, at even shares of each, and how far off that is.
 
 Enters: a strut motion as read back, and a planned motion as the place where the search for each pose begins; the poses
-found do not depend on it. Leaves: the worst values at the instants, and how much more there can be between them. Most
-poses are found by linear steps from the plan (``kinematics.near``); where the Jacobian changes much, or these do not
-arrive, by Newton's method.
+found do not depend on it. Leaves: the worst values at the instants, and how much more there can be. The tool is taken
+to be on its course (``course``), and what it can be off that is told with what hides between the instants. Or, closely,
+each pose is found by forward kinematics: most by linear steps from the plan (``kinematics.near``); where the Jacobian
+changes much, or these do not arrive, by Newton's method.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.certificate.between import arch, bow
+from pkm_post.certificate.course import Course
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.knots import Knots
+from pkm_post.certificate.struts import cubics
 from pkm_post.geometry import hermite_motion
 from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.kinematics import NearPoses, carried, forward, near_poses
@@ -36,6 +39,7 @@ class Task:
         ruler: measures poses against the programmed trajectory.
         motion: the planned motion with the same knots.
         knots: what the machine is like there.
+        course: where the tool is, about.
         ceiling: (K,) tip speed that each interval may have, mm/s.
     """
 
@@ -44,6 +48,7 @@ class Task:
     ruler: TrajectoryRuler
     motion: Motion
     knots: Knots
+    course: Course
     ceiling: Array
 
 
@@ -54,7 +59,7 @@ class Seen:
     Attributes:
         found: (N,) whether a pose belongs to every instant.
         worst: (3, N) the largest at an instant.
-        hidden: (3, N) by how much more there can be between two of them.
+        hidden: (3, N) by how much more there can be, between two of them and at them.
         tip_tolerance: (N,) what the tip may be off where it is worst, mm.
     """
 
@@ -64,6 +69,11 @@ class Seen:
     tip_tolerance: Array
 
     @classmethod
+    def nothing(cls, count: int) -> Seen:
+        """Of intervals that were not looked at: anything can be there."""
+        return cls(np.ones(count, dtype=bool), np.zeros((3, count)), np.full((3, count), np.inf), np.ones(count))
+
+    @classmethod
     def joined(cls, parts: list[Seen]) -> Seen:
         """One after the other."""
         return cls(*(np.concatenate([getattr(part, of.name) for part in parts], axis=-1) for of in fields(cls)))
@@ -71,50 +81,59 @@ class Seen:
 
 @dataclass(frozen=True)
 class _Tool:
-    """Where the tool is at N * M instants, column after column in memory, and its velocity; (3, N, M) each."""
+    """Where the tool is at M instants of N intervals, column after column in memory.
+
+    Attributes:
+        tip: (3, M, N) mm.
+        axis: (3, M, N) unit tool axis.
+        velocity: (3, M, N) of the tip, mm/s.
+        missed: (3, N) by how much tip, axis and velocity can be off that.
+        found: (M, N) whether there is a pose.
+    """
 
     tip: Array
     axis: Array
     velocity: Array
+    missed: Array
     found: Array
 
 
-def look(task: Task, rows: Array, instants: int) -> Seen:
+def look(task: Task, rows: Array, instants: int, closely: bool) -> Seen:
     """Play the intervals that begin at some knots, (N,), and measure them at a number of even instants of each."""
-    motion, cubic = task.motion, cubics(task.struts, rows)
-    shares = np.linspace(0, 1, instants)
-    tool = _tool(task, rows, shares, cubic)
-    time = (task.struts.time_ms[rows] / 1000)[:, None] + cubic[-1][:, None] * shares
-    first, last = (motion.segment[knot][:, None] for knot in (rows, rows + 1))
-    segment = np.clip(np.searchsorted(motion.joint_time, time), first, last)
+    motion, shares = task.motion, np.linspace(0, 1, instants)
+    tool = (_by_kinematics if closely else _on_course)(task, rows, shares)
+    begin, end = (task.struts.time_ms[knot] / 1000 for knot in (rows, rows + 1))
+    time = begin + (end - begin) * shares[:, None]
+    segment = np.clip(np.searchsorted(motion.joint_time, time), motion.segment[rows], motion.segment[rows + 1])
     tip, axis = tool.tip.reshape(3, -1).T, tool.axis.reshape(3, -1).T
     off = task.ruler.deviation_from(tip, axis, segment.ravel()).reshape(3, *segment.shape)
     by_tolerance = off[0] / off[2]
-    worst = np.arange(len(rows)), np.argmax(by_tolerance, axis=1)
+    worst = np.argmax(by_tolerance, axis=0), np.arange(len(rows))
     axis_tolerance, ceiling = task.ruler.axis_tolerance, task.ceiling[rows]
-    speed = length_of(*tool.velocity).max(axis=1)
-    hidden_tip = bow(tool.tip) + arch(tool.tip, task.ruler.bend(segment).max(axis=1))
+    speed = length_of(*tool.velocity).max(axis=0)
+    missed_tip, missed_axis, missed_speed = tool.missed
+    hidden_tip = bow(tool.tip) + arch(tool.tip, task.ruler.bend(segment).max(axis=0)) + missed_tip
     return Seen(
-        found=np.asarray(tool.found.all(axis=1)),
-        worst=np.stack([by_tolerance[worst], off[1].max(axis=1) / axis_tolerance, speed / ceiling]),
+        found=np.asarray(tool.found.all(axis=0)),
+        worst=np.stack([by_tolerance[worst], off[1].max(axis=0) / axis_tolerance, speed / ceiling]),
         hidden=np.stack([
-            hidden_tip / off[2].min(axis=1),
-            (bow(tool.axis) + arch(tool.axis, 1.0)) / axis_tolerance,
-            (bow(tool.velocity) + _SPEED_MISSED * speed) / ceiling,
+            hidden_tip / off[2].min(axis=0),
+            (bow(tool.axis) + arch(tool.axis, 1.0) + missed_axis) / axis_tolerance,
+            (bow(tool.velocity) + missed_speed) / ceiling,
         ]),
         tip_tolerance=off[2][worst],
     )  # fmt: skip
 
 
-def cubics(struts: StrutMotion, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Lengths and speeds at both ends of intervals, and their durations in s."""
-    after = rows + 1
-    duration = (struts.time_ms[after] - struts.time_ms[rows]) / 1000
-    return struts.length[rows], struts.speed[rows], struts.length[after], struts.speed[after], duration
+def _on_course(task: Task, rows: Array, shares: Array) -> _Tool:
+    """Where the tool is at shares of intervals of which the course tells it."""
+    tip, axis, spin, velocity = task.course.at(rows, shares[:, None])
+    return _Tool(tip, axis, velocity, task.course.missed[:, rows], np.ones(spin.shape, dtype=bool))
 
 
-def _tool(task: Task, rows: Array, shares: Array, cubic: tuple[Array, Array, Array, Array, Array]) -> _Tool:
-    """Where the tool is at shares of intervals."""
+def _by_kinematics(task: Task, rows: Array, shares: Array) -> _Tool:
+    """Where the tool is at shares of any intervals."""
+    cubic = cubics(task.struts, rows)
     length, speed = hermite_motion(*cubic, shares)
     machine, motion, knots = task.machine, task.motion, task.knots
     tool_length = np.repeat(motion.tool_length[rows + 1], len(shares))
@@ -128,8 +147,10 @@ def _tool(task: Task, rows: Array, shares: Array, cubic: tuple[Array, Array, Arr
         tip[:, odd], axis[:, odd], velocity[:, odd], found[odd] = _by_newton(
             machine, motion, knot, tool_length[odd], lengths, speeds
         )
-    shape = 3, len(rows), len(shares)
-    return _Tool(tip.reshape(shape), axis.reshape(shape), velocity.reshape(shape), found.reshape(shape[1:]))
+    columns = np.stack([tip, axis, velocity]).reshape(3, 3, len(rows), -1).swapaxes(2, 3)
+    missed = np.zeros((3, len(rows)))
+    missed[2] = _SPEED_MISSED * length_of(*columns[2]).max(axis=0)
+    return _Tool(columns[0], columns[1], columns[2], missed, found.reshape(len(rows), -1).T)
 
 
 def _planned(motion: Motion, rows: Array, duration: Array, shares: Array) -> NearPoses:

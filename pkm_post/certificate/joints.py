@@ -14,12 +14,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.certificate.instants import Task, cubics
+from pkm_post.certificate.instants import Task
+from pkm_post.certificate.struts import cubics
 from pkm_post.geometry import angle_between, hermite_lengths, norm
 from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import NearPoses, forward, near_poses
+from pkm_post.kinematics import forward
 from pkm_post.model import Trajectory
 
+_SETTLED = 0.005
+"""Part of the tolerances by which the course may miss a joint: what it can miss is added to what is told."""
 _AT_ONCE = 8192
 """Joints in one pass: the working arrays of one pass stay in the processor's cache."""
 
@@ -56,34 +59,46 @@ def pass_joints(task: Task, trajectory: Trajectory) -> Passed:
 
 def _passed(task: Task, trajectory: Trajectory, rows: Array) -> tuple[Array, ...]:
     struts, motion = task.struts, task.motion
-    time, tool_length = motion.joint_time[rows], trajectory.tool_length()[rows]
+    time = motion.joint_time[rows]
     knot = np.clip(np.searchsorted(struts.time_ms, 1000 * time) - 1, 0, len(struts) - 2)
-    cubic = cubics(struts, knot)
-    share = ((time - struts.time_ms[knot] / 1000) / cubic[-1])[:, None]
-    length = hermite_lengths(*cubic, share)
-    programmed = NearPoses(trajectory.tip[rows], trajectory.axis[rows], trajectory.spin[rows])
-    inverses = task.knots.inverse[knot], task.knots.inverse[knot + 1]
-    pose, found = near_poses(task.machine, length, programmed, tool_length, inverses, share)
-    tip, axis = np.array(pose.tip), np.array(pose.axis)
-    odd = np.flatnonzero(~(found & task.knots.alike[knot] & (tool_length == motion.tool_length[knot + 1])))
-    if len(odd):
-        guess = programmed.tip[odd], programmed.axis[odd], programmed.spin[odd]
-        exact = forward(task.machine, length[odd, 0], tool_length[odd], *guess)
-        tip[odd], axis[odd], found[odd] = exact.tip, exact.axis, exact.converged
+    begin, end = (struts.time_ms[at] / 1000 for at in (knot, knot + 1))
+    share = (time - begin) / (end - begin)
+    tip, axis, missed, found = _tool_at(task, trajectory, rows, knot, share)
+    programmed_tip, programmed_axis = trajectory.tip[rows], trajectory.axis[rows]
     nowhere = np.where(found, 0.0, np.inf)
-    off_point = norm(tip - programmed.tip), angle_between(axis, programmed.axis)
+    off_point = norm(tip - programmed_tip), angle_between(axis, programmed_axis)
     off, tolerance = _off_both(task, tip, axis, rows, len(trajectory) - 1)
+    tight = np.stack([tolerance.min(axis=0), np.full(len(rows), task.ruler.axis_tolerance)])
     # the programmed point lies on both segments: it counts where it fits better than the best of each of them
-    at_point = np.stack([off_point[0] / tolerance.min(axis=0), off_point[1] / task.ruler.axis_tolerance])
+    at_point = np.stack(off_point) / tight
     by_point = at_point.max(axis=0) < off.max(axis=(0, 1))
     worse = (off[1, 0] > off[0, 0]).astype(int)
     return (
-        off_point[0] + nowhere,
-        off_point[1] + nowhere,
-        np.where(found, np.where(by_point, at_point, off.max(axis=0)), 0.0),
-        np.where(by_point, tolerance.min(axis=0), tolerance[worse, np.arange(len(rows))]),
-        np.stack([knot, np.minimum(knot + (share[:, 0] >= 1), len(struts) - 2)]),
+        off_point[0] + missed[0] + nowhere,
+        off_point[1] + missed[1] + nowhere,
+        np.where(found, np.where(by_point, at_point, off.max(axis=0)) + missed / tight, 0.0),
+        np.where(by_point, tight[0], tolerance[worse, np.arange(len(rows))]),
+        np.stack([knot, np.minimum(knot + (share >= 1), len(struts) - 2)]),
     )
+
+
+def _tool_at(task: Task, trajectory: Trajectory, rows: Array, knot: Array, share: Array) -> tuple[Array, ...]:
+    """Tip and axis at some joints, (N, 3) each; how far off that can be, (2, N); and whether there is a pose, (N,).
+
+    On the course of the tool, where it is told well enough; else by Newton's method.
+    """
+    tip, axis, _, _ = (columns.reshape(-1, len(rows)).T for columns in task.course.at(knot, share[None]))
+    missed, found = task.course.missed[:2, knot], np.ones(len(rows), dtype=bool)
+    tool_length = trajectory.tool_length()[rows]
+    limit = np.stack([task.ruler.tip_tolerance[rows], np.full(len(rows), task.ruler.axis_tolerance)])
+    told = (missed < _SETTLED * limit).all(axis=0) & (tool_length == task.motion.tool_length[knot + 1])
+    odd = np.flatnonzero(~told)
+    if len(odd):
+        length = hermite_lengths(*cubics(task.struts, knot[odd]), share[odd, None])[:, 0]
+        guess = trajectory.tip[rows[odd]], trajectory.axis[rows[odd]], trajectory.spin[rows[odd]]
+        exact = forward(task.machine, length, tool_length[odd], *guess)
+        tip[odd], axis[odd], found[odd], missed[:, odd] = exact.tip, exact.axis, exact.converged, 0.0
+    return tip, axis, missed, found
 
 
 def _off_both(task: Task, tip: Array, axis: Array, rows: Array, last: int) -> tuple[Array, Array]:

@@ -2,8 +2,9 @@
 """Playback: what the machine does when a controller plays a strut motion, as values that nothing exceeds.
 
 Every interval is the cubic the controller makes of it. What the struts do is known in closed form. Tip and axis are
-looked at in even instants and at the joints of the trajectory, and what can hide between is added; where that could be
-the worst of the program, instants are added until little can hide.
+looked at in even instants of their course and at the joints of the trajectory, and what can hide is added; where that
+could be the worst of the program, and where the course is not known, each pose is found by forward kinematics, and
+instants are added until little can hide.
 """
 
 from __future__ import annotations
@@ -14,15 +15,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.certificate.instants import Seen, Task, cubics, look
+from pkm_post.certificate.instants import Seen, Task, look
 from pkm_post.certificate.joints import Passed
-from pkm_post.certificate.struts import extremes
+from pkm_post.certificate.struts import cubics, extremes
 from pkm_post.geometry.vectors import Array
 
-INSTANTS = 9
-"""Instants of each interval that are looked at, its two knots among them."""
-_CLOSER = (17, 33, 65, 129, 257)
-"""Instants of the intervals in which the worst could hide: half as far apart, and a quarter can hide."""
+_INSTANTS = (9, 17, 33, 65, 129, 257)
+"""Instants of each interval that are looked at, its two knots among them; then of those in which the worst could hide:
+each time half as far apart, and a quarter can hide."""
 _REMAINDER = np.array([0.005, 0.005, 0.001])[:, None]
 """Parts of the worst deviations of tip and axis and of the worst speed that may hide in the end, and are added."""
 _AT_ONCE = 8192
@@ -66,20 +66,13 @@ def play(task: Task, passed: Passed) -> Played:
         passed: where it is at the joints of the trajectory.
     """
     rows = np.arange(len(task.struts) - 1)
-    seen = _looked(task, rows, INSTANTS)
-    _with_joints(seen, rows, peaks := _Peaks.of(passed, len(rows)))
-    instants = INSTANTS * len(rows)
-    for closer in _CLOSER:
+    seen, peaks = Seen.nothing(len(rows)), _Peaks.of(passed, len(rows))
+    unsettled, closely, instants = np.flatnonzero(np.isfinite(task.course.missed[0])), False, 0
+    for closer in _INSTANTS:
+        _look_again(task, seen, peaks, unsettled, closer, closely)
+        instants += closer * len(unsettled)
         enough = seen.worst.max(axis=1, keepdims=True) * (1 + _REMAINDER)
-        doubtful = np.flatnonzero((seen.worst + seen.hidden > enough).any(axis=0))
-        if not len(doubtful):
-            break
-        instants += closer * len(doubtful)
-        again = _looked(task, doubtful, closer)
-        _with_joints(again, doubtful, peaks)
-        seen.worst[:, doubtful], seen.hidden[:, doubtful] = again.worst, again.hidden
-        seen.tip_tolerance[doubtful] = again.tip_tolerance
-        seen.found[doubtful] &= again.found
+        unsettled, closely = np.flatnonzero((seen.worst + seen.hidden > enough).any(axis=0)), True
     tip, axis, speed = seen.worst + seen.hidden
     strut_speed, strut_acceleration, shortest, longest = _extremes(task, rows)
     return Played(
@@ -96,15 +89,23 @@ def play(task: Task, passed: Passed) -> Played:
     )
 
 
-def _looked(task: Task, rows: Array, instants: int) -> Seen:
+def _look_again(task: Task, seen: Seen, peaks: _Peaks, rows: Array, instants: int, closely: bool) -> None:
+    """Replace what is known of some intervals by what more instants show."""
+    if not len(rows):
+        return
     blocks = _blocks(rows, _AT_ONCE // instants)
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        return Seen.joined(list(threads.map(lambda some: look(task, some, instants), blocks)))
+        again = Seen.joined(list(threads.map(lambda some: look(task, some, instants, closely), blocks)))
+    at_joint = np.flatnonzero(peaks.off[0, rows] > again.worst[0])
+    again.tip_tolerance[at_joint] = peaks.tip_tolerance[rows[at_joint]]
+    seen.worst[:, rows] = np.concatenate([np.maximum(again.worst[:2], peaks.off[:, rows]), again.worst[2:]])
+    seen.hidden[:, rows], seen.tip_tolerance[rows] = again.hidden, again.tip_tolerance
+    seen.found[rows] = again.found
 
 
 def _extremes(task: Task, rows: Array) -> Array:
     """Of each interval as in ``Played``: strut speed, acceleration, shortest and longest length, (4, K)."""
-    blocks = _blocks(rows, _AT_ONCE // INSTANTS)
+    blocks = _blocks(rows, _AT_ONCE // _INSTANTS[0])
     return np.concatenate([np.stack(extremes(*cubics(task.struts, some))) for some in blocks], axis=1)
 
 
@@ -128,10 +129,3 @@ class _Peaks:
             worst = np.flatnonzero(passed.off[0] == off[0, touched])
             tolerance[touched[worst]] = passed.tip_tolerance[worst]
         return cls(off, tolerance)
-
-
-def _with_joints(seen: Seen, rows: Array, peaks: _Peaks) -> None:
-    """What some intervals showed, and their joints."""
-    at_joint = np.flatnonzero(peaks.off[0, rows] > seen.worst[0])
-    seen.tip_tolerance[at_joint] = peaks.tip_tolerance[rows[at_joint]]
-    seen.worst[:2] = np.maximum(seen.worst[:2], peaks.off[:, rows])

@@ -15,25 +15,33 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import StrutMotion
 
 
+def cubics(struts: StrutMotion, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Lengths and speeds at both ends of the intervals that begin at some knots, and their durations in s."""
+    after = rows + 1
+    duration = (struts.time_ms[after] - struts.time_ms[rows]) / 1000
+    return struts.length[rows], struts.speed[rows], struts.length[after], struts.speed[after], duration
+
+
 def extremes(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array, Array, Array]:
     """Of N intervals of cubics: highest speed, highest acceleration, shortest and longest length, (N,) each.
 
     Acceleration is linear in time: the speed is extreme at the ends, and where the acceleration is zero. The length is
     extreme at the ends, and where the speed is zero: up to two times.
     """
-    a0, a1 = hermite_accelerations(p0, v0, p1, v1, duration)
-    whole = duration[:, None]
-    jerk = (a1 - a0) / whole
+    accelerations = hermite_accelerations(p0, v0, p1, v1, duration)
+    # strut after strut in memory: the extremes of six struts are those of six long columns
+    p0, v0, p1, v1, a0, a1 = (np.ascontiguousarray(rows.T) for rows in (p0, v0, p1, v1, *accelerations))
+    jerk = (a1 - a0) / duration
     turns = np.where(a0 * a1 < 0, np.divide(-a0, jerk, out=np.zeros_like(a0), where=jerk != 0), 0.0)
     speeds = np.stack([v0, v1, v0 + a0 * turns / 2])
-    stops = np.clip(np.stack(_roots(jerk / 2, a0, v0)), 0.0, whole)  # an end, where there is none inside
+    stops = np.clip(np.stack(_roots(jerk / 2, a0, v0)), 0.0, duration)  # an end, where there is none inside
     at_stops = p0 + stops * (v0 + stops * (a0 / 2 + stops * jerk / 6))
     lengths = np.concatenate([np.stack([p0, p1]), at_stops])
     return (
-        np.abs(speeds).max(axis=(0, 2)),
-        np.abs(np.stack([a0, a1])).max(axis=(0, 2)),
-        lengths.min(axis=(0, 2)),
-        lengths.max(axis=(0, 2)),
+        np.abs(speeds).max(axis=(0, 1)),
+        np.abs(np.stack([a0, a1])).max(axis=(0, 1)),
+        lengths.min(axis=(0, 1)),
+        lengths.max(axis=(0, 1)),
     )
 
 

@@ -3,7 +3,13 @@
 
 from pkm_post.geometry.arcs import arc_points, arc_sweep
 from pkm_post.geometry.great_circle import along, along_rates, angle_between, towards
-from pkm_post.geometry.hermite import hermite_accelerations, hermite_lengths, hermite_motion, hermite_speeds
+from pkm_post.geometry.hermite import (
+    hermite_accelerations,
+    hermite_columns,
+    hermite_lengths,
+    hermite_motion,
+    hermite_speeds,
+)
 from pkm_post.geometry.torsion import torsion, untwisted
 from pkm_post.geometry.vectors import dot, norm, unit
 
@@ -15,6 +21,7 @@ __all__ = [
     "arc_sweep",
     "dot",
     "hermite_accelerations",
+    "hermite_columns",
     "hermite_lengths",
     "hermite_motion",
     "hermite_speeds",

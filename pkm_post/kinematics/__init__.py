@@ -8,8 +8,8 @@ from pkm_post.kinematics.interpolation import Ends, Inside, Stray, carried, chan
 from pkm_post.kinematics.inverse import platform_joints, strut_lengths, strut_vectors
 from pkm_post.kinematics.jacobian import jacobian_of_platform, jacobian_of_tip, scaled_jacobian
 from pkm_post.kinematics.margins import Margins, reach_margins
-from pkm_post.kinematics.near import NearPoses, near_poses
-from pkm_post.kinematics.orientation import platform_rotation
+from pkm_post.kinematics.near import NearPoses, moved, near_poses
+from pkm_post.kinematics.orientation import attitude_rates, platform_rotation
 from pkm_post.kinematics.part import Part
 from pkm_post.kinematics.rate_bounds import strut_rate_bounds
 from pkm_post.kinematics.rates import strut_rates
@@ -27,6 +27,7 @@ __all__ = [
     "Solution",
     "Stray",
     "Way",
+    "attitude_rates",
     "carried",
     "change",
     "faults_of",
@@ -34,6 +35,7 @@ __all__ = [
     "forward",
     "jacobian_of_platform",
     "jacobian_of_tip",
+    "moved",
     "moving",
     "near_poses",
     "platform_joints",

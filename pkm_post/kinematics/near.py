@@ -17,6 +17,7 @@ from pkm_post.geometry.vectors import Array, dot
 from pkm_post.kinematics.forward import LENGTH_TOLERANCE
 from pkm_post.kinematics.interpolation import carried
 from pkm_post.kinematics.inverse import strut_lengths
+from pkm_post.kinematics.orientation import attitude_rates
 from pkm_post.model import Machine
 
 _STEPS = 3
@@ -62,24 +63,13 @@ def near_poses(
         if step == _STEPS or not goes.any():
             break
         twist = carried(*inverses, residual, share).reshape(6, -1)
-        at = _moved(at, np.where(goes, twist, 0.0))
+        at = moved(at, np.where(goes, twist, 0.0))
     return at, found
 
 
-def _moved(pose: NearPoses, twist: Array) -> NearPoses:
-    """Poses after a small way of the tip and a small turn of the platform, (6, N), right to the first order of both.
-
-    The turn about the axis is that of the spin and of the zero-torsion frame, whose share is ``orientation``'s tau.
-    """
-    axis, turn = pose.axis, twist[3:].T
-    swing = _cross(turn, axis)
-    torsion = (axis[:, 1] * swing[:, 0] - axis[:, 0] * swing[:, 1]) / (1 + axis[:, 2])
+def moved(pose: NearPoses, twist: Array) -> NearPoses:
+    """Poses after a small way of the tip and a small turn of the platform, (6, N), right to the first order of both."""
+    swing, spun = attitude_rates(pose.axis, twist[3:].T)
     # as long as the axis was, to the second order: without a root, a row that stays does so to the last digit
-    swung = axis + swing - (dot(swing, swing) / 2)[:, None] * axis
-    return NearPoses(pose.tip + twist[:3].T, swung, pose.spin + dot(turn, axis) - torsion)
-
-
-def _cross(left: Array, right: Array) -> Array:
-    """Vector products, (N, 3), column after column in memory."""
-    (x, y, z), (u, v, w) = left.T, right.T
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u]).T
+    swung = pose.axis + swing - (dot(swing, swing) / 2)[:, None] * pose.axis
+    return NearPoses(pose.tip + twist[:3].T, swung, pose.spin + spun)

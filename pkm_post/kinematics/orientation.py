@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry.torsion import untwisted
-from pkm_post.geometry.vectors import Array, cross
+from pkm_post.geometry.vectors import Array, cross, dot
 
 
 def platform_rotation(axis: Array, spin: Array) -> Array:
@@ -52,3 +52,16 @@ def angular_rates(axis: Array, axis_1: Array, axis_2: Array, spin_1: Array, spin
     velocity = cross(axis, axis_1) + about * axis
     acceleration = cross(axis, axis_2) + about_1 * axis + about * axis_1
     return velocity, acceleration
+
+
+def attitude_rates(axis: Array, turn: Array) -> tuple[Array, Array]:
+    """Derivatives of tool axis, (N, 3), and spin, (N,), under angular velocities in {M}: the above, solved for them.
+
+    Args:
+        axis: (N, 3) unit tool axes.
+        turn: (N, 3) angular velocities.
+    """
+    (x, y, z), (u, v, w) = turn.T, axis.T
+    swing = np.stack([y * w - z * v, z * u - x * w, x * v - y * u])  # column after column in memory
+    torsion = (v * swing[0] - u * swing[1]) / (1 + w)
+    return swing.T, dot(turn, axis) - torsion

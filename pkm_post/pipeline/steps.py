@@ -204,7 +204,7 @@ def _certificate(
         played = run.value(frame.controller.read_parts(texts, frame.settings))
         measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances)
         certificate = run.value(measured)
-        told.append(f"{certificate.instants} poses by forward kinematics")
+        told.append(f"{certificate.instants} instants")
     return played, certificate
 
 

@@ -137,7 +137,7 @@ def test_figures_say_little_more_than_there_is():
 
 def test_even_instants_alone_would_say_too_little(monkeypatch):
     # What the dense instants are there for: without what hides and without the joints, they find more than the figure.
-    monkeypatch.setattr(instants_module, "bow", lambda columns: np.zeros(columns.shape[1]))
+    monkeypatch.setattr(instants_module, "bow", lambda columns: np.zeros(columns.shape[2]))
     blind = lambda task, tip, axis, rows, last: (np.zeros((2, 2, len(rows))), np.ones((2, len(rows))))  # noqa: E731
     monkeypatch.setattr(joints, "_off_both", blind)
     certified.cache_clear()

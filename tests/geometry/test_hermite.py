@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
 
-from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_motion, hermite_speeds
+from pkm_post.geometry import (
+    hermite_accelerations,
+    hermite_columns,
+    hermite_lengths,
+    hermite_motion,
+    hermite_speeds,
+)
 
 
 def cubic(t):
@@ -50,3 +56,14 @@ def test_both_at_once_are_the_same_by_products_of_matrices():
     ends = p0, v0 - 1000, p1, v1 - 1000, duration
     np.testing.assert_allclose(lengths, hermite_lengths(*ends, share), rtol=0, atol=1e-11)
     np.testing.assert_allclose(speeds, hermite_speeds(*ends, share), rtol=1e-12, atol=1e-8)
+
+
+def test_columns_are_the_same_as_rows():
+    rng = np.random.default_rng(34)
+    p0, v0, p1, v1 = rng.normal(size=(4, 50, 7))
+    duration, of_all, of_each = rng.uniform(0.001, 0.128, 50), np.linspace(0, 1, 5), rng.uniform(size=(50, 3))
+    columns = p0.T, v0.T, p1.T, v1.T, duration
+    for share, shares in ((of_all, of_all[:, None]), (of_each, of_each.T)):
+        positions, speeds = hermite_columns(*columns, shares)
+        np.testing.assert_allclose(positions.T, hermite_lengths(p0, v0, p1, v1, duration, share), atol=1e-13)
+        np.testing.assert_allclose(speeds.T, hermite_speeds(p0, v0, p1, v1, duration, share), rtol=1e-12, atol=1e-9)

@@ -5,7 +5,7 @@ from machines import example
 from screw_machines import screwed
 
 from pkm_post.kinematics import jacobian_of_tip, strut_lengths, strut_rates
-from pkm_post.kinematics.orientation import angular_rates
+from pkm_post.kinematics.orientation import angular_rates, attitude_rates
 from pkm_post.model import Poses
 
 STEP = 1e-4
@@ -71,6 +71,14 @@ def test_rates_agree_with_the_jacobian():
     jacobian = jacobian_of_tip(example(), poses.tip, poses.axis, poses.spin, poses.tool_length)
     _, speed, _ = strut_rates(example(), poses)
     np.testing.assert_allclose(speed, np.einsum("nij,nj->ni", jacobian, twist), atol=1e-11)
+
+
+def test_rates_of_axis_and_spin_are_what_the_angular_velocity_was_made_of():
+    poses = wandering_poses(np.linspace(0, 6, 200))
+    turn, _ = angular_rates(poses.axis, poses.axis_1, poses.axis_2, poses.spin_1, poses.spin_2)
+    swing, spun = attitude_rates(poses.axis, turn)
+    np.testing.assert_allclose(swing, poses.axis_1, atol=1e-12)
+    np.testing.assert_allclose(spun, poses.spin_1, atol=1e-12)
 
 
 def test_chunks_do_not_show():

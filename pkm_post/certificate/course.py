@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Course: the way of the tool in each interval as one cubic, and how far the tool can be from it.
+
+Enters: a strut motion as read back, and the planned motion, near which it is looked for. Leaves: tool poses and their
+rates at the knots. Between two of them tip, axis and spin are taken for the cubics with these ends, which cost no
+kinematics. The struts that such a cubic would need are not quite those that are played; what they differ by at three
+instants tells how far the tool is from the cubic at these, and a bound follows for all others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.certificate.knots import Knots
+from pkm_post.certificate.struts import cubics
+from pkm_post.geometry import hermite_columns, hermite_lengths
+from pkm_post.geometry.vectors import Array, length_of
+from pkm_post.kinematics import NearPoses, attitude_rates, carried, moved, strut_lengths
+from pkm_post.model import Machine, Motion, StrutMotion
+
+_LOOKS = np.array([[0.25], [0.5], [0.75]])
+"""Shares of an interval at which the difference is measured."""
+_MOST = 1.6
+"""What leaves a cubic as x^2 (1 - x)^2 times a quadratic leaves it by at most 1.442 of what it does at the looks."""
+_FASTEST = 12.3
+"""The same of its rate, at most 11.153 of what it is at the looks by the duration. Both with a tenth of room."""
+_NEAR_PLAN = 1e-4
+"""mm of a strut off its plan at a knot; beyond it, one linear step from the plan would be too coarse."""
+_STEP_MISSES = np.array([1e-9, 1e-9, 1e-4])[:, None]
+"""mm, rad and mm/s, more than what such a step misses, and what speeds carried by the Jacobian before it do."""
+_NEAR_CUBIC = 0.01
+"""mm of a strut between cubic and program, beyond which the difference is not told by linear steps."""
+_SMALL_TURN = 0.3
+"""rad of the axis in an interval, beyond which nothing is said of it."""
+_AT_ONCE = 2048
+
+
+@dataclass(frozen=True)
+class Course:
+    """Columns of K + 1 knots, or of the K intervals between them.
+
+    Attributes:
+        place: (7, K + 1) tip in mm, tool axis, spin in rad at the knots.
+        rate: (7, K + 1) their rates by time.
+        duration: (K,) s.
+        missed: (3, K) how far the tool can be from the cubics: tip in mm, axis in rad, velocity of the tip in mm/s;
+            infinite where nothing is known of it.
+    """
+
+    place: Array
+    rate: Array
+    duration: Array
+    missed: Array
+
+    @classmethod
+    def of(cls, machine: Machine, struts: StrutMotion, motion: Motion, knots: Knots) -> Course:
+        """That of a strut motion with the knots of a planned one."""
+        place, rate, near = _at_knots(struts, motion, knots)
+        course = cls(place, rate, np.diff(struts.time_ms) / 1000, np.full((3, len(struts) - 1), np.inf))
+        swing = length_of(*rate[3:6])
+        turn = np.maximum(swing[:-1], swing[1:]) * course.duration
+        told = np.flatnonzero(knots.alike & near[:-1] & near[1:] & (turn < _SMALL_TURN))
+        for first in range(0, len(told), _AT_ONCE):
+            rows = told[first : first + _AT_ONCE]
+            course.missed[:, rows] = course._missed(machine, struts, motion, knots, rows)
+        return course
+
+    def at(self, rows: Array, share: Array) -> tuple[Array, Array, Array, Array]:
+        """Tip, tool axis, spin and velocity of the tip on the cubics of N intervals.
+
+        Args:
+            rows: (N,) the intervals.
+            share: (M, 1) or (M, N), shares of the intervals.
+
+        Returns:
+            (3, M, N) mm, (3, M, N) unit vectors, (M, N) rad, (3, M, N) mm/s.
+        """
+        after, place, rate = rows + 1, self.place, self.rate
+        ends = place[:, rows], rate[:, rows], place[:, after], rate[:, after]
+        place, rate = hermite_columns(*ends, self.duration[rows], share)
+        return place[:3], place[3:6] / length_of(*place[3:6]), place[6], rate[:3]
+
+    def _missed(self, machine: Machine, struts: StrutMotion, motion: Motion, knots: Knots, rows: Array) -> Array:
+        """What of N intervals is in ``missed``, (3, N)."""
+        tip, axis, spin, _ = (columns.reshape(-1, _LOOKS.size * len(rows)) for columns in self.at(rows, _LOOKS))
+        tool_length = np.tile(motion.tool_length[rows + 1], _LOOKS.size)
+        needed = strut_lengths(machine, tip.T, axis.T, spin[0], tool_length).reshape(_LOOKS.size, -1, 6)
+        residual = hermite_lengths(*cubics(struts, rows), _LOOKS.ravel()) - needed.transpose(1, 0, 2)
+        twist = carried(knots.inverse[rows], knots.inverse[rows + 1], residual, _LOOKS.ravel())
+        way, turn = (part.transpose(0, 2, 1).reshape(3, -1) for part in (twist[:3], twist[3:]))
+        swing, _ = attitude_rates(axis.T, turn.T)
+        off_tip, off_axis = (length_of(*part).reshape(_LOOKS.size, -1).max(axis=0) for part in (way, swing.T))
+        missed = np.stack([_MOST * off_tip, _MOST * off_axis, _FASTEST * off_tip / self.duration[rows]]) + _STEP_MISSES
+        return np.where(np.abs(residual).max(axis=(1, 2)) < _NEAR_CUBIC, missed, np.inf)
+
+
+def _at_knots(struts: StrutMotion, motion: Motion, knots: Knots) -> tuple[Array, Array, Array]:
+    """Places and rates at the knots, and where one linear step from the plan tells them."""
+    residual = struts.length - knots.length
+    near = np.abs(residual).max(axis=1) < _NEAR_PLAN
+    step, twist = (knots.inverse @ np.stack([residual, struts.speed], axis=2)).transpose(2, 1, 0)
+    pose = moved(NearPoses(motion.tip, motion.axis, motion.spin), np.where(near, step, 0.0))
+    swing, spun = attitude_rates(pose.axis, twist[3:].T)
+    return np.vstack([pose.tip.T, pose.axis.T, pose.spin]), np.vstack([twist[:3], swing.T, spun]), near
