@@ -9,6 +9,7 @@ lengths of which one grows. Units: mm, rad, mm/s; directions are those of {M}.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -149,24 +150,13 @@ def _through(
     angle, turned = angle_between(axis_before, axis), np.abs(np.diff(spin, prepend=here.spin))
     if (np.maximum(length, np.maximum(angle, turned)) < _NO_MOVE).any():
         return None, (Diagnostic("C201", Place(SOURCE), "the jog leads to where the tool is"),)
-    count = len(tip)
-    blank, zero = np.full((count, 3), np.nan), np.zeros(count)
     trajectory = Trajectory(
-        kind=np.full(count, Kind.LINE),
+        **_straight(len(tip), feed),
         tip=tip,
         axis=axis,
         spin=spin,
-        feed=np.full(count, feed),
-        arc_centre=blank,
-        arc_axis=blank,
-        sweep=zero,
         length=length,
         angle=angle,
-        smooth=zero,
-        exact_stop=np.arange(count) == count - 1,
-        tool=zero,
-        operation=zero,
-        line=zero,
         start_tip=here.tip,
         start_axis=here.axis,
         start_spin=here.spin,
@@ -179,3 +169,20 @@ def _through(
         source=SOURCE,
     )
     return trajectory, ()
+
+
+def _straight(count: int, feed: float) -> dict[str, Any]:
+    """The columns in which straight segments are alike, but that the last one ends at rest."""
+    nowhere, zero = np.full((count, 3), np.nan), np.zeros(count)
+    return {
+        "kind": np.full(count, Kind.LINE),
+        "feed": np.full(count, feed),
+        "arc_centre": nowhere,
+        "arc_axis": nowhere,
+        "sweep": zero,
+        "smooth": zero,
+        "exact_stop": np.arange(count) == count - 1,
+        "tool": zero,
+        "operation": zero,
+        "line": zero,
+    }

@@ -52,15 +52,9 @@ def place(
     faults = tuple(_faults(placed, machine, way["angle"], keep))
     if errors(faults):
         return None, faults
-    columns = {name: column[keep] for name, column in way.items()}
-    tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
     events = _events_on_kept_rows(program.events, keep)
-    stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
-    columns["exact_stop"] = stops = stops | _exact_corners(placed.exact_path[keep], columns, tip_before)
-    columns["tip_tolerance"] = placed.tip_tolerance[keep]
-    columns["smooth"] = ~stops & smooth(columns, tip_before, axis_before)
     trajectory = Trajectory(
-        **columns,
+        **_columns(placed, way, keep, events),
         start_tip=machine.home_tip,
         start_axis=machine.home_axis,
         start_spin=machine.home_spin,
@@ -81,6 +75,9 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
     tip, axis, centre, turn = placed.position, placed.tool_axis, placed.arc_centre, placed.arc_axis
     tool = _tool_by_row(placed)
     axis_before = np.vstack([machine.home_axis, axis[:-1]])
+    angle = np.zeros(len(placed))
+    turns = (axis != axis_before).any(axis=1)
+    angle[turns] = angle_between(axis_before[turns], axis[turns])
     # At a tool change the platform stands still: the tip of a longer tool begins further down.
     longer = np.diff(lengths_of(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
     tip_before = np.vstack([machine.home_tip, tip[:-1]]) - longer[:, None] * axis_before
@@ -100,10 +97,30 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
         "arc_axis": turn,
         "sweep": sweep,
         "length": length,
-        "angle": angle_between(axis_before, axis),
+        "angle": angle,
         "tool": tool,
         "operation": placed.operation,
         "line": placed.line,
+    }
+
+
+def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Event, ...]) -> dict[str, Any]:
+    """Columns of the trajectory: the way without the rows that move nothing, and how each row goes over into the next.
+
+    Args:
+        placed: the program in {M}.
+        way: its columns of ``_way``.
+        keep: which rows move anything.
+        events: those of the program, at the rows that are kept.
+    """
+    columns = {name: column[keep] for name, column in way.items()}
+    tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
+    stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
+    stops |= _exact_corners(placed.exact_path[keep], columns, tip_before)
+    return columns | {
+        "exact_stop": stops,
+        "tip_tolerance": placed.tip_tolerance[keep],
+        "smooth": ~stops & smooth(columns, tip_before, axis_before),
     }
 
 

@@ -79,10 +79,7 @@ def stream(
         streaming.open()
         streaming.run(progress, is_cancelled)
     except (PmacError, KeyboardInterrupt) as fault:
-        left = streaming.end(at_once=isinstance(fault, KeyboardInterrupt))
-        if isinstance(fault, CancelledError | KeyboardInterrupt) and left:
-            raise CancelledError("the stream was stopped; the machine rests, the rotary buffer is empty") from fault
-        raise StreamError(str(fault) or "the stream was stopped", streaming.line, left) from fault
+        raise _ended(streaming, fault) from fault
     except BaseException:
         streaming.end(at_once=False)
         raise
@@ -90,3 +87,11 @@ def stream(
         raise StreamError("the program was carried out, but its buffer could not be closed", streaming.line, False)
     _log.info("%d lines in %d segments, SHA-256 %s", len(program.lines), len(streaming.segments), program.digest)
     return Streamed(len(program.lines), program.digest, len(streaming.segments), streaming.resumptions)
+
+
+def _ended(streaming: RotaryStream, fault: PmacError | KeyboardInterrupt) -> PmacError:
+    """End a stream that did not come to its end, and tell how it was left."""
+    is_empty = streaming.end(at_once=isinstance(fault, KeyboardInterrupt))
+    if isinstance(fault, CancelledError | KeyboardInterrupt) and is_empty:
+        return CancelledError("the stream was stopped; the machine rests, the rotary buffer is empty")
+    return StreamError(str(fault) or "the stream was stopped", streaming.line, is_empty)

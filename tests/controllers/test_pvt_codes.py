@@ -30,8 +30,12 @@ def test_a_code_with_fixed_decimals_writes_what_it_can_write_exactly():
         code_text(Event(0, EventKind.SPINDLE, 3183.0989), codes)
 
 
-def test_the_default_codes_are_in_order():
+def test_the_default_codes_are_in_order_and_tell_all_meanings_apart():
     check_codes(DEFAULT_CODES)
+    values = [3 * meaning.sign if meaning.value is None else meaning.value for meaning in MEANINGS.values()]
+    events = [Event(0, meaning.kind, value) for meaning, value in zip(MEANINGS.values(), values, strict=True)]
+    texts = [code_text(event, DEFAULT_CODES) for event in events]
+    assert texts == ["T3 M6", "M5", "S3 M3", "S3 M4", "M9", "M8", "M7", "M0", "M1"]
 
 
 @pytest.mark.parametrize(

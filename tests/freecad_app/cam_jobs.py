@@ -17,6 +17,9 @@ FIVE_AXIS = [
     "G0 X10 Y4 Z30 I0 J0 K1",
 ]
 
+ON_EXAMPLE = "--machine example_6tps --work-offset={}"
+"""Arguments of a job, but for its work offset."""
+
 
 def new_job(document):
     """A box and a job with one tool controller that lacks nothing."""
@@ -27,6 +30,13 @@ def new_job(document):
     controller = job.Tools.Group[0]
     controller.SpindleSpeed, controller.SpindleDir = 9000, "Forward"
     set_gauge_length(controller, 120)
+    return job
+
+
+def job_in_reach(document):
+    """A job that the example machine is to do, where it can reach it."""
+    job = new_job(document)
+    job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", ON_EXAMPLE.format("0,0,250")
     return job
 
 

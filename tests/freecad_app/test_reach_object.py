@@ -3,21 +3,18 @@
 
 import numpy as np
 import pytest
-from cam_jobs import add_operation, new_job, reopened
+from cam_jobs import ON_EXAMPLE, add_operation, job_in_reach, reopened
 
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.reach_job import study_job
 from pkm_post.freecad_app.reach_object import create_reach, machine_for, thinned
 
 NANOMETRE = 1e-6
-ARGUMENTS = "--machine example_6tps --work-offset={}"
 
 
 @pytest.fixture
 def job(document):
-    job = new_job(document)
-    job.PostProcessor = "hexapod_pmac"
-    job.PostProcessorArgs = ARGUMENTS.format("0,0,250")
+    job = job_in_reach(document)
     add_operation(job)
     return job
 
@@ -59,13 +56,13 @@ def test_another_check_colours_without_checking_anew(job, found):
 
 
 def test_it_follows_the_job_and_tells_what_is_out_of_limits(job, found):
-    job.PostProcessorArgs = ARGUMENTS.format("600,0,200,10")
+    job.PostProcessorArgs = ON_EXAMPLE.format("600,0,200,10")
     job.Document.recompute()
     assert not found.Reachable
     assert min(found.LeastMargins) < 0
     assert any("K10" in line for line in found.Violations)
     found.Active = False
-    job.PostProcessorArgs = ARGUMENTS.format("0,0,250")
+    job.PostProcessorArgs = ON_EXAMPLE.format("0,0,250")
     job.Document.recompute()
     assert not found.Reachable
     found.Active = True

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, new_job
+from cam_jobs import ARC, FIVE_AXIS, ON_EXAMPLE, add_operation, add_tool_controller, job_in_reach
 
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.simulation import simulate_job
@@ -19,9 +19,7 @@ FINE = 1e-4
 
 @pytest.fixture
 def job(document):
-    job = new_job(document)
-    job.PostProcessor = "hexapod_pmac"
-    job.PostProcessorArgs = "--machine example_6tps --work-offset=0,0,250"
+    job = job_in_reach(document)
     add_operation(job, ARC, "Arcs")
     add_operation(job, FIVE_AXIS, "Tilted")
     return job
@@ -84,7 +82,7 @@ def test_blocks_follow_each_other_and_are_those_of_the_job(simulation):
 
 def test_a_job_in_reach_has_no_problem_and_one_out_of_reach_stops_where_it_leaves(job, simulation):
     assert simulation.problems == ()
-    job.PostProcessorArgs = "--machine example_6tps --work-offset=500,0,200"
+    job.PostProcessorArgs = ON_EXAMPLE.format("500,0,200")
     found = simulate_job(job)
     assert found.problems
     first = found.problems[0]
@@ -104,7 +102,7 @@ def test_a_job_in_reach_has_no_problem_and_one_out_of_reach_stops_where_it_leave
 
 
 def test_a_problem_is_worst_behind_its_beginning_where_its_tip_is(job):
-    job.PostProcessorArgs = "--machine example_6tps --work-offset=500,0,200"
+    job.PostProcessorArgs = ON_EXAMPLE.format("500,0,200")
     found = simulate_job(job)
     for problem in found.problems:
         assert problem.time <= problem.worst_time <= found.duration

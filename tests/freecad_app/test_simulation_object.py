@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from cam_jobs import ARC, FIVE_AXIS, add_operation, new_job, reopened
+from cam_jobs import ARC, FIVE_AXIS, ON_EXAMPLE, add_operation, job_in_reach, reopened
 
 from pkm_post.freecad_app.kinds import is_operation, is_simulation
 from pkm_post.freecad_app.machine_object import create_machine
@@ -12,14 +12,11 @@ from pkm_post.freecad_app.simulation_object import create_simulation, plan_of
 
 MICROSECOND = 1e-6
 NANOMETRE = 1e-6
-ARGUMENTS = "--machine example_6tps --work-offset={}"
 
 
 @pytest.fixture
 def job(document):
-    job = new_job(document)
-    job.PostProcessor = "hexapod_pmac"
-    job.PostProcessorArgs = ARGUMENTS.format("0,0,250")
+    job = job_in_reach(document)
     add_operation(job, ARC, "Arcs")
     add_operation(job, [*FIVE_AXIS, "G4 P1.5"], "Tilted")
     return job
@@ -69,7 +66,7 @@ def test_times_of_the_operations_make_the_whole(made):
 
 
 def test_it_follows_the_job_and_lists_what_cannot_be_followed(job, made):
-    job.PostProcessorArgs = ARGUMENTS.format("500,0,200")
+    job.PostProcessorArgs = ON_EXAMPLE.format("500,0,200")
     job.Document.recompute()
     assert not made.Followable
     count = made.ProblemCount
@@ -86,7 +83,7 @@ def test_it_follows_the_job_and_lists_what_cannot_be_followed(job, made):
     steps = [np.diff(plan.motion.joint_time).max() / 200 * plan.trajectory.feed.max()]
     assert away.max() < steps[0]  # it is found among 200 instants of its block
     made.Active = False
-    job.PostProcessorArgs = ARGUMENTS.format("0,0,250")
+    job.PostProcessorArgs = ON_EXAMPLE.format("0,0,250")
     job.Document.recompute()
     assert made.ProblemCount == count
     made.Active = True

@@ -31,6 +31,12 @@ class Scene:
         """Whether a picture of a window with something in it was kept."""
         return (self.folder / name).stat().st_size > 20_000
 
+    def keep(self, pattern):
+        """Put pictures into the folder that PKM_PICTURES names, below the root of the repository, if it names one."""
+        if folder := os.environ.get("PKM_PICTURES"):
+            for picture in self.folder.glob(pattern):
+                shutil.copy(picture, ADDON / folder)
+
 
 @pytest.fixture(scope="session")
 def scene(tmp_path_factory):

@@ -12,7 +12,9 @@ NEAR_DEG = 1e-3
 
 @pytest.fixture(scope="module")
 def session(scene):
-    return scene("control")
+    made = scene("control")
+    made.keep("control.png")
+    return made
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,7 @@ puts the pictures of the page anew into that folder, below the root of the repos
 """
 
 import math
-import os
 import re
-import shutil
 from pathlib import Path
 
 import FreeCAD
@@ -35,9 +33,7 @@ SMALL = 150_000
 @pytest.fixture(scope="module")
 def session(scene):
     made = scene("tutorial")
-    if os.environ.get("PKM_PICTURES"):
-        for picture in made.folder.glob("tutorial_*.png"):
-            shutil.copy(picture, PAGE.parents[1] / os.environ["PKM_PICTURES"])
+    made.keep("tutorial_*.png")
     return made
 
 

@@ -63,34 +63,39 @@ def read_commands(
         return None, faults.in_order()
 
     moves = words.among(*_KINDS)
-    line = np.flatnonzero(moves) + 1
-    position = np.column_stack([
-        _in_force(words.value(letter)[moves], before) for letter, before in zip("XYZ", np.asarray(start), strict=True)
-    ])  # fmt: skip
-    tool_axis = _tool_axes(words, moves, faults)
-    feed = _feeds(words, moves, faults)
-    centre, turn = _arcs(words, moves, np.vstack([start, position[:-1]])[: len(position)], position, faults)
+    columns = _columns(words, moves, np.asarray(start), faults)
     if faults.stop():
         return None, faults.in_order()
 
-    known = np.all(np.isfinite(position), axis=1)
-    kept_so_far = np.zeros(len(words), dtype=np.int64)
-    kept_so_far[line - 1] = known
+    known = np.isfinite(columns["position"]).all(axis=1)
+    rows = moves.copy()
+    rows[moves] = known
     program = Program(
-        kind=_kinds(words)[moves][known],
-        position=position[known],
-        tool_axis=tool_axis[known],
-        feed=feed[known],
-        arc_centre=centre[known],
-        arc_axis=turn[known],
+        **{name: column[known] for name, column in columns.items()},
         operation=np.zeros(int(known.sum())),
-        line=line[known],
-        events=_events(words, np.cumsum(kept_so_far)),
+        line=_line(rows),
+        events=_events(words, np.cumsum(rows)),
         operations=(operation,),
         tools={},
         source=source,
     )
     return program, faults.in_order()
+
+
+def _columns(words: Words, moves: Array, start: Array, faults: Faults) -> dict[str, Any]:
+    """What the words say of each move, and of those before it; places that are not known yet are NaN."""
+    position = np.column_stack([
+        _in_force(words.value(letter)[moves], before) for letter, before in zip("XYZ", start, strict=True)
+    ])  # fmt: skip
+    centre, turn = _arcs(words, moves, np.vstack([start, position[:-1]])[: len(position)], position, faults)
+    return {
+        "kind": _kinds(words)[moves],
+        "position": position,
+        "tool_axis": _tool_axes(words, moves, faults),
+        "feed": _feeds(words, moves, faults),
+        "arc_centre": centre,
+        "arc_axis": turn,
+    }
 
 
 def _in_force(values: Array, before: float) -> Array:

@@ -90,6 +90,8 @@ class JogPage(QtWidgets.QWidget):
             self._add_row(grid, row, label, translate("ControlPanel", label), translate("ControlPanel", tip), make)
         tip = translate("ControlPanel", "One strut alone; it takes the platform with it")
         self._add_row(grid, len(_TOOL), "strut", translate("ControlPanel", "Strut"), tip, self._of_strut)
+        for column in (1, 2):
+            grid.setColumnStretch(column, 1)  # room goes to the buttons, and each label stands beside its own
         return grid
 
     def _add_row(

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
@@ -12,7 +15,36 @@ from pkm_post.numerical_control.control import State
 from pkm_post.numerical_control.permissions import Order, Why, refusal
 
 translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
+_BUTTONS: tuple[tuple[str, str, Order, Callable[[Console], None]], ...] = (
+    (
+        QT_TRANSLATE_NOOP("ControlPanel", "Hold"),
+        QT_TRANSLATE_NOOP("ControlPanel", "Slow down to rest, on the path"),
+        Order.HOLD,
+        lambda console: console.stop(lambda control: control.hold()),
+    ),
+    (
+        QT_TRANSLATE_NOOP("ControlPanel", "Resume"),
+        QT_TRANSLATE_NOOP("ControlPanel", "Go on after a hold"),
+        Order.RESUME,
+        lambda console: console.order(lambda control: control.resume()),
+    ),
+    (
+        QT_TRANSLATE_NOOP("ControlPanel", "Abort"),
+        QT_TRANSLATE_NOOP("ControlPanel", "Hold, then end the program"),
+        Order.ABORT,
+        lambda console: console.abort(at_once=False),
+    ),
+    (
+        QT_TRANSLATE_NOOP("ControlPanel", "Abort at once"),
+        QT_TRANSLATE_NOOP("ControlPanel", "Each strut stops as fast as it can: the tool leaves its path"),
+        Order.ABORT,
+        lambda console: console.abort(at_once=True),
+    ),
+)
+"""Text, tip and order of each button, and what it does."""
+_RED = "QPushButton:enabled { background-color: #cc0000; color: white; font-weight: bold; }"
 _QUIET_MS = 300
 """So long the slider has to rest before its override is sent."""
 
@@ -28,50 +60,33 @@ class StopBar(QtWidgets.QWidget):
     def __init__(self, console: Console) -> None:
         super().__init__()
         self._console = console
-        self.hold = OrderButton(
-            translate("ControlPanel", "Hold"),
-            translate("ControlPanel", "Slow down to rest, on the path"),
-            Order.HOLD,
-            lambda: console.stop(lambda control: control.hold()),
+        self._buttons = tuple(
+            OrderButton(translate("ControlPanel", text), translate("ControlPanel", tip), order, partial(call, console))
+            for text, tip, order, call in _BUTTONS
         )
-        self.resume = OrderButton(
-            translate("ControlPanel", "Resume"),
-            translate("ControlPanel", "Go on after a hold"),
-            Order.RESUME,
-            lambda: console.order(lambda control: control.resume()),
-        )
-        self.abort = OrderButton(
-            translate("ControlPanel", "Abort"),
-            translate("ControlPanel", "Hold, then end the program"),
-            Order.ABORT,
-            lambda: console.abort(at_once=False),
-        )
-        self.at_once = OrderButton(
-            translate("ControlPanel", "Abort at once"),
-            translate("ControlPanel", "Each strut stops as fast as it can: the tool leaves its path"),
-            Order.ABORT,
-            lambda: console.abort(at_once=True),
-        )
+        self.hold, self.resume, self.abort, self.at_once = self._buttons
         for button in (self.hold, self.abort, self.at_once):
-            button.setStyleSheet("QPushButton:enabled { background-color: #cc0000; color: white; font-weight: bold; }")
+            button.setStyleSheet(_RED)
         self.override, self._percent = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal), QtWidgets.QLabel("100 %")
+        self._quiet = QtCore.QTimer(self)
+        self._set_up_override()
+        named = QtWidgets.QLabel(translate("ControlPanel", "Override"))
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(side_by_side(*self._buttons))
+        layout.addLayout(side_by_side(named, self.override, self._percent))
+
+    def _set_up_override(self) -> None:
         self.override.setRange(1, 100)
         self.override.setValue(100)
         self.override.setToolTip(translate("ControlPanel", "Override: how fast time passes in programs"))
-        self._quiet = QtCore.QTimer(self)
         self._quiet.setSingleShot(True)
         self._quiet.timeout.connect(self._send)
         self.override.valueChanged.connect(self._changed)
-        layout = QtWidgets.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addLayout(side_by_side(self.hold, self.resume, self.abort, self.at_once))
-        layout.addLayout(
-            side_by_side(QtWidgets.QLabel(translate("ControlPanel", "Override")), self.override, self._percent)
-        )
 
     def refresh(self, state: State, found: frozenset[Why]) -> None:
         """Show what can be done, and the override of the controller while nobody sets another one."""
-        refresh_all((self.hold, self.resume, self.abort, self.at_once), found)
+        refresh_all(self._buttons, found)
         against = refusal(Order.OVERRIDE, found)
         self.override.setEnabled(against in (None, Why.BUSY))
         unset = not (self._quiet.isActive() or self.override.isSliderDown() or self._console.has_orders)

@@ -6,13 +6,12 @@ A file, or the file of a program object, enters; it leaves as it was edited, dec
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtCore, QtGui, QtWidgets
+from PySide import QtCore, QtWidgets
 
 from pkm_post.files import staged
 from pkm_post.freecad_app.kinds import is_program
@@ -20,6 +19,7 @@ from pkm_post.freecad_gui.editor import linked
 from pkm_post.freecad_gui.editor.body import Body
 from pkm_post.freecad_gui.editor.file_drop import FileDrop
 from pkm_post.freecad_gui.editor.posting import Posting
+from pkm_post.freecad_gui.editor.tool_bar import tool_bar
 from pkm_post.model import Refused
 from pkm_post.program_text import Content
 from pkm_post.sources import SUFFIXES, is_part_program
@@ -45,7 +45,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         self.body, self.posting = Body(inside), Posting(self)
         layout = QtWidgets.QVBoxLayout(inside)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self._tool_bar(inside))
+        layout.addWidget(tool_bar(self, inside))
         layout.addWidget(self.body)
         self.setWidget(inside)
         self._document = self.body.text.document()
@@ -55,61 +55,6 @@ class ProgramEditor(QtWidgets.QDockWidget):
         # what is dragged is taken first; a question to the user would hold up the other program
         drop.dropped.connect(self.open_file, QtCore.Qt.ConnectionType.QueuedConnection)
         self._name_window()
-
-    def _tool_bar(self, parent: QtWidgets.QWidget) -> QtWidgets.QToolBar:
-        bar, keys = QtWidgets.QToolBar(parent), QtGui.QKeySequence.StandardKey
-        find, renumber = self.body.find_bar, self.body.renumber
-        rows: tuple[tuple[str, str, Any, Callable[[], Any]], ...] = (
-            (
-                translate("PKM_Editor", "Open"),
-                translate("PKM_Editor", "Open a part program"),
-                keys.Open,
-                self.ask_and_open,
-            ),
-            (translate("PKM_Editor", "Save"), translate("PKM_Editor", "Save the part program"), keys.Save, self.save),
-            (
-                translate("PKM_Editor", "Save as"),
-                translate("PKM_Editor", "Save under another name"),
-                keys.SaveAs,
-                self.save_as,
-            ),
-            (translate("PKM_Editor", "Find"), translate("PKM_Editor", "Find and replace"), keys.Find, find.begin),
-            (
-                translate("PKM_Editor", "Renumber"),
-                translate("PKM_Editor", "Give each block a line number"),
-                None,
-                renumber,
-            ),
-            (
-                translate("PKM_Editor", "Decode"),
-                translate("PKM_Editor", "Make it an operation of a CAM job"),
-                None,
-                self.decode,
-            ),
-            (
-                translate("PKM_Editor", "Post"),
-                translate("PKM_Editor", "Write a certified motion program"),
-                None,
-                self.post,
-            ),
-        )
-        for text, tip, key, call in rows:
-            action = bar.addAction(text)
-            shortcut = QtGui.QKeySequence(key) if key is not None else QtGui.QKeySequence()
-            action.setToolTip(tip if shortcut.isEmpty() else f"{tip} ({shortcut.toString()})")
-            self._add(action, shortcut, call)
-        for key, call in ((keys.FindNext, find.find_next), (keys.FindPrevious, find.find_previous)):
-            self._add(QtGui.QAction(self), QtGui.QKeySequence(key), call)
-        self._add(QtGui.QAction(self), QtGui.QKeySequence(keys.Replace), find.begin)
-        bar.addWidget(self.body.axis_words)
-        return bar
-
-    def _add(self, action: QtGui.QAction, shortcut: QtGui.QKeySequence, call: Callable[[], Any]) -> None:
-        """An action of the editor, with a shortcut that counts while the keys go to the editor."""
-        action.setShortcut(shortcut)
-        action.setShortcutContext(QtCore.Qt.ShortcutContext.WidgetWithChildrenShortcut)
-        action.triggered.connect(lambda checked=False: call())
-        self.addAction(action)
 
     def ask_and_open(self) -> None:
         """Open a file that the user chooses."""
