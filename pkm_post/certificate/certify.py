@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.certificate.course import Course
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.instants import Task
 from pkm_post.certificate.joints import Passed, pass_joints
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.playback import Played, play
 from pkm_post.certificate.struts import off_plan, strut_jerk
+from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.findings import Certificate, Finding, Tolerances
@@ -53,7 +53,7 @@ def certify(
         return None, faults
     ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
     knots = Knots.of(machine, motion)
-    course = Course.of(machine, struts, motion, knots)
+    course = ToolCourse.of(machine, struts, motion, knots)
     task = Task(struts, machine, ruler, motion, knots, course, ceiling)
     passed = pass_joints(task, trajectory)
     played = play(task, passed)

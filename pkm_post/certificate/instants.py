@@ -3,9 +3,9 @@
 
 Enters: a strut motion as read back, and a planned motion as the place where the search for each pose begins; the poses
 found do not depend on it. Leaves: the worst values at the instants, and how much more there can be. The tool is taken
-to be on its course (``course``), and what it can be off that is told with what hides between the instants. Or, closely,
-each pose is found by forward kinematics: most by linear steps from the plan (``kinematics.near``); where the Jacobian
-changes much, or these do not arrive, by Newton's method.
+to be on its course (``tool_course``), and what it can be off that is told with what hides between the instants. Or,
+closely, each pose is found by forward kinematics: most by linear steps from the plan (``kinematics.near``); where the
+Jacobian changes much, or these do not arrive, by Newton's method.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.certificate.between import arch, bow
-from pkm_post.certificate.course import Course
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.struts import cubics
+from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import hermite_motion
 from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.kinematics import NearPoses, carried, forward, near_poses
@@ -48,7 +48,7 @@ class Task:
     ruler: TrajectoryRuler
     motion: Motion
     knots: Knots
-    course: Course
+    course: ToolCourse
     ceiling: Array
 
 

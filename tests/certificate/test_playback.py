@@ -10,13 +10,13 @@ from programs import BALL, ON_PALLET, cone, program, square_with_arc
 from pkm_post import planning
 from pkm_post.certificate import joints, playback
 from pkm_post.certificate import knots as knots_module
-from pkm_post.certificate.course import Course
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.instants import Task, look
 from pkm_post.certificate.joints import pass_joints
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.playback import play
 from pkm_post.certificate.struts import off_plan
+from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.kinematics import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.findings import Tolerances
@@ -61,7 +61,7 @@ def by_newton(knots):
 def task_of(job, knots=None, struts=None):
     machine, trajectory, motion, printed = planned(job)
     struts, knots, ceiling = struts or printed, knots or Knots.of(machine, motion), np.full(len(printed) - 1, FEED)
-    course = Course.of(machine, struts, motion, knots)
+    course = ToolCourse.of(machine, struts, motion, knots)
     return Task(struts, machine, TrajectoryRuler(trajectory, TOLERANCES), motion, knots, course, ceiling)
 
 

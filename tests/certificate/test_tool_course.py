@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from test_nothing_exceeds import certified
 
-from pkm_post.certificate import course as course_module
-from pkm_post.certificate.course import Course
+from pkm_post.certificate import tool_course as course_module
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.struts import cubics
+from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import hermite_motion
 from pkm_post.geometry.vectors import length_of
 from pkm_post.kinematics import forward
@@ -30,11 +30,11 @@ def course_of(job, struts=None):
         pytest.skip("beyond the reach of the machine")
     machine, _, motion, printed, _ = certified(job)
     struts = struts or printed
-    return machine, motion, struts, Course.of(machine, struts, motion, Knots.of(machine, motion))
+    return machine, motion, struts, ToolCourse.of(machine, struts, motion, Knots.of(machine, motion))
 
 
 def by_newton(machine, motion, struts, rows, tip, axis, spin):
-    """Tip, axis and velocity of the tip at the shares of some intervals, (3, M, N) each; guesses as from Course.at."""
+    """Tip, axis and velocity of the tip at the shares of some intervals, (3, M, N) each, from guesses like theirs."""
     lengths, speeds = (part.swapaxes(0, 1).reshape(-1, 6) for part in hermite_motion(*cubics(struts, rows), SHARES))
     tool = np.tile(motion.tool_length[rows + 1], len(SHARES))
     pose = forward(machine, lengths, tool, tip.reshape(3, -1).T, axis.reshape(3, -1).T, spin.ravel())

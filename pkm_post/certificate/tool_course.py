@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Course: the way of the tool in each interval as one cubic, and how far the tool can be from it.
+"""Tool course: the way of the tool in each interval as one cubic, and how far the tool can be from it.
 
 Enters: a strut motion as read back, and the planned motion, near which it is looked for. Leaves: tool poses and their
 rates at the knots. Between two of them tip, axis and spin are taken for the cubics with these ends, which cost no
@@ -38,7 +38,7 @@ _AT_ONCE = 2048
 
 
 @dataclass(frozen=True)
-class Course:
+class ToolCourse:
     """Columns of K + 1 knots, or of the K intervals between them.
 
     Attributes:
@@ -55,7 +55,7 @@ class Course:
     missed: Array
 
     @classmethod
-    def of(cls, machine: Machine, struts: StrutMotion, motion: Motion, knots: Knots) -> Course:
+    def of(cls, machine: Machine, struts: StrutMotion, motion: Motion, knots: Knots) -> ToolCourse:
         """That of a strut motion with the knots of a planned one."""
         place, rate, near = _at_knots(struts, motion, knots)
         course = cls(place, rate, np.diff(struts.time_ms) / 1000, np.full((3, len(struts) - 1), np.inf))
