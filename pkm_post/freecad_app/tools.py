@@ -33,6 +33,16 @@ def set_gauge_length(tool_controller: Any, mm: float) -> None:
     setattr(tool_controller, GAUGE_LENGTH, mm)
 
 
+def gauge_length(tool_controller: Any) -> float:
+    """The gauge length that a tool controller says, mm; 0 if it says none."""
+    return _millimetres(tool_controller, GAUGE_LENGTH)
+
+
+def bit_length(tool_controller: Any) -> float:
+    """The length of the tool bit alone, mm; 0 if it says none. It is no gauge length."""
+    return _millimetres(tool_controller.Tool, "Length")
+
+
 def read_tools(
     controllers: Iterable[Any], tool_lengths: Mapping[int, float], source: str
 ) -> tuple[dict[int, Tool], tuple[Diagnostic, ...]]:
@@ -50,7 +60,7 @@ def read_tools(
     faults = []
     for controller in controllers:
         place, number = Place(source, controller.Label), int(controller.ToolNumber)
-        length = tool_lengths.get(number, _millimetres(controller, GAUGE_LENGTH))
+        length = tool_lengths.get(number, gauge_length(controller))
         if not length > 0:
             faults.append(Diagnostic("J113", place, f"T{number}"))
             continue

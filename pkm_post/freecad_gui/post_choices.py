@@ -84,7 +84,10 @@ _ROWS = (
     (
         "more",
         QT_TRANSLATE_NOOP("PostChoices", "More arguments"),
-        QT_TRANSLATE_NOOP("PostChoices", "Arguments that have no field here, such as --tool-length 1=120"),
+        QT_TRANSLATE_NOOP(
+            "PostChoices",
+            "Arguments that have no field here, such as --surface-speed 120, or --tool-length 1=120 for a part program",
+        ),
     ),
     (
         "folder",

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post panel: a CAM job becomes a certified motion program, beside the window.
 
-A job enters; it keeps what is chosen as its arguments, so that CAM's own post command does the same. The job is read in
-the thread of the window, as documents must be, and posted in another one.
+A job enters; the document keeps what is chosen. The job is read in the thread of the window, as documents must be, and
+posted in another one.
 """
 
 from __future__ import annotations
@@ -14,17 +14,12 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.arguments import job_arguments, own_text, remember
 from pkm_post.freecad_app.job_to_post import read_for_post
-from pkm_post.freecad_app.post_job import file_name
-from pkm_post.freecad_app.post_processor import program_path
 from pkm_post.freecad_app.progress import Stopped
-from pkm_post.freecad_app.transaction import transaction
 from pkm_post.freecad_gui.deletion_watch import DeletionWatch
-from pkm_post.freecad_gui.post_choices import PostChoices
+from pkm_post.freecad_gui.job_choices import JobChoices
 from pkm_post.freecad_gui.post_outcome import PostOutcome
 from pkm_post.freecad_gui.post_steps import step_text
-from pkm_post.freecad_gui.preferences import default_arguments, default_folder
 from pkm_post.freecad_gui.task import Task
 from pkm_post.freecad_gui.workbench import ICONS
 from pkm_post.model import Refused
@@ -33,6 +28,7 @@ from pkm_post.options import READING, options_from, tool_lengths_from
 translate = FreeCAD.Qt.translate
 
 NAME = "PkmPostPanel"
+_APPLY = QtWidgets.QDialogButtonBox.StandardButton.Apply
 _PER_MILLE = 1000
 
 
@@ -51,7 +47,7 @@ class PostPanel:
         self.form.setObjectName(NAME)
         self.form.setWindowTitle(translate("PostPanel", "Post to a hexapod"))
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "pkm_post.svg")))
-        self.choices = PostChoices(own_text(job) or default_arguments(), str(_folder_of(job)))
+        self.choices = JobChoices(job)
         self.outcome, self.bar, self.step = PostOutcome(), QtWidgets.QProgressBar(), QtWidgets.QLabel()
         self.bar.setRange(0, _PER_MILLE)
         self.outcome.chosen.connect(self._select)
@@ -63,6 +59,7 @@ class PostPanel:
         self.folder.setToolTip(translate("PostPanel", "Show the files that were written"))
         self.simulate = _button(translate("PostPanel", "Simulate"), self._simulate)
         self.simulate.setToolTip(translate("PostPanel", "Play the planned motion of the job"))
+        self._used_at_rest = [self.choices, self.post, self.simulate]
         self._lay_out()
         self._show_running(False)
         self.folder.setEnabled(False)
@@ -97,12 +94,18 @@ class PostPanel:
 
     def _read(self) -> Any:
         """The job and its machine, when the job has kept what is chosen."""
-        text, job = self.choices.text(), self.job
-        chosen = job_arguments(job, text)
-        self._target = Path(self.choices.folder.text().strip() or ".").absolute() / file_name(job)
-        with transaction(job.Document, translate("PostPanel", "Post to a hexapod")):
-            remember(job, text, str(self._target))
-        return read_for_post(job, chosen.machine, options_from(chosen), tool_lengths_from(chosen))
+        chosen, self._target = self.choices.keep(), self.choices.program()
+        return read_for_post(self.job, chosen.machine, options_from(chosen), tool_lengths_from(chosen))
+
+    def _keep_or_tell(self) -> bool:
+        """Let the document keep what is chosen, without posting; if that makes no sense, show why."""
+        try:
+            self.choices.keep()
+        except Refused as refused:
+            self._show_end(refused)
+            return False
+        self.job.Document.recompute()
+        return True
 
     def cancel(self) -> None:
         """Stop behind the step that is being done; nothing is written then."""
@@ -136,7 +139,7 @@ class PostPanel:
             self.outcome.show_nothing(translate("PostPanel", "An error of the program; the Report view has it."))
 
     def _show_running(self, runs: bool) -> None:
-        for part in (self.choices, self.post, self.simulate):
+        for part in self._used_at_rest:
             part.setEnabled(not runs)
         self.stop.setEnabled(runs)
         self.bar.setVisible(runs)
@@ -160,18 +163,33 @@ class PostPanel:
         QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(str(self._target.parent)))
 
     def _simulate(self) -> None:
-        """As the command does, which tells for itself why there is nothing to play."""
+        """Keep what is chosen, and do as the command does, which tells for itself why there is nothing to play."""
+        if not self._keep_or_tell():
+            return
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.Selection.addSelection(self.job)
         FreeCADGui.runCommand("PKM_Simulate", 0)
 
     def getStandardButtons(self) -> Any:
         """There is nothing to accept or reject."""
-        return QtWidgets.QDialogButtonBox.StandardButton.Close
+        return _APPLY | QtWidgets.QDialogButtonBox.StandardButton.Close
+
+    def modifyStandardButtons(self, box: Any) -> None:
+        """Give the button that FreeCAD made its meaning."""
+        button = box.button(_APPLY)
+        button.setToolTip(translate("PostPanel", "Keep in the document what is chosen, and post nothing"))
+        button.clicked.connect(lambda: self._apply())
+        self._used_at_rest.append(button)
+
+    def _apply(self) -> None:
+        """Keep what is chosen, for reach, simulation and operations that need the machine or a gauge length."""
+        if self._keep_or_tell():
+            self.outcome.show_nothing(translate("PostPanel", "Kept in the document. Nothing was posted."))
 
     def reject(self) -> bool:
         """Close the panel; what is being posted is stopped before."""
         self._watch.end()
+        self.choices.end()
         if self._task is not None:
             self._task.finished.disconnect(self._end)  # it has nothing to be shown in any more
             self._task.finish()
@@ -188,13 +206,6 @@ def open_panel(job: Any) -> PostPanel | None:
     panel = PostPanel(job)
     FreeCADGui.Control.showDialog(panel)
     return panel
-
-
-def _folder_of(job: Any) -> Path:
-    """Where the job was posted before; else the folder of the preferences, else that of the document."""
-    if job.PostProcessorOutputFile:
-        return program_path(job).absolute().parent
-    return Path(default_folder() or Path(job.Document.FileName or "job.FCStd").absolute().parent)
 
 
 def _button(text: str, action: Any) -> QtWidgets.QPushButton:

@@ -54,7 +54,8 @@ RULES: dict[str, Rule] = {
     "J112": _error("the operation has no tool controller", "choose a tool controller for it"),
     "J113": _error(
         "the gauge length of the tool is unknown",
-        "set the property GaugeLength of its tool controller, or pass --tool-length NUMBER=MM",
+        "enter it under Gauge lengths in the panel of Post to a hexapod, set the property GaugeLength of its tool"
+        " controller, or pass --tool-length NUMBER=MM",
     ),
     "J114": _error("two tools have the same number", "give every tool controller its own tool number"),
     "J115": _error("rotary words have no meaning on this machine", "give the tool axis as I J K words"),

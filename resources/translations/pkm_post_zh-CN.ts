@@ -1041,6 +1041,56 @@ Is the way of all struts, of the platform and of the tool free?</source>
     </message>
 </context>
 <context>
+    <name>GaugeTable</name>
+    <message>
+        <source>No.</source>
+        <translation>编号</translation>
+    </message>
+    <message>
+        <source>Number of the tool</source>
+        <translation>刀具编号</translation>
+    </message>
+    <message>
+        <source>Tool</source>
+        <translation>刀具</translation>
+    </message>
+    <message>
+        <source>Tool controller of the job</source>
+        <translation>作业的刀具控制器</translation>
+    </message>
+    <message>
+        <source>Bit</source>
+        <translation>刀头</translation>
+    </message>
+    <message>
+        <source>Length of the tool bit alone, to compare. It is no gauge length: part of the bit is in its holder, and the holder counts.</source>
+        <translation>仅刀头本身的长度，供比较。它不是刀具长度：刀头有一部分在刀柄内，而且刀柄也计入长度。</translation>
+    </message>
+    <message>
+        <source>Gauge length</source>
+        <translation>刀具长度</translation>
+    </message>
+    <message>
+        <source>From the spindle nose to the tip, measured with the tool in its holder</source>
+        <translation>从主轴端面到刀尖，刀具装在刀柄中测得</translation>
+    </message>
+    <message>
+        <source>Gauge lengths</source>
+        <translation>刀具长度（主轴端面到刀尖）</translation>
+    </message>
+    <message>
+        <source>T{}: {} of --tool-length in More arguments goes before the field.</source>
+        <translation>T{}：其他参数中 --tool-length 的 {} 优先于此输入框。</translation>
+    </message>
+</context>
+<context>
+    <name>LengthField</name>
+    <message>
+        <source>unknown</source>
+        <translation>未知</translation>
+    </message>
+</context>
+<context>
     <name>PKM_Control</name>
     <message>
         <source>Numerical control</source>
@@ -1677,8 +1727,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>其他参数</translation>
     </message>
     <message>
-        <source>Arguments that have no field here, such as --tool-length 1=120</source>
-        <translation>此处没有输入框的参数，例如 --tool-length 1=120</translation>
+        <source>Arguments that have no field here, such as --surface-speed 120, or --tool-length 1=120 for a part program</source>
+        <translation>此处没有输入框的参数，例如 --surface-speed 120，或用于零件程序的 --tool-length 1=120</translation>
     </message>
     <message>
         <source>Folder</source>
@@ -1789,6 +1839,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>An error of the program; the Report view has it.</source>
         <translation>软件出错；详见报告视图。</translation>
+    </message>
+    <message>
+        <source>Keep in the document what is chosen, and post nothing</source>
+        <translation>将所选内容保存到文档中，不进行后处理</translation>
+    </message>
+    <message>
+        <source>Kept in the document. Nothing was posted.</source>
+        <translation>已保存到文档中。未进行后处理。</translation>
     </message>
     <message>
         <source>Another task panel is open: close it first.</source>

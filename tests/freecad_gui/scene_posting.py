@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Posting from the panel: files and the certificate, or the reasons and no file; what the job and the user keep."""
 
+import contextlib
+import os
+import sys
 import time
+from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, answer, main, new_document, picture, press, select, settle, step, until
+from gui import FOLDER, answer, main, new_document, picture, picture_of_all, press, select, settle, step, until
 from PySide import QtCore, QtWidgets
 
 LONG = ["G0 X0 Y0 Z30", *(f"G1 X{x % 2 * 20} Y{x * 0.02} Z20 F30" for x in range(400)), "G0 Z30"]
@@ -99,7 +103,7 @@ def posting_shows_the_certificate():
         "verdict": panel.outcome.verdict.text(),
         "findings": panel.outcome.findings.rowCount(),
         "picture": panel.outcome.picture.isVisible(),
-        "drawn": picture("post_panel.png"),
+        "drawn": picture("posted.png"),
         "longest": longest,
     }
     close()
@@ -250,4 +254,30 @@ def panel_closes_with_its_job():
     return {"open": bool(FreeCADGui.Control.activeDialog())}
 
 
+def column_is_posted():
+    """A picture of the panel with the tapered column for docs/pictures; it asserts nothing, and so it is no test."""
+    sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "tapered_column"))
+    from build import build
+
+    build(out=FOLDER)
+    for name in FreeCAD.listDocuments():
+        FreeCAD.closeDocument(name)
+    document = FreeCAD.openDocument(str(FOLDER / "tapered_column.FCStd"))  # as make demo does, for the same figures
+    document.recompute()
+    job = document.getObject("Job")
+    job.PostProcessorArgs = "--machine example_6tps"
+    for item in (job.Stock, job.Tools.Group[0].Tool):
+        item.ViewObject.Visibility = False
+    FreeCADGui.activateWorkbench("CAMWorkbench")
+    panel = open_panel(document)
+    with contextlib.chdir(FOLDER):
+        panel.choices.folder.setText("programs")  # in the picture no folder of this computer
+        panel.post()
+    found = picture_of_all("post_panel.png")
+    close()
+    return {"drawn": found}
+
+
+if "PKM_PICTURES" in os.environ:
+    step(column_is_posted)
 main()

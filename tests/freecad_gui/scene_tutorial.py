@@ -13,7 +13,7 @@ from gui import FOLDER, main, press, select, settle, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 NAME = "tapered_column"
-ARGUMENTS = "--machine example_6tps --work-offset G54 --tool-length 1=120"
+ARGUMENTS = "--machine example_6tps --work-offset G54"
 SIZE, MARGIN, WIDE = (1000, 800), 12, 560
 """Pixels: a picture of the 3D view before it is trimmed, below the content of a panel, and a dock."""
 FROM_ABOVE = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), 30) * FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 55)
@@ -220,15 +220,33 @@ def job_is_made():
     keep("output", form)
     panel.accept()
     settle()
-    controller = job().Tools.Group[0]
+    controller, arguments = job().Tools.Group[0], job().PostProcessorArgs
     controller.Tool.Diameter = 16
     document().recompute()
+    _type_gauge_length()
     return {
         "asked": asked,
-        "post": [job().PostProcessor, job().PostProcessorArgs],
+        "post": [job().PostProcessor, arguments],
+        "gauge length": controller.GaugeLength.Value,
         "speeds": [controller.HorizFeed.Value, controller.VertFeed.Value, controller.SpindleSpeed],
         "tool": [controller.ToolNumber, controller.SpindleDir, controller.Tool.Diameter.Value],
     }
+
+
+def _type_gauge_length():
+    """In the post panel, which keeps it and posts nothing."""
+    from pkm_post.freecad_gui.gauge_table import GaugeTable
+
+    press("PKM_Post", job())
+    form = widget(QtWidgets.QWidget, "PkmPostPanel")
+    (gauges,) = [each for each in form.findChildren(QtWidgets.QWidget) if isinstance(each, GaugeTable)]
+    (field,) = gauges.fields.values()
+    field.setText("120 mm")
+    field.editingFinished.emit()
+    settle()
+    keep("gauge", gauges)
+    click("Apply")
+    click("Close")
 
 
 def _tab(form, text):

@@ -8,7 +8,9 @@ import pytest
 
 @pytest.fixture(scope="module")
 def session(scene):
-    return scene("posting")
+    made = scene("posting")
+    made.keep("post_panel.png")
+    return made
 
 
 def test_panel_writes_and_shows_the_certificate(session):
@@ -20,7 +22,7 @@ def test_panel_writes_and_shows_the_certificate(session):
     assert found["findings"] >= 11  # rows of the certificate
     assert found["picture"]
     assert found["steps to undo"] == 1
-    assert session.drew("post_panel.png")
+    assert session.drew("posted.png")
 
 
 def test_job_keeps_what_was_chosen_and_cam_posts_the_same(session):

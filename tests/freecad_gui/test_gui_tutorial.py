@@ -49,7 +49,8 @@ def test_the_column_is_an_ellipse_that_becomes_a_circle(session):
 def test_the_job_has_its_tool_and_its_machine(session):
     found = session["job_is_made"]
     assert found["asked"][-1] in ("Create Job", "New Job")  # FreeCAD 1.0, 1.1
-    assert found["post"] == ["hexapod_pmac", "--machine example_6tps --work-offset G54 --tool-length 1=120"]
+    assert found["post"] == ["hexapod_pmac", "--machine example_6tps --work-offset G54"]
+    assert found["gauge length"] == 120
     assert found["speeds"] == [pytest.approx(30.0), pytest.approx(10.0), 12000]  # mm/s inside: 1800 and 600 mm/min
     assert found["tool"] == [1, "Forward", 16]
 

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Gauge table: the tool controllers of a job, each with a field for its gauge length.
+
+A job enters; gauge lengths in mm leave, for those tool controllers whose field was changed. What posting would refuse
+is told below the table in posting's own words. The table follows the document: what changes there, by undo as well,
+goes before what was typed for the same tool and not kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import FreeCAD
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_app.gauge_lengths import ToolRow, tool_rows
+from pkm_post.freecad_app.typed_length import length_text
+from pkm_post.freecad_gui.change_watch import ChangeWatch
+from pkm_post.freecad_gui.length_field import LengthField, decimal_point
+from pkm_post.model import Refused
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_COLUMNS = (
+    (QT_TRANSLATE_NOOP("GaugeTable", "No."), QT_TRANSLATE_NOOP("GaugeTable", "Number of the tool")),
+    (QT_TRANSLATE_NOOP("GaugeTable", "Tool"), QT_TRANSLATE_NOOP("GaugeTable", "Tool controller of the job")),
+    (
+        QT_TRANSLATE_NOOP("GaugeTable", "Bit"),
+        QT_TRANSLATE_NOOP(
+            "GaugeTable",
+            "Length of the tool bit alone, to compare. It is no gauge length: part of the bit is in its holder,"
+            " and the holder counts.",
+        ),
+    ),
+    (
+        QT_TRANSLATE_NOOP("GaugeTable", "Gauge length"),
+        QT_TRANSLATE_NOOP("GaugeTable", "From the spindle nose to the tip, measured with the tool in its holder"),
+    ),
+)
+"""Head and tool tip of each column."""
+_LENGTH = len(_COLUMNS) - 1
+_WATCHED = ("GaugeLength", "ToolNumber", "Label", "Tool", "Length", "Group", "Active", "ToolController", "Base")
+_MOST_ROWS = 6
+"""So many are seen at once."""
+
+
+class GaugeTable(QtWidgets.QGroupBox):
+    """The table, and below it what is to be said of its rows."""
+
+    def __init__(self, job: Any) -> None:
+        super().__init__(translate("GaugeTable", "Gauge lengths"))
+        self.table, self.notes = QtWidgets.QTableWidget(0, len(_COLUMNS)), QtWidgets.QLabel()
+        self._job, self._by_argument = job, dict[int, float]()
+        self._rows: tuple[ToolRow, ...] = ()
+        self.fields: dict[str, LengthField] = {}
+        self._set_up()
+        self._show(tool_rows(job))
+        self._watch = ChangeWatch(self.follow, job.Document.Name, _WATCHED)
+
+    def _set_up(self) -> None:
+        self.table.setHorizontalHeaderLabels([translate("GaugeTable", head) for head, _ in _COLUMNS])
+        for column, (_, tip) in enumerate(_COLUMNS):
+            self.table.horizontalHeaderItem(column).setToolTip(translate("GaugeTable", tip))
+        self.table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setSelectionMode(QtWidgets.QAbstractItemView.SelectionMode.NoSelection)
+        self.table.verticalHeader().hide()
+        sizes = QtWidgets.QHeaderView.ResizeMode
+        for column, size in enumerate((sizes.ResizeToContents, sizes.Stretch, sizes.ResizeToContents, sizes.Stretch)):
+            self.table.horizontalHeader().setSectionResizeMode(column, size)
+        self.notes.setWordWrap(True)
+        self.notes.setTextInteractionFlags(QtCore.Qt.TextInteractionFlag.TextSelectableByMouse)
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.addWidget(self.table)
+        layout.addWidget(self.notes)
+
+    def end(self) -> None:
+        """Follow the document no longer."""
+        self._watch.end()
+
+    def follow(self) -> None:
+        """Show what the job says; what was typed stays for tools of which the document says the same as before."""
+        rows = tool_rows(self._job)
+        if rows != self._rows:
+            self._show(rows)
+
+    def _show(self, rows: tuple[ToolRow, ...]) -> None:
+        kept = {row.name: self.fields[row.name].text() for row in rows if self._is_as_before(row)}
+        self._rows, self.fields = rows, {row.name: LengthField(row.length) for row in rows}
+        self.table.setRowCount(len(rows))
+        for number, row in enumerate(rows):
+            self._fill(number, row)
+        for name, text in kept.items():
+            self.fields[name].setText(text)
+        self._fit()
+        self._tell()
+
+    def _is_as_before(self, row: ToolRow) -> bool:
+        return any((row.name, row.length) == (before.name, before.length) for before in self._rows)
+
+    def _fill(self, number: int, row: ToolRow) -> None:
+        bit = length_text(row.bit_length, decimal_point()) if row.bit_length else ""
+        for column, text in enumerate((str(row.number), row.label, bit)):
+            item = QtWidgets.QTableWidgetItem(text)
+            item.setToolTip(text if column < _LENGTH - 1 else translate("GaugeTable", _COLUMNS[column][1]))
+            self.table.setItem(number, column, item)
+        field = self.fields[row.name]
+        field.setToolTip(translate("GaugeTable", _COLUMNS[_LENGTH][1]))
+        field.textChanged.connect(self._tell)
+        self.table.setCellWidget(number, _LENGTH, field)
+
+    def _fit(self) -> None:
+        """As high as its rows, up to some."""
+        row = self.table.verticalHeader().defaultSectionSize()
+        head = self.table.horizontalHeader().sizeHint().height()
+        frame = 2 * self.table.frameWidth()
+        self.table.setFixedHeight(head + frame + row * min(max(len(self._rows), 1), _MOST_ROWS))
+
+    def show_arguments(self, lengths: Mapping[int, float]) -> None:
+        """Tell which gauge lengths the arguments give: those go before the ones of the fields.
+
+        Args:
+            lengths: mm, by tool number.
+        """
+        self._by_argument = dict(lengths)
+        self._tell()
+
+    def _tell(self, *_: Any) -> None:
+        """Say what is wrong with each row, or what goes before it."""
+        notes = []
+        for row in self._rows:
+            fault = self._fault(row)
+            self.fields[row.name].show_fault(fault)
+            notes += [each for each in (fault, self._goes_before(row)) if each]
+        self.notes.setText("\n".join(notes))
+        self.notes.setVisible(bool(notes))
+
+    def _fault(self, row: ToolRow) -> str:
+        mm = self.fields[row.name].length()
+        if mm is None:
+            return str(row.unknown(self._typed(row)))
+        if not mm and row.in_use and row.number not in self._by_argument:
+            return str(row.unknown())
+        return ""
+
+    def _goes_before(self, row: ToolRow) -> str:
+        if row.number not in self._by_argument:
+            return ""
+        told = translate("GaugeTable", "T{}: {} of --tool-length in More arguments goes before the field.")
+        return told.format(row.number, length_text(self._by_argument[row.number], decimal_point()))
+
+    def _typed(self, row: ToolRow) -> str:
+        return f"{self.fields[row.name].text()!r} is no length above zero"
+
+    def lengths(self) -> dict[str, float]:
+        """The gauge lengths that were changed, in mm by the names of the tool controllers; 0 for one taken back.
+
+        Raises:
+            Refused: what was typed makes no sense, J113.
+        """
+        said = {row: self.fields[row.name].length() for row in self._rows}
+        faults = [row.unknown(self._typed(row)) for row, mm in said.items() if mm is None]
+        if faults:
+            raise Refused(faults)
+        return {row.name: mm for row, mm in said.items() if mm is not None and mm != row.length}

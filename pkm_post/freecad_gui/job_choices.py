@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Job choices: what a user chooses for the posting of a job, and how the document keeps it.
+
+A job enters; it keeps the choices as its arguments, and its tool controllers keep their gauge lengths, so that CAM's
+own post command does the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import FreeCAD
+from PySide import QtWidgets
+
+from pkm_post.freecad_app.arguments import job_arguments, own_text, parsed, remember
+from pkm_post.freecad_app.gauge_lengths import keep_gauge_lengths
+from pkm_post.freecad_app.post_job import file_name
+from pkm_post.freecad_app.post_processor import program_path
+from pkm_post.freecad_app.transaction import transaction
+from pkm_post.freecad_gui.gauge_table import GaugeTable
+from pkm_post.freecad_gui.post_choices import PostChoices
+from pkm_post.freecad_gui.preferences import default_arguments, default_folder
+from pkm_post.model import Place, Refused
+from pkm_post.options import tool_lengths_from
+
+translate = FreeCAD.Qt.translate
+
+
+class JobChoices(QtWidgets.QWidget):
+    """The fields.
+
+    Attributes:
+        arguments: those of the job.
+        gauges: those of its tools.
+    """
+
+    def __init__(self, job: Any) -> None:
+        super().__init__()
+        self._job = job
+        self.arguments = PostChoices(own_text(job) or default_arguments(), str(_folder_of(job)))
+        self.gauges = GaugeTable(job)
+        self.arguments.more.textChanged.connect(self._show_given)
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.arguments)
+        layout.addWidget(self.gauges)
+        self._show_given()
+
+    def end(self) -> None:
+        """Follow the document no longer."""
+        self.gauges.end()
+
+    def program(self) -> Path:
+        """The path of the motion program."""
+        return Path(self.arguments.folder.text().strip() or ".").absolute() / file_name(self._job)
+
+    def keep(self) -> argparse.Namespace:
+        """Let the document keep what is chosen, in one step of undo.
+
+        Returns:
+            The arguments of the job.
+
+        Raises:
+            Refused: what is chosen makes no sense, J117 or J113; nothing is kept.
+        """
+        text, job = self.arguments.text(), self._job
+        chosen, lengths = job_arguments(job, text), self.gauges.lengths()
+        with transaction(job.Document, translate("PostPanel", "Post to a hexapod")):
+            remember(job, text, str(self.program()))
+            keep_gauge_lengths(job, lengths)
+        return chosen
+
+    def _show_given(self, *_changed: str) -> None:
+        """Show which gauge lengths the arguments give; those without a meaning are told when they are to be kept."""
+        try:
+            given = tool_lengths_from(parsed(self.arguments.text(), Place("")))
+        except Refused:
+            given = {}
+        self.gauges.show_arguments(given)
+
+
+def _folder_of(job: Any) -> Path:
+    """Where the job was posted before; else the folder of the preferences, else that of the document."""
+    if job.PostProcessorOutputFile:
+        return program_path(job).absolute().parent
+    return Path(default_folder() or Path(job.Document.FileName or "job.FCStd").absolute().parent)
