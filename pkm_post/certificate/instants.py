@@ -127,8 +127,9 @@ def look(task: Task, rows: Array, instants: int, closely: bool) -> Seen:
 
 def _on_course(task: Task, rows: Array, shares: Array) -> _Tool:
     """Where the tool is at shares of intervals of which the course tells it."""
-    tip, axis, spin, velocity = task.course.at(rows, shares[:, None])
-    return _Tool(tip, axis, velocity, task.course.missed[:, rows], np.ones(spin.shape, dtype=bool))
+    course, share = task.course, shares[:, None]
+    tip, axis, spin = course.at(rows, share)
+    return _Tool(tip, axis, course.velocity(rows, share), course.missed[:, rows], np.ones(spin.shape, dtype=bool))
 
 
 def _by_kinematics(task: Task, rows: Array, shares: Array) -> _Tool:

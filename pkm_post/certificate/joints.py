@@ -87,7 +87,7 @@ def _tool_at(task: Task, trajectory: Trajectory, rows: Array, knot: Array, share
 
     On the course of the tool, where it is told well enough; else by Newton's method.
     """
-    tip, axis, _, _ = (columns.reshape(-1, len(rows)).T for columns in task.course.at(knot, share[None]))
+    tip, axis, _ = (columns.reshape(-1, len(rows)).T for columns in task.course.at(knot, share[None]))
     missed, found = task.course.missed[:2, knot], np.ones(len(rows), dtype=bool)
     tool_length = trajectory.tool_length()[rows]
     limit = np.stack([task.ruler.tip_tolerance[rows], np.full(len(rows), task.ruler.axis_tolerance)])

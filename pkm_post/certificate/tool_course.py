@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.struts import cubics
-from pkm_post.geometry import hermite_columns, hermite_lengths
+from pkm_post.geometry import hermite_column_speeds, hermite_columns, hermite_lengths
 from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.kinematics import NearPoses, attitude_rates, carried, moved, strut_lengths
 from pkm_post.model import Machine, Motion, StrutMotion
@@ -67,24 +67,31 @@ class ToolCourse:
             course.missed[:, rows] = course._missed(machine, struts, motion, knots, rows)
         return course
 
-    def at(self, rows: Array, share: Array) -> tuple[Array, Array, Array, Array]:
-        """Tip, tool axis, spin and velocity of the tip on the cubics of N intervals.
+    def at(self, rows: Array, share: Array) -> tuple[Array, Array, Array]:
+        """Tip, tool axis and spin on the cubics of N intervals.
 
         Args:
             rows: (N,) the intervals.
             share: (M, 1) or (M, N), shares of the intervals.
 
         Returns:
-            (3, M, N) mm, (3, M, N) unit vectors, (M, N) rad, (3, M, N) mm/s.
+            (3, M, N) mm, (3, M, N) unit vectors, (M, N) rad.
         """
+        place = hermite_columns(*self._ends(rows), share)
+        return place[:3], place[3:6] / length_of(*place[3:6]), place[6]
+
+    def velocity(self, rows: Array, share: Array) -> Array:
+        """Velocity of the tip there, (3, M, N) mm/s."""
+        p0, v0, p1, v1, duration = self._ends(rows)
+        return hermite_column_speeds(p0[:3], v0[:3], p1[:3], v1[:3], duration, share)
+
+    def _ends(self, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
         after, place, rate = rows + 1, self.place, self.rate
-        ends = place[:, rows], rate[:, rows], place[:, after], rate[:, after]
-        place, rate = hermite_columns(*ends, self.duration[rows], share)
-        return place[:3], place[3:6] / length_of(*place[3:6]), place[6], rate[:3]
+        return place[:, rows], rate[:, rows], place[:, after], rate[:, after], self.duration[rows]
 
     def _missed(self, machine: Machine, struts: StrutMotion, motion: Motion, knots: Knots, rows: Array) -> Array:
         """What of N intervals is in ``missed``, (3, N)."""
-        tip, axis, spin, _ = (columns.reshape(-1, _LOOKS.size * len(rows)) for columns in self.at(rows, _LOOKS))
+        tip, axis, spin = (columns.reshape(-1, _LOOKS.size * len(rows)) for columns in self.at(rows, _LOOKS))
         tool_length = np.tile(motion.tool_length[rows + 1], _LOOKS.size)
         needed = strut_lengths(machine, tip.T, axis.T, spin[0], tool_length).reshape(_LOOKS.size, -1, 6)
         residual = hermite_lengths(*cubics(struts, rows), _LOOKS.ravel()) - needed.transpose(1, 0, 2)

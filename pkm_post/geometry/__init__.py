@@ -5,6 +5,7 @@ from pkm_post.geometry.arcs import arc_points, arc_sweep
 from pkm_post.geometry.great_circle import along, along_rates, angle_between, towards
 from pkm_post.geometry.hermite import (
     hermite_accelerations,
+    hermite_column_speeds,
     hermite_columns,
     hermite_lengths,
     hermite_motion,
@@ -21,6 +22,7 @@ __all__ = [
     "arc_sweep",
     "dot",
     "hermite_accelerations",
+    "hermite_column_speeds",
     "hermite_columns",
     "hermite_lengths",
     "hermite_motion",

@@ -52,7 +52,8 @@ def test_no_instant_is_farther_from_the_course_than_is_said(job):
     by_most = told[np.argsort(course.missed[0, told])[-50:]]
     chance = np.random.default_rng(1).choice(told, min(MOST_ROWS, len(told)), replace=False)
     rows = np.unique(np.concatenate([by_most, chance]))
-    tip, axis, spin, velocity = course.at(rows, SHARES[:, None])
+    tip, axis, spin = course.at(rows, SHARES[:, None])
+    velocity = course.velocity(rows, SHARES[:, None])
     exact = by_newton(machine, motion, struts, rows, tip, axis, spin)
     for said, missed, found in zip((tip, axis, velocity), course.missed[:, rows], exact, strict=True):
         assert np.all(length_of(*(found - said)).max(axis=0) <= missed + SAME)
@@ -61,7 +62,7 @@ def test_no_instant_is_farther_from_the_course_than_is_said(job):
 def test_what_is_said_is_not_far_from_what_there_is():
     machine, motion, struts, course = course_of("cone")
     rows = np.argsort(np.where(np.isfinite(course.missed[0]), course.missed[0], 0))[-50:]
-    tip, axis, spin, _ = course.at(rows, SHARES[:, None])
+    tip, axis, spin = course.at(rows, SHARES[:, None])
     found, _, _ = by_newton(machine, motion, struts, rows, tip, axis, spin)
     off = length_of(*(found - tip)).max(axis=0)
     assert np.all(course.missed[0, rows] < 2 * off)

@@ -3,6 +3,7 @@ import numpy as np
 
 from pkm_post.geometry import (
     hermite_accelerations,
+    hermite_column_speeds,
     hermite_columns,
     hermite_lengths,
     hermite_motion,
@@ -64,6 +65,6 @@ def test_columns_are_the_same_as_rows():
     duration, of_all, of_each = rng.uniform(0.001, 0.128, 50), np.linspace(0, 1, 5), rng.uniform(size=(50, 3))
     columns = p0.T, v0.T, p1.T, v1.T, duration
     for share, shares in ((of_all, of_all[:, None]), (of_each, of_each.T)):
-        positions, speeds = hermite_columns(*columns, shares)
+        positions, speeds = hermite_columns(*columns, shares), hermite_column_speeds(*columns, shares)
         np.testing.assert_allclose(positions.T, hermite_lengths(p0, v0, p1, v1, duration, share), atol=1e-13)
         np.testing.assert_allclose(speeds.T, hermite_speeds(p0, v0, p1, v1, duration, share), rtol=1e-12, atol=1e-9)
