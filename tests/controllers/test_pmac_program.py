@@ -151,3 +151,44 @@ def test_events_out_of_order_or_beyond_the_motion_are_refused(settings, rows):
 def test_an_event_without_code_is_refused(settings):
     with pytest.raises(ValueError, match="expected one with a code"):
         program_text(_at_rest([0, 20], (Event(0, EventKind.COOLANT, 9),)), settings, [])
+
+
+def _line_by_line(motion, settings):
+    """What stands behind the approach, made of one line after the other."""
+    stops = {0, len(motion) - 1} | {event.row for event in motion.events}
+    known = None
+    for knot in range(len(motion)):
+        if knot:
+            interval = motion.time_ms[knot] - motion.time_ms[knot - 1]
+            if interval != known:
+                yield f"PVT{interval}"
+            known = interval
+            pairs = zip(
+                settings.letters,
+                np.round(motion.length[knot], settings.length_decimals) + 0.0,
+                np.round(motion.speed[knot], settings.speed_decimals) + 0.0,
+                strict=True,
+            )
+            yield " ".join(
+                f"{letter}{length:.{settings.length_decimals}f}:{speed:.{settings.speed_decimals}f}"
+                for letter, length, speed in pairs
+            )
+        if knot in stops:
+            yield "DWELL0"
+            known = None
+        yield from ("DWELL500" for event in motion.events if event.row == knot)
+
+
+@pytest.mark.parametrize("decimals", [(6, 4), (1, 9), (9, 1)])
+@pytest.mark.parametrize("farthest", [1500.0, 1e12], ids=["a machine", "beyond what is printed at once"])
+def test_a_long_program_is_that_of_one_line_after_the_other(settings, decimals, farthest):
+    rng = np.random.default_rng(11)
+    knots = 8200  # three chunks of the writer, with stops where they meet
+    rows = [0, 0, 1, 2, 700, 4095, 4096, 4097, 4098, 8191, 8192, 8193, 8198, 8199, 8199]
+    length, speed = rng.uniform(-farthest, farthest, (2, knots, 6)) * 10.0 ** rng.integers(-9, 1, (2, knots, 6))
+    speed[[0, -1, *rows]] = 0.0
+    time_ms = np.cumsum([0, *rng.choice([1, 20, 20, 20, 4095], knots - 1)])
+    motion = StrutMotion(time_ms, length, speed, tuple(Event(row, EventKind.DWELL, 0.5) for row in rows))
+    other = replace(settings, length_decimals=decimals[0], speed_decimals=decimals[1])
+    text = program_text(motion, other, []).split("DWELL0\n", 1)[1]
+    assert text.splitlines()[:-2] == list(_line_by_line(motion, other))[1:]

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies
 from hypothesis import settings as hypothesis_settings
+from strut_motions import with_rests
 
 from pkm_post.controllers.pmac import Settings, program_text, read_program
+from pkm_post.controllers.pvt import reader
 from pkm_post.model import Event, EventKind, StrutMotion
 
 SETTINGS = Settings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=12.5)
@@ -176,7 +178,10 @@ def test_a_speed_at_the_very_end_is_read_as_it_is(job):
 
 def test_a_program_cut_off_anywhere_is_a_fault(job):
     text = _program(job)
-    assert all(read_program(text[:end], SETTINGS, FILE)[1] for end in range(len(text) - 1))
+    for end in range(len(text) - 1):
+        faults = read_program(text[:end], SETTINGS, FILE)[1]
+        assert faults
+        assert faults[-1].place.line <= text[:end].count("\n") + 1
 
 
 def _mutations(text, characters, replacements, count):
@@ -202,7 +207,7 @@ def test_no_changed_character_goes_unnoticed(job, characters, replacements):
 
 
 def test_long_runs_and_times_that_change_at_every_knot_read_back():
-    knots = 10_001  # more than two chunks of the writer
+    knots = 20_001  # several chunks of the writer and of the reader
     rng = np.random.default_rng(7)
     speed = rng.normal(0, 30, (knots, 6))
     speed[[0, -1]] = 0.0
@@ -213,3 +218,32 @@ def test_long_runs_and_times_that_change_at_every_knot_read_back():
         assert faults == ()
         assert np.array_equal(read.time_ms, time_ms)
         np.testing.assert_allclose(read.length, motion.length, rtol=0, atol=HALF_LENGTH_DIGIT)
+
+
+@pytest.mark.parametrize("size", [1, 90, 1000])
+def test_it_does_not_matter_where_a_text_is_cut_to_be_read(job, monkeypatch, size):
+    changed = [_program(job).replace(old, new, 1) for old, new, _, _ in FAULTS.values()]
+    texts = [_program(job), _program(with_rests(7, 100)), *changed, "", "\n", "CLOSE", "nonsense\n" * 1000]
+    narrow = replace(SETTINGS, line_limit=113)
+    whole = [read_program(text, settings, FILE) for text in texts for settings in (SETTINGS, narrow)]
+    monkeypatch.setattr(reader, "_CHUNK", size)
+    cut = [read_program(text, settings, FILE) for text in texts for settings in (SETTINGS, narrow)]
+    for (motion, faults), (other, others) in zip(whole, cut, strict=True):
+        assert faults == others
+        assert (motion is None) == (other is None)
+        assert motion is None or _same(motion, other)
+
+
+def test_moves_that_are_printed_in_another_way_are_read_as_well():
+    text = _program(with_rests(7, 100))
+    motion, _ = read_program(text, SETTINGS, FILE)
+    rng = np.random.default_rng(4)
+    lines = text.split("\n")
+    moves = [row for row, line in enumerate(lines) if ":" in line]
+    for row in rng.choice(moves, 40, replace=False):
+        lines[row] = re.sub(r"\.0+(?=[: ]|$)", "", lines[row])
+        lines[row] = re.sub(r"(\.[0-9]*[1-9])0+(?=[: ]|$)", r"\1", lines[row])
+        lines[row] = re.sub(r"(\.[0-9]*):", r"\g<1>00000000000:", lines[row], count=2)
+    read, faults = read_program("\n".join(lines), replace(SETTINGS, line_limit=1000), FILE)
+    assert faults == ()
+    assert _same(read, motion)

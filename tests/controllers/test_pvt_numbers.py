@@ -1,52 +1,87 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+import re
+
 import numpy as np
 import pytest
 
-from pkm_post.controllers.pvt.numbers import numbers_of
+from pkm_post.controllers.pvt.numbers import Digits
 
-LETTERS = tuple("ABCUVW")
-
-
-def lines_of(numbers):
-    """Lines of moves of texts of numbers, (N, 6, 2)."""
-    return "".join(
-        " ".join(f"{letter}{length}:{speed}" for letter, (length, speed) in zip(LETTERS, row, strict=True)) + "\n"
-        for row in numbers
-    )
+DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]{0,14})\.[0-9]{1,15}")
+WHOLE = re.compile(r"0|[1-9][0-9]{0,14}")
 
 
-def printed(decimals, count=2000):
-    rng = np.random.default_rng(17)
-    length = rng.uniform(0, 10.0 ** rng.integers(0, 8, (count, 6)))
-    speed = rng.normal(scale=10.0 ** rng.integers(-3, 4, (count, 6)), size=(count, 6))
-    return [
-        [(f"{one:.{decimals[0]}f}", f"{other:.{decimals[1]}f}") for one, other in zip(*row, strict=True)]
-        for row in zip(length, speed, strict=True)
-    ]
+def read(numbers):
+    """Numbers read out of one text, with their points where Python finds the first."""
+    text = "".join(f":{number} " for number in numbers)
+    before = np.cumsum([0, *(len(number) + 2 for number in numbers)])[:-1]
+    ends = before + 1 + np.array([len(number) for number in numbers])
+    points = before + 1 + np.array([number.index(".") for number in numbers])
+    return Digits(text.encode("latin-1")).decimals(before, points, ends)
 
 
-@pytest.mark.parametrize("decimals", [(6, 4), (3, 6), (1, 1), (9, 0), (0, 0)])
+def assert_read(numbers):
+    """All of them are read, each as the double that Python takes it for, to the sign of zero."""
+    values, fits = read(numbers)
+    assert [number for number, right in zip(numbers, fits, strict=True) if not right] == []
+    expected = np.array([float(number) for number in numbers])
+    np.testing.assert_array_equal(values, expected)
+    np.testing.assert_array_equal(np.signbit(values), np.signbit(expected))
+
+
+@pytest.mark.parametrize("decimals", range(1, 10))
 def test_numbers_are_those_that_python_reads(decimals):
-    numbers = printed(decimals)
-    expected = [[[float(length), float(speed)] for length, speed in row] for row in numbers]
-    np.testing.assert_array_equal(numbers_of(lines_of(numbers), LETTERS), expected)
+    rng = np.random.default_rng(17)
+    values = rng.normal(size=4000) * 10.0 ** rng.integers(-6, 6, 4000)
+    assert_read([f"{value:.{decimals}f}" for value in values])
+
+
+def test_numbers_of_any_length_side_by_side():
+    rng = np.random.default_rng(18)
+    counts = rng.integers(1, 8, (4000, 2))
+    numbers = [f"{rng.integers(0, 10**whole)}.{rng.integers(0, 10**part):0{part}d}" for whole, part in counts]
+    assert_read(numbers)
+    assert_read([f"-{number}" for number in numbers])
 
 
 @pytest.mark.parametrize(
-    "odd",
-    ["1.5", "-0.0000", "12", "123456789012345.123456", "0.1234567890123456789012345", "9007199254740993.0000"],
-    ids=["fewer decimals", "minus zero", "no point", "many digits", "very many decimals", "beyond 2^53"],
+    "number",
+    ["0.0", "-0.0000", "9007199254.740991", "0.900719925474099", "900719925474099.1", "-12345678.12345678", "0.1"],
 )
-def test_one_odd_number_is_read_as_python_reads_it(odd):
-    numbers = printed((6, 4), 20)
-    numbers[11][4] = (numbers[11][4][0], odd)
-    expected = [[[float(length), float(speed)] for length, speed in row] for row in numbers]
-    np.testing.assert_array_equal(numbers_of(lines_of(numbers), LETTERS), expected)
+def test_single_numbers_are_read_wherever_they_are(number):
+    assert_read([number])
+    assert_read(["1.5", number, "2.25"])
 
 
-def test_a_point_that_one_number_lacks_and_another_has_too_much_is_no_agreement():
-    # as many points as numbers: what decides is where they are
-    numbers = printed((6, 4), 3)
-    numbers[1][2] = ("12", "3.0000")
-    text = lines_of(numbers)
-    assert numbers_of(text, LETTERS)[1, 2].tolist() == [12.0, 3.0]
+@pytest.mark.parametrize(
+    "number",
+    ["9007199254.740992", "900719925474099.2", "0.9007199254740992", "1234567890123456.5", "0.1234567890123456"],
+)
+def test_numbers_that_one_division_may_not_give_are_left_to_others(number):
+    assert read([number])[1].tolist() == [False]
+
+
+@pytest.mark.parametrize(
+    "number", ["1.5", "0.5", "-123.4567", "1009.941772", "1234567.12345678", "123456789.123456", "0.000000000001"]
+)
+def test_one_changed_character_is_judged_as_the_form_of_a_decimal_judges_it(number):
+    places = [place for place in range(len(number)) if number[place] != "."]
+    changed = [number[:place] + chr(code) + number[place + 1 :] for place in places for code in range(256)]
+    assert read(changed)[1].tolist() == [DECIMAL.fullmatch(text) is not None for text in changed]
+
+
+@pytest.mark.parametrize(
+    "number", [".5", "5.", "-.5", "--1.5", "00.5", "01.5", "-01.5", "1.-5", "1.5-", "-1-2.5", "+1.5"]
+)
+def test_what_is_no_plain_decimal_is_not_taken(number):
+    assert read([number])[1].tolist() == [False]
+    assert read(["1.5", number, "2.25"])[1].tolist() == [True, False, True]
+
+
+def test_whole_numbers_have_no_zeros_in_front_and_no_sign():
+    numbers = ["0", "1", "9", "10", "4095", "12345678", "123456789", "999999999999999", *("", "00", "01", "-1", "1:5")]
+    text = "".join(f"T{number}\n" for number in numbers)
+    before = np.cumsum([0, *(len(number) + 2 for number in numbers)])[:-1]
+    ends = before + 1 + np.array([len(number) for number in numbers])
+    values, fits = Digits(text.encode("ascii")).whole_numbers(before, ends)
+    assert fits.tolist() == [WHOLE.fullmatch(number) is not None for number in numbers]
+    assert values[fits].tolist() == [int(number) for number in numbers[:8]]

@@ -31,6 +31,7 @@ def test_a_part_states_which_it_is_and_a_whole_program_does_not():
             text = "".join(f"{mark} {line}\n" for line in heading) + "CLOSE\n"
             assert stated_part(text) == (number, 12)
     assert stated_part("; about part 1 of 2: a job\nCLOSE\n") == (1, 1)
+    assert stated_part("; job\nCLOSE\n; part 2 of 3: of another\n") == (1, 1)
 
 
 def test_parts_of_a_program_that_do_not_belong_together_are_found(settings):

@@ -16,7 +16,8 @@ import numpy as np
 
 from pkm_post.model import Diagnostic, Event, Place, StrutMotion
 
-_STATED = re.compile(r"^(?:;|//) part ([1-9][0-9]*) of ([1-9][0-9]*):", re.MULTILINE)
+_STATED = re.compile(r"(?:(?:;|//).*\n)*?(?:;|//) part ([1-9][0-9]*) of ([1-9][0-9]*):")
+"""Stands in the comment on top; the rest of a program may be long."""
 
 
 def parted(motion: StrutMotion, cuts: Sequence[int]) -> tuple[StrutMotion, ...]:
@@ -51,7 +52,7 @@ def headings(heading: Sequence[str], count: int) -> Iterator[list[str]]:
 
 def stated_part(text: str) -> tuple[int, int]:
     """Which part a program says it is, and of how many; 1 of 1 when it says nothing."""
-    found = _STATED.search(text)
+    found = _STATED.match(text)
     return (int(found[1]), int(found[2])) if found else (1, 1)
 
 

@@ -8,17 +8,16 @@ The reader is strict: a line it does not know, or one in a place where it does n
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
 import numpy as np
 
 from pkm_post.controllers.pvt.codes import MEANINGS
-from pkm_post.controllers.pvt.numbers import numbers_of
+from pkm_post.controllers.pvt.moves import Lines, lines_of
 from pkm_post.controllers.pvt.parts import joined, part_faults
 from pkm_post.controllers.pvt.settings import Settings
-from pkm_post.controllers.pvt.syntax import FINISHED, START, Form, Grammar, state_after
+from pkm_post.controllers.pvt.syntax import FINISHED, START, Grammar, state_after
 from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
 from pkm_post.model.program import Array
 
@@ -26,6 +25,7 @@ MOST_FAULTS = 20
 _INTERVAL_MS = 4095
 _DWELL_MS = 8_388_607
 _SHOWN = 40
+_CHUNK = 1 << 20
 
 
 def read_parts(
@@ -66,34 +66,37 @@ def read_program(
     """
     reading = _Reading(grammar, settings, file)
     number = 1
-    for piece in _pieces(text, reading.forms["interval"], reading.forms["move"]):
+    too_long: list[Diagnostic] = []
+    for chunk in _chunks(text):
+        lines = reading.lines_of(chunk)
+        too_long += _too_long(number, lines, settings, file)
+        reading.take(number, chunk, lines)
+        number += lines.complete
         if len(reading.faults) >= MOST_FAULTS:
             break
-        reading.take(number, piece)
-        number += piece.count("\n")
     motion = reading.finish(number)
-    faults = sorted([*reading.faults, *_too_long(text, settings, file)], key=lambda fault: fault.place.line)
+    faults = sorted([*reading.faults, *too_long], key=lambda fault: fault.place.line)
     return (None if faults else motion), tuple(faults[:MOST_FAULTS])
 
 
-def _pieces(text: str, interval: Form, move: Form) -> Iterator[str]:
-    """The lines of a text with their line ends; lines of moves, with intervals between them, come as one piece."""
-    moves = rf"(?>{move.pattern.pattern}\n)(?>(?:{interval.pattern.pattern}\n)?{move.pattern.pattern}\n)*+"
-    piece = re.compile(rf"{moves}|[^\n]*\n|[^\n]+")
-    return (match[0] for match in piece.finditer(text))
+def _chunks(text: str) -> Iterator[str]:
+    """A text in pieces of whole lines, so that what is computed of them at a time takes little memory."""
+    start = 0
+    while start < len(text):
+        end = text.find("\n", start + _CHUNK) + 1 or len(text)
+        yield text[start:end]
+        start = end
 
 
-def _too_long(text: str, settings: Settings, file: str) -> Iterator[Diagnostic]:
-    characters = np.frombuffer(text.encode("latin-1", "replace"), dtype=np.uint8)
-    ends = np.concatenate([[-1], np.flatnonzero(characters == ord("\n")), [len(characters)]])
-    lengths = np.diff(ends) - 1
+def _too_long(number: int, lines: Lines, settings: Settings, file: str) -> Iterator[Diagnostic]:
+    lengths = lines.lengths()
     for row in np.flatnonzero(lengths > settings.line_limit)[:MOST_FAULTS].tolist():
         found = f"{lengths[row]} characters, the controller takes {settings.line_limit}"
-        yield Diagnostic("C103", Place(file, line=row + 1, column=settings.line_limit + 1), found)
+        yield Diagnostic("C103", Place(file, line=number + row, column=settings.line_limit + 1), found)
 
 
 class _Reading:
-    """What is known of a program, piece by piece.
+    """What is known of a program, line by line.
 
     Attributes:
         forms: the forms of its lines.
@@ -106,20 +109,31 @@ class _Reading:
         self._due = {
             state: [name for name in self.forms if _kind(name) in kinds] for state, kinds in grammar.flow.items()
         }
-        self._grammar, self._letters, self._file = grammar, settings.letters, file
-        self._change = re.compile(rf"{self.forms['interval'].pattern.pattern}\n")
+        self._grammar, self._file = grammar, file
         self._state = START
         self._values: list[Array] = []
         self._knots = self._interval = 0
-        self._spans: list[tuple[int, int]] = []
+        self._intervals: list[Array] = []
         self._halts: list[tuple[int, int]] = []
         self._events: list[Event] = []
-        self._acts = {"feed": self._feed, "interval": self._new_interval, "approach": self._approach}
-        self._acts |= {"halt": self._halt, "dwell": self._dwell}
+        self._acts = {"feed": self._feed, "approach": self._approach, "halt": self._halt, "dwell": self._dwell}
+        self._acts |= {"interval": self._new_interval, "move": self._move}
 
-    def take(self, number: int, piece: str) -> None:
-        """Take a piece: one line, or lines of moves with intervals between them, the first of them line ``number``."""
-        line = piece.split("\n", 1)[0]
+    def lines_of(self, text: str) -> Lines:
+        """The lines of a text, of which moves and intervals are found already."""
+        # one byte per character: one that is not Latin-1 becomes a question mark, which is in no line of these
+        return lines_of(text.encode("latin-1", "replace"), self.forms["move"], self.forms["interval"], _INTERVAL_MS)
+
+    def take(self, number: int, text: str, lines: Lines) -> None:
+        """Take the lines of a text, the first of them line ``number``."""
+        for row, end in lines.stretches():
+            if len(self.faults) >= MOST_FAULTS:
+                break
+            self._line(number + row, text[lines.edges[row] : lines.edges[row + 1]].removesuffix("\n"))
+            if row + 1 < end:
+                self._moves(*lines.moves(row + 1, end, self._interval))
+
+    def _line(self, number: int, line: str) -> None:
         name, numbers = self._form_of(line)
         if numbers is None:
             name = self._malformed(number, line)
@@ -128,7 +142,7 @@ class _Reading:
         if name:
             self._state = state_after(self._grammar.flow, self._state, _kind(name))
         if numbers is not None:
-            self._act(name, number, piece, numbers)
+            self._act(name, number, line, numbers)
 
     def finish(self, number: int) -> StrutMotion | None:
         """The motion of a text that ended before line ``number``; None when there were faults."""
@@ -142,8 +156,7 @@ class _Reading:
 
     def _motion(self) -> StrutMotion:
         values = np.concatenate(self._values)
-        spans = np.array(self._spans, dtype=np.int64).reshape(-1, 2)
-        time_ms = np.cumsum(np.concatenate([[0], np.repeat(spans[:, 0], spans[:, 1])]))
+        time_ms = np.cumsum(np.concatenate([[0], *self._intervals]))
         return StrutMotion(time_ms, values[:, :, 0], values[:, :, 1], tuple(self._events))
 
     def _check_rest(self, motion: StrutMotion) -> None:
@@ -161,55 +174,45 @@ class _Reading:
                 return name, match.groups()
         return "", None
 
-    def _act(self, name: str, number: int, piece: str, numbers: Sequence[str]) -> None:
-        if name == "move":
-            self._moves(number, piece)
-        elif name in MEANINGS:
+    def _act(self, name: str, number: int, line: str, numbers: Sequence[str]) -> None:
+        if name in MEANINGS:
             meaning = MEANINGS[name]
             value = meaning.sign * float(numbers[0]) if meaning.value is None else meaning.value
             self._events.append(Event(self._knots - 1, meaning.kind, value))
         elif name in self._acts:
-            self._acts[name](number, piece, numbers)
+            self._acts[name](number, line, numbers)
 
-    def _feed(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+    def _feed(self, number: int, line: str, numbers: Sequence[str]) -> None:
         if tuple(map(float, numbers)) != self._grammar.feed:
             expected = "{}, {} and {}".format(*self._grammar.feed)
-            self._fault(number, 0, piece.rstrip("\n"), f"the numbers {expected}")
+            self._fault(number, 0, line, f"the numbers {expected}")
 
-    def _approach(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+    def _approach(self, number: int, line: str, numbers: Sequence[str]) -> None:
         self._values.append(np.array([[[float(length), 0.0] for length in numbers]]))
         self._knots += 1
 
-    def _moves(self, number: int, piece: str) -> None:
-        """Take lines of moves, the first of them line ``number``, with intervals between them."""
-        if not piece.endswith("\n"):
-            return  # the text ends within a line, and is told to be no program
-        first, *rest = self._change.split(piece)
-        counts = [lines.count("\n") for lines in (first, *rest[1::2])]
-        intervals = [self._interval, *map(int, rest[::2])]
-        for row, interval in enumerate(intervals[1:]):
-            if interval > _INTERVAL_MS:
-                self._too_slow(number + sum(counts[: row + 1]) + row, str(interval))
-        self._values.append(numbers_of("".join((first, *rest[1::2])), self._letters))
-        self._spans += zip(intervals, counts, strict=True)
-        self._knots += sum(counts)
-        self._interval = intervals[-1]
+    def _move(self, number: int, line: str, numbers: Sequence[str]) -> None:
+        self._moves(np.array([[float(number) for number in numbers]]).reshape(1, 6, 2), np.array([self._interval]))
 
-    def _new_interval(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+    def _moves(self, values: Array, intervals: Array) -> None:
+        """Take moves: their lengths and speeds, (M, 6, 2), and the time that each takes in ms, (M,)."""
+        self._values.append(values)
+        self._intervals.append(intervals)
+        self._knots += len(values)
+        self._interval = int(intervals[-1])
+
+    def _new_interval(self, number: int, line: str, numbers: Sequence[str]) -> None:
         self._interval = int(numbers[0])
         if self._interval > _INTERVAL_MS:
-            self._too_slow(number, numbers[0])
+            self._fault(number, len("PVT"), line, f"at most {_INTERVAL_MS} ms")
 
-    def _too_slow(self, number: int, interval: str) -> None:
-        self._fault(number, len("PVT"), " " * len("PVT") + interval, f"at most {_INTERVAL_MS} ms")
-
-    def _halt(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+    def _halt(self, number: int, line: str, numbers: Sequence[str]) -> None:
         self._halts.append((self._knots - 1, number))
 
-    def _dwell(self, number: int, piece: str, numbers: Sequence[str]) -> None:
+    def _dwell(self, number: int, line: str, numbers: Sequence[str]) -> None:
         milliseconds = Decimal(numbers[0])
         if milliseconds > _DWELL_MS:
-            self._fault(number, len("DWELL"), piece.rstrip("\n"), f"at most {_DWELL_MS} ms")
+            self._fault(number, len("DWELL"), line, f"at most {_DWELL_MS} ms")
         self._events.append(Event(self._knots - 1, EventKind.DWELL, float(milliseconds / 1000)))
 
     def _malformed(self, number: int, line: str) -> str:

@@ -20,10 +20,11 @@ from pkm_post.controllers.pvt.settings import Settings
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of a line: its pattern, and what people call it."""
+    """A part of a line: its pattern, what people call it, and what it says if that is always the same."""
 
     pattern: str
     name: str
+    fixed: str = ""
 
 
 Parts = tuple[str | Piece, ...]
@@ -54,6 +55,10 @@ class Form:
         """The match when the whole line has this form."""
         return self.pattern.fullmatch(line)
 
+    def with_numbers(self, number: str) -> str:
+        """The line with this in the place of each of its numbers."""
+        return "".join(piece.fixed or number for piece in self.pieces)
+
     def agreement(self, line: str) -> tuple[int, str]:
         """How far a line agrees with this form, in characters, and what is expected there."""
         position = 0
@@ -67,7 +72,7 @@ class Form:
 
 def form(name: str, *parts: str | Piece) -> Form:
     """A form from literal text and pieces."""
-    pieces = tuple(Piece(re.escape(part), repr(part)) if isinstance(part, str) else part for part in parts)
+    pieces = tuple(Piece(re.escape(part), repr(part), part) if isinstance(part, str) else part for part in parts)
     return Form(name, pieces, re.compile("".join(piece.pattern for piece in pieces)))
 
 

@@ -8,12 +8,14 @@ knot 0 slowly in LINEAR mode, then follows from knot to knot the one cubic that 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
+from itertools import chain
 
 import numpy as np
 
 from pkm_post.controllers.pvt.codes import code_text
 from pkm_post.controllers.pvt.comment import comment_lines
+from pkm_post.controllers.pvt.digits import BLANK, printed, rounded
 from pkm_post.controllers.pvt.settings import Settings
 from pkm_post.controllers.pvt.words import Words
 from pkm_post.model import StrutMotion
@@ -21,6 +23,8 @@ from pkm_post.model.program import Array
 
 LONGEST_INTERVAL_MS = 4095
 _ROWS_PER_CHUNK = 4096
+_END_OF_STRETCH = "\x1e"
+"""ASCII's record separator, which no program has."""
 
 
 def program_text(motion: StrutMotion, settings: Settings, words: Words, opening: str, heading: Sequence[str]) -> str:
@@ -38,62 +42,84 @@ def program_text(motion: StrutMotion, settings: Settings, words: Words, opening:
             or an event without code.
     """
     _check(motion, settings)
-    lines = _knot_lines(motion, settings)
-    for knot, text in _interruptions(motion, settings, words).items():
-        lines[knot] += text
-    for knot, interval in _new_intervals(motion):
-        lines[knot] = f"{words.interval}{interval}\n{lines[knot]}"
+    stretches = [_approach(motion, settings), *_stretches(motion, settings, words)]
+    body = chain.from_iterable(zip(stretches, _interruptions(motion, settings, words), strict=True))
     comment = [f"{line}\n" for text in heading for line in comment_lines(text, settings.line_limit, words.comment)]
-    return "".join([*comment, opening, *lines, f"{words.linear}\n{words.close}\n"])
+    return "".join([*comment, opening, *body, f"{words.linear}\n{words.close}\n"])
 
 
 def rests(motion: StrutMotion, settings: Settings) -> Array:
     """The knots at which every printed speed is zero."""
-    return np.flatnonzero(~_rounded(motion.speed, settings.speed_decimals).any(axis=1))
+    return np.flatnonzero(~rounded(motion.speed, settings.speed_decimals).any(axis=1))
 
 
-def _knot_lines(motion: StrutMotion, settings: Settings) -> list[str]:
-    """One line per knot: lengths alone for the approach to knot 0, lengths and speeds for the others."""
-    values = np.stack(
-        [_rounded(motion.length, settings.length_decimals), _rounded(motion.speed, settings.speed_decimals)], axis=2
-    )
-    length, speed = f"%.{settings.length_decimals}f", f"%.{settings.speed_decimals}f"
-    approach = " ".join(f"{letter}{length}" for letter in settings.letters) + "\n"
-    move = " ".join(f"{letter}{length}:{speed}" for letter in settings.letters) + "\n"
-    lines = [approach % tuple(values[0, :, 0])]
-    for start in range(1, len(values), _ROWS_PER_CHUNK):
-        chunk = values[start : start + _ROWS_PER_CHUNK]
-        lines += ((move * len(chunk)) % tuple(chunk.ravel().tolist())).splitlines(keepends=True)
+def _approach(motion: StrutMotion, settings: Settings) -> str:
+    """The line that leads to knot 0: lengths alone."""
+    decimals = settings.length_decimals
+    lengths = rounded(motion.length[0], decimals).tolist()
+    return " ".join(f"{letter}{at:.{decimals}f}" for letter, at in zip(settings.letters, lengths, strict=True)) + "\n"
+
+
+def _stretches(motion: StrutMotion, settings: Settings, words: Words) -> list[str]:
+    """The lines of the other knots, with the intervals to be told: one text up to each knot where the motion rests."""
+    intervals = _interval_lines(motion, words.interval)
+    ends = np.zeros(len(motion), dtype=np.uint8)
+    ends[_resting_knots(motion)] = ord(_END_OF_STRETCH)
+    text = bytearray()
+    for start in range(1, len(motion), _ROWS_PER_CHUNK):
+        rows = slice(start, start + _ROWS_PER_CHUNK)
+        length = printed(motion.length[rows], settings.length_decimals)
+        speed = printed(motion.speed[rows], settings.speed_decimals)
+        lines = _lines(intervals[rows], settings.letters, length, speed, ends[rows])
+        text += lines.tobytes().translate(None, BLANK)
+    return text.decode("ascii").split(_END_OF_STRETCH)[:-1]
+
+
+def _lines(intervals: Array, letters: Sequence[str], length: Array, speed: Array, ends: Array) -> Array:
+    """Lines of moves as records of characters with blanks in them, (N,).
+
+    Args:
+        intervals: the line before each, or nothing, (N,).
+        letters: of the axes.
+        length: printed, (N, 6, W).
+        speed: printed, (N, 6, V).
+        ends: the character behind each line, (N,).
+    """
+    columns = [("letter", 1), ("length", length.shape[-1]), ("colon", 1), ("speed", speed.shape[-1]), ("behind", 1)]
+    axis = np.dtype([(name, np.uint8, (width,)) for name, width in columns])
+    lines = np.empty(len(length), dtype=[("interval", intervals.dtype), ("axes", axis, (6,)), ("end", np.uint8)])
+    lines["interval"], lines["end"], axes = intervals, ends, lines["axes"]
+    axes["letter"] = np.array([[ord(letter)] for letter in letters])
+    axes["length"], axes["colon"], axes["speed"] = length, ord(":"), speed
+    axes["behind"] = np.array([[ord(character)] for character in "     \n"])
     return lines
-
-
-def _rounded(column: Array, decimals: int) -> Array:
-    """The column as it will be printed; adding zero turns -0.0 into 0.0."""
-    return np.round(column, decimals) + 0.0
 
 
 def _resting_knots(motion: StrutMotion) -> list[int]:
     return sorted({0, len(motion) - 1} | {event.row for event in motion.events})
 
 
-def _interruptions(motion: StrutMotion, settings: Settings, words: Words) -> dict[int, str]:
-    """What stands after the line of a knot where the motion rests.
+def _interruptions(motion: StrutMotion, settings: Settings, words: Words) -> Iterable[str]:
+    """What stands behind the line of each knot where the motion rests, in order.
 
     A dwell of 0 comes first: it keeps the controller from computing ahead, which would carry out the codes too early.
     """
     text = dict.fromkeys(_resting_knots(motion), f"{words.dwell}0\n")
     for event in motion.events:
         text[event.row] += code_text(event, settings.codes, words.dwell) + "\n"
-    return text
+    return text.values()
 
 
-def _new_intervals(motion: StrutMotion) -> Iterator[tuple[int, int]]:
-    """The knots whose interval the controller must be told: the time changes, or an interruption ended PVT mode."""
-    intervals = np.diff(motion.time_ms)
+def _interval_lines(motion: StrutMotion, word: str) -> Array:
+    """For each knot the line that tells the controller the interval before it; empty where that is known, (M,).
+
+    It must be told when the time changes, and when an interruption ended PVT mode.
+    """
+    intervals = np.diff(motion.time_ms, prepend=0)
     told = np.diff(intervals, prepend=0) != 0
-    told[[knot for knot in _resting_knots(motion) if knot < len(intervals)]] = True
-    for index in np.flatnonzero(told).tolist():
-        yield index + 1, int(intervals[index])
+    told[[knot + 1 for knot in _resting_knots(motion)[:-1]]] = True
+    lines = np.array([b"", *(f"{word}{ms}\n".encode("ascii") for ms in range(1, intervals.max() + 1))])
+    return lines[np.where(told, intervals, 0)]
 
 
 def _check(motion: StrutMotion, settings: Settings) -> None:
@@ -112,7 +138,7 @@ def _check(motion: StrutMotion, settings: Settings) -> None:
     if rows != sorted(rows) or any(not 0 <= row < len(motion) for row in rows):
         raise ValueError(f"motion.events: expected rows in order from 0 to {len(motion) - 1}, got {rows}")
     knots = _resting_knots(motion)
-    moving = np.flatnonzero(_rounded(motion.speed[knots], settings.speed_decimals).any(axis=1))
+    moving = np.flatnonzero(rounded(motion.speed[knots], settings.speed_decimals).any(axis=1))
     if len(moving):
         knot = knots[moving[0]]
         raise ValueError(f"motion.speed: expected rest at knot {knot}, got {motion.speed[knot].tolist()} mm/s")
