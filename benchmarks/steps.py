@@ -33,9 +33,9 @@ def told(name, time_ms, path, schedule, machine):
     for first in range(0, len(time_ms) - 1, CHUNK):
         start, end = time_ms[first : first + CHUNK], time_ms[first + 1 : first + CHUNK + 1]
         start = start[: len(end)]
-        s, speed, _ = schedule.at((start[:, None] + (end - start)[:, None] * SHARES).ravel() / 1000)
+        s, _, _ = schedule.at((start[:, None] + (end - start)[:, None] * SHARES).ravel() / 1000)
         seen = glimpse(path, s)
-        inside = Inside(seen.tip, seen.axis, seen.spin, seen.tool_length, seen.pace * speed)
+        inside = Inside(seen.tip, seen.axis, seen.spin, seen.tool_length)
         ends = (Ends.of(machine, poses_at(path, schedule, ms)) for ms in (start, end))
         found = stray(machine, *ends, inside, (end - start) / 1000, SHARES)
         tip, axis = max(tip, found.tip.max()), max(axis, found.axis.max())

@@ -2,38 +2,49 @@
 """Cubics: how well what the controller plays between two points follows the plan.
 
 Enters: path, schedule and machine, then starts and ends of intervals in whole ms. Leaves: the worst of the deviations
-of tip and axis, of the swing of the tip's speed, of the strut accelerations and of the change of the Jacobian, each by
-what it may be.
+of tip and axis, of the speed of the tip and of speeds and accelerations of the struts, each by what it may be.
+
+The plan is compared with the cubics of the tool at the joints of the path and between them, without kinematics. What
+the struts' cubics do differently, the drift, is bounded, and where the bound says too little, measured and added.
 """
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
-from pkm_post.feed import Schedule, ToolPath, by_time, glimpse
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import Ends, Inside, change, steepest, stray
+from pkm_post.feed import Intervals, Places, Schedule, ToolPath, by_time, glimpse, glimpse_within
+from pkm_post.geometry.vectors import Array, length_of, unit
+from pkm_post.kinematics import Demand, Ends, Inside, ToolCubics, bounded_demand, measured_demand
 from pkm_post.model import Machine, Poses
 from pkm_post.model.findings import Tolerances
 
 _SHARE_OF_TOLERANCES = 0.4
-"""What the controller's cubics may use; the rest is for corners, decimals, and what lies between the instants."""
+"""What the controller's cubics may use; as much is for corners, the rest for decimals and between the places."""
 _SPEED_SWING = 0.005
-"""Part of the feed by which the controller's cubics may be faster than planned."""
-_SHARES = np.sort(np.arange(1, 21) * (np.sqrt(5) - 1) / 2 % 1)
-"""Spread by the golden ratio: even shares could keep step with the joints of the path and miss every one of them."""
-_LOOKS = (_SHARES[4::5], np.delete(_SHARES, np.s_[4::5]))
-"""Few shares first: most intervals that are too long are seen to be so at the first looks, and the rest is saved."""
-_MOST_CHANGE = 0.13
-"""Part by which the Jacobian may change in an interval: the tip's speed is then told to less than half a percent."""
-_PLACES_AT_ONCE = 8192
-"""Instants looked at in one pass: the working arrays of one pass stay in the processor's cache."""
+"""Part of the feed by which the controller's cubics may be faster than it."""
+_GAPS = 8
+"""Places are no farther apart than in so many even gaps of an interval."""
+_LITTLE = 0.1
+"""Part of what the cubics may use: a drift with a bound below it is left to that rest."""
+_PLACES_AT_ONCE = 16384
+"""Places looked at in one pass: the working arrays of one pass stay in the processor's cache."""
+
+_Off = Callable[[Intervals, ToolCubics, Array], Array]
 
 
 def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
-    """Poses by time at whole ms, (N,)."""
+    """Poses by time at whole ms, (N,); on a path with one attitude their second derivatives are left out, zero."""
     s, speed, acceleration = schedule.at(ms / 1000)
-    return by_time(path.at(s), speed, acceleration)
+    if path.attitude is None:
+        return by_time(path.at(s), speed, acceleration)
+    seen, still = glimpse(path, s), np.zeros((len(ms), 3))
+    one = still[:, 0]
+    rate = seen.way * speed[:, None]
+    return Poses(seen.tip, rate, still, seen.axis, still, still, seen.spin, one, one, seen.tool_length, seen.segment)
 
 
 class Cubics:
@@ -52,50 +63,120 @@ class Cubics:
             marks: (K,) whole ms; the stretch is from the first to the last.
         """
         self._path, self._schedule, self._machine, self._tolerances = path, schedule, machine, tolerances
+        said = path.tip_tolerance  # the program may ask for less, not allow more
+        self._tip_tolerance = np.where(said > 0, np.minimum(said, tolerances.tip), tolerances.tip)
+        self._little = _LITTLE * _SHARE_OF_TOLERANCES * self._tip_tolerance.min()
         self._first = marks[0]
         self._row = np.full(marks[-1] - marks[0] + 1, -1)
-        self._known = Ends.of(machine, poses_at(path, schedule, marks[:0]))
+        self._place = self._rate = np.empty((7 if path.attitude is None else 3, 0))
+        self._tool_length = np.empty(0)
+        whole = Intervals.of(schedule.joint_time, marks[:1], marks[-1:])
+        joints = whole.at_joints(schedule.joint_time).segment
+        self._first_joint = whole.first[0]
+        self._at_joint = self._plan(joints, path.segments.extent[joints]) if len(joints) else np.empty((6, 0))
 
     def error(self, start: Array, end: Array) -> Array:
         """What intervals of whole ms, (N,), make of what they may; more than 1 is too much.
 
-        Of an interval that is too long it is what the first looks saw.
+        Of an interval that is too long it is what was seen until that was known.
         """
-        first, last = self._rows(start), self._rows(end)
-        duration = (end - start) / 1000
-        ends = self._known[first], self._known[last]
-        worst = steepest(*ends, duration) / self._machine.strut_acceleration
-        worst = np.maximum(worst, change(self._machine, *ends) / _MOST_CHANGE)
-        for shares in _LOOKS:
-            open_yet = np.flatnonzero(worst <= 1)
-            for begin in range(0, len(open_yet), step := _PLACES_AT_ONCE // len(shares)):
-                rows = open_yet[begin : begin + step]
-                ends = self._known[first[rows]], self._known[last[rows]]
-                worst[rows] = np.maximum(worst[rows], self._seen(start[rows] / 1000, duration[rows], *ends, shares))
+        intervals = Intervals.of(self._schedule.joint_time, start, end)
+        cubics = self._tool_cubics(self._rows(start), self._rows(end), intervals.duration)
+        worst = self._in_passes(self._off_at_joints, intervals, cubics, np.zeros((2, len(start))))
+        held = np.flatnonzero(worst <= 1)
+        if len(held):
+            worst[held] = np.maximum(worst[held], self._closely(intervals[held], cubics[held]))
         return worst
 
-    def _seen(self, start: Array, duration: Array, first: Ends, last: Ends, shares: Array) -> Array:
-        """The same at some shares of the intervals, leaving out the acceleration; start and duration in s."""
-        s, speed, _ = self._schedule.at((start[:, None] + duration[:, None] * shares).ravel())
-        seen = glimpse(self._path, s)
-        attitude = self._path.attitude or (seen.axis, seen.spin, seen.tool_length)
-        inside = Inside(seen.tip, *attitude, seen.pace * speed)
-        found = stray(self._machine, first, last, inside, duration, shares)
-        swing = _SPEED_SWING * self._path.feed[seen.segment].reshape(found.faster.shape)
-        allowed = self._tip_tolerance_on(seen.segment).reshape(found.tip.shape)
-        off = np.maximum(found.tip / allowed, found.axis / self._tolerances.axis) / _SHARE_OF_TOLERANCES
-        worst: Array = np.maximum(off, found.faster / swing).max(axis=1)
+    def _closely(self, intervals: Intervals, cubics: ToolCubics) -> Array:
+        """What the machine and the places between the joints say of intervals that hold at their joints."""
+        demand = self._demand(intervals, cubics)
+        feed = np.maximum(self._path.feed[intervals.first], self._path.feed[intervals.last])
+        swing = (demand.tip_speed / feed - 1) / _SPEED_SWING
+        drift = np.stack([demand.tip, demand.axis])
+        off = self._in_passes(self._off_between, intervals, cubics, drift)
+        rows = np.flatnonzero(drift.any(axis=0))
+        if len(rows):
+            at_joints = self._in_passes(self._off_at_joints, intervals[rows], cubics[rows], drift[:, rows])
+            off[rows] = np.maximum(off[rows], at_joints)
+        return np.asarray(np.maximum.reduce([demand.struts, swing, off]))
+
+    def _in_passes(self, off: _Off, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
+        """What is off in intervals, (N,), some of them at once."""
+        worst, places = np.empty(len(intervals)), np.cumsum(intervals.last - intervals.first + _GAPS)
+        bounds = np.flatnonzero(np.diff(places // _PLACES_AT_ONCE, prepend=-1, append=-1))
+        for begin, end in itertools.pairwise(bounds):
+            rows = np.arange(begin, end)
+            worst[rows] = off(intervals[rows], cubics[rows], drift[:, rows])
         return worst
 
-    def _tip_tolerance_on(self, segment: Array) -> Array:
-        """How far the tip may be off on segments, (M,) mm: the program may ask for less, not allow more."""
-        said, asked = self._path.tip_tolerance[segment], self._tolerances.tip
-        return np.where(said > 0, np.minimum(said, asked), asked)
+    def _demand(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
+        """What the machine makes of intervals; a drift that is little counts as none."""
+        if self._path.attitude is None:
+            return self._measured(intervals, cubics)
+        bound = bounded_demand(self._machine, float(self._path.attitude[2][0]), cubics, intervals.duration)
+        rows = np.flatnonzero((bound.tip > self._little) | (bound.struts > 1))
+        known = replace(bound, tip=np.zeros(len(bound.tip)))
+        return known.but(rows, self._measured(intervals[rows], cubics[rows])) if len(rows) else known
+
+    def _measured(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
+        """The same by the kinematics of both ends and of the middle."""
+        ms, row = np.unique(np.concatenate([intervals.start, intervals.end]), return_inverse=True)
+        poses = poses_at(self._path, self._schedule, ms)
+        ends, (first, last) = Ends.of(self._machine, poses), np.split(row, 2)
+        middle = cubics.at(0.5)
+        attitude = self._path.attitude or (unit(middle[3:6].T), middle[6], poses.tool_length[last])
+        inside = Inside(middle[:3].T, *attitude)
+        return measured_demand(self._machine, ends[first], ends[last], cubics, inside, intervals.duration)
+
+    def _off_at_joints(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
+        """The most that is off at joints by what it may be, (N,), with drifts of tip and axis, (2, N)."""
+        joints = intervals.at_joints(self._schedule.joint_time)
+        plan = self._at_joint[:, joints.segment - self._first_joint]
+        tolerance = np.minimum(*(self._tip_tolerance[joints.segment + side] for side in (0, 1)))
+        return joints.most(self._off(joints, cubics, plan, tolerance, drift), len(intervals))
+
+    def _off_between(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
+        """The same between the joints."""
+        places = intervals.between_joints(self._schedule.joint_time, _GAPS)
+        s, _, _ = self._schedule.at(places.time)
+        plan = self._plan(places.segment, s - self._path.starts[places.segment])
+        tolerance = self._tip_tolerance[places.segment]
+        return places.most(self._off(places, cubics, plan, tolerance, drift), len(intervals))
+
+    def _off(self, places: Places, cubics: ToolCubics, plan: Array, tolerance: Array, drift: Array) -> Array:
+        """How far the tool is from the plan at places, (M,), by what it may be there."""
+        tool = cubics[places.row].at(places.share)
+        tip_drift, axis_drift = drift[:, places.row]
+        worst = (length_of(*(tool[:3] - plan[:3])) + tip_drift) / tolerance
+        if self._path.attitude is None:
+            (k, m, n), (x, y, z) = plan[3:], tool[3:6]
+            across = length_of(y * n - z * m, z * k - x * n, x * m - y * k)
+            worst = np.maximum(worst, (across + axis_drift) / self._tolerances.axis)
+        return np.asarray(worst / _SHARE_OF_TOLERANCES)
+
+    def _plan(self, segment: Array, u: Array) -> Array:
+        """Tip, and where the attitude moves axis, at path lengths u of segments, (3, M) or (6, M)."""
+        seen = glimpse_within(self._path, segment, u)
+        return np.asarray(seen.tip.T if self._path.attitude else np.concatenate([seen.tip.T, seen.axis.T]))
+
+    def _tool_cubics(self, first: Array, last: Array, duration: Array) -> ToolCubics:
+        """Between known places, by their rows."""
+        begin, end = self._place[:, first], self._place[:, last]
+        if self._path.attitude is None:  # at a tool change the platform stands still: its tip is that of the new tool
+            begin[:3] += (self._tool_length[first] - self._tool_length[last]) * begin[3:6]
+        return ToolCubics.between(begin, self._rate[:, first], end, self._rate[:, last], duration)
 
     def _rows(self, ms: Array) -> Array:
-        """The rows of what is known at whole ms; what is not known yet is found out."""
-        unknown = np.unique(ms[self._row[ms - self._first] < 0])
+        """The rows of what is known at whole ms, each of them once; what is not known yet is found out."""
+        unknown = ms[self._row[ms - self._first] < 0]
         if len(unknown):
-            self._row[unknown - self._first] = len(self._known.length) + np.arange(len(unknown))
-            self._known += Ends.of(self._machine, poses_at(self._path, self._schedule, unknown))
+            self._row[unknown - self._first] = len(self._tool_length) + np.arange(len(unknown))
+            poses = poses_at(self._path, self._schedule, unknown)
+            what = 3 if self._path.attitude is None else 1  # tip, axis and spin, or the tip alone
+            place = np.concatenate([poses.tip.T, poses.axis.T, poses.spin[None]][:what])
+            rate = np.concatenate([poses.tip_1.T, poses.axis_1.T, poses.spin_1[None]][:what])
+            self._place = np.concatenate([self._place, place], axis=1)
+            self._rate = np.concatenate([self._rate, rate], axis=1)
+            self._tool_length = np.append(self._tool_length, poses.tool_length)
         return self._row[ms - self._first]

@@ -41,8 +41,8 @@ _WINDOWS_MS = (4, 8, 16, 32, 64, 128)
 """Windows of time that are tried for a plan with a limit of jerk; the one with the shortest motion is taken."""
 _BLOCK = 4096
 """Stations in one pass: what is computed for them stays in the processor's cache."""
-_AT_ONCE = 1024
-"""Marks of a stretch of the motion, a minute or two, whose points are looked for by themselves."""
+_AT_ONCE = 2048
+"""Marks of a stretch of the motion, some four minutes, whose points are looked for by themselves."""
 
 
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
@@ -127,10 +127,10 @@ def interpolate(
     stretches = [marks[first : first + _AT_ONCE + 1] for first in range(0, len(marks) - 1, _AT_ONCE)]
 
     def knots_of(stretch: Array) -> Array:
-        return knots(stretch, schedule.edges_ms, Cubics(path, schedule, machine, tolerances, stretch).error)
+        return knots(stretch, schedule.edges_ms, Cubics(path, schedule, machine, tolerances, stretch).error)[:-1]
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        time_ms = np.unique(np.concatenate(list(threads.map(knots_of, stretches))))
+        time_ms = np.concatenate([*threads.map(knots_of, stretches), marks[-1:]])
     poses = poses_at(path, schedule, time_ms)
     rest_of_row = np.searchsorted(schedule.rest_joints, [event.row for event in events])
     knot = np.searchsorted(time_ms, schedule.rests_ms[rest_of_row])

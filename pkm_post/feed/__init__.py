@@ -6,6 +6,7 @@ from pkm_post.feed.jerk import Ceilings, for_jerk
 from pkm_post.feed.knots import even_marks, knots
 from pkm_post.feed.limits import PLANNED_SHARE, Bounded, limits, rough_limits
 from pkm_post.feed.path_bounds import PathBounds
+from pkm_post.feed.places import Intervals, Places
 from pkm_post.feed.profile import cell_times, speed_profile
 from pkm_post.feed.schedule import Schedule, by_time
 from pkm_post.feed.segments import Segments
@@ -17,7 +18,9 @@ __all__ = [
     "Bounded",
     "Ceilings",
     "Glimpse",
+    "Intervals",
     "PathBounds",
+    "Places",
     "Schedule",
     "Segments",
     "Stations",

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Glimpse: where the tool is on a path, at many places that lie near to each other, without derivatives.
+"""Glimpse: where the tool is on a path, and where its tip goes, at many places at once.
 
-Enters: path lengths. Leaves: tips, axes, spins and the speed of the tip, column after column in memory. In the half of
-a segment at one of its joints, a path of lines needs no cases: with the change D of tangent at the joint, H the
-integral of the step W and x the distance from the joint, p = p_line + D H(-x) on both sides, for H(x) - x = H(-x).
-Tool axis and spin go the same way. What is near an arc is left to ``ToolPath.at``, which says the same of lines, by the
-way of their two prolonged segments.
+Enters: path lengths. Leaves: tips, axes, spins and the way of the tip, column after column in memory. In the half of a
+segment at one of its joints, a path of lines needs no cases: with t the tangent of the segment, D that of its neighbour
+at the joint less t, W the step, H its integral and x the distance from the joint,
+
+    p = p_line + D H(-x) before the joint, p_line - D H(-x) behind it,    p' = t + D W(-x)
+
+for H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin go the same way. What is near an arc is left
+to ``ToolPath.at``, which says the same of lines, by the way of their two prolonged segments.
 """
 
 from __future__ import annotations
@@ -16,9 +19,9 @@ import numpy as np
 
 from pkm_post.feed.segments import Segments
 from pkm_post.feed.tool_path import ToolPath
-from pkm_post.geometry import along, norm
+from pkm_post.geometry import along
 from pkm_post.geometry.gather import among, taken
-from pkm_post.geometry.vectors import Array, length_of
+from pkm_post.geometry.vectors import Array
 
 _NO_WIDTH = 1e-200
 """mm: stands for the width of a blend of none, so that the share of it is 0 or 1 without a case of its own."""
@@ -32,7 +35,7 @@ class Glimpse:
         tip: (M, 3) tool tip, mm.
         axis: (M, 3) unit tool axis.
         spin: (M,) rad.
-        pace: (M,) way of the tip by path length.
+        way: (M, 3) derivative of the tip by path length.
         tool_length: (M,) gauge length in use, mm.
         segment: (M,) the segment each place lies on, at a joint the earlier one.
     """
@@ -40,46 +43,50 @@ class Glimpse:
     tip: Array
     axis: Array
     spin: Array
-    pace: Array
+    way: Array
     tool_length: Array
     segment: Array
 
 
 def glimpse(path: ToolPath, s: Array) -> Glimpse:
-    """What ``path.at`` says of path lengths s, (M,), of a part of the path, without its derivatives."""
+    """What ``path.at`` says of path lengths s, (M,), but for most derivatives."""
     segment = np.clip(np.searchsorted(path.starts, s) - 1, 0, len(path.segments) - 1)
     return glimpse_within(path, segment, s - path.starts[segment])
 
 
 def glimpse_within(path: ToolPath, segment: Array, u: Array) -> Glimpse:
-    """The same at path lengths u, (M,), of the segments named, which lie near to each other."""
+    """The same at path lengths u, (M,), of the segments named."""
     seg, to_end = path.segments, path.segments.extent[segment] - u
     nearer_end = u > to_end
-    lines, on = among(segment)
-    joints, at = among(segment + nearer_end)
-    before, after = np.maximum(joints - 1, 0), np.minimum(joints, len(seg) - 1)
-    away, side = np.where(nearer_end, to_end, u), np.where(nearer_end, 1.0, -1.0)
-    half = path.blend[joints][at]
+    joint = segment + nearer_end
+    side = np.where(nearer_end, 1.0, -1.0)
+    other = np.clip(np.where(nearer_end, joint, segment - 1), 0, len(seg) - 1)
+    half, away = path.blend[joint], np.maximum(np.where(nearer_end, to_end, u), 0.0)
     wide = np.maximum(2 * half, _NO_WIDTH)
     share = np.maximum(half - away, 0.0) / wide
     square = share * share
     gone = wide * square * share * (1 - share / 2)
 
-    tangent = taken(seg.tangent[lines], on)
-    bend = taken(seg.tangent[after] - seg.tangent[before], at)
-    tip = taken(seg.start[lines], on) + u[:, None] * tangent + gone[:, None] * bend
-    pace = length_of(*(tangent + (side * square * (3 - 2 * share))[:, None] * bend).T)
+    tangent = _columns(seg.tangent, segment)
+    bend = _columns(seg.tangent, other) - tangent
+    tip = _columns(seg.start, segment) + u * tangent + (side * gone) * bend
+    way = tangent + (square * (3 - 2 * share)) * bend
     if path.attitude is None:
-        turn = (seg.spin_rate[after] - seg.spin_rate[before])[at]
-        spin = seg.spin[lines][on] + u * seg.spin_rate[lines][on] + gone * turn
-        axis, tool_length = _axes(seg, joints, at, -side * away, gone), path.tool_length[segment]
+        turn = seg.spin_rate[segment]
+        spin = seg.spin[segment] + u * turn + side * gone * (seg.spin_rate[other] - turn)
+        axis, tool_length = _axes(seg, *among(joint), -side * away, gone), path.tool_length[segment]
     else:
         axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
-    seen = Glimpse(tip, axis, spin, pace, tool_length, segment)
-    curved = seg.arc[before] | seg.arc[after]
+    seen = Glimpse(tip.T, axis, spin, way.T, tool_length, segment)
+    curved = seg.arc[segment] | seg.arc[other]
     if curved.any():
-        _overwrite(seen, np.flatnonzero(curved[at]), path, u)
+        _overwrite(seen, np.flatnonzero(curved), path, u)
     return seen
+
+
+def _columns(vectors: Array, rows: Array) -> Array:
+    """Rows of (N, 3) vectors, (3, M)."""
+    return np.ascontiguousarray(np.take(vectors, rows, axis=0).T)
 
 
 def _axes(seg: Segments, joints: Array, at: Array, x: Array, gone: Array) -> Array:
@@ -95,6 +102,6 @@ def _axes(seg: Segments, joints: Array, at: Array, x: Array, gone: Array) -> Arr
 
 def _overwrite(seen: Glimpse, rows: Array, path: ToolPath, u: Array) -> None:
     poses = path.within(seen.segment[rows], u[rows])
-    seen.tip[rows], seen.pace[rows] = poses.tip, norm(poses.tip_1)
+    seen.tip[rows], seen.way[rows] = poses.tip, poses.tip_1
     if path.attitude is None:
         seen.axis[rows], seen.spin[rows] = poses.axis, poses.spin

@@ -4,7 +4,7 @@
 from pkm_post.kinematics.findings import Finding, faults_of
 from pkm_post.kinematics.following import follow
 from pkm_post.kinematics.forward import Solution, forward
-from pkm_post.kinematics.interpolation import Ends, Inside, Stray, carried, change, moving, steepest, stray
+from pkm_post.kinematics.interpolation import Ends, Inside, Stray, carried, fastest, moving, steepest, stray
 from pkm_post.kinematics.inverse import platform_joints, strut_lengths, strut_vectors
 from pkm_post.kinematics.jacobian import jacobian_of_platform, jacobian_of_tip, scaled_jacobian
 from pkm_post.kinematics.margins import Margins, reach_margins
@@ -14,10 +14,12 @@ from pkm_post.kinematics.part import Part
 from pkm_post.kinematics.rate_bounds import strut_rate_bounds
 from pkm_post.kinematics.rates import strut_rates
 from pkm_post.kinematics.stiffness import stiffness_along
+from pkm_post.kinematics.tool_cubics import Demand, ToolCubics, bounded_demand, measured_demand
 from pkm_post.kinematics.way import Way
 from pkm_post.kinematics.workspace import reach_faults, reach_findings
 
 __all__ = [
+    "Demand",
     "Ends",
     "Finding",
     "Inside",
@@ -26,15 +28,18 @@ __all__ = [
     "Part",
     "Solution",
     "Stray",
+    "ToolCubics",
     "Way",
     "attitude_rates",
+    "bounded_demand",
     "carried",
-    "change",
     "faults_of",
+    "fastest",
     "follow",
     "forward",
     "jacobian_of_platform",
     "jacobian_of_tip",
+    "measured_demand",
     "moved",
     "moving",
     "near_poses",

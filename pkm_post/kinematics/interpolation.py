@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import hermite_accelerations, hermite_motion
+from pkm_post.geometry import hermite_accelerations, hermite_lengths
 from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.kinematics.inverse import lengths_at_tips, strut_lengths
 from pkm_post.kinematics.jacobian import linearise
@@ -47,10 +47,6 @@ class Ends:
     def __getitem__(self, rows: Array) -> Ends:
         return Ends(*(np.take(column, rows, axis=0) for column in (self.length, self.speed, self.inverse)))
 
-    def __add__(self, more: Ends) -> Ends:
-        columns = zip((self.length, self.speed, self.inverse), (more.length, more.speed, more.inverse), strict=True)
-        return Ends(*(np.concatenate(pair) for pair in columns))
-
 
 def moving(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
     """Strut lengths and speeds, (N, 6) each, and Jacobians of the tool tip, (N, 6, 6), of N poses by time."""
@@ -70,14 +66,12 @@ class Inside:
         axis: (N * M, 3) unit tool axis.
         spin: (N * M,) rad.
         tool_length: (N * M,) mm.
-        tip_speed: (N * M,) mm/s.
     """
 
     tip: Array
     axis: Array
     spin: Array
     tool_length: Array
-    tip_speed: Array
 
 
 @dataclass(frozen=True)
@@ -87,12 +81,10 @@ class Stray:
     Attributes:
         tip: (N, M) distance of the tool tip from where it ought to be, mm.
         axis: (N, M) angle of the tool axis from where it ought to be, rad.
-        faster: (N, M) tip speed less the true one, mm/s.
     """
 
     tip: Array
     axis: Array
-    faster: Array
 
 
 def stray(machine: Machine, start: Ends, end: Ends, inside: Inside, duration: Array, share: Array) -> Stray:
@@ -107,14 +99,13 @@ def stray(machine: Machine, start: Ends, end: Ends, inside: Inside, duration: Ar
         share: (M,) shares of the duration.
     """
     shape = len(duration), len(share)
-    lengths, speeds = hermite_motion(start.length, start.speed, end.length, end.speed, duration, share)
+    lengths = hermite_lengths(start.length, start.speed, end.length, end.speed, duration, share)
     lengths_at = lengths_at_tips if len(inside.axis) == 1 else strut_lengths
     lengths -= lengths_at(machine, inside.tip, inside.axis, inside.spin, inside.tool_length).reshape(*shape, 6)
     tip_x, tip_y, tip_z, x, y, z = carried(start.inverse, end.inverse, lengths, share)
     k, m, n = (column.reshape(shape) for column in np.broadcast_to(inside.axis, inside.tip.shape).T)
     across = length_of(y * n - z * m, z * k - x * n, x * m - y * k)
-    speed = length_of(*carried(start.inverse[:, :3], end.inverse[:, :3], speeds, share))
-    return Stray(length_of(tip_x, tip_y, tip_z), across, speed - inside.tip_speed.reshape(shape))
+    return Stray(length_of(tip_x, tip_y, tip_z), across)
 
 
 def steepest(start: Ends, end: Ends, duration: Array) -> Array:
@@ -123,16 +114,13 @@ def steepest(start: Ends, end: Ends, duration: Array) -> Array:
     return np.abs(np.stack(both)).max(axis=(0, 2))
 
 
-def change(machine: Machine, start: Ends, end: Ends) -> Array:
-    """How differently the Jacobians at both ends take the way of the struts in each interval, (N,), a plain part.
+def fastest(start: Ends, end: Ends, duration: Array) -> Array:
+    """Bound of the speed of any strut in each interval, (N,) mm/s; arguments as above.
 
-    Turns count by the characteristic length. It is D of the docstring above, in the direction of the way.
+    The speed is a polynomial of degree two: no more than the largest of its Bezier coefficients.
     """
-    way = (end.length - start.length)[..., None]
-    scale = np.repeat([1.0, machine.characteristic_length], 3)
-    first, last = (scale * (ends.inverse @ way)[..., 0] for ends in (start, end))
-    apart, mean = np.square(last - first).sum(axis=1), np.square(last + first).sum(axis=1) / 4
-    return np.sqrt(np.divide(apart, mean, out=np.zeros_like(mean), where=mean > 0))
+    middle = 3 * (end.length - start.length) / duration[:, None] - start.speed - end.speed
+    return np.abs(np.stack([start.speed, middle, end.speed])).max(axis=(0, 2))
 
 
 def carried(at_start: Array, at_end: Array, columns: Array, share: Array) -> Array:

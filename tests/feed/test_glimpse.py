@@ -6,8 +6,7 @@ import pytest
 from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
-from pkm_post.feed import ToolPath, glimpse
-from pkm_post.geometry import norm
+from pkm_post.feed import ToolPath, glimpse, glimpse_within
 from pkm_post.model import Event, EventKind
 from pkm_post.placement.place import place
 
@@ -56,7 +55,7 @@ def test_a_glimpse_agrees_with_the_poses(make, rounded):
     seen, poses = glimpse(path, s), path.at(s)
     for name in ("tip", "axis", "spin"):
         np.testing.assert_allclose(getattr(seen, name), getattr(poses, name), rtol=0, atol=ROUNDING)
-    np.testing.assert_allclose(seen.pace, norm(poses.tip_1), rtol=0, atol=1e-6 if rounded[0] < 1e-6 else ROUNDING)
+    np.testing.assert_allclose(seen.way, poses.tip_1, rtol=0, atol=1e-6 if rounded[0] < 1e-6 else ROUNDING)
     np.testing.assert_array_equal(seen.tool_length, poses.tool_length)
     np.testing.assert_array_equal(seen.segment, poses.segment)
 
@@ -71,6 +70,15 @@ def test_what_is_seen_of_a_place_does_not_depend_on_the_other_places(make):
         for field in dataclasses.fields(whole):
             found = np.concatenate([getattr(part, field.name) for part in parts])
             np.testing.assert_array_equal(found, getattr(whole, field.name))
+
+
+def test_what_rounding_puts_beyond_a_rest_is_seen_at_the_rest():
+    path = path_of(longer_tool_in_between, 1e-3, 1e-5)
+    rests = np.flatnonzero(path.rests[1:])
+    beyond = glimpse_within(path, rests, path.segments.extent[rests] + 1e-13)
+    before = glimpse_within(path, rests, path.segments.extent[rests])
+    np.testing.assert_allclose(beyond.tip, before.tip, rtol=0, atol=ROUNDING)
+    np.testing.assert_array_equal(beyond.way, before.way)
 
 
 def test_a_path_has_one_attitude_when_its_axis_its_spin_and_its_tool_stay_the_same():

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tool cubics: the cubics of tip, axis and spin between two poses, and what the cubics of the struts make of them.
+
+The controller plays cubics of strut lengths. Between the same two poses the tool has cubics of its own, with the same
+places and rates at both ends: what is planned is compared with these, and needs no kinematics. What is left is the
+drift, by which the struts' cubics L take the tool off its own cubics. L is the cubic with the ends of l, the lengths
+on the tool's cubics, so with x for the share of the duration that has gone and M for the most of |l''''| by x,
+
+    |L - l| <= 16 x^2 (1 - x)^2 M / 384
+
+Where the attitude stays, l is the distance of a cubic from a fixed point. With V, A, J for the most of the cubic's
+derivatives by x and d for the shortest strut, the fourth derivative of l^2 gives
+
+    M <= (3 A^2 + 4 V J) / d + 12 V^2 A / d^2 + 3 V^4 / d^3
+
+and the inverse Jacobian takes that to the tip: by no more than 1 / s for a platform that comes no nearer to a singular
+pose than s, and by the lever of the tool. Where the attitude moves, the drift is measured in the middle, x = 1/2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array, length_of
+from pkm_post.kinematics.interpolation import Ends, Inside, fastest, steepest, stray
+from pkm_post.model import Machine
+
+_NEARER = 0.99
+"""The cubics may make a strut a little shorter than the way that is proven to be within the stroke."""
+_MIDDLE = np.array([0.5])
+_ROOM = 1.1
+"""For a drift that is not quite as x^2 (1 - x)^2."""
+_STEEPEST = 16 / np.sqrt(27)
+"""Highest slope of 16 x^2 (1 - x)^2."""
+
+
+@dataclass(frozen=True)
+class ToolCubics:
+    """N cubics by the share of the duration that has gone.
+
+    Attributes:
+        powers: (4, C, N) coefficients of the powers of the share. The first three of the C columns are the tip, mm;
+            where the attitude moves, there are axis (3) and spin as well.
+    """
+
+    powers: Array
+
+    @classmethod
+    def between(cls, first: Array, rate: Array, last: Array, last_rate: Array, duration: Array) -> ToolCubics:
+        """Those with given ends: places and rates by time, (C, N) each, and durations, (N,) s."""
+        begin, end, way = rate * duration, last_rate * duration, last - first
+        return cls(np.stack([first, begin, 3 * way - 2 * begin - end, begin + end - 2 * way]))
+
+    def __getitem__(self, rows: Array) -> ToolCubics:
+        return ToolCubics(np.take(self.powers, rows, axis=2))
+
+    def at(self, share: Array | float) -> Array:
+        """Places at one share of each, (C, N)."""
+        place, begin, square, cube = self.powers
+        found = cube * share
+        for power in (square, begin):
+            found += power
+            found *= share
+        found += place
+        return np.asarray(found)
+
+    def sizes(self) -> tuple[Array, Array, Array]:
+        """Most of first, second and third derivative of the tip by the share, (N,) mm each.
+
+        The square of the first is a polynomial of degree four: no more than the largest of its Bezier coefficients.
+        """
+        _, begin, square, cube = self.powers[:, :3]
+        middle, bend = begin + square, square + 3 * cube
+        end = middle + bend
+        inner = (2 * _dot(middle, middle) + _dot(begin, end)) / 3
+        hull = _dot(begin, begin), _dot(begin, middle), inner, _dot(middle, end), _dot(end, end)
+        return (
+            np.sqrt(np.maximum.reduce(hull)),
+            2 * np.maximum(length_of(*square), length_of(*bend)),
+            6 * length_of(*cube),
+        )
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What playing the cubics of struts means in N intervals.
+
+    Attributes:
+        tip: (N,) drift of the tip, mm.
+        axis: (N,) drift of the tool axis, rad.
+        tip_speed: (N,) highest speed of the tip, mm/s.
+        struts: (N,) highest speed or acceleration of a strut by its limit.
+    """
+
+    tip: Array
+    axis: Array
+    tip_speed: Array
+    struts: Array
+
+    def but(self, rows: Array, other: Demand) -> Demand:
+        """The same with another demand in some rows."""
+        columns = [getattr(self, field.name).copy() for field in fields(self)]
+        for column, field in zip(columns, fields(self), strict=True):
+            column[rows] = getattr(other, field.name)
+        return Demand(*columns)
+
+
+def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, duration: Array) -> Demand:
+    """What nothing exceeds where the attitude stays.
+
+    Infinite for a screw without a key, and without a shortest strut or a limit of singular poses.
+
+    Args:
+        machine: the geometry and the limits; the way comes no nearer to a singular pose than it allows.
+        tool_length: gauge length, mm.
+        cubics: N of them.
+        duration: (N,) s.
+    """
+    speed, bend, jerk = cubics.sizes()
+    shortest = _NEARER * (machine.strut_stroke[0] + float(machine.length_offset.min()))
+    if machine.screw_lead != 0.0 or min(shortest, machine.least_singular_value) <= 0:
+        return Demand(*np.full((4, len(duration)), np.inf))
+    turn = speed / shortest
+    fourth = (3 * bend**2 + 4 * speed * jerk + 12 * bend * speed * turn) / shortest + 3 * speed * turn**3
+    lever = (machine.spindle_nose + tool_length) / machine.characteristic_length
+    gain = np.sqrt(6) * np.hypot(1.0, lever) / machine.least_singular_value
+    acceleration = (bend + speed * turn + fourth / 12) / duration**2
+    struts = np.maximum(speed / duration / machine.strut_speed, acceleration / machine.strut_acceleration)
+    drift = gain * fourth / 384
+    return Demand(drift, np.zeros(len(duration)), (speed + _STEEPEST * drift) / duration, struts)
+
+
+def measured_demand(
+    machine: Machine, first: Ends, last: Ends, cubics: ToolCubics, inside: Inside, duration: Array
+) -> Demand:
+    """The same, with the drift measured in the middle.
+
+    Args:
+        machine: the geometry and the limits.
+        first: N places.
+        last: N places.
+        cubics: N of them.
+        inside: where these have the tool in the middle of their durations.
+        duration: (N,) s.
+    """
+    found = stray(machine, first, last, inside, duration, _MIDDLE)
+    tip, axis = _ROOM * found.tip[:, 0], _ROOM * found.axis[:, 0]
+    speed, acceleration = fastest(first, last, duration), steepest(first, last, duration)
+    struts = np.maximum(speed / machine.strut_speed, acceleration / machine.strut_acceleration)
+    return Demand(tip, axis, (cubics.sizes()[0] + _STEEPEST * tip) / duration, struts)
+
+
+def _dot(left: Array, right: Array) -> Array:
+    return np.asarray(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])
