@@ -54,6 +54,15 @@ def square_with_arc() -> Program:
     return program(position, kind=kind, centre=centre, turn=turn)
 
 
+def steep_helices() -> Program:
+    """Three helices that rise and fall five times as far as their radius, with sharp corners between."""
+    position = [[0, 0, 40], [5, 5, 70], [10, 10, 45], [15, 15, 70]]
+    blank = [np.nan] * 3
+    centre = np.array([blank, [5, 0, 40], [5, 10, 70], [15, 10, 45]])
+    turn = np.array([blank, [0, 0, -1], [0, 0, 1], [0, 0, -1]])
+    return program(position, kind=[Kind.RAPID, *3 * [Kind.ARC]], centre=centre, turn=turn)
+
+
 def random_job(rng) -> Program:
     """A job of random corners, step lengths, tilts, feeds, rapids, dwells, and sometimes a point visited twice."""
     count = int(rng.integers(2, 60))

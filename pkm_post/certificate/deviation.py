@@ -3,8 +3,8 @@
 
 A pose is compared with the programmed pose of a segment that fits it best: the one with the least sum of squares of
 tip and axis deviation, each by its tolerance. Of several segments the one counts that the pose fits best. On a helix
-the point at the same angle stands for the nearest one. Looking at some segments only, or at one, can make a deviation
-larger, never smaller.
+that pose is one step of Newton's method away from the one at the same angle. Looking at some segments only, or at one,
+can make a deviation larger, never smaller.
 """
 
 from __future__ import annotations
@@ -130,6 +130,11 @@ class TrajectoryRuler:
         share = (np.mod(angle + open_half, 2 * np.pi) - open_half) / sweep
         full = np.flatnonzero(sweep > 2 * np.pi - _NEARLY)
         share[full] = self._in_full_turn(share[full], tip[full], axis[full], segment[full])
+        rise = dot(trajectory.tip[segment] - self._tip_before[segment], turn)
+        rising = np.flatnonzero(rise)
+        way = sweep[rising, None] * cross(turn[rising], here[rising]) + (rise[:, None] * turn)[rising]
+        off = tip[rising] - self._on_arc(segment[rising], share[rising])
+        share[rising] += dot(off, way) / dot(way, way)
         return share
 
     def _in_full_turn(self, share: Array, tip: Array, axis: Array, segment: Array) -> Array:

@@ -92,6 +92,22 @@ def test_both_ends_of_a_full_turn_are_told_apart(past, rise, tilt):
         assert off[1][0] <= np.radians(5) * abs(past) / 10
 
 
+@pytest.mark.parametrize("rise", [-30.0, 2.0, 60.0])
+def test_the_nearest_point_of_a_helix_is_not_the_one_at_the_same_angle(rise):
+    # A helix is a straight line on its unrolled cylinder: a shift along its axis is off by the cosine of its slope.
+    start, centre = np.array([0.0, 0, 40]), np.array([5.0, 0, 40])
+    position, kind = [start, centre + [0, 5, rise]], [Kind.RAPID, Kind.ARC]  # three quarters of a turn
+    blank = np.full(3, np.nan)
+    made = program(position, kind=kind, centre=np.stack([blank, centre]), turn=np.stack([blank, [0, 0, 1.0]]))
+    trajectory, poses = poses_on(made, 4000)
+    last = np.flatnonzero(poses.segment == len(trajectory) - 1)[500:-500]
+    shift, way = 1e-3, 1.5 * np.pi * 5
+    found, _ = TrajectoryRuler(trajectory, TOLERANCES).deviation(
+        poses.tip[last] + [0, 0, shift], poses.axis[last], poses.segment[last], poses.segment[last]
+    )
+    np.testing.assert_allclose(found, shift * way / np.hypot(way, rise), rtol=1e-3)
+
+
 def test_more_segments_never_make_it_worse():
     trajectory, poses = poses_on(cone(), 500)
     ruler = TrajectoryRuler(trajectory, TOLERANCES)
