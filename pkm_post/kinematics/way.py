@@ -58,15 +58,21 @@ class Way:
 
         Where the gauge length changes, the platform stands still, and the tip of the new tool starts elsewhere.
         """
-        before = np.maximum(np.arange(len(tip)) - 1, 0)
-        start = tip[before] - (tool_length - tool_length[before])[:, None] * axis[before]
-        chord, change = tip - start, spin - spin[before]
+        tip_before, axis_before, spin_before, length_before = (
+            np.concatenate([column[:1], column[:-1]]) for column in (tip, axis, spin, tool_length)
+        )
+        start = tip_before - (tool_length - length_before)[:, None] * axis_before
+        chord, change = tip - start, spin - spin_before
+        x, y, z = (axis != axis_before).T
+        turns = x | y | z
+        angle = np.zeros(len(tip))
+        angle[turns] = angle_between(axis_before[turns], axis[turns])
 
         def inside(cell: Array, share: Array) -> Pose:
-            beginning, part = axis[before[cell]], share[:, None]
+            beginning, part = axis_before[cell], share[:, None]
             turned = along(beginning, part * towards(beginning, axis[cell]))
             shifted = start[cell] + part * chord[cell]
-            return shifted, turned, spin[before[cell]] + share * change[cell], tool_length[cell]
+            return shifted, turned, spin_before[cell] + share * change[cell], tool_length[cell]
 
         return cls(
             tip=tip,
@@ -75,7 +81,7 @@ class Way:
             tool_length=tool_length,
             travel=norm(chord),
             bend=np.zeros(len(tip)),
-            angle=angle_between(axis[before], axis),
+            angle=angle,
             spin_change=change,
             inside=inside,
         )
@@ -89,10 +95,32 @@ class Way:
 
     def half_tilt(self) -> Array:
         """Tangent of half the highest tilt in each cell, (N,)."""
-        tilt = np.arctan2(np.hypot(self.axis[:, 0], self.axis[:, 1]), self.axis[:, 2])
-        highest = np.maximum(tilt, np.concatenate([tilt[:1], tilt[:-1]])) + self.angle / 2
-        return np.tan(np.minimum(highest / 2, _ALMOST_DOWN))
+        tilt = _tilt(self.axis)
+        return _half_tilt(np.concatenate([tilt[:1], tilt[:-1]]), tilt, self.angle)
 
     def turn(self) -> Array:
         """Angle the platform turns in each cell, or more, (N,)."""
+        if not self.angle.any():
+            return np.abs(self.spin_change)
         return np.hypot(self.angle, np.abs(self.spin_change) + self.half_tilt() * self.angle)
+
+
+def turn_between(start: Array, end: Array, spin_change: Array) -> Array:
+    """Angle the platform turns, or more, while the axis goes from one direction to another and the spin with it, (M,).
+
+    Args:
+        start: (M, 3) unit tool axes.
+        end: (M, 3) unit tool axes.
+        spin_change: (M,)
+    """
+    angle = angle_between(start, end)
+    return np.hypot(angle, np.abs(spin_change) + _half_tilt(_tilt(start), _tilt(end), angle) * angle)
+
+
+def _tilt(axis: Array) -> Array:
+    return np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
+
+
+def _half_tilt(at_start: Array, at_end: Array, angle: Array) -> Array:
+    """Tangent of half the highest tilt on a great circle of which the tilts at its ends are known."""
+    return np.tan(np.minimum((np.maximum(at_start, at_end) + angle / 2) / 2, _ALMOST_DOWN))

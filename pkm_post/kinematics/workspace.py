@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics.around import doubtful
 from pkm_post.kinematics.between import Check, survey
 from pkm_post.kinematics.checks import joint_checks, shortest_distance, singularity_check, stroke_checks
 from pkm_post.kinematics.findings import Finding, Subject, faults_of
@@ -73,7 +74,8 @@ def _stiffness_finding(machine: Machine, way: Way, normal: Array, least: float) 
 def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Array) -> tuple[Diagnostic, ...]:
     """Diagnostics for a way that leaves a limit: one for each operation and limit, at its worst.
 
-    The same as of ``reach_findings``, but margins are computed only where the slopes do not prove that there is one.
+    The same as of ``reach_findings``, but margins are computed only where the slopes do not prove that there is one:
+    those of all poses around a few, and for the checks that this leaves open, those along the way.
 
     Args:
         machine: the limits.
@@ -81,8 +83,12 @@ def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Ar
         way: N poses in order along the trajectory, and what is between them.
         segment: (N,) segment each of them lies on.
     """
+    left = doubtful(machine, way, lambda shortest: _checks(machine, way, shortest, None))
+    if not left:
+        return ()
     checks = _checks(machine, way, _shortest(machine, way), None)
-    return faults_of(survey(machine, way, checks, faults_alone=True), trajectory, segment)
+    found = survey(machine, way, tuple(checks[number] for number in left), faults_alone=True)
+    return faults_of(found, trajectory, segment)
 
 
 def _shortest(machine: Machine, way: Way) -> float:

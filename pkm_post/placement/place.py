@@ -76,7 +76,8 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
     tool = _tool_by_row(placed)
     axis_before = np.vstack([machine.home_axis, axis[:-1]])
     angle = np.zeros(len(placed))
-    turns = (axis != axis_before).any(axis=1)
+    x, y, z = (axis != axis_before).T
+    turns = x | y | z
     angle[turns] = angle_between(axis_before[turns], axis[turns])
     # At a tool change the platform stands still: the tip of a longer tool begins further down.
     longer = np.diff(lengths_of(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
@@ -113,7 +114,8 @@ def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Ev
         keep: which rows move anything.
         events: those of the program, at the rows that are kept.
     """
-    columns = {name: column[keep] for name, column in way.items()}
+    rows = slice(None) if keep.all() else keep
+    columns = {name: column[rows] for name, column in way.items()}
     tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
     stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
     stops |= _exact_corners(placed.exact_path[keep], columns, tip_before)

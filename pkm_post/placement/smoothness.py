@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import norm, towards
-from pkm_post.geometry.vectors import Array, cross, dot, unit
+from pkm_post.geometry.vectors import Array, cross, dot
 from pkm_post.model import Kind
 
 _NO_MOVE = 1e-9
@@ -26,16 +26,12 @@ def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Ar
     """Whether the tip keeps its direction, and the axis its rate by path length, into the next segment, (N,).
 
     Args:
-        columns: kind, tip, axis, arc_centre, arc_axis, sweep and length of N segments.
+        columns: kind, tip, axis, arc_centre, arc_axis, sweep, length and angle of N segments.
         tip_before: (N, 3) tips where they begin.
         axis_before: (N, 3) unit tool axes where they begin.
     """
-    at_start = _directions(columns, tip_before, tip_before)
-    at_end = _directions(columns, tip_before, columns["tip"])
-    axis, length = columns["axis"], np.maximum(columns["length"], _NO_MOVE)[:, None]
-    rate_at_end = -towards(axis, axis_before) / length
-    rate_at_start = towards(axis_before, axis) / length
-    corner = norm(at_start[1:] - at_end[:-1]) + norm(rate_at_start[1:] - rate_at_end[:-1])
+    at_start, at_end = _tangents(columns, tip_before)
+    corner = norm(at_start[1:] - at_end[:-1]) + _jump_of_rate(columns, axis_before)
     moves = columns["length"] > _NO_MOVE
     return np.append((corner < _NO_CORNER) & moves[1:] & moves[:-1], False)
 
@@ -49,18 +45,35 @@ def corners(columns: dict[str, Any], tip_before: Array) -> Array:
         columns: kind, tip, arc_centre, arc_axis, sweep of N segments.
         tip_before: (N, 3) tips where they begin.
     """
-    change = _directions(columns, tip_before, tip_before)[1:] - _directions(columns, tip_before, columns["tip"])[:-1]
-    return np.append(norm(change) > _TANGENT, False)
+    at_start, at_end = _tangents(columns, tip_before)
+    return np.append(norm(at_start[1:] - at_end[:-1]) > _TANGENT, False)
 
 
-def _directions(columns: dict[str, Any], tip_before: Array, at: Array) -> Array:
-    """Unit tangents of the tip's way at points ``at`` of the segments, (N, 3); zero where the tip stands."""
-    direction = columns["tip"] - tip_before
-    arc = columns["kind"] == Kind.ARC
-    turn, radius = columns["arc_axis"][arc], (at - columns["arc_centre"])[arc]
-    rise = dot(direction[arc], turn) / columns["sweep"][arc]
-    direction[arc] = cross(turn, radius) + rise[:, None] * turn
-    moves = norm(direction) > _NO_MOVE
-    direction[moves] = unit(direction[moves])
-    direction[~moves] = 0.0
-    return direction
+def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:
+    """How far the rate of the tool axis by path length jumps behind each segment but the last, (N - 1,) in rad/mm."""
+    turns = np.flatnonzero(columns["angle"] > 0)
+    before, after = axis_before[turns], columns["axis"][turns]
+    length = np.maximum(columns["length"][turns], _NO_MOVE)[:, None]
+    at_start, at_end = np.zeros_like(axis_before), np.zeros_like(axis_before)
+    at_start[turns] = towards(before, after) / length
+    at_end[turns] = -towards(after, before) / length
+    return norm(at_start[1:] - at_end[:-1])
+
+
+def _tangents(columns: dict[str, Any], tip_before: Array) -> tuple[Array, Array]:
+    """Unit tangents of the tip's way where the segments begin and where they end, (N, 3) each; zero where it stands."""
+    way = columns["tip"] - tip_before
+    at_start = _directions(way)
+    at_end = at_start.copy()
+    arc = np.flatnonzero(columns["kind"] == Kind.ARC)
+    turn, centre = columns["arc_axis"][arc], columns["arc_centre"][arc]
+    rise = (dot(way[arc], turn) / columns["sweep"][arc])[:, None] * turn
+    for tangent, tip in ((at_start, tip_before), (at_end, columns["tip"])):
+        tangent[arc] = _directions(cross(turn, tip[arc] - centre) + rise)
+    return at_start, at_end
+
+
+def _directions(vectors: Array) -> Array:
+    """(N, 3) vectors at unit length; zero where they are too short to have a direction."""
+    length = norm(vectors)
+    return vectors / np.where(length > _NO_MOVE, length, np.inf)[:, None]

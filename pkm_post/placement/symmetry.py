@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from pkm_post.geometry import norm, unit
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Place, Program
+from pkm_post.model.columns import by_row
 
 _RIGID = 1e-6
 """Largest deviation of R^T R from one, and of the last row from 0 0 0 1: matrices are typed with six decimals."""
@@ -39,37 +40,49 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
     if fault:
         return None, (Diagnostic("K109", Place(program.source), fault),)
     turn, shift = matrix[:3, :3], matrix[:3, 3]
-    plane, side_offset = _compensation(program, turn)
+    hand = np.sign(np.linalg.det(turn))
+    plane, side_offset = _compensation(program, turn, hand)
     if plane is None:
         return None, (Diagnostic("K112", Place(program.source), "the plane is not parallel to two axes any more"),)
-    arc_axis = program.arc_axis @ turn.T * np.sign(np.linalg.det(turn))
     moved = dataclasses.replace(
         program,
-        position=program.position @ turn.T + shift,
-        tool_axis=unit(program.tool_axis @ turn.T),
-        arc_centre=program.arc_centre @ turn.T + shift,
-        arc_axis=arc_axis / norm(arc_axis)[:, None],
+        position=by_row(lambda points: _turned(points, turn) + shift, program.position),
+        tool_axis=by_row(lambda axes: unit(_turned(axes, turn)), program.tool_axis),
+        arc_centre=by_row(lambda points: _turned(points, turn) + shift, program.arc_centre),
+        arc_axis=by_row(lambda axes: _unit_or_nan(_turned(axes, hand * turn)), program.arc_axis),
         side_offset=side_offset,
         plane=plane,
-        normal=program.normal @ turn.T,
+        normal=by_row(lambda normals: _turned(normals, turn), program.normal),
         # A mirror M takes the platform to M R M, which turns about the tool axis the other way.
-        spin=program.spin * np.sign(np.linalg.det(turn)),
+        spin=by_row(lambda spin: hand * spin, program.spin),
     )
     return moved, ()
 
 
-def _compensation(program: Program, turn: Array) -> tuple[Array | None, Array]:
+def _turned(vectors: Array, turn: Array) -> Array:
+    """(N, 3) vectors turned by a (3, 3) matrix; without the threads that a matrix product of many rows would start."""
+    return np.einsum("nj,ij->ni", vectors, turn)
+
+
+def _unit_or_nan(axes: Array) -> Array:
+    """(N, 3) axes at unit length; NaN on rows that are no arcs."""
+    return axes / norm(axes)[:, None]
+
+
+def _compensation(program: Program, turn: Array, hand: float) -> tuple[Array | None, Array]:
     """Plane and side offset of the moved rows, (N,) each; no plane where a compensated one is oblique.
 
     Left of a path with tangent t is n x t, n the normal of the plane in the sense of its coordinate. R (n x t) =
     det(R) Rn x Rt, so the side changes with the sign of det(R) times that of Rn along its new coordinate.
     """
-    normals = turn[:, program.plane].T
-    plane = np.argmax(np.abs(normals), axis=1)
-    along = normals[np.arange(len(normals)), plane]
-    if np.any((np.abs(along) < 1 - _RIGID) & (program.side_offset != 0)):
+    normal_to = np.argmax(np.abs(turn), axis=0)  # of each of the three planes, whose new normals are the columns
+    along = turn[normal_to, np.arange(3)]
+    plane = by_row(lambda planes: normal_to[planes], program.plane)
+    if not program.side_offset.any():
+        return plane, program.side_offset
+    if np.any((np.abs(along) < 1 - _RIGID)[program.plane] & (program.side_offset != 0)):
         return None, program.side_offset
-    return plane, program.side_offset * np.sign(along) * np.sign(np.linalg.det(turn))
+    return plane, program.side_offset * (np.sign(along) * hand)[program.plane]
 
 
 def mirror(point: ArrayLike, normal: ArrayLike) -> Array:

@@ -70,7 +70,7 @@ def draw(
     _speeds(speeds, struts, machine)
     _deviations(deviations, certificate, tolerances)
     figure.suptitle(f"{trajectory.source} on {machine.name}: {certificate.duration:.1f} s, {len(struts)} points")
-    figure.savefig(path, dpi=110, metadata={"Software": None})
+    figure.savefig(path, dpi=110, metadata={"Software": None}, pil_kwargs={"compress_level": 1})
     return ()
 
 
@@ -92,8 +92,10 @@ def _path(axes: Any, trajectory: Trajectory, motion: Motion) -> None:
 
 
 def _only(points: Array, chosen: Array) -> Array:
-    """Coordinates of the chosen points, (3, N), with gaps where others were left out."""
-    return np.where(chosen[:, None], points, np.nan).T
+    """Coordinates of the chosen points, (3, N), with a gap after each run of them."""
+    kept = chosen.copy()
+    kept[1:] |= chosen[:-1]
+    return np.where(chosen[kept, None], points[kept], np.nan).T
 
 
 def _lengths(axes: Any, struts: StrutMotion, machine: Machine) -> None:
@@ -131,5 +133,6 @@ def shown(time: Array, values: Array) -> tuple[Array, Array]:
     if len(time) <= 2 * _COLUMNS:
         return time, values
     first = np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], _COLUMNS)))
-    both = np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
-    return np.repeat(time[first], 2), np.stack(both, axis=1).ravel()
+    both = np.stack([np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)], axis=1)
+    both[1::2] = both[1::2, ::-1].copy()  # up one column and down the next: half the ink of up in every one
+    return np.repeat(time[first], 2), both.ravel()

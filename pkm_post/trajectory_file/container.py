@@ -18,6 +18,9 @@ import numpy as np
 
 from pkm_post.trajectory_file.layout import ALIGNMENT, HEADER, MAGIC, MAJOR, MINOR, TABLES, Records, offset_of
 
+Content = bytes | memoryview
+"""The bytes of a file."""
+
 
 class DamageError(Exception):
     """The file cannot be read: the code of the diagnostic and what was found. It does not leave this room."""
@@ -27,7 +30,7 @@ class DamageError(Exception):
         super().__init__(found)
 
 
-def bytes_of(path: Path) -> bytes:
+def bytes_of(path: Path) -> memoryview:
     """All bytes of a file; what is no trajectory file is not read beyond the header.
 
     Raises:
@@ -39,7 +42,7 @@ def bytes_of(path: Path) -> bytes:
         raise DamageError(getattr(fault, "strerror", None) or str(fault), "T101") from fault
 
 
-def opened(content: bytes) -> tuple[np.void, dict[str, Records]]:
+def opened(content: Content) -> tuple[np.void, dict[str, Records]]:
     """The header record and the tables by name, of the bytes of a file.
 
     Raises:
@@ -54,30 +57,30 @@ def opened(content: bytes) -> tuple[np.void, dict[str, Records]]:
     return header, {name: _table(header, name, content) for name in TABLES}
 
 
-def _content(path: Path) -> bytes:
+def _content(path: Path) -> memoryview:
     if not stat.S_ISREG(path.stat().st_mode):  # opening a pipe would wait for its writer
         raise DamageError("it is not a regular file", "T101")
-    with path.open("rb", buffering=0) as file:  # what was in a buffer would be joined with the rest, in a copy of all
+    with path.open("rb", buffering=0) as file:
         header = _header(file.read(HEADER.itemsize))
         size = os.fstat(file.fileno()).st_size
         _check_size(header, size)
         file.seek(0)
-        content = file.readall()
+        content = np.fromfile(file, np.uint8).data  # into large pages of memory, in half the time of ``file.read``
     if len(content) != size:
         raise DamageError(f"the file changed from {size} to {len(content)} bytes while it was read")
     return content
 
 
-def _header(content: bytes) -> np.void:
+def _header(content: Content) -> np.void:
     """The header record of a file of our kind and version."""
+    content = bytes(content[: HEADER.itemsize])
     if not content.startswith(MAGIC):
         raise DamageError(f"it begins with {content[: len(MAGIC)]!r}" if content else "it is empty", "T101")
-    beginning = content[: HEADER.itemsize]
-    header: np.void = np.frombuffer(beginning.ljust(HEADER.itemsize, b"\0"), HEADER)[0]
-    if len(beginning) >= offset_of(HEADER, "header_size") and header["major"] != MAJOR:
+    header: np.void = np.frombuffer(content.ljust(HEADER.itemsize, b"\0"), HEADER)[0]
+    if len(content) >= offset_of(HEADER, "header_size") and header["major"] != MAJOR:
         raise DamageError(f"it has version {header['major']}.{header['minor']}, known is {MAJOR}.{MINOR}", "T102")
-    if len(beginning) < HEADER.itemsize:
-        raise DamageError(f"the header of {HEADER.itemsize} bytes ends after {len(beginning)}")
+    if len(content) < HEADER.itemsize:
+        raise DamageError(f"the header of {HEADER.itemsize} bytes ends after {len(content)}")
     return header
 
 
@@ -86,7 +89,7 @@ def _check_size(header: np.void, size: int) -> None:
         raise DamageError(f"the file has {size} bytes, its header says {header['file_size']}")
 
 
-def _check_header(header: np.void, content: bytes) -> None:
+def _check_header(header: np.void, content: Content) -> None:
     size = int(header["header_size"])
     if not _is_size(size, HEADER.itemsize, header) or size > len(content):
         raise DamageError(f"the header size is {size}, version {MAJOR}.{MINOR} has {HEADER.itemsize}")
@@ -120,7 +123,7 @@ def _is_size(size: int, known: int, header: np.void) -> bool:
     return bool(size == known or grown)
 
 
-def _table(header: np.void, name: str, content: bytes) -> Records:
+def _table(header: np.void, name: str, content: Content) -> Records:
     """The known fields of the records of a table, (count,)."""
     offset, count, record_size = header[name].item()
     return np.ndarray((count,), TABLES[name], content, offset, (record_size,))

@@ -39,8 +39,16 @@ def interpolation(trajectory: Trajectory) -> dict[str, Array]:
         "start_axis": axis,
         "start_spin": trajectory.spin_before(),
         **_turning(trajectory, start, way),
-        "axis_quarter": _directions(towards(axis, trajectory.axis) * (trajectory.angle > 0)[:, None]),
+        "axis_quarter": _axis_quarter(trajectory, axis),
     }
+
+
+def _axis_quarter(trajectory: Trajectory, start: Array) -> Array:
+    """What a quarter turn makes of the axis, (N, 3); zero where it stands."""
+    quarter = np.zeros_like(start)
+    turns = np.flatnonzero(trajectory.angle > 0)
+    quarter[turns] = _directions(towards(start[turns], trajectory.axis[turns]))
+    return quarter
 
 
 def _turning(trajectory: Trajectory, start: Array, way: Array) -> dict[str, Array]:
@@ -83,15 +91,25 @@ def strayed(trajectory: Trajectory, segments: Records) -> dict[str, Array]:
 def missed(trajectory: Trajectory, columns: dict[str, Array]) -> dict[str, Array]:
     """Segments that a player would not end where they say, (N,), by what is elsewhere: a wrong sweep or angle does it.
 
+    A line ends where its shift takes it, and that is how the shift was computed: only arcs and turns can be wrong.
+
     Args:
         trajectory: N segments that keep their promises.
         columns: what ``interpolation`` makes of them.
     """
-    turned = _turned(trajectory.sweep, columns["radius"], columns["quarter"])
-    scale = 1 + columns["growth"][:, None]
-    tip = columns["start_tip"] + columns["shift"] + scale * turned - columns["radius"]
-    axis = _turned(trajectory.angle, columns["start_axis"], columns["axis_quarter"])
-    return {"tip": _apart(tip, trajectory.tip, 1.0), "axis": _apart(axis, trajectory.axis, 1.0)}
+    off = {name: np.zeros(len(trajectory), dtype=np.bool_) for name in ("tip", "axis")}
+    arcs = np.flatnonzero(trajectory.kind == Kind.ARC)
+    start, shift, radius, quarter, growth = (
+        columns[name][arcs] for name in ("start_tip", "shift", "radius", "quarter", "growth")
+    )
+    tip = start + shift + (1 + growth[:, None]) * _turned(trajectory.sweep[arcs], radius, quarter) - radius
+    off["tip"][arcs] = _apart(tip, trajectory.tip[arcs], 1.0)
+    before = columns["start_axis"]
+    x, y, z = (before != trajectory.axis).T
+    turns = np.flatnonzero((trajectory.angle != 0) | x | y | z)
+    axis = _turned(trajectory.angle[turns], before[turns], columns["axis_quarter"][turns])
+    off["axis"][turns] = _apart(axis, trajectory.axis[turns], 1.0)
+    return off
 
 
 def _turned(angle: Array, start: Array, quarter: Array) -> Array:

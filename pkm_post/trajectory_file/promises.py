@@ -124,10 +124,10 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
         "axis is not of unit length": ~_is_unit(trajectory.axis),
         "spin is not finite": ~np.isfinite(trajectory.spin),
         "feed is not a finite number above 0": ~(np.isfinite(trajectory.feed) & (trajectory.feed > 0)),
-        f"arc centre is not finite, or farther than {FARTHEST:g} mm": arc & ~_is_near(trajectory.arc_centre),
-        "arc centre is not NaN, although it is no arc": ~arc & ~np.isnan(trajectory.arc_centre).all(axis=1),
-        "arc axis is not of unit length": arc & ~_is_unit(trajectory.arc_axis),
-        "arc axis is not NaN, although it is no arc": ~arc & ~np.isnan(trajectory.arc_axis).all(axis=1),
+        f"arc centre is not finite, or farther than {FARTHEST:g} mm": _at(arc, ~_is_near(trajectory.arc_centre[arc])),
+        "arc centre is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_centre),
+        "arc axis is not of unit length": _at(arc, ~_is_unit(trajectory.arc_axis[arc])),
+        "arc axis is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_axis),
         "sweep is not above 0 and at most a full turn": arc & ~(_within(sweep, 0, FULL_TURN) & (sweep > 0)),
         "sweep is not 0, although it is no arc": ~arc & (sweep != 0),
         "length is not a finite number of at least 0": ~(np.isfinite(length) & (length >= 0)),
@@ -154,6 +154,19 @@ def _of_events(events: tuple[Event, ...], segments: int) -> Iterator[str]:
 
 def _within(values: Array, least: float, most: float) -> Array:
     return (values >= least) & (values <= most)
+
+
+def _at(rows: Array, broken: Array) -> Array:
+    """What was found of some rows, as a column of all: (N,)."""
+    found = np.zeros(len(rows), dtype=np.bool_)
+    found[rows] = broken
+    return found
+
+
+def _has_number(vectors: Array) -> Array:
+    """Whether (N, 3) vectors have a coordinate that is not NaN, (N,)."""
+    x, y, z = vectors.T
+    return ~(np.isnan(x) & np.isnan(y) & np.isnan(z))
 
 
 def _is_near(points: Array) -> Array:

@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 
 from pkm_post.model import Diagnostic, Event, EventKind, Place, Tool, Trajectory
-from pkm_post.model.columns import uniform
+from pkm_post.model.columns import locked, uniform
 from pkm_post.model.findings import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
-from pkm_post.trajectory_file.container import DamageError, bytes_of, opened
+from pkm_post.trajectory_file.container import Content, DamageError, bytes_of, opened
 from pkm_post.trajectory_file.interpolation import blocks, strayed
 from pkm_post.trajectory_file.layout import TOOL_COLUMNS, UNITS, Records
-from pkm_post.trajectory_file.parts import parts
+from pkm_post.trajectory_file.parts import SEGMENTS, parts
 from pkm_post.trajectory_file.promises import broken_promises, in_segments
 
 
@@ -42,7 +42,7 @@ def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     return decode(content, str(path))
 
 
-def decode(content: bytes, file: str) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+def decode(content: Content, file: str) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The same of the bytes of a file.
 
     Args:
@@ -119,14 +119,18 @@ def _strings(places: Records, text: Records) -> list[str]:
 
 
 def _columns(segments: Records) -> dict[str, Any]:
-    for name, (dtype, _) in TRAJECTORY_COLUMNS.items():
-        if dtype is np.bool_ and np.any(segments[name] > 1):
-            row = int(np.argmax(segments[name] > 1))
-            raise DamageError(f"segment {row}: the flag {name} is {segments[name][row]}")
-    columns = {name: segments[name] for name in TRAJECTORY_COLUMNS}
+    """The columns of a trajectory, part by part, as a record is fetched from memory as a whole."""
+    columns = {name: np.empty((len(segments), *row), dtype) for name, (dtype, row) in TRAJECTORY_COLUMNS.items()}
+    for begin in range(0, len(segments), SEGMENTS):
+        part = segments[begin : begin + SEGMENTS]
+        for name, column in columns.items():
+            if column.dtype == np.bool_ and np.any(part[name] > 1):
+                row = int(np.argmax(part[name] > 1))
+                raise DamageError(f"segment {begin + row}: the flag {name} is {part[name][row]}")
+            column[begin : begin + len(part)] = part[name]
     if not columns["tip_tolerance"].any():  # as in most programs: one zero stands for all, as it was before
         columns["tip_tolerance"] = uniform(0.0, len(segments))
-    return columns
+    return {name: locked(column) for name, column in columns.items()}
 
 
 def _events(instructions: Records) -> tuple[Event, ...]:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
 
-from pkm_post.report.plots import shown
+from pkm_post.report.plots import _only, shown
 
 
 def test_a_short_line_is_drawn_as_it_is():
@@ -24,3 +24,10 @@ def test_a_long_line_keeps_its_ends_in_time_and_every_peak_of_one_point():
     for peak in peaks:
         near = np.abs(when - time[peak]) <= width
         assert drawn[near].max() >= values[peak] if values[peak] > 0 else drawn[near].min() <= values[peak]
+
+
+def test_runs_of_chosen_points_are_drawn_without_those_between():
+    points = np.arange(24.0).reshape(8, 3)
+    chosen = np.array([False, True, True, False, False, False, True, True])
+    x, _, _ = _only(points, chosen)
+    np.testing.assert_array_equal(x, [3, 6, np.nan, 18, 21])

@@ -20,6 +20,7 @@ from pkm_post.freecad_app.commands.faults import Faults, check_words
 from pkm_post.freecad_app.commands.words import Array, Words
 from pkm_post.geometry import norm
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Program
+from pkm_post.model.columns import uniform
 
 _RADIUS_TOLERANCE = 5e-3
 """mm by which the radii at both ends of an arc may differ."""
@@ -70,9 +71,10 @@ def read_commands(
     known = np.isfinite(columns["position"]).all(axis=1)
     rows = moves.copy()
     rows[moves] = known
+    kept = slice(None) if known.all() else known
     program = Program(
-        **{name: column[known] for name, column in columns.items()},
-        operation=np.zeros(int(known.sum())),
+        **{name: column[kept] for name, column in columns.items()},
+        operation=uniform(0, int(known.sum())),
         line=_line(rows),
         events=_events(words, np.cumsum(rows)),
         operations=(operation,),
@@ -124,7 +126,7 @@ def _tool_axes(words: Words, moves: Array, faults: Faults) -> Array:
     line, count = _line(moves), words.count("IJK")[moves]
     given = words.axis_words()[moves]
     if not given.any():
-        return np.tile([0.0, 0.0, 1.0], (len(given), 1))
+        return uniform([0.0, 0.0, 1.0], len(given))
     lacking = (words.among("G1")[moves] | given) & (count < 3)
     faults.tell("J109", lacking, lambda row: f"{count[row]} of the words I J K", line)
     whole = given & (count == 3)
@@ -142,6 +144,9 @@ def _tool_axes(words: Words, moves: Array, faults: Faults) -> Array:
 def _arcs(words: Words, moves: Array, start: Array, end: Array, faults: Faults) -> tuple[Array, Array]:
     """Centres and axes of the arcs, (n, 3) each, NaN on other rows: G2 turns about -z, G3 about +z."""
     arc, line = words.among("G2", "G3")[moves], _line(moves)
+    if not arc.any():
+        none = uniform([np.nan] * 3, len(arc))
+        return none, none
     to_centre = np.column_stack([np.nan_to_num(words.value(letter)[moves]) for letter in "IJ"])
     at_start, at_end = _length_xy(to_centre), _length_xy(start[:, :2] + to_centre - end[:, :2])
     off = ~(np.abs(at_start - at_end) <= _RADIUS_TOLERANCE) | (at_start < _SIX_DECIMALS)
