@@ -9,6 +9,7 @@ from pkm_post.geometry.hermite import (
     hermite_columns,
     hermite_lengths,
     hermite_motion,
+    hermite_powers,
     hermite_speeds,
 )
 from pkm_post.geometry.torsion import torsion, untwisted
@@ -26,6 +27,7 @@ __all__ = [
     "hermite_columns",
     "hermite_lengths",
     "hermite_motion",
+    "hermite_powers",
     "hermite_speeds",
     "norm",
     "torsion",

@@ -51,15 +51,19 @@ def hermite_accelerations(p0: Array, v0: Array, p1: Array, v1: Array, duration: 
     return 2 * square / per_square_second, (2 * square + 6 * cube) / per_square_second
 
 
+def hermite_powers(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> Array:
+    """Coefficients of the powers of the share, (4, C, N), of C columns, (C, N)."""
+    distance, linear, last = p1 - p0, v0 * duration, v1 * duration
+    return np.stack([p0, linear, 3 * distance - 2 * linear - last, linear + last - 2 * distance])
+
+
 def hermite_columns(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, share: Array) -> Array:
     """Positions of C columns, (C, N), at shares (M, 1) or (M, N): (C, M, N)."""
-    distance, linear, last = p1 - p0, v0 * duration, v1 * duration
-    square, cube = 3 * distance - 2 * linear - last, linear + last - 2 * distance
-    return p0[:, None] + share * (linear[:, None] + share * (square[:, None] + share * cube[:, None]))
+    place, linear, square, cube = hermite_powers(p0, v0, p1, v1, duration)[:, :, None]
+    return np.asarray(place + share * (linear + share * (square + share * cube)))
 
 
 def hermite_column_speeds(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, share: Array) -> Array:
     """Their speeds, (C, M, N)."""
-    mean = (p1 - p0) / duration
-    linear, square = 6 * mean - 4 * v0 - 2 * v1, 3 * (v0 + v1) - 6 * mean
-    return v0[:, None] + share * (linear[:, None] + share * square[:, None])
+    _, linear, square, cube = hermite_powers(p0, v0, p1, v1, duration)[:, :, None]
+    return np.asarray((linear + share * (2 * square + 3 * share * cube)) / duration)

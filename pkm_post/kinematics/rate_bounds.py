@@ -18,9 +18,14 @@ from pkm_post.kinematics.checks import arms_from_tip
 from pkm_post.model import Machine
 
 _NEARER = 0.99
-"""A path with rounded corners may make a strut a little shorter than the way that is proven to be within the stroke."""
+"""Rounded corners and cubics may make a strut a little shorter than the way that is proven to be within the stroke."""
 
 Pair = tuple[Array, Array]
+
+
+def nearest_joints(machine: Machine) -> float:
+    """How near the two joints of a strut can come to each other within the stroke, mm."""
+    return _NEARER * (machine.strut_stroke[0] + float(machine.length_offset.min()))
 
 
 def strut_rate_bounds(
@@ -38,7 +43,7 @@ def strut_rate_bounds(
         half_tilt: (N,) tangent of half the highest tilt.
         tool_length: (N,) gauge lengths.
     """
-    shortest = _NEARER * (machine.strut_stroke[0] + float(machine.length_offset.min()))
+    shortest = nearest_joints(machine)
     if machine.screw_lead != 0.0 or shortest <= 0:
         endless = np.full(len(half_tilt), np.inf)
         return endless, endless

@@ -23,12 +23,12 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from pkm_post.geometry import hermite_powers
 from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.kinematics.interpolation import Ends, Inside, fastest, steepest, stray
+from pkm_post.kinematics.rate_bounds import nearest_joints
 from pkm_post.model import Machine
 
-_NEARER = 0.99
-"""The cubics may make a strut a little shorter than the way that is proven to be within the stroke."""
 _MIDDLE = np.array([0.5])
 _ROOM = 1.1
 """For a drift that is not quite as x^2 (1 - x)^2."""
@@ -50,8 +50,7 @@ class ToolCubics:
     @classmethod
     def between(cls, first: Array, rate: Array, last: Array, last_rate: Array, duration: Array) -> ToolCubics:
         """Those with given ends: places and rates by time, (C, N) each, and durations, (N,) s."""
-        begin, end, way = rate * duration, last_rate * duration, last - first
-        return cls(np.stack([first, begin, 3 * way - 2 * begin - end, begin + end - 2 * way]))
+        return cls(hermite_powers(first, rate, last, last_rate, duration))
 
     def __getitem__(self, rows: Array) -> ToolCubics:
         return ToolCubics(np.take(self.powers, rows, axis=2))
@@ -119,7 +118,7 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
         duration: (N,) s.
     """
     speed, bend, jerk = cubics.sizes()
-    shortest = _NEARER * (machine.strut_stroke[0] + float(machine.length_offset.min()))
+    shortest = nearest_joints(machine)
     if machine.screw_lead != 0.0 or min(shortest, machine.least_singular_value) <= 0:
         return Demand(*np.full((4, len(duration)), np.inf))
     turn = speed / shortest
