@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A posted program goes to the simulated machine over a link and runs there: where its struts bring tip and axis.
 
-    python3 tests/examples/column_over_links.py out/tapered_column.pmc
+    PYTHONPATH=. python3 tests/examples/column_over_links.py out/tapered_column.pmc
 
 does it with the whole column, which ``make demo`` posts, over TCP and over a pseudo terminal: some minutes. The tests
 do it with the upper part of the column, which is built, posted and certified in the same way.
