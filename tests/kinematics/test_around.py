@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What is proven by poses nearby holds at all poses of the way, and takes few of them."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 from screw_machines import screwed
-from ways import bodied, samples, upright, wandering
+from ways import bodied, counted, samples, upright, wandering, with_limit
 
 from pkm_post.kinematics import Way
 from pkm_post.kinematics.around import doubtful
@@ -27,24 +25,17 @@ def scan(lines, step=0.5):
     return Way.straight(*upright(tips))
 
 
-def with_limit(check, limit):
-    """The check with another limit: margins are less by it."""
-    return dataclasses.replace(check, margins=lambda placed: check.margins(placed) - limit)
-
-
 def poses_for(way):
     """How many poses the checks look at to prove that a way keeps all of them."""
     looked_at = []
 
-    def counted(check):
-        def margins(placed):
-            looked_at.append(len(placed))
-            return check.margins(placed)
+    def checks_for(shortest):
+        checks, looks = counted(_checks(bodied(), way, shortest, None))
+        looked_at.append(looks)
+        return checks
 
-        return dataclasses.replace(check, margins=margins)
-
-    assert doubtful(bodied(), way, lambda shortest: tuple(map(counted, _checks(bodied(), way, shortest, None)))) == ()
-    return sum(looked_at)
+    assert doubtful(bodied(), way, checks_for) == ()
+    return sum(map(sum, looked_at))
 
 
 @pytest.mark.parametrize("machine", [bodied(), screwed(bodied())], ids=["keyed", "screwed"])

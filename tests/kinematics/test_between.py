@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from machines import example
 from screw_machines import screwed
-from ways import LENGTH, bodied, samples, upright, wandering
+from ways import LENGTH, bodied, counted, samples, upright, wandering, with_limit
 
 from pkm_post.kinematics import Part, Way, reach_findings
 from pkm_post.kinematics.between import survey
@@ -52,11 +52,6 @@ def test_no_margin_changes_faster_than_its_slope(machine):
         assert fastest.max() > 0 or check.name == "spindle and part"  # too far away to be told
 
 
-def shifted(check, limit):
-    """The check with another limit: margins are less by it."""
-    return dataclasses.replace(check, margins=lambda placed: check.margins(placed) - limit)
-
-
 @pytest.mark.parametrize("code", ["K101", "K102", "K103", "K104", "K105", "K113", "K114", "K115", "K117", "K121"])
 def test_findings_agree_with_looking_everywhere(code):
     """Limits of every check are set so that a cell just does not hold them in its middle, or just does."""
@@ -72,7 +67,7 @@ def test_findings_agree_with_looking_everywhere(code):
         slack = float((check.by_travel * way.travel + check.by_turn * way.turn())[1]) * SHARES[1] / 2
         least = margins.min()
         for limit, bad in ((least + 2 * check.resolution, True), (least - slack - 2 * check.resolution, False)):
-            (finding,) = survey(machine, way, (shifted(check, limit),))
+            (finding,) = survey(machine, way, (with_limit(check, limit),))
             assert (finding.first_bad_row is not None) == bad
             assert finding.at_least <= least - limit + ROUNDING
             assert bad or finding.at_least >= 0
@@ -165,7 +160,7 @@ def test_faults_alone_are_those_of_looking_at_every_row(machine):
         placed = Placed.of(machine, way.rows(slice(None)))
         for check in checks_of(machine, way, None):
             exact = check.margins(placed).min(axis=1)
-            some = shifted(check, np.quantile(exact, rng.choice([0.0, 0.001, 0.02, 0.5])))
+            some = with_limit(check, np.quantile(exact, rng.choice([0.0, 0.001, 0.02, 0.5])))
             whole = dataclasses.replace(some, comfort=np.inf)
             (every,), (bad,) = survey(machine, way, (whole,)), survey(machine, way, (some,), faults_alone=True)
             at = np.flatnonzero(every.margin < 0)
@@ -182,16 +177,7 @@ def test_faults_alone_are_those_of_looking_at_every_row(machine):
 
 def test_a_way_within_its_limits_is_proven_by_few_poses():
     way = Way.straight(*upright(np.column_stack([np.linspace(-50, 50, 20001), np.zeros(20001), np.full(20001, 200.0)])))
-    looked_at = []
-
-    def counted(check):
-        def margins(placed):
-            looked_at.append(len(placed))
-            return check.margins(placed)
-
-        return dataclasses.replace(check, margins=margins)
-
-    checks = checks_of(bodied(), way, None)
-    found = survey(bodied(), way, tuple(counted(check) for check in checks), faults_alone=True)
+    checks, looked_at = counted(checks_of(bodied(), way, None))
+    found = survey(bodied(), way, checks, faults_alone=True)
     assert all(0 <= finding.at_least <= finding.margin.min() for finding in found)
     assert sum(looked_at) < 0.02 * len(way) * len(checks)

@@ -46,3 +46,22 @@ def wandering(rng, rows, tilt_deg=25.0, spin_deg=20.0):
 def samples(way, cells, shares):
     """The poses at all shares of all cells, cell by cell."""
     return way.inside(np.repeat(cells, len(shares)), np.tile(shares, len(cells)))
+
+
+def with_limit(check, limit):
+    """The check with another limit: margins are less by it."""
+    return dataclasses.replace(check, margins=lambda placed: check.margins(placed) - limit)
+
+
+def counted(checks):
+    """The checks as they are, and a list that takes how many poses each call of one of them looks at."""
+    looked_at = []
+
+    def counting(check):
+        def margins(placed):
+            looked_at.append(len(placed))
+            return check.margins(placed)
+
+        return dataclasses.replace(check, margins=margins)
+
+    return tuple(map(counting, checks)), looked_at
