@@ -129,6 +129,8 @@ def test_it_opens_with_its_classes_and_computed_anew_it_is_as_it_was(file, tmp_p
     anew = computed_anew(document)
     for name, before in kept.items():
         assert different(before.pop("Path", []), anew[name].pop("Path", []), SIXTH_DECIMAL) == [], name
+        # later versions may plan a motion with fewer points, and not with more
+        assert anew[name].pop("Points", 0) <= before.pop("Points", 0), name
         assert different(before, anew[name]) == [], name
 
 
