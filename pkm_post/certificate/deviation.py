@@ -132,7 +132,8 @@ class TrajectoryRuler:
         share[full] = self._in_full_turn(share[full], tip[full], axis[full], segment[full])
         rise = dot(trajectory.tip[segment] - self._tip_before[segment], turn)
         rising = np.flatnonzero(rise)
-        way = sweep[rising, None] * cross(turn[rising], here[rising]) + (rise[:, None] * turn)[rising]
+        way = (sweep[:, None] * cross(turn, here) + rise[:, None] * turn)[rising]
+        # at the same angle a helix is farther away than beside it: one step of Newton's method along it
         off = tip[rising] - self._on_arc(segment[rising], share[rising])
         share[rising] += dot(off, way) / dot(way, way)
         return share

@@ -19,7 +19,7 @@ from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_course import ToolCourse
-from pkm_post.geometry import hermite_motion
+from pkm_post.geometry import hermite_columns, hermite_lengths, hermite_speeds
 from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.kinematics import NearPoses, carried, forward, near_poses
 from pkm_post.kinematics.jacobian import linearise
@@ -135,7 +135,7 @@ def _on_course(task: Task, rows: Array, shares: Array) -> _Tool:
 def _by_kinematics(task: Task, rows: Array, shares: Array) -> _Tool:
     """Where the tool is at shares of any intervals."""
     cubic = cubics(task.struts, rows)
-    length, speed = hermite_motion(*cubic, shares)
+    length, speed = hermite_lengths(*cubic, shares), hermite_speeds(*cubic, shares)
     machine, motion, knots = task.machine, task.motion, task.knots
     tool_length = np.repeat(motion.tool_length[rows + 1], len(shares))
     inverses = knots.inverse[rows], knots.inverse[rows + 1]
@@ -158,9 +158,8 @@ def _planned(motion: Motion, rows: Array, duration: Array, shares: Array) -> Nea
     """The plan at shares of intervals, by cubics of tip, axis and spin."""
     place = motion.tip, motion.axis, motion.spin
     rate = motion.tip_rate, motion.axis_rate, motion.spin_rate
-    p0, v0, p1, v1 = (np.column_stack([of[at] for of in some]) for at in (rows, rows + 1) for some in (place, rate))
-    planned, _ = hermite_motion(p0, v0, p1, v1, duration, shares)
-    columns = planned.transpose(2, 0, 1).reshape(7, -1)
+    p0, v0, p1, v1 = (np.column_stack([of[at] for of in some]).T for at in (rows, rows + 1) for some in (place, rate))
+    columns = hermite_columns(p0, v0, p1, v1, duration, shares[:, None]).swapaxes(1, 2).reshape(7, -1)
     axis = columns[3:6] / length_of(*columns[3:6])
     return NearPoses(columns[:3].T, axis.T, columns[6])
 

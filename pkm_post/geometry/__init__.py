@@ -8,7 +8,6 @@ from pkm_post.geometry.hermite import (
     hermite_column_speeds,
     hermite_columns,
     hermite_lengths,
-    hermite_motion,
     hermite_powers,
     hermite_speeds,
 )
@@ -26,7 +25,6 @@ __all__ = [
     "hermite_column_speeds",
     "hermite_columns",
     "hermite_lengths",
-    "hermite_motion",
     "hermite_powers",
     "hermite_speeds",
     "norm",

@@ -35,15 +35,6 @@ def hermite_speeds(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, 
     return v0[:, None] + x * (2 * square[:, None] + 3 * x * cube[:, None]) / duration[:, None, None]
 
 
-def hermite_motion(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, share: Array) -> tuple[Array, Array]:
-    """Positions and speeds at the same shares (M,) of all durations, (N, M, 6) each, as two products of matrices."""
-    square, cube = _coefficients(p0, v0, p1, v1, duration)
-    span = duration[:, None]
-    powers = np.stack([np.ones_like(share), share, share**2, share**3], axis=1)
-    lengths = powers @ np.stack([p0, v0 * span, square, cube], axis=1)
-    return lengths, powers[:, :3] @ np.stack([v0, 2 * square / span, 3 * cube / span], axis=1)
-
-
 def hermite_accelerations(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array]:
     """Accelerations at both ends, (N, 6) each; between them they are linear, so these are the extremes."""
     square, cube = _coefficients(p0, v0, p1, v1, duration)

@@ -2,7 +2,7 @@
 import numpy as np
 
 from pkm_post.certificate.struts import extremes
-from pkm_post.geometry import hermite_accelerations, hermite_motion
+from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds
 
 SHARES = np.linspace(0, 1, 4001)
 
@@ -16,7 +16,7 @@ def ends(count, seed):
 def test_closed_forms_are_what_dense_instants_find():
     cubic = ends(300, 4)
     speed, acceleration, shortest, longest = extremes(*cubic)
-    dense_length, dense_speed = hermite_motion(*cubic, SHARES)
+    dense_length, dense_speed = hermite_lengths(*cubic, SHARES), hermite_speeds(*cubic, SHARES)
     found = np.abs(dense_speed).max(axis=(1, 2))
     step = cubic[-1] / (len(SHARES) - 1)
     bent = np.abs(np.stack(hermite_accelerations(*cubic))).max(axis=(0, 2))

@@ -13,7 +13,7 @@ from pkm_post import planning
 from pkm_post.certificate import certify, joints
 from pkm_post.certificate import instants as instants_module
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.geometry import hermite_motion, norm
+from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
 from pkm_post.kinematics import forward
 from pkm_post.kinematics.jacobian import linearise
 from pkm_post.model import StrutMotion
@@ -68,7 +68,7 @@ def dense(job, rows):
     after, knot = rows + 1, np.repeat(rows, DENSE)
     duration = np.diff(struts.time_ms)[rows] / 1000
     ends = struts.length[rows], struts.speed[rows], struts.length[after], struts.speed[after]
-    length, speed = hermite_motion(*ends, duration, np.linspace(0, 1, DENSE))
+    length, speed = (of(*ends, duration, np.linspace(0, 1, DENSE)) for of in (hermite_lengths, hermite_speeds))
     tool = motion.tool_length[knot + 1]
     pose = forward(machine, length.reshape(-1, 6), tool, motion.tip[knot], motion.axis[knot], motion.spin[knot])
     assert pose.converged.all()

@@ -6,7 +6,6 @@ from pkm_post.geometry import (
     hermite_column_speeds,
     hermite_columns,
     hermite_lengths,
-    hermite_motion,
     hermite_speeds,
 )
 
@@ -47,16 +46,6 @@ def test_error_on_a_circle_is_the_published_bound():
     bound = h**4 / 384 * radius * omega**4
     worst = np.abs(found - true).max()
     assert 0.9 * bound < worst <= bound
-
-
-def test_both_at_once_are_the_same_by_products_of_matrices():
-    rng = np.random.default_rng(33)
-    p0, v0, p1, v1 = (1000 + rng.normal(scale=50, size=(40, 6)) for _ in range(4))
-    duration, share = rng.uniform(0.001, 0.128, 40), np.linspace(0, 1, 9)
-    lengths, speeds = hermite_motion(p0, v0 - 1000, p1, v1 - 1000, duration, share)
-    ends = p0, v0 - 1000, p1, v1 - 1000, duration
-    np.testing.assert_allclose(lengths, hermite_lengths(*ends, share), rtol=0, atol=1e-11)
-    np.testing.assert_allclose(speeds, hermite_speeds(*ends, share), rtol=1e-12, atol=1e-8)
 
 
 def test_columns_are_the_same_as_rows():

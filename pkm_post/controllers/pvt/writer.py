@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.controllers.pvt.codes import code_text
 from pkm_post.controllers.pvt.comment import comment_lines
-from pkm_post.controllers.pvt.digits import BLANK, printed, rounded
+from pkm_post.controllers.pvt.printing import BLANK, printed, rounded
 from pkm_post.controllers.pvt.settings import Settings
 from pkm_post.controllers.pvt.words import Words
 from pkm_post.model import StrutMotion

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.controllers.pvt.digits import BLANK, printed, rounded
+from pkm_post.controllers.pvt.printing import BLANK, printed, rounded
 
 
 def texts(values, decimals):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Digits: many numbers printed at once, for the writer.
+"""Printing: many numbers printed at once, for the writer.
 
 Enters: numbers of any unit, and with how many decimals they are printed. Leaves: their characters as columns of bytes,
 place by place, so that no number is a Python object on its way. Numbers are rounded to whole numbers of their last
