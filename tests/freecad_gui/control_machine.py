@@ -2,7 +2,7 @@
 """What the scenes of numerical control share: the panel, a simulated machine in it, waiting, answers, a program."""
 
 import numpy as np
-from gui import FOLDER, until
+from gui import FOLDER, click, until
 from PySide import QtCore, QtWidgets
 
 PER_BLOCK = 100
@@ -26,7 +26,7 @@ def messages():
 
 
 def idle():
-    """Until no order is under way and the machine stands, as the newest reading says."""
+    """Until no order is under way and the machine stands, as the newest reading says, and the panel shows that."""
     console = the_panel().console
 
     def is_idle():
@@ -34,8 +34,11 @@ def idle():
         return not console.has_orders and status is not None and status.standing and not status.running
 
     until(is_idle, 60)
-    read_again()
-    return until(is_idle, 60)
+    read_again()  # what was read may be older than the order
+    while not is_idle():
+        until(is_idle, 60)
+        read_again()
+    return True
 
 
 def read_again():
@@ -90,8 +93,8 @@ def program_file(name, *events):
 def connect_and_home():
     """Make a simulated machine and home it, until it can be jogged."""
     face = the_panel().face
-    face.connecting.train.click()
-    until(lambda: face.homing.home.isEnabled())
+    click(face.connecting.train)
+    until(face.homing.home.isEnabled)
     press_in_box("OK")
-    face.homing.home.click()
-    return until(lambda: face.jog.buttons["Z", 1].isEnabled(), 60)
+    click(face.homing.home)
+    return until(face.jog.buttons["Z", 1].isEnabled, 60)

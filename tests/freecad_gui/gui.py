@@ -52,12 +52,20 @@ def settle():
 
 
 def until(condition, seconds=20):
-    """Let the window work until something is so; whether it is."""
+    """Let the window work until something is so; that it does not come to be so is an exception."""
     end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
+    while not condition():
+        if time.monotonic() > end:
+            raise TimeoutError(f"not so within {seconds} s")
         QtWidgets.QApplication.processEvents()
         time.sleep(0.01)
-    return condition()
+    return True
+
+
+def click(button):
+    """Click a button as soon as it can be clicked; the click of a grey one would do nothing, without a word."""
+    until(button.isEnabled)
+    button.click()
 
 
 def picture(name):

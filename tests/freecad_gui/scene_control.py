@@ -5,7 +5,7 @@ import FreeCAD
 import FreeCADGui
 import numpy as np
 from control_machine import idle, messages, newest, press_in_box, read_again, the_panel
-from gui import main, picture_of_all, press, settle, step, until
+from gui import click, main, picture_of_all, press, settle, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 
@@ -46,13 +46,13 @@ def names_that_are_wrong_are_told():
     panel = the_panel()
     page = panel.face.connecting
     page.port.setText("usb:1")
-    page.connect.click()
+    click(page.connect)
     page.machine.setEditText("no_such_machine")
-    page.train.click()
+    click(page.train)
     page.machine.setEditText("example_6tps")
     told = messages()
     page.port.setText("tcp:127.0.0.1:1")
-    page.connect.click()
+    click(page.connect)
     until(lambda: not panel.console.waits, 60)
     return {"told": told, "refused": messages()[-1], "connected": panel.console.connection is not None}
 
@@ -63,7 +63,7 @@ def a_simulated_machine_is_connected_to_and_homed():
 
     panel = the_panel()
     face = panel.face
-    face.connecting.train.click()
+    click(face.connecting.train)
     until(lambda: newest().status is not None)
     until(lambda: face.homing.home.isEnabled())
     found = {
@@ -74,15 +74,15 @@ def a_simulated_machine_is_connected_to_and_homed():
         "hold": face.stops.hold.isEnabled(),
     }
     refused = press_in_box("Cancel")
-    face.homing.home.click()
+    click(face.homing.home)
     found["asked"] = refused
     found["homing before"] = newest().homing is None and not panel.console.has_orders
     face.homing.trigger.setText("#1K")
-    face.homing.home.click()
+    click(face.homing.home)
     found["trigger"] = messages()[-1]
     face.homing.trigger.setText("#1HM #2HM #3HM #4HM #5HM #6HM")
     press_in_box("OK")
-    face.homing.home.click()
+    click(face.homing.home)
     until(lambda: newest().homing is not None and newest().homing.phase is not Phase.SEARCHING, 60)
     found["homing"] = newest().homing.phase.name
     idle()
@@ -95,7 +95,7 @@ def a_simulated_machine_is_connected_to_and_homed():
 
 def _jogged(name, sign=1):
     before = newest().pose
-    the_panel().face.jog.buttons[name, sign].click()
+    click(the_panel().face.jog.buttons[name, sign])
     idle()
     after = newest().pose
     return before, after
@@ -128,7 +128,7 @@ def a_jog_out_of_reach_sends_nothing():
     control = panel.console.connection.worker._control
     before, execute = list(newest().status.commanded), control.execute
     control.execute = lambda plan: executed.append(plan) or execute(plan)
-    panel.face.jog.buttons["X", 1].click()
+    click(panel.face.jog.buttons["X", 1])
     idle()
     control.execute = execute
     panel.face.jog.step.setProperty("rawValue", 2.0)
@@ -140,8 +140,8 @@ def a_jog_out_of_reach_sends_nothing():
 def a_stop_drops_a_jog_that_is_being_planned():
     panel = the_panel()
     before = newest().status.commanded
-    panel.face.jog.buttons["X", 1].click()
-    panel.face.stops.hold.click()
+    click(panel.face.jog.buttons["X", 1])
+    click(panel.face.stops.hold)
     idle()
     return {"moved": float(np.abs(newest().status.commanded - before).max()), "running": newest().status.running}
 
@@ -153,15 +153,15 @@ def a_line_is_checked_and_run():
     panel.face.pages.setCurrentWidget(page)
     before = list(newest().pose.tip)
     page.line.setText("G1 X0 Y3 F600")
-    page.check.click()
+    click(page.check)
     idle()
     found = {"outcome": page.outcome.text(), "checked": list(newest().pose.tip - before)}
-    page.run.click()
+    click(page.run)
     idle()
     offset = panel.console.connection.target.machine.work_offsets["G54"]
     found["work"] = list(offset[:3, :3].T @ (newest().pose.tip - offset[:3, 3]))[:2]
     page.line.setText("G1 X1..5")
-    page.run.click()
+    click(page.run)
     idle()
     found["refused"] = [messages()[-1], page.outcome.text()]
     page.line.clear()
@@ -182,7 +182,7 @@ def the_machine_of_the_document_follows():
     face = the_panel().face
     tip = tuple(obj.Tip)
     face.follows.setChecked(True)
-    settle()
+    read_again()
     scene = obj.ViewObject.Proxy.scene
     begins = scene._platform.matrix.getValue().getValue()
     _jogged("Y")

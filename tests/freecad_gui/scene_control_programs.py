@@ -15,7 +15,7 @@ from control_machine import (
     read_again,
     the_panel,
 )
-from gui import main, picture, press, settle, step, until
+from gui import click, main, picture, press, settle, step, until
 
 
 @step
@@ -38,7 +38,7 @@ def a_program_is_loaded_held_and_resumed():
         "near": float(np.abs(lengths - HOME_MM).max()),
         "start before": face.program.start.isEnabled(),
     }
-    face.program.load.click()
+    click(face.program.load)
     idle()
     found["loaded"], found["bar"] = messages()[-1], face.program.bar.value() == face.program.bar.maximum()
     until(lambda: face.program.start.isEnabled())
@@ -46,18 +46,18 @@ def a_program_is_loaded_held_and_resumed():
     until(lambda: newest().status.override == 40, 10)
     idle()
     found["override"] = newest().status.override
-    face.program.start.click()
+    click(face.program.start)
     until(lambda: newest().status.running)
     jog = face.jog.buttons["X", 1]
     until(lambda: not jog.isEnabled(), 3)  # the panel looks ten times a second
     found["while it runs"] = [newest().status.running, jog.isEnabled(), face.stops.hold.isEnabled()]
-    face.stops.hold.click()
+    click(face.stops.hold)
     until(lambda: newest().status.held and newest().status.standing)
     read_again()
     settle()
     found["held"] = [face.activity.text(), face.stops.resume.isEnabled(), face.stops.override.isEnabled()]
     found["resumable"] = until(lambda: face.stops.resume.isEnabled())
-    face.stops.resume.click()
+    click(face.stops.resume)
     until(lambda: newest().status.running and not newest().status.held)
     idle()
     found["ended"] = float(np.abs(newest().status.commanded - HOME_MM).max())
@@ -72,14 +72,14 @@ def it_runs_from_rest_to_rest():
     face.stops.override.setValue(100)
     until(lambda: newest().status.override == 100, 10)
     idle()
-    face.program.begin_at.click()
+    click(face.program.begin_at)
     until(lambda: newest().block is not None and not console.has_orders)
     settle()
     found["blocks"] = [messages()[-1], list(newest().block)]
     out = []
     for number in (2, 3):
         until(lambda: face.program.step.isEnabled())
-        face.program.step.click()
+        click(face.program.step)
         until(lambda number=number: newest().block[0] == number, 30)
         idle()
         out.append(float((newest().status.commanded - HOME_MM).mean()))
@@ -92,7 +92,7 @@ def _begin_to_move(sign):
     """Begin a jog of two seconds."""
     panel = the_panel()
     panel.face.jog.step.setProperty("rawValue", 20.0)
-    panel.face.jog.buttons["Z", sign].click()
+    click(panel.face.jog.buttons["Z", sign])
     until(lambda: newest().status.running)
     read_again()
 
@@ -107,13 +107,13 @@ def a_program_goes_on_behind_its_stop():
     page.read(program_file("stop.pmc", Event(PER_BLOCK, EventKind.STOP, 0.0)))
     until(lambda: console.stops == 1 and not console.waits)
     settle()
-    page.load.click()
+    click(page.load)
     idle()
     until(lambda: page.start.isEnabled())
     out = []
     for button in (page.start, page.go_on):
         until(lambda button=button: button.isEnabled())
-        button.click()
+        click(button)
         until(lambda: newest().status.running)
         idle()
         out.append(float((newest().status.commanded - HOME_MM).mean()))
@@ -124,7 +124,7 @@ def a_program_goes_on_behind_its_stop():
 def an_abort_ends_a_jog():
     panel, before = the_panel(), newest().pose.tip
     _begin_to_move(-1)
-    panel.face.stops.abort.click()
+    click(panel.face.stops.abort)
     idle()
     left = 20.0 - float(np.linalg.norm(newest().pose.tip - before))
     return {"left": left, "enabled": until(lambda: panel.face.jog.buttons["Z", 1].isEnabled())}

@@ -3,7 +3,7 @@
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, main, new_document, picture, press, settle, step, until
+from gui import FOLDER, click, main, new_document, picture, press, settle, step, until
 from PySide import QtWidgets
 
 INCHES = 3
@@ -48,7 +48,7 @@ class Panel:
         return self.gauges.notes.text()
 
     def post(self):
-        self.buttons["Post"].click()
+        click(self.buttons["Post"])
         until(self.buttons["Post"].isEnabled, 60)
 
     def told(self):
@@ -134,7 +134,7 @@ def number_alone_has_the_unit_of_the_window():
     before = panel.texts()
     panel.type(0, "4.5")
     shown = panel.texts()
-    panel.apply.click()
+    click(panel.apply)
     settle()
     kept = lengths(document)
     close()
@@ -154,7 +154,7 @@ def what_is_no_length_is_told_and_not_kept():
         notes = panel.notes()
         panel.post()
         found[text] = {"text": panel.texts()[0], "notes": notes, "told": panel.told()}
-        panel.apply.click()
+        click(panel.apply)
         found[text]["applied"] = panel.told()
     found["document"] = [lengths(document), document.UndoCount, job.PostProcessorArgs == before, files(document)]
     close()
@@ -166,11 +166,11 @@ def lengths_are_kept_without_posting():
     document, panel = opened("applied")
     panel.type(0, "118.75 mm")
     panel.type(1, "")
-    panel.apply.click()
+    click(panel.apply)
     settle()
     found = {"lengths": lengths(document), "steps": document.UndoCount, "told": panel.outcome.verdict.text()}
     found |= {"files": files(document), "machine": document.getObject("Job").PostProcessorArgs}
-    panel.apply.click()
+    click(panel.apply)
     found["again"] = document.UndoCount
     close()
     return found
@@ -180,7 +180,7 @@ def lengths_are_kept_without_posting():
 def simulation_has_what_was_typed():
     document, panel = opened("simulated")
     panel.type(0, "110 mm")
-    panel.buttons["Simulate"].click()
+    click(panel.buttons["Simulate"])
     until(lambda: document.getObject("Simulation") is not None and not document.Recomputing)
     settle()
     made = document.getObject("Simulation")
@@ -221,7 +221,7 @@ def table_follows_the_document():
     settle()
     more = [panel.texts(), [label for _, label, _ in panel.cells()]]
     job.Tools.Group[1].GaugeLength = 96
-    panel.apply.click()  # at once, before the table has followed: what was not typed is not written
+    click(panel.apply)  # at once, before the table has followed: what was not typed is not written
     settle()
     found = {"changed": changed, "more": more, "kept": lengths(document), "shown": panel.texts()}
     panel.type(0, "50 mm")

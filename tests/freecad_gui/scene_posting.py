@@ -9,7 +9,7 @@ from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, answer, main, new_document, picture, picture_of_all, press, select, settle, step, until
+from gui import FOLDER, answer, click, main, new_document, picture, picture_of_all, press, select, settle, step, until
 from PySide import QtCore, QtWidgets
 
 LONG = ["G0 X0 Y0 Z30", *(f"G1 X{x % 2 * 20} Y{x * 0.02} Z20 F30" for x in range(400)), "G0 Z30"]
@@ -32,7 +32,7 @@ class Panel:
     def post(self):
         """Press the button and wait for the end; the longest time for which the window did nothing, ms."""
         clock = _Clock()
-        self.buttons["Post"].click()
+        click(self.buttons["Post"])
         self.wait()
         return clock.longest()
 
@@ -161,9 +161,9 @@ def cancelled_job_leaves_nothing():
     document.getObject("Custom").Gcode = LONG
     document.recompute()
     panel = open_panel(document)
-    panel.buttons["Post"].click()
+    click(panel.buttons["Post"])
     enabled = panel.buttons["Cancel"].isEnabled()
-    panel.buttons["Cancel"].click()
+    click(panel.buttons["Cancel"])
     ended = panel.wait()
     found = {
         "files": names_in(folder),

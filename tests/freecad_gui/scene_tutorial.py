@@ -9,7 +9,7 @@ import json
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, main, press, select, settle, step, until
+from gui import FOLDER, click, main, press, select, settle, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 NAME = "tapered_column"
@@ -76,11 +76,11 @@ def widget(kind, name):
     return found
 
 
-def click(text):
+def click_named(text):
     """Press the button of the open panel with this text."""
     buttons = FreeCADGui.getMainWindow().findChildren(QtWidgets.QPushButton)
     (button,) = [each for each in buttons if each.isVisible() and each.text().replace("&", "") == text]
-    button.click()
+    click(button)
     settle()
 
 
@@ -158,8 +158,8 @@ def _add_foot_and_top():
             widget(QtWidgets.QWidget, name).setProperty("rawValue", size)
         if kind == "Ellipse":
             keep("primitives", _task_panel())
-        click("Create")
-    click("Close")
+        click_named("Create")
+    click_named("Close")
 
 
 def _choose_sections():
@@ -168,12 +168,12 @@ def _choose_sections():
     while tree.topLevelItemCount():
         tree.setCurrentItem(tree.topLevelItem(0))
         settle()
-        widget(QtWidgets.QPushButton, "addButton").click()
+        click(widget(QtWidgets.QPushButton, "addButton"))
         settle()
     for name in ("checkSolid", "checkRuledSurface"):
         widget(QtWidgets.QCheckBox, name).setChecked(True)
     keep("loft", _task_panel())
-    click("OK")
+    click_named("OK")
 
 
 def _task_panel():
@@ -245,8 +245,8 @@ def _type_gauge_length():
     field.editingFinished.emit()
     settle()
     keep("gauge", gauges)
-    click("Apply")
-    click("Close")
+    click_named("Apply")
+    click_named("Close")
 
 
 def _tab(form, text):
@@ -333,7 +333,7 @@ def reach_is_checked():
     machine.ViewObject.Visibility = False
     keep_view("reach")
     machine.ViewObject.Visibility = True
-    click("Close")
+    click_named("Close")
     found.Active = False
     return {"reachable": found.Reachable, "checks": len(found.Checks), "violations": list(found.Violations)}
 
@@ -367,7 +367,7 @@ def program_is_posted():
     keep("post", choices)
     choices.folder.setText(folder)
     (post,) = [each for each in form.findChildren(QtWidgets.QPushButton) if each.text() == "Post"]
-    post.click()
+    click(post)
     until(post.isEnabled, 90)
     keep("certificate", outcome)
     report = json.loads((FOLDER / f"{NAME}-report.json").read_text(encoding="utf-8"))
