@@ -5,12 +5,13 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format translations fuzz soak conformance clean
+.PHONY: help demo test lint format translations fuzz soak conformance package clean
 
 PYTHON ?= python3
 VENV := .venv
 FUZZ_VENV := .venv-fuzz
 TRANSLATIONS_VENV := .venv-translations
+PACKAGE_VENV := .venv-package
 CONFORMANCE := .conformance
 NPM_PACKAGES := kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 js-yaml@5.5.0
 FUZZ_SECONDS ?= 120
@@ -67,8 +68,15 @@ soak: $(VENV)/made ## download and stream to the simulated PMAC over faulty link
 conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it
 	@$(VENV)/bin/python tests/trajectory_file/conformance.py $(CONFORMANCE)
 
+package: $(VENV)/made ## build a wheel in dist/, and check a machine with it in an environment of its own
+	@rm -rf dist
+	@$(VENV)/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
+	@$(PYTHON) -m venv --clear $(PACKAGE_VENV)
+	@$(PACKAGE_VENV)/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
+	@cd dist && ../$(PACKAGE_VENV)/bin/python -m pkm_post machine check example_6tps
+
 clean: ## remove what the targets left in this directory
-	rm -rf out $(VENV) $(FUZZ_VENV) $(TRANSLATIONS_VENV) $(CONFORMANCE) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf out dist $(VENV) $(FUZZ_VENV) $(TRANSLATIONS_VENV) $(PACKAGE_VENV) $(CONFORMANCE) .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +
 
 # Kaitai's compiler is a package of npm; it is not needed to use or to test PKM Post, so .ci/run does without.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Presets: the machine files that come with the add-on, found by name.
+"""Presets: the machine files that come with the program, found by name.
 
 Enters: what a user wrote for a machine, a preset's name or a path. Leaves: the path of the file to read.
 """
@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-FOLDER = Path(__file__).parents[2] / "resources" / "machines"
+_PACKAGE = Path(__file__).parents[1]
+_IN_A_WHEEL = _PACKAGE / "resources" / "machines"
+FOLDER = _IN_A_WHEEL if _IN_A_WHEEL.is_dir() else _PACKAGE.parent / "resources" / "machines"
 TEMPLATES = FOLDER / "templates"
 SUFFIX = ".toml"
 
