@@ -20,7 +20,7 @@ from pkm_post.feed import Intervals, Places, Schedule, ToolPath, by_time, glimps
 from pkm_post.geometry.vectors import Array, length_of, unit
 from pkm_post.kinematics import Demand, Ends, Inside, ToolCubics, bounded_demand, measured_demand
 from pkm_post.model import Machine, Poses
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 
 _SHARE_OF_TOLERANCES = 0.4
 """What the controller's cubics may use; as much is for corners, the rest for decimals and between the places."""

@@ -15,7 +15,7 @@ import numpy as np
 from pkm_post.geometry import norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import (
-    Finding,
+    ReachFinding,
     Way,
     jacobian_of_tip,
     reach_findings,
@@ -47,7 +47,7 @@ class Home:
     singular_values: Array
     turning_rate: float
     stiffness: Array | None
-    findings: tuple[Finding, ...]
+    findings: tuple[ReachFinding, ...]
 
 
 def at_home(machine: Machine) -> Home:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.argument_types import number, numbered, positive
 
 if TYPE_CHECKING:
-    from pkm_post.model.findings import Tolerances
+    from pkm_post.model.certificate import Tolerances
     from pkm_post.pipeline import Options
     from pkm_post.spin import Policy
     from pkm_post.surface_speed import SurfaceSpeed
@@ -187,7 +187,7 @@ def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
 
 def tolerances_from(namespace: argparse.Namespace) -> Tolerances:
     """The tolerances of a parsed command line, in mm and rad."""
-    from pkm_post.model.findings import Tolerances
+    from pkm_post.model.certificate import Tolerances
 
     return Tolerances(namespace.tip_tolerance, math.radians(namespace.axis_tolerance))
 

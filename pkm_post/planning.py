@@ -32,7 +32,7 @@ from pkm_post.feed import (
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import Way, reach_faults, strut_rates
 from pkm_post.model import Diagnostic, Event, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.speed_limits import below_feed, bent, bounded_by, feed_at, limits_at, roughly_bounded
 
 _FOR_CORNERS = 0.4

@@ -19,7 +19,7 @@ import numpy as np
 
 from pkm_post.feed.segments import Segments
 from pkm_post.geometry.vectors import Array, norm
-from pkm_post.kinematics import Finding, Part, Way, faults_of, reach_findings
+from pkm_post.kinematics import Part, ReachFinding, Way, faults_of, reach_findings
 from pkm_post.kinematics.findings import SHOWN
 from pkm_post.kinematics.way import Pose
 from pkm_post.model import RULES, Diagnostic, Machine, Trajectory
@@ -48,7 +48,7 @@ class Reach:
     machine: Machine
     tip: Array
     segment: Array
-    findings: tuple[Finding, ...]
+    findings: tuple[ReachFinding, ...]
 
     def faults(self) -> tuple[Diagnostic, ...]:
         """One diagnostic for each check and operation that violates it, at its worst."""
@@ -73,7 +73,7 @@ class Reach:
             "checks": [self._check(finding) for finding in self.findings],
         }
 
-    def _check(self, finding: Finding) -> dict[str, Any]:
+    def _check(self, finding: ReachFinding) -> dict[str, Any]:
         subject, worst, first = finding.subject, finding.worst_row, finding.first_bad_row
         unit, factor = SHOWN[subject.unit]
         return {

@@ -12,7 +12,7 @@ from pkm_post.cubics import Cubics, poses_at
 from pkm_post.feed import by_time, even_marks, knots
 from pkm_post.geometry import hermite_accelerations, hermite_speeds
 from pkm_post.kinematics import Ends, Inside, stray, strut_rates
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))

@@ -17,8 +17,8 @@ from pkm_post.certificate import certify
 from pkm_post.controllers import pmac
 from pkm_post.geometry import unit
 from pkm_post.machine_file import find_machine, read_machine
+from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import RULES
-from pkm_post.model.findings import Tolerances
 from pkm_post.placement import place
 
 ROOT = Path(__file__).parents[1]

@@ -9,7 +9,7 @@ from pkm_post import planning
 from pkm_post.geometry import hermite_accelerations, norm
 from pkm_post.kinematics import strut_lengths
 from pkm_post.model import Event, EventKind, Tool
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))

@@ -12,7 +12,7 @@ import pytest
 from pkm_post import trajectory_file
 from pkm_post.cli import main
 from pkm_post.model import Refused
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.pipeline import Options
 from pkm_post.post_file import post_file
 from pkm_post.sources import Reading

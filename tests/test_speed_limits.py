@@ -10,7 +10,7 @@ from programs import ON_PALLET, cone, program, random_job
 
 from pkm_post import planning, speed_limits
 from pkm_post.feed import PathBounds, cell_times, limits, rough_limits, speed_profile, stations
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 from pkm_post.speed_limits import _following, below_feed, bent, bounded_by, feed_at, roughly_bounded
 

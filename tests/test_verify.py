@@ -14,8 +14,8 @@ from pkm_post.cli import main
 from pkm_post.controllers import pmac
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Refused
+from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
-from pkm_post.model.findings import Tolerances
 from pkm_post.pipeline import Options, post
 from pkm_post.verify import verify
 

@@ -22,7 +22,7 @@ from pkm_post.certificate.struts import off_plan, strut_jerk
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
-from pkm_post.model.findings import Certificate, Finding, Tolerances
+from pkm_post.model.certificate import Certificate, Finding, Tolerances
 
 _FEED_SHARE = 1.01
 """How far the cubic may swing about the planned speed where the acceleration changes."""

@@ -16,7 +16,7 @@ from pkm_post.geometry.arcs import across
 from pkm_post.geometry.gather import among, taken
 from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Kind, Trajectory
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 
 _NEARLY = 1e-3
 """rad: arcs that leave no more open than this begin and end at one angle."""

@@ -22,8 +22,8 @@ from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.kinematics import Part
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Diagnostic, Machine, Program, Refused, Trajectory
+from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
-from pkm_post.model.findings import Tolerances
 from pkm_post.options import options_from, tool_lengths_from
 
 

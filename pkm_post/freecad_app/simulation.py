@@ -18,7 +18,7 @@ from pkm_post.freecad_app.job_on_machine import JobOnMachine, job_on_machine
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.simulated_motion import Problem, Simulation
 from pkm_post.geometry.vectors import norm
-from pkm_post.kinematics import Finding
+from pkm_post.kinematics import ReachFinding
 from pkm_post.model import RULES
 from pkm_post.model.diagnostics import Severity
 from pkm_post.reach import Reach, reach
@@ -68,7 +68,7 @@ def _problems(checked: Reach, planned: Simulation) -> tuple[Problem, ...]:
     return tuple(sorted(found, key=lambda problem: (problem.time, problem.text)))
 
 
-def _stretches(finding: Finding, checked: Reach, planned: Simulation) -> list[Problem]:
+def _stretches(finding: ReachFinding, checked: Reach, planned: Simulation) -> list[Problem]:
     rows = np.flatnonzero(finding.margin < 0.0)
     groups = np.split(rows, np.flatnonzero(np.diff(checked.segment[rows]) > 1) + 1) if len(rows) else []
     problems = []

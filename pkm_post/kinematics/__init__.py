@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The 6-TPS machine: inverse and forward kinematics, Jacobian, rates, and what the machine can reach."""
 
-from pkm_post.kinematics.findings import Finding, faults_of
+from pkm_post.kinematics.findings import ReachFinding, faults_of
 from pkm_post.kinematics.following import follow
 from pkm_post.kinematics.forward import Solution, forward
 from pkm_post.kinematics.interpolation import Ends, Inside, Stray, carried, fastest, moving, steepest, stray
@@ -21,7 +21,7 @@ from pkm_post.kinematics.workspace import reach_faults, reach_findings
 __all__ = [
     "Demand",
     "Ends",
-    "Finding",
+    "ReachFinding",
     "Inside",
     "Margins",
     "NearPoses",

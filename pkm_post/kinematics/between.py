@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics.findings import Finding, Subject
+from pkm_post.kinematics.findings import ReachFinding, Subject
 from pkm_post.kinematics.placed import Placed
 from pkm_post.kinematics.way import Way
 from pkm_post.model import Machine
@@ -54,7 +54,9 @@ class Check(Subject):
     comfort: float = np.inf
 
 
-def survey(machine: Machine, way: Way, checks: tuple[Check, ...], faults_alone: bool = False) -> tuple[Finding, ...]:
+def survey(
+    machine: Machine, way: Way, checks: tuple[Check, ...], faults_alone: bool = False
+) -> tuple[ReachFinding, ...]:
     """Each check along the whole way.
 
     Args:
@@ -91,11 +93,11 @@ class _Survey:
         self.margin, self.part = np.empty(len(way)), np.zeros(len(way), dtype=np.int32)
         self.computed, self.proven = np.zeros(len(way), dtype=bool), np.full(len(way), -np.inf)
 
-    def _finding(self, at_least: float) -> Finding:
+    def _finding(self, at_least: float) -> ReachFinding:
         """What was found; rows that were not computed must not look as bad as the worst that was."""
         beyond = np.nextafter(self.margin[self.computed].min(), np.inf)
         margin = np.where(self.computed, self.margin, np.maximum(self.margin, beyond))
-        return Finding(self.check, margin, self.part, at_least)
+        return ReachFinding(self.check, margin, self.part, at_least)
 
     def note(self, rows: Array, margins: Array) -> None:
         """Keep the worst margins of rows."""
@@ -108,7 +110,7 @@ class _Survey:
         for chunk in _chunks(rows):
             self.note(chunk, self.check.margins(Placed.of(self.machine, self.way.rows(chunk))))
 
-    def strided(self, stride: int, share: float) -> Finding:
+    def strided(self, stride: int, share: float) -> ReachFinding:
         """What is found by margins of few rows, and of those between them where little may be left.
 
         Args:
@@ -138,7 +140,7 @@ class _Survey:
         rows = rows[~self.computed[rows]]
         self.margin[rows], self.part[rows] = self.proven[rows], np.repeat(self.part[start], count - 1)
 
-    def refined(self) -> Finding:
+    def refined(self) -> ReachFinding:
         """What is found after looking between the rows where a violation may hide there."""
         first = np.concatenate([self.margin[:1], self.margin[:-1]])
         bound = np.maximum((first + self.margin - self.change) / 2, self.proven)

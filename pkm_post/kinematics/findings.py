@@ -45,7 +45,7 @@ class Subject:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ReachFinding:
     """What one check says of a way of N rows.
 
     Attributes:
@@ -74,7 +74,7 @@ class Finding:
         return int(np.argmax(bad)) if bad.any() else None
 
 
-def faults_of(findings: Iterable[Finding], trajectory: Trajectory, segment: Array) -> tuple[Diagnostic, ...]:
+def faults_of(findings: Iterable[ReachFinding], trajectory: Trajectory, segment: Array) -> tuple[Diagnostic, ...]:
     """Diagnostics of violations: one for each operation and check, at the worst row.
 
     Args:

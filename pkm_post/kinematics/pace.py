@@ -17,7 +17,7 @@ import numpy as np
 
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics.checks import STRUTS, arms_from_tip
-from pkm_post.kinematics.findings import Finding, Subject
+from pkm_post.kinematics.findings import ReachFinding, Subject
 from pkm_post.kinematics.inverse import strut_lengths
 from pkm_post.kinematics.way import Way
 from pkm_post.model import Machine
@@ -26,7 +26,7 @@ _RESOLUTION = 1e-3
 """Share of the strut speed that is not told apart."""
 
 
-def pace_finding(machine: Machine, way: Way, shortest: float, duration: Array) -> Finding:
+def pace_finding(machine: Machine, way: Way, shortest: float, duration: Array) -> ReachFinding:
     """Margins of strut speed.
 
     Args:
@@ -46,7 +46,7 @@ def pace_finding(machine: Machine, way: Way, shortest: float, duration: Array) -
         speed, part[1:] = _fastest(lengths[:-1], lengths[1:], duration[1:])
         margin[1:] = limit - speed
         at_least = _halve(machine, way, lengths, duration, bend, margin, part)
-    return Finding(subject, margin, part, at_least)
+    return ReachFinding(subject, margin, part, at_least)
 
 
 def _second_derivative(machine: Machine, way: Way, shortest: float) -> Array:

@@ -13,7 +13,7 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics.around import doubtful
 from pkm_post.kinematics.between import Check, survey
 from pkm_post.kinematics.checks import joint_checks, shortest_distance, singularity_check, stroke_checks
-from pkm_post.kinematics.findings import Finding, Subject, faults_of
+from pkm_post.kinematics.findings import ReachFinding, Subject, faults_of
 from pkm_post.kinematics.interference import body_checks, strut_checks
 from pkm_post.kinematics.pace import pace_finding
 from pkm_post.kinematics.part import Part
@@ -33,7 +33,7 @@ def reach_findings(
     duration: Array | None = None,
     normal: Array | None = None,
     least_stiffness: float = 0.0,
-) -> tuple[Finding, ...]:
+) -> tuple[ReachFinding, ...]:
     """All checks along a whole way.
 
     Args:
@@ -64,11 +64,11 @@ def _checks(machine: Machine, way: Way, shortest: float, part: Part | None) -> t
     )
 
 
-def _stiffness_finding(machine: Machine, way: Way, normal: Array, least: float) -> Finding:
+def _stiffness_finding(machine: Machine, way: Way, normal: Array, least: float) -> ReachFinding:
     told = f"below {least:g} N/mm by {{by:.1f}}"
     margin = stiffness_along(machine, way.rows(slice(None)), normal) - least
     subject = Subject("stiffness along the normal", "K119", "N/mm", ("",), told)
-    return Finding(subject, margin, np.zeros(len(way), dtype=np.int32), -np.inf)
+    return ReachFinding(subject, margin, np.zeros(len(way), dtype=np.int32), -np.inf)
 
 
 def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Array) -> tuple[Diagnostic, ...]:

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pkm_post.model.certificate import Tolerances
 from pkm_post.model.columns import RowType, by_row, freeze, uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.event import Event
-from pkm_post.model.findings import Tolerances
 from pkm_post.model.program import MOTION_COLUMNS, Array
 from pkm_post.model.tool import Tool, lengths_of
 

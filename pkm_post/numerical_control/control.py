@@ -16,7 +16,7 @@ from typing import TypeVar
 
 from pkm_post.controllers.pmac import Settings
 from pkm_post.model import Diagnostic, Machine, Trajectory
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.numerical_control import defaults, mdi, moves, stops
 from pkm_post.numerical_control import execute as execution
 from pkm_post.numerical_control.emergency import emergency_text

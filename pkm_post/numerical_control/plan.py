@@ -20,8 +20,8 @@ from pkm_post.geometry import hermite_lengths
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import Solution, Way, faults_of, follow, platform_rotation, reach_findings
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
+from pkm_post.model.certificate import Certificate, Tolerances
 from pkm_post.model.diagnostics import errors
-from pkm_post.model.findings import Certificate, Tolerances
 from pkm_post.numerical_control.defaults import OWN_PROGRAM
 from pkm_post.pmac_link.job import Job, read_job
 from pkm_post.pmac_link.readout import Pose, spin_of

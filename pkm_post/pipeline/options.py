@@ -11,7 +11,7 @@ from pkm_post.compensation import OffsetOptions
 from pkm_post.controllers import TABLES
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Tool
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.spin import ZERO_TORSION, Policy
 from pkm_post.surface_speed import SurfaceSpeed
 

@@ -17,8 +17,8 @@ from pkm_post.controllers import TABLES, Controller, controller_of
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
 from pkm_post.model import Diagnostic, Machine, Motion, Place, Program, Refused, StrutMotion, Trajectory
+from pkm_post.model.certificate import Certificate, Tolerances
 from pkm_post.model.diagnostics import errors
-from pkm_post.model.findings import Certificate, Tolerances
 from pkm_post.pipeline.options import LINUXCNC, Options
 from pkm_post.pipeline.placed import trajectory_of
 from pkm_post.pipeline.run import Findings, Log, Progress, Run, quiet, unwatched

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Kind, Machine, Motion, Place, StrutMotion, Trajectory
-from pkm_post.model.findings import Certificate, Tolerances
+from pkm_post.model.certificate import Certificate, Tolerances
 
 _LIMIT = {"color": "0.3", "linestyle": "--", "linewidth": 0.8}
 _AXES_SHOWN = 150

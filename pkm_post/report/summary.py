@@ -17,7 +17,7 @@ import numpy as np
 import pkm_post
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import EventKind, Kind, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.findings import Certificate, Finding, Tolerances
+from pkm_post.model.certificate import Certificate, Finding, Tolerances
 
 _FORMAT = 1
 """Version of the report's layout, for programs that read it."""

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from pkm_post.model import Diagnostic, Event, EventKind, Place, Tool, Trajectory
+from pkm_post.model.certificate import Tolerances
 from pkm_post.model.columns import locked, uniform
-from pkm_post.model.findings import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
 from pkm_post.trajectory_file.container import Content, DamageError, bytes_of, opened
 from pkm_post.trajectory_file.interpolation import blocks, strayed

@@ -10,7 +10,7 @@ from programs import ON_PALLET, cone, program, steep_helices
 from pkm_post import planning
 from pkm_post.certificate import certify
 from pkm_post.model import StrutMotion
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))

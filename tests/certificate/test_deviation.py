@@ -10,7 +10,7 @@ from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.feed import ToolPath
 from pkm_post.geometry import norm, unit
 from pkm_post.model import Kind
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))

@@ -17,7 +17,7 @@ from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
 from pkm_post.kinematics import forward
 from pkm_post.kinematics.jacobian import linearise
 from pkm_post.model import StrutMotion
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))

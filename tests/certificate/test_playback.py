@@ -19,7 +19,7 @@ from pkm_post.certificate.struts import off_plan
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.kinematics import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))

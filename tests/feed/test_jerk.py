@@ -14,7 +14,7 @@ from pkm_post.feed.course import Course
 from pkm_post.feed.jerk import _least_of_covers
 from pkm_post.kinematics import strut_rates
 from pkm_post.model import Event, EventKind
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 NANOMETRE = 1e-6

@@ -7,7 +7,7 @@ from pkm_post import planning
 from pkm_post.feed import knots, stations
 from pkm_post.feed.knots import LONGEST_MS
 from pkm_post.model import Event, EventKind
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 NO_EDGES = np.array([], dtype=np.int64)

@@ -10,7 +10,7 @@ from programs import ON_PALLET, program
 
 from pkm_post import planning
 from pkm_post.certificate import certify
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 from pkm_post.report import summary
 

@@ -7,7 +7,7 @@ from programs import cone, program, square_with_arc
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.feed import ToolPath, stations
 from pkm_post.geometry import dot, norm
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 MICRON = 1e-3

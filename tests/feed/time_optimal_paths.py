@@ -10,7 +10,7 @@ from programs import ON_PALLET, cone, program
 from pkm_post import planning
 from pkm_post.feed import stations
 from pkm_post.model import Kind
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
 

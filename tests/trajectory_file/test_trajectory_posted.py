@@ -4,7 +4,7 @@
 from programs import cone
 
 from pkm_post.machine_file import find_machine, read_machine
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.pipeline import Options, post
 from pkm_post.trajectory_file import read
 

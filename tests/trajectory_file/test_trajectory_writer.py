@@ -10,7 +10,7 @@ from programs import ON_PALLET, cone, square_with_arc
 from trajectories import everything, fitted, random_trajectory
 
 from pkm_post.model import Event, EventKind, Tool
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.placement import place
 from pkm_post.trajectory_file import read, write
 from pkm_post.trajectory_file.promises import SENSIBLE

@@ -9,7 +9,7 @@ from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.geometry import angle_between, arc_sweep, unit
 from pkm_post.model import Event, EventKind, Kind, Tool, Trajectory
-from pkm_post.model.findings import Tolerances
+from pkm_post.model.certificate import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
 from pkm_post.placement import place
 

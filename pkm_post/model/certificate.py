@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Findings: what the certificate measured, each with its limit, the moment and the source line where it is worst."""
+"""Certificate: what was asked for, and what a program was found to do.
+
+Each quantity has its limit, and the moment and the source line where it is worst.
+"""
 
 from __future__ import annotations
 
@@ -60,7 +63,7 @@ class Certificate:
         findings: one for each quantity, in a fixed order.
         duration: s, without dwells.
         intervals: number of cubics played.
-        instants: number of poses computed by forward kinematics.
+        instants: number of poses that were measured.
         time: (K,) s, at the start of each interval.
         tip_deviation: (K,) largest in the interval by its tolerance, mm.
         tip_tolerance: (K,) what it may be there, mm: that of the program (G64 P), else what was asked for.
