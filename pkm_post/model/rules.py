@@ -65,6 +65,11 @@ RULES: dict[str, Rule] = {
     "J119": _error("a move is not a finite number", "regenerate the operation"),
     "J120": _warning("an operation of CAM cannot hold all that the part program says", "post the part program itself"),
     "J121": _error("a property of a document object has no meaning", "set it to another value"),
+    "J122": _error(
+        "the drilling cycle cannot be carried out",
+        "correct its words; cycles are drilled along Z (G17), behind a move to a known height, in operations without"
+        " tool-axis words",
+    ),
     # G1: the letters of G-code
     "G101": _error("a character has no meaning here", "remove it, or put the text into a comment"),
     "G102": _error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),

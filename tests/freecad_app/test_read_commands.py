@@ -124,8 +124,8 @@ def test_no_commands_give_no_rows():
         ("G91", "J104"),
         ("G43 H1", "J104"),
         ("G55", "J104"),
-        ("G81 X1 Y1 Z1 R1 F1", "J104"),
-        ("G73 Z1 R1 Q1 F1", "J104"),
+        ("G84 X1 Y1 Z1 R1 F1", "J104"),
+        ("G81 Z1 R1 L2 F1", "J104"),
         ("M30", "J104"),
         ("M3", "J104"),
         ("M6", "J104"),
@@ -189,7 +189,7 @@ def test_numbers_that_are_none(letter, number):
 
 
 def test_all_faults_are_told_in_one_run_in_order():
-    assert faults_of(FIRST, "G1 X1", "G81 Z1", "G2 X9", "G1 B1", "G81 Z2", "G1 X1 I0 J0 K0") == [
+    assert faults_of(FIRST, "G1 X1", "G86 Z1", "G2 X9", "G1 B1", "G86 Z2", "G1 X1 I0 J0 K0") == [
         ("J105", 2),
         ("J109", 2),
         ("J104", 3),

@@ -196,7 +196,7 @@ def test_deleted_base_leaves_an_empty_copy_that_is_refused(job, base):
 
 def test_fault_in_the_base_is_told_at_both_and_leaves_no_old_path(job, base):
     copy = recomputed(create_mirror(base, (0, 1, 0)))
-    base.Gcode = [*FIVE_AXIS, "G81 X1"]
+    base.Gcode = [*FIVE_AXIS, "G86 X1"]
     job.Document.recompute()
     assert not copy.isValid()
     assert moves(copy) == []

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pkm_post.freecad_app.commands.words import COMMENT, LETTERS, Array, Words
+from pkm_post.freecad_app.commands.words import COMMENT, CYCLES, LETTERS, Array, Words, latest
 from pkm_post.model import Diagnostic, Place
 from pkm_post.model.diagnostics import errors
 
@@ -73,17 +73,15 @@ def check_words(words: Words, faults: Faults) -> None:
     number = words.value("T")
     faults.tell("J104", words.among("M6") & np.isfinite(number) & (number != np.round(number)), _shown(words, "T"))
     faults.tell("J106", words.among("G2", "G3") & ~_in_xy_plane(words), "an arc after G18 or G19")
+    faults.tell("J122", words.among(*CYCLES) & ~_in_xy_plane(words), "a cycle after G18 or G19")
     faults.tell("J106", words.among("G2", "G3") & (np.nan_to_num(words.value("K")) != 0), _shown(words, "K"))
 
 
 def _in_xy_plane(words: Words) -> Array:
     """Whether G17 is in force, (n,); it is where an operation begins."""
-    selects = words.among("G17", "G18", "G19")
-    latest = np.maximum.accumulate(np.where(selects, np.arange(len(words)), -1))
-    plane: Array = (latest < 0) | words.among("G17")[latest]
-    return plane
+    return ~words.among("G18", "G19")[latest(words.among("G17", "G18", "G19"))]
 
 
 def _shown(words: Words, letter: str) -> Callable[[int], str]:
     """Tells a command with one of its words, as in ``G1 A30``."""
-    return lambda row: f"{words.codes[words.code[row]]} {letter}{words.value(letter)[row]:g}"
+    return lambda row: f"{words.name(row)} {letter}{words.value(letter)[row]:g}"

@@ -5,7 +5,7 @@ CAM commands enter, lengths in mm and F in mm/s as they are inside FreeCAD; colu
 and the tool axis I J K of G0 and G1 stay in force until they change. The F of a G0 is the speed of rapid moves
 and says nothing of cutting. Before X, Y and Z are all known no place is: such moves are folded into the first one
 whose end is known. An operation without I J K words is cut with the tool axis upright; moves before the first such
-words take the axis of these.
+words take the axis of these. Drilling cycles are replaced by the moves they stand for before all this.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pkm_post.freecad_app.commands.drilling import without_cycles
 from pkm_post.freecad_app.commands.faults import Faults, check_words
-from pkm_post.freecad_app.commands.words import Array, Words
+from pkm_post.freecad_app.commands.words import MOVES, Array, Words, in_force, latest
 from pkm_post.geometry import norm
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Program
 from pkm_post.model.columns import uniform
@@ -63,7 +64,8 @@ def read_commands(
     if any(fault.code == "J119" for fault in faults.diagnostics):
         return None, faults.in_order()
 
-    moves = words.among(*_KINDS)
+    words = without_cycles(words, np.asarray(start, dtype=np.float64), faults)
+    moves = words.among(*MOVES)
     columns = _columns(words, moves, np.asarray(start), faults)
     if faults.stop():
         return None, faults.in_order()
@@ -75,7 +77,7 @@ def read_commands(
     program = Program(
         **{name: column[kept] for name, column in columns.items()},
         operation=uniform(0, int(known.sum())),
-        line=_line(rows),
+        line=words.line[rows],
         events=_events(words, np.cumsum(rows)),
         operations=(operation,),
         tools={},
@@ -87,7 +89,7 @@ def read_commands(
 def _columns(words: Words, moves: Array, start: Array, faults: Faults) -> dict[str, Any]:
     """What the words say of each move, and of those before it; places that are not known yet are NaN."""
     position = np.column_stack([
-        _in_force(words.value(letter)[moves], before) for letter, before in zip("XYZ", start, strict=True)
+        in_force(words.value(letter)[moves], before) for letter, before in zip("XYZ", start, strict=True)
     ])  # fmt: skip
     centre, turn = _arcs(words, moves, np.vstack([start, position[:-1]])[: len(position)], position, faults)
     return {
@@ -100,12 +102,6 @@ def _columns(words: Words, moves: Array, start: Array, faults: Faults) -> dict[s
     }
 
 
-def _in_force(values: Array, before: float) -> Array:
-    """Each value or else the last one, (n,)."""
-    latest = np.maximum.accumulate(np.where(np.isnan(values), -1, np.arange(len(values))))
-    return np.where(latest < 0, before, values[latest])
-
-
 def _kinds(words: Words) -> Array:
     return np.array([_KINDS.get(code, 0) for code in words.codes], dtype=np.uint8)[words.code]
 
@@ -113,17 +109,17 @@ def _kinds(words: Words) -> Array:
 def _feeds(words: Words, moves: Array, faults: Faults) -> Array:
     """Feed in mm/s, (n,), NaN on rapid moves."""
     rapid = words.among("G0")[moves]
-    feed = _in_force(np.where(rapid, np.nan, words.value("F")[moves]), np.nan)
+    feed = in_force(np.where(rapid, np.nan, words.value("F")[moves]), np.nan)
     missing = ~rapid & ~(feed > 0)
     faults.tell(
-        "J105", missing, lambda row: "no F" if np.isnan(feed[row]) else f"F{60 * feed[row]:g} mm/min", _line(moves)
+        "J105", missing, lambda row: "no F" if np.isnan(feed[row]) else f"F{60 * feed[row]:g} mm/min", words.line[moves]
     )
     return np.where(rapid, np.nan, feed)
 
 
 def _tool_axes(words: Words, moves: Array, faults: Faults) -> Array:
     """Unit tool axes, (n, 3)."""
-    line, count = _line(moves), words.count("IJK")[moves]
+    line, count = words.line[moves], words.count("IJK")[moves]
     given = words.axis_words()[moves]
     if not given.any():
         return uniform([0.0, 0.0, 1.0], len(given))
@@ -136,14 +132,14 @@ def _tool_axes(words: Words, moves: Array, faults: Faults) -> Array:
     long = whole & ~nowhere & (np.abs(length - 1) > _UNIT_TOLERANCE)
     faults.tell("J110", nowhere, "I0 J0 K0", line)
     faults.tell("J118", long, lambda row: f"length {length[row]:.6g}", line)
-    latest = np.maximum.accumulate(np.where(whole, np.arange(len(whole)), -1))
-    latest = np.where(latest < 0, np.argmax(whole), latest)
-    return (vectors / np.maximum(length, _SIX_DECIMALS)[:, None])[latest]
+    row = latest(whole)
+    row = np.where(whole[row], row, np.argmax(whole))
+    return (vectors / np.maximum(length, _SIX_DECIMALS)[:, None])[row]
 
 
 def _arcs(words: Words, moves: Array, start: Array, end: Array, faults: Faults) -> tuple[Array, Array]:
     """Centres and axes of the arcs, (n, 3) each, NaN on other rows: G2 turns about -z, G3 about +z."""
-    arc, line = words.among("G2", "G3")[moves], _line(moves)
+    arc, line = words.among("G2", "G3")[moves], words.line[moves]
     if not arc.any():
         none = uniform([np.nan] * 3, len(arc))
         return none, none
@@ -168,10 +164,6 @@ def _arcs(words: Words, moves: Array, start: Array, end: Array, faults: Faults) 
 def _length_xy(vectors: Array) -> Array:
     """Lengths of (n, 2) vectors, (n,)."""
     return np.hypot(vectors[:, 0], vectors[:, 1])
-
-
-def _line(moves: Array) -> Array:
-    return np.flatnonzero(moves) + 1
 
 
 def _events(words: Words, rows_so_far: Array) -> tuple[Event, ...]:

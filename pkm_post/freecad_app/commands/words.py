@@ -18,11 +18,18 @@ import numpy as np
 
 Array = np.ndarray[Any, Any]
 
-LETTERS: dict[str, str] = {
-    "G0": "XYZIJKF",
-    "G1": "XYZIJKF",
-    "G2": "XYZIJKF",
-    "G3": "XYZIJKF",
+MOVES: dict[str, str] = dict.fromkeys(("G0", "G1", "G2", "G3"), "XYZIJKF")
+"""The codes of moves, with the letters they may have."""
+CYCLES: dict[str, str] = {
+    "G73": "XYZRQF",
+    "G81": "XYZRF",
+    "G82": "XYZRPF",
+    "G83": "XYZRQF",
+    "G85": "XYZRF",
+    "G89": "XYZRPF",
+}
+"""The same of drilling cycles. Those that turn or stop the spindle are not among them."""
+_OTHERS: dict[str, str] = {
     "G4": "P",
     "M0": "",
     "M1": "",
@@ -37,6 +44,7 @@ LETTERS: dict[str, str] = {
     "G18": "",
     "G19": "",
 } | dict.fromkeys(("G21", "G40", "G49", "G54", "G80", "G90", "G94", "G98", "G99"), "")
+LETTERS: dict[str, str] = MOVES | CYCLES | _OTHERS
 """Every code that has a meaning here, with the letters it may have. What is not in it, is refused."""
 
 COMMENT = "()"
@@ -54,12 +62,14 @@ class Words:
         code: (n,) index into ``codes``.
         values: for each letter that occurs, (n,) its numbers; NaN where a command does not have it.
         given: for each letter that occurs, (n,) whether a command has it.
+        line: (n,) number of the command, from 1.
     """
 
     codes: tuple[str, ...]
     code: Array
     values: dict[str, Array]
     given: dict[str, Array]
+    line: Array
 
     @classmethod
     def of(cls, commands: Iterable[Any]) -> Words:
@@ -71,7 +81,7 @@ class Words:
         codes = tuple(sorted(set(code_of.values())))
         number_of = {name: codes.index(code) for name, code in code_of.items()}
         code = np.fromiter(map(number_of.__getitem__, names), np.int64, len(names))
-        return cls(codes, code, *_columns(parameters))
+        return cls(codes, code, *_columns(parameters), np.arange(1, len(code) + 1))
 
     def __len__(self) -> int:
         return len(self.code)
@@ -80,6 +90,10 @@ class Words:
         """Which commands have one of these codes, (n,)."""
         wanted: Array = np.isin(self.code, [number for number, code in enumerate(self.codes) if code in codes])
         return wanted
+
+    def name(self, row: int) -> str:
+        """The code of one command."""
+        return self.codes[self.code[row]]
 
     def value(self, letter: str) -> Array:
         """The numbers of a letter, (n,), NaN where a command does not have it."""
@@ -96,6 +110,18 @@ class Words:
     def axis_words(self) -> Array:
         """Which moves have words of the tool axis, (n,); those of arcs are the centre."""
         return self.among("G0", "G1") & (self.count("IJK") > 0)
+
+
+def latest(chosen: Array) -> Array:
+    """Index of the last of the chosen rows so far, (n,); 0 before the first."""
+    return np.maximum.accumulate(np.where(chosen, np.arange(len(chosen)), 0))
+
+
+def in_force(values: Array, before: float) -> Array:
+    """Each value, or else the last one, (n,)."""
+    said = ~np.isnan(values)
+    row = latest(said)
+    return np.where(said[row], values[row], before) if len(values) else values
 
 
 def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict[str, Array]]:

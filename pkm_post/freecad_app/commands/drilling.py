@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Drilling: the cycles among the commands of an operation become the moves and dwells that they stand for.
+
+Columns of words enter; columns leave in which a cycle is rows of G0, G1 and G4, with its line. The strokes are those of
+the same cycles in G-code (``gcode.cycles``). The words of a cycle stay in force as long as no other motion comes
+between. Behind a hole the tool is as high as before it (G98, and where nothing was said), or at R (G99).
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import chain
+
+import numpy as np
+
+from pkm_post.freecad_app.commands.faults import Faults
+from pkm_post.freecad_app.commands.words import CYCLES, MOVES, Array, Words, in_force, latest
+from pkm_post.gcode.cycles import Cycle, Hole, Strokes, fault_of, strokes
+from pkm_post.model import Kind
+
+_CODES = {Kind.RAPID: "G0", Kind.LINE: "G1"}
+_AXES = (0, 1, 2)
+_ONCE, _STANDS = 1.0, 0.0
+"""Repetitions, and the speed of the spindle for cycles that do not ask for it."""
+
+Row = tuple[str, dict[str, float]]
+"""A code and its words."""
+
+
+def without_cycles(words: Words, start: Array, faults: Faults) -> Words:
+    """The same commands, each cycle replaced by what it stands for.
+
+    Args:
+        words: the commands.
+        start: (3,) where the tool tip is before, mm; NaN for coordinates that are not known.
+        faults: takes what keeps a cycle from being carried out, which is left out then.
+    """
+    cycles = np.flatnonzero(words.among(*CYCLES)).tolist()
+    if not cycles:
+        return words
+    holes = _Holes(words, start)
+    rows: dict[int, list[Row]] = {}
+    wrong: dict[int, str] = {}
+    for row in cycles:
+        rows[row], fault = holes.drilled(row)
+        if fault:
+            wrong[row] = fault
+    faults.tell("J122", np.isin(np.arange(len(words)), list(wrong)), wrong.__getitem__)
+    return _with_rows(words, rows)
+
+
+class _Holes:
+    """The holes of an operation, one after the other."""
+
+    def __init__(self, words: Words, start: Array) -> None:
+        drilled, height = words.among(*CYCLES), words.value("Z")
+        self._words, self._cycle, self._row = words, Cycle(0), -1
+        # with the start in front: what is before a row has its number, what is behind it the next
+        before = zip("XY", start[:2], strict=True)
+        self._xy = np.column_stack([in_force(np.append(at, words.value(letter)), at) for letter, at in before])
+        self._height = np.append(start[2], np.where(drilled, np.nan, height))  # the Z of a cycle is where the hole ends
+        self._latest_height = latest(np.append(True, drilled | ~np.isnan(height)))
+        self._latest_motion = latest(words.among(*MOVES, *CYCLES, "G80"))
+        self._said, self._feed = np.column_stack([words.value(letter) for letter in "RZQP"]), words.value("F")
+        self._leans = bool(words.axis_words().any())
+        self._stays_low = words.among("G99")[latest(words.among("G98", "G99"))]
+
+    def drilled(self, row: int) -> tuple[list[Row], str]:
+        """What the cycle of a row stands for, and what is wrong with it; asked for in the order of the rows."""
+        name = self._words.name(row)
+        self._cycle = self._in_force(row, name)
+        height, top = float(self._height[self._latest_height[row]]), self._cycle.retract
+        hole = Hole(top, self._cycle.bottom, top if self._stays_low[row] else max(height, top))
+        here, centre = np.array([*self._xy[row], height]), self._xy[row + 1]
+        self._row, self._height[row + 1] = row, hole.clear
+        if self._leans:
+            return [], f"{name}: other moves have I J K words"
+        fault = fault_of(self._cycle, hole, _ONCE, _STANDS)
+        if fault:
+            return [], fault[1]
+        if np.isnan([*centre, height]).any():
+            return [], f"{name}: it is not known where the tool is"
+        made = strokes(self._cycle, hole, centre[None], _AXES, here, _STANDS)
+        return _rows_of(made, float(self._feed[row])), ""
+
+    def _in_force(self, row: int, name: str) -> Cycle:
+        """The cycle with the words of this row, and with those before if it is still the same."""
+        goes_on = row > 0 and self._latest_motion[row - 1] == self._row and self._words.name(self._row) == name
+        cycle = self._cycle if goes_on else Cycle(10 * int(name[1:]))
+        return cycle.with_words(*self._said[row].tolist())
+
+
+def _rows_of(made: Strokes, feed: float) -> list[Row]:
+    """Strokes as commands; a feed that is not said is NaN, which is no word."""
+    rows: list[Row] = []
+    for kind, end in zip(made.kinds, made.ends, strict=True):
+        place = dict(zip("XYZ", end.tolist(), strict=True))
+        rows.append((_CODES[Kind(kind)], place | ({"F": feed} if kind == Kind.LINE else {})))
+    for row, _, seconds in reversed(made.events):  # dwells, all of them
+        rows.insert(row, ("G4", {"P": seconds}))
+    return rows
+
+
+def _with_rows(words: Words, rows: dict[int, list[Row]]) -> Words:
+    """Columns with other rows in the place of some."""
+    times = np.ones(len(words), dtype=np.int64)
+    times[list(rows)] = [len(row) for row in rows.values()]
+    old = np.repeat(np.arange(len(words)), times)
+    fresh = np.flatnonzero(np.isin(old, list(rows)))
+    made = list(chain.from_iterable(rows.values()))
+    codes = tuple(sorted({*words.codes, *(code for code, _ in made)}))
+    code = np.array([codes.index(each) for each in words.codes])[words.code][old]
+    code[fresh] = [codes.index(each) for each, _ in made]
+    values = {letter: words.value(letter)[old] for letter in sorted({*words.values, *"XYZFP"})}
+    for letter, column in values.items():
+        column[fresh] = [said.get(letter, math.nan) for _, said in made]
+    return Words(codes, code, values, {letter: ~np.isnan(column) for letter, column in values.items()}, words.line[old])

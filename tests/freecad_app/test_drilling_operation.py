@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""CAM's own drilling operation: read, mirrored, and posted to a certified program."""
+
+import FreeCAD as App
+import numpy as np
+import Part
+import Path.Main.Job
+import Path.Op.Drilling
+import pytest
+from cam_jobs import moves
+
+from pkm_post.freecad_app.job import read_job, set_gauge_length
+from pkm_post.freecad_app.post_job import post_job
+from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.model import EventKind, Kind
+from pkm_post.pipeline import Options
+
+CENTRES = [(10.0, 10.0), (30.0, 10.0), (30.0, 30.0)]
+WAYS = {
+    "G81": {},
+    "G82": {"DwellEnabled": True, "DwellTime": 0.5},
+    "G83": {"PeckEnabled": True, "PeckDepth": 3.0},
+    "G73": {"PeckEnabled": True, "PeckDepth": 3.0, "chipBreakEnabled": True},
+    "G85": {"feedRetractEnabled": True},
+}
+"""By the cycle that comes out, what is set."""
+
+
+@pytest.fixture
+def job(document):
+    box = document.addObject("Part::Feature", "Plate")
+    box.Shape = Part.makeBox(40, 40, 10)
+    for x, y in CENTRES:
+        box.Shape = box.Shape.cut(Part.makeCylinder(2.5, 10, App.Vector(x, y, 0)))
+    document.recompute()
+    job = Path.Main.Job.Create("Job", [box], None)
+    controller = job.Tools.Group[0]
+    controller.SpindleSpeed, controller.SpindleDir, controller.VertFeed = 3000, "Forward", "120 mm/min"
+    set_gauge_length(controller, 120)
+    return job
+
+
+def drilling(job, **settings):
+    """The operation on all holes; CAM's own ``Create`` looks for a model that is not there yet."""
+    operation = job.Document.addObject("Path::FeaturePython", "Drilling")
+    operation.Proxy = Path.Op.Drilling.ObjectDrilling(operation, "Drilling", job)
+    model = job.Model.Group[0]
+    round_faces = [f"Face{n}" for n, face in enumerate(model.Shape.Faces, 1) if isinstance(face.Surface, Part.Cylinder)]
+    operation.Base, operation.ToolController = [(model, round_faces)], job.Tools.Group[0]
+    for name, value in settings.items():
+        setattr(operation, name, value)
+    job.Document.recompute()
+    return operation
+
+
+@pytest.mark.parametrize("code", WAYS)
+def test_every_hole_is_drilled_to_its_depth(job, code):
+    operation = drilling(job, **WAYS[code])
+    assert [name for name, _ in moves(operation)].count(code) == len(CENTRES)
+    program, faults = read_job(job)
+    assert faults == ()
+    cutting = program.kind == Kind.LINE
+    deepest = program.position[cutting & (program.position[:, 2] == program.position[:, 2].min())]
+    assert {tuple(each) for each in deepest[:, :2].tolist()} == set(CENTRES)
+    assert deepest[0, 2] == pytest.approx(operation.FinalDepth.Value)
+    assert set(program.feed[cutting].tolist()) == {2.0}  # 120 mm/min
+    sideways = np.any(np.diff(program.position[:, :2], axis=0) != 0, axis=1)
+    assert program.position[:-1, 2][sideways].min() > 10.0  # the top of the plate
+    dwells = [event.value for event in program.events if event.kind is EventKind.DWELL]
+    assert dwells == [0.5] * (len(CENTRES) if code == "G82" else 0)
+
+
+def test_a_mirrored_copy_drills_the_mirrored_holes(job):
+    operation = drilling(job, **WAYS["G83"])
+    copy = create_mirror(operation, (1, 0, 0))
+    job.Document.recompute()
+    assert copy.isValid()
+    program, faults = read_job(job)
+    assert faults == ()
+    half = len(program) // 2
+    np.testing.assert_allclose(program.position[half:], program.position[:half] * [-1, 1, 1], atol=1e-9)
+
+
+def test_drilling_is_posted(job, tmp_path):
+    drilling(job, **WAYS["G83"])
+    offset = np.eye(4)
+    offset[2, 3] = 250.0
+    posted = post_job(job, "example_6tps", tmp_path, Options(work_offset=offset))
+    assert posted.report["certificate"]["holds"] and posted.diagnostics == ()
