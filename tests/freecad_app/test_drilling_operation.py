@@ -70,9 +70,12 @@ def test_every_hole_is_drilled_to_its_depth(job, code):
     assert dwells == [0.5] * (len(CENTRES) if code == "G82" else 0)
 
 
-def test_a_mirrored_copy_drills_the_mirrored_holes(job):
+@pytest.mark.parametrize("keep_climb", [False, True])
+def test_a_mirrored_copy_drills_the_mirrored_holes(job, keep_climb):
+    """Whatever is done about climb milling: no hole is drilled from below."""
     operation = drilling(job, **WAYS["G83"])
     copy = create_mirror(operation, (1, 0, 0))
+    copy.KeepClimb = keep_climb
     job.Document.recompute()
     assert copy.isValid()
     program, faults = read_job(job)
