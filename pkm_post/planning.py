@@ -39,9 +39,9 @@ _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
 _WINDOWS_MS = (4, 8, 16, 32, 64, 128)
 """Windows of time that are tried for a plan with a limit of jerk; the one with the shortest motion is taken."""
-_BLOCK = 4096
+_STATIONS_AT_ONCE = 4096
 """Stations in one pass: what is computed for them stays in the processor's cache."""
-_AT_ONCE = 2048
+_MARKS_AT_ONCE = 2048
 """Marks of a stretch of the motion, some four minutes, whose points are looked for by themselves."""
 
 
@@ -83,8 +83,8 @@ def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple
 def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
     """The way through stations, straight from one to the next; and the segments they lie on."""
     parts = []
-    for first in range(0, len(marks.s), _BLOCK):
-        rows = slice(first, first + _BLOCK)
+    for first in range(0, len(marks.s), _STATIONS_AT_ONCE):
+        rows = slice(first, first + _STATIONS_AT_ONCE)
         seen = glimpse_within(path, marks.segment[rows], marks.u[rows])
         parts.append((seen.tip, seen.axis, seen.spin, seen.tool_length))
     return Way.straight(*(np.concatenate(columns) for columns in zip(*parts, strict=True))), marks.segment
@@ -124,7 +124,7 @@ def interpolate(
         tolerances: what was asked for.
     """
     marks = even_marks(schedule.rests_ms)
-    stretches = [marks[first : first + _AT_ONCE + 1] for first in range(0, len(marks) - 1, _AT_ONCE)]
+    stretches = [marks[first : first + _MARKS_AT_ONCE + 1] for first in range(0, len(marks) - 1, _MARKS_AT_ONCE)]
 
     def knots_of(stretch: Array) -> Array:
         return knots(stretch, schedule.edges_ms, Cubics(path, schedule, machine, tolerances, stretch).error)[:-1]
@@ -132,8 +132,6 @@ def interpolate(
     with ThreadPoolExecutor(os.cpu_count()) as threads:
         time_ms = np.concatenate([*threads.map(knots_of, stretches), marks[-1:]])
     poses = poses_at(path, schedule, time_ms)
-    rest_of_row = np.searchsorted(schedule.rest_joints, [event.row for event in events])
-    knot = np.searchsorted(time_ms, schedule.rests_ms[rest_of_row])
     return Motion(
         time_ms=time_ms,
         tip=poses.tip,
@@ -145,8 +143,15 @@ def interpolate(
         tool_length=poses.tool_length,
         segment=poses.segment,
         joint_time=schedule.joint_time,
-        events=tuple(Event(int(row), event.kind, event.value) for row, event in zip(knot, events, strict=True)),
+        events=_by_knot(events, schedule, time_ms),
     )
+
+
+def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> tuple[Event, ...]:
+    """Events by the knot at which they happen, a rest each, instead of the row of the trajectory."""
+    rest_of_row = np.searchsorted(schedule.rest_joints, [event.row for event in events])
+    knot = np.searchsorted(time_ms, schedule.rests_ms[rest_of_row])
+    return tuple(Event(int(row), event.kind, event.value) for row, event in zip(knot, events, strict=True))
 
 
 def strut_motion(motion: Motion, machine: Machine) -> StrutMotion:

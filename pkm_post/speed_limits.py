@@ -22,7 +22,7 @@ _AT_FEED = 1e-6
 """Part of the speed squared by which a plan at the feed may be below it by rounding."""
 _STRAIGHT = 0.01, 1e-4
 """mm and rad: by how much a path may leave its segments in blends and still be taken as straight between its joints."""
-_BLOCK = 4096
+_STATIONS_AT_ONCE = 4096
 """Stations in one pass: what is computed for them stays in the processor's cache."""
 
 Pair = tuple[Array, Array]
@@ -64,14 +64,14 @@ def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machin
     square, along = (np.minimum(one[marks.segment], one[following]) for one in rough)
     inner = close[marks.segment] & close[following]
     rows = np.flatnonzero(close[marks.segment] | close[following])
-    for first in range(0, len(rows), _BLOCK):
+    for first in range(0, len(rows), _STATIONS_AT_ONCE):
         # with the neighbours of the block, whose curvature counts
         begin = max(first - 1, 0)
-        block = rows[begin : first + _BLOCK + 1]
+        block = rows[begin : first + _STATIONS_AT_ONCE + 1]
         segment, u = marks.segment[block], marks.u[block]
         found = limits(feed_at(path, segment, u), bounded_by(machine, path.within(segment, u)))
         own = np.flatnonzero(inner[block])
-        own = own[(own >= first - begin) & (own < first - begin + _BLOCK)]
+        own = own[(own >= first - begin) & (own < first - begin + _STATIONS_AT_ONCE)]
         square[block[own]], along[block[own]] = found[0][own], found[1][own]
     square[marks.rest] = 0.0
     return square, along

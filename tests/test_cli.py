@@ -109,7 +109,7 @@ BAD_JOBS = {
     "missing feed": (["G0 X0 Y0 Z30", "G1 X10"], "J105", "Cut: line 4"),
     "zero feed": (["G0 X0 Y0 Z30", "G1 X10 F0"], "J105", "Cut: line 4"),
     "unknown command": (["G0 X0 Y0 Z30", "G38.2 Z0 F10"], "J104", "Cut: line 4"),
-    "drilling cycle": (["G0 X0 Y0 Z30", "G81 X1 Y1 Z0 R5 F10"], "J104", "Cut: line 4"),
+    "drilling cycle": (["G0 X0 Y0 Z30", "G81 X1 Y1 Z0 F10"], "J122", "Cut: line 4"),
     "arc in another plane": (["G0 X0 Y0 Z30", "G18", "G2 X10 Z30 I5 K0 F10"], "J106", "Cut: line"),
     "rotary words": (["G0 X0 Y0 Z30", "G1 X10 A10 F10"], "J115", "Cut: line 4"),
     "half an axis": (["G0 X0 Y0 Z30 I0 J0 K1", "G1 X10 F10"], "J109", "Cut: line 4"),

@@ -149,7 +149,7 @@ def test_what_is_kept_of_ends_does_not_matter():
 def test_stretches_of_other_lengths_give_the_same_motion(monkeypatch, make, at_once):
     machine, trajectory, path, schedule = planned(make)
     expected = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
-    monkeypatch.setattr(planning, "_AT_ONCE", at_once)
+    monkeypatch.setattr(planning, "_MARKS_AT_ONCE", at_once)
     found = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
     for field in dataclasses.fields(found):
         np.testing.assert_array_equal(getattr(found, field.name), getattr(expected, field.name))
@@ -158,7 +158,7 @@ def test_stretches_of_other_lengths_give_the_same_motion(monkeypatch, make, at_o
 @pytest.mark.parametrize("workers", [1, 5])
 def test_the_number_of_threads_does_not_matter(monkeypatch, workers):
     machine, trajectory, path, schedule = planned(cone)
-    monkeypatch.setattr(planning, "_AT_ONCE", 4)
+    monkeypatch.setattr(planning, "_MARKS_AT_ONCE", 4)
     expected = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
     monkeypatch.setattr(planning, "ThreadPoolExecutor", lambda _: ThreadPoolExecutor(workers))
     found = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)

@@ -153,6 +153,10 @@ class Cancelled(Exception):  # noqa: N818 - what a window raises when its user c
     pass
 
 
+GONE = ConnectionError("nobody listens")
+"""What a watcher raises that is elsewhere, and what printing raises when the terminal is closed: no fault of files."""
+
+
 def test_progress_is_told_in_the_order_of_the_steps_and_ends_with_all(machine, tmp_path):
     told, options = [], Options(also=("linuxcnc", "csv"))
     post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", options, progress=lambda *each: told.append(each))
@@ -162,12 +166,22 @@ def test_progress_is_told_in_the_order_of_the_steps_and_ends_with_all(machine, t
     assert (shares[0], shares[-1]) == (0.0, 1.0)
 
 
+@pytest.mark.parametrize("raised", [Cancelled("enough"), GONE])
 @pytest.mark.parametrize("at", [*step_names(Options(also=("csv",))), ""])
-def test_what_the_progress_raises_stops_the_run_and_leaves_nothing(machine, tmp_path, at):
+def test_what_the_progress_raises_stops_the_run_and_leaves_nothing(machine, tmp_path, at, raised):
     def stop(step, share):
         if step == at:
-            raise Cancelled(step)
+            raise raised
 
-    with pytest.raises(Cancelled, match=f"^{at}$"):
+    with pytest.raises(type(raised)) as stopped:
         post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", Options(also=("csv",)), progress=stop)
-    assert list(tmp_path.iterdir()) == []
+    assert stopped.value is raised and list(tmp_path.iterdir()) == []
+
+
+def test_what_the_log_raises_stops_the_run_and_leaves_nothing(machine, tmp_path):
+    def closed(line):
+        raise GONE
+
+    with pytest.raises(ConnectionError) as stopped:
+        post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", log=closed)
+    assert stopped.value is GONE and list(tmp_path.iterdir()) == []

@@ -97,8 +97,8 @@ def test_rough_limits_are_below_the_true_ones(name):
 def test_blocks_do_not_show(block, monkeypatch):
     path, trajectory, machine = path_of(JOBS["slow machine"])
     whole, _ = planning.plan_feed(path, trajectory, machine)
-    monkeypatch.setattr(planning, "_BLOCK", block)
-    monkeypatch.setattr(speed_limits, "_BLOCK", block)
+    monkeypatch.setattr(planning, "_STATIONS_AT_ONCE", block)
+    monkeypatch.setattr(speed_limits, "_STATIONS_AT_ONCE", block)
     cut, _ = planning.plan_feed(path, trajectory, machine)
     np.testing.assert_array_equal(cut.course.s, whole.course.s)
     np.testing.assert_allclose(cut.course.speed, whole.course.speed, rtol=1e-9, atol=1e-9)

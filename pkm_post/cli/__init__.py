@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and its like.
 
-Exit code 0 when all was done, 1 when the input was refused, 2 when the arguments make no sense. Each module adds its
-commands to the parser and runs them.
+Exit code 0 when all was done, 1 when the input was refused, or nobody reads the output any more, 2 when the arguments
+make no sense. Each module adds its commands to the parser and runs them.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 
@@ -25,12 +26,27 @@ def main(arguments: Sequence[str]) -> int:
     namespace = _parser().parse_args(arguments)
     try:
         code: int = namespace.run(namespace, arguments)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        if not _output_is_closed():
+            raise
+        return 1
     except ImportError as missing:
         if missing.name not in _OPTIONAL:
             raise
         print(missing, file=sys.stderr)
         return 1
     return code
+
+
+def _output_is_closed() -> bool:
+    """Whether nobody reads what is printed any more, as behind ``| head``; then the rest of it goes nowhere."""
+    try:
+        print(flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at its end
+        return True
+    return False
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pkm_post.geometry.gather import numbered
 from pkm_post.geometry.vectors import Array
 
 LONGEST_MS = 128
@@ -53,8 +54,7 @@ def _even(rests_ms: Array) -> tuple[Array, Array]:
     """Even intervals of at most ``LONGEST_MS`` between the rests."""
     span = np.diff(rests_ms)
     pieces = -(-span // LONGEST_MS)
-    run = np.repeat(np.arange(len(span)), pieces)
-    number = np.arange(len(run)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    run, number = numbered(pieces)
     start = rests_ms[run] + number * span[run] // pieces[run]
     return start, rests_ms[run] + (number + 1) * span[run] // pieces[run]
 

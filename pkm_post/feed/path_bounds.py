@@ -15,6 +15,7 @@ import numpy as np
 from pkm_post.feed.blends import OFFSET
 from pkm_post.feed.segments import Segments
 from pkm_post.feed.tool_path import ToolPath
+from pkm_post.geometry.torsion import tilt, turn_by_tilt
 from pkm_post.geometry.vectors import Array, norm
 
 _STEP = 0.75
@@ -22,8 +23,6 @@ _STEP = 0.75
 _WIDEST = 0.5
 """rad: a blend in which the tool axis may turn farther has no bound."""
 _NO_BOUND = 1e12
-_ALMOST_DOWN = np.pi / 2 - 1e-3
-"""Half of the highest tilt that has a bound of the turn; a platform does not come near it."""
 _BEYOND = 1.45
 """How far a segment is followed for its blends, by its extent: it begins one and ends one."""
 
@@ -95,10 +94,9 @@ def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> t
 def _half_tilt(seg: Segments, angle: Array, off: Array) -> Array:
     """A great circle rises above its ends by no more than half its angle, and a blend is off by a little."""
     last = seg.axis_at(np.array([len(seg) - 1]), seg.extent[-1:])[0]
-    axis = np.concatenate([seg.axis, last])
-    tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
-    highest = np.maximum(tilt[1:], tilt[:-1]) + angle / 2 + _with_joints(np.zeros(len(seg)), off, off > 0)
-    return np.tan(np.minimum(highest / 2, _ALMOST_DOWN))
+    tilts = tilt(np.concatenate([seg.axis, last]))
+    highest = np.maximum(tilts[1:], tilts[:-1]) + angle / 2 + _with_joints(np.zeros(len(seg)), off, off > 0)
+    return turn_by_tilt(highest)
 
 
 def _of_spin(seg: Segments, blended: Array, steepness: Array) -> tuple[Array, Array]:

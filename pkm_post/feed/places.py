@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from pkm_post.geometry.gather import numbered
 from pkm_post.geometry.vectors import Array
 
 _ROUNDING = 1e-9
@@ -76,26 +77,20 @@ class Intervals:
 
     def at_joints(self, joint_time: Array) -> Places:
         """The joints inside."""
-        row, number = _numbered(self.last - self.first)
+        row, number = numbered(self.last - self.first)
         joint = self.first[row] + number
         return self._places(row, joint_time[joint], joint)
 
     def between_joints(self, joint_time: Array, gaps: int) -> Places:
         """At least one place on each segment, and together with the joints no gap above one of ``gaps`` even ones."""
-        row, number = _numbered(self.last - self.first + 1)
+        row, number = numbered(self.last - self.first + 1)
         segment = self.first[row] + number
         begin = np.where(number > 0, joint_time[segment - 1], (self.start / 1000)[row])
         way = np.minimum(joint_time[segment], (self.end / 1000)[row]) - begin
         parts = np.maximum(2, np.ceil(gaps * way / self.duration[row] - _ROUNDING).astype(np.int64))
-        piece, number = _numbered(parts - 1)
+        piece, number = numbered(parts - 1)
         time = begin[piece] + way[piece] * ((number + 1) / parts[piece])
         return self._places(row[piece], time, segment[piece])
 
     def _places(self, row: Array, time: Array, segment: Array) -> Places:
         return Places(row, (time - (self.start / 1000)[row]) / self.duration[row], time, segment)
-
-
-def _numbered(count: Array) -> tuple[Array, Array]:
-    """Rows 0 to N - 1, each as often as it counts, and numbers from 0 within each row."""
-    row = np.repeat(np.arange(len(count)), count)
-    return row, np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)

@@ -3,7 +3,7 @@
 
 Enough of them that what the limits depend on is close to straight between two: every blend is cut evenly, and between
 blends the tip moves and the axis turns only a little from one station to the next. Segments on which nothing has to
-be computed from place to place have so many only that the way may be taken as straight from one to the next.
+be computed from place to place have none in their blends.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from pkm_post.feed.tool_path import ToolPath
 from pkm_post.geometry import norm
+from pkm_post.geometry.gather import numbered
 from pkm_post.geometry.vectors import Array
 
 _CELLS_IN_HALF_BLEND = 4
@@ -63,10 +64,9 @@ def stations(path: ToolPath, close: Array | None = None) -> Stations:
     ).ravel()
     begin = np.column_stack([0 * entry, entry, extent - leave]).ravel()
     width = np.column_stack([entry, middle, leave]).ravel()
-    part = np.repeat(np.arange(len(cells)), cells)
-    number = np.arange(len(part)) - np.repeat(np.cumsum(cells) - cells, cells) + 1
+    part, number = numbered(cells)
     segment = part // 3
-    u = begin[part] + width[part] * (number / cells[part])
+    u = begin[part] + width[part] * ((number + 1) / cells[part])
     last = np.append(segment[1:] != segment[:-1], True)
     u[last] = extent
     joint = np.flatnonzero(path.blend)

@@ -24,6 +24,16 @@ def among(numbers: Array) -> tuple[Array, Array]:
     return first + np.flatnonzero(used), (np.cumsum(used) - 1)[numbers - first]
 
 
+def numbered(count: Array) -> tuple[Array, Array]:
+    """Rows 0 to N - 1, each as often as it counts, and numbers from 0 within each row, (M,) each.
+
+    Args:
+        count: (N,) how often.
+    """
+    row = np.repeat(np.arange(len(count)), count)
+    return row, np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+
+
 def taken(vectors: Array, rows: Array) -> Array:
     """Rows of (M, 3) vectors, (N, 3), column after column in memory."""
     return np.take(np.ascontiguousarray(vectors.T), rows, axis=1).T

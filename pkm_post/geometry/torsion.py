@@ -10,6 +10,27 @@ import numpy as np
 
 from pkm_post.geometry.vectors import Array, dot
 
+_STRAIGHT_DOWN = 1e-9
+"""Of 1 + kz."""
+_ALMOST_DOWN = np.pi / 2 - 1e-3
+"""Half of the highest tilt that has a bound of the turn; a platform does not come near it."""
+
+
+def tilt(axis: Array) -> Array:
+    """Angles of unit axes (N, 3) from upright, (N,) rad."""
+    return np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
+
+
+def turn_by_tilt(highest: Array) -> Array:
+    """By how much a frame turns about its z axis, at most, for each radian that this axis turns by, (N,).
+
+    A frame without torsion turns by w = k x k' + tau k with |tau| <= tan(tilt / 2) |k'|.
+
+    Args:
+        highest: (N,) rad, the highest tilt there is.
+    """
+    return np.tan(np.minimum(highest / 2, _ALMOST_DOWN))
+
 
 def untwisted(axis: Array) -> tuple[Array, Array]:
     """The x and y axes of the frame that the shortest rotation takes from upright to unit axes, (N, 3) each.
@@ -20,13 +41,33 @@ def untwisted(axis: Array) -> tuple[Array, Array]:
     Raises:
         ValueError: an axis points straight down, where the shortest rotation is not unique.
     """
-    lean = 1 + axis[:, 2]
-    if np.any(lean < 1e-9):
-        raise ValueError("expected tool axes above the horizontal plane, got one that points straight down")
-    half = axis + [0.0, 0.0, 1.0]
-    x = [1.0, 0.0, 0.0] - (axis[:, 0] / lean)[:, None] * half
-    y = [0.0, 1.0, 0.0] - (axis[:, 1] / lean)[:, None] * half
-    return x, y
+    x, y = np.empty((2, 3, len(axis)))
+    fill_frame(x, y, axis.T, np.zeros(len(axis)))
+    return x.T, y.T
+
+
+def fill_frame(x: Array, y: Array, axis: Array, spin: Array) -> None:
+    """Write the x and y axes of frames, each a vector in a column, (3, N).
+
+    Args:
+        x: where the x axes are written, (3, N).
+        y: where the y axes are written, (3, N).
+        axis: (3, N) the z axes, unit, none of them pointing straight down.
+        spin: (N,) rad, the turns about these, beyond the shortest rotations.
+
+    Raises:
+        ValueError: an axis points straight down, where the shortest rotation is not unique.
+    """
+    lean = 1 + axis[2]
+    if np.any(lean < _STRAIGHT_DOWN):
+        raise ValueError("expected tool axes that do not point straight down, got one that does")
+    cosine, sine = np.cos(spin), np.sin(spin)
+    for column, along, across in ((x, cosine, sine), (y, -sine, cosine)):
+        down = along * axis[0] + across * axis[1]
+        np.multiply(-down / lean, axis, out=column)
+        column[0] += along
+        column[1] += across
+        column[2] = -down
 
 
 def torsion(axis: Array, x: Array) -> Array:

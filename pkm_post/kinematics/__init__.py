@@ -21,11 +21,11 @@ from pkm_post.kinematics.workspace import reach_faults, reach_findings
 __all__ = [
     "Demand",
     "Ends",
-    "ReachFinding",
     "Inside",
     "Margins",
     "NearPoses",
     "Part",
+    "ReachFinding",
     "Solution",
     "Stray",
     "ToolCubics",

@@ -27,7 +27,7 @@ from pkm_post.kinematics.placed import Placed
 from pkm_post.kinematics.way import Way
 from pkm_post.model import Machine
 
-_CHUNK = 2048
+_AT_ONCE = 2048
 """Poses per pass: the working arrays of one pass stay in the processor's cache."""
 _STRIDE = 64
 _STRIDE_FOR_FAULTS = 512
@@ -81,7 +81,7 @@ def survey(
 
 
 def _chunks(rows: Array) -> Iterator[Array]:
-    return (rows[first : first + _CHUNK] for first in range(0, len(rows), _CHUNK))
+    return (rows[first : first + _AT_ONCE] for first in range(0, len(rows), _AT_ONCE))
 
 
 class _Survey:

@@ -17,7 +17,9 @@ from pkm_post.kinematics.jacobian import linearise, solve_regular
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.model import Machine
 
-_CHUNK = 4096
+_MOST_STEPS = 20
+"""Newton steps before a row is given up."""
+_AT_ONCE = 4096
 """Poses per pass: their Jacobians stay in the processor's cache."""
 LENGTH_TOLERANCE = 1e-10
 """mm: Newton stops when no strut is off by more; about a thousand roundings of a metre-long strut."""
@@ -50,7 +52,6 @@ def forward(
     guess_tip: Array,
     guess_axis: Array,
     guess_spin: Array,
-    iterations: int = 20,
 ) -> Solution:
     """Tool poses that have the given strut lengths.
 
@@ -61,36 +62,27 @@ def forward(
         guess_tip: (N, 3) tips to start from.
         guess_axis: (N, 3) unit tool axes to start from.
         guess_spin: (N,) spins to start from.
-        iterations: Newton steps before a row is given up.
     """
-    return newton(machine, lengths, tool_length, guess_tip, platform_rotation(guess_axis, guess_spin), iterations)
+    return newton(machine, lengths, tool_length, guess_tip, platform_rotation(guess_axis, guess_spin))
 
 
-def newton(
-    machine: Machine, lengths: Array, tool_length: Array, guess_tip: Array, guess_rotation: Array, iterations: int = 20
-) -> Solution:
+def newton(machine: Machine, lengths: Array, tool_length: Array, guess_tip: Array, guess_rotation: Array) -> Solution:
     """The same from guesses whose rotations are matrices, (N, 3, 3)."""
     tip, rotation = np.array(guess_tip, dtype=np.float64), np.array(guess_rotation, dtype=np.float64)
     converged = np.zeros(len(tip), dtype=bool)
-    for first in range(0, len(tip), _CHUNK):
-        rows = slice(first, first + _CHUNK)
-        _newton(machine, lengths[rows], tool_length[rows], tip[rows], rotation[rows], converged[rows], iterations)
+    for first in range(0, len(tip), _AT_ONCE):
+        rows = slice(first, first + _AT_ONCE)
+        _newton(machine, lengths[rows], tool_length[rows], tip[rows], rotation[rows], converged[rows])
     return Solution(tip, rotation, converged)
 
 
 def _newton(
-    machine: Machine,
-    lengths: Array,
-    tool_length: Array,
-    tip: Array,
-    rotation: Array,
-    converged: Array,
-    iterations: int,
+    machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array, converged: Array
 ) -> None:
     """Move tips and rotations in place until they have the lengths; say of which rows that is so."""
     at, turned, wanted, tool = tip.copy(), rotation.copy(), lengths, tool_length
     rows = np.arange(len(tip))
-    for _ in range(iterations):
+    for _ in range(_MOST_STEPS):
         jacobian, found = linearise(machine, at, turned, tool)
         residual = wanted - found
         done = np.max(np.abs(residual), axis=1) < LENGTH_TOLERANCE

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pkm_post.geometry.torsion import fill_frame
 from pkm_post.geometry.vectors import Array, length_of, norm
 from pkm_post.kinematics.orientation import platform_rotation
 from pkm_post.kinematics.screw import screw_correction
@@ -124,17 +125,3 @@ def _fill(
     np.einsum("ij,ij->j", p, p, out=numbers[6])
     numbers[7] = 1.0
     return numbers
-
-
-def fill_frame(x: Array, y: Array, k: Array, spin: Array) -> None:
-    """Write the x and y axes of the platform, (3, N) each, whose z axis is the tool axis k."""
-    lean = 1 + k[2]
-    if np.any(lean < 1e-9):
-        raise ValueError("expected tool axes that do not point straight down, got one that does")
-    cosine, sine = np.cos(spin), np.sin(spin)
-    for column, along, across in ((x, cosine, sine), (y, -sine, cosine)):
-        down = along * k[0] + across * k[1]
-        np.multiply(-down / lean, k, out=column)
-        column[0] += along
-        column[1] += across
-        column[2] = -down

@@ -15,8 +15,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from pkm_post.geometry.torsion import fill_frame
 from pkm_post.geometry.vectors import Array, cross
-from pkm_post.kinematics.inverse import fill_frame, form_of_squares, strut_vectors
+from pkm_post.kinematics.inverse import form_of_squares, strut_vectors
 from pkm_post.kinematics.orientation import angular_rates, platform_rotation
 from pkm_post.kinematics.screw import screw_rates
 from pkm_post.model import Machine, Poses

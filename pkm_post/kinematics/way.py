@@ -5,8 +5,8 @@ Cell i leads from row i - 1 to row i. Inside it the pose is known for any share 
 and spin move evenly with the share: the tip along a line or an arc, the axis along a great circle. Two numbers bound
 what any point of the platform does in a cell: it moves by no more than travel + turn * its distance from the tip.
 
-The platform turns by w = k x k' + (psi' + tau) k, |tau| <= tan(tilt / 2) |k'|, so that turn^2 = angle^2 + (|spin| +
-tan(tilt / 2) angle)^2 with the highest tilt of the cell. Units: mm, rad.
+The platform turns by w = k x k' + (psi' + tau) k, |tau| <= tan(tilt / 2) |k'| (``geometry.torsion``), so that turn^2 =
+angle^2 + (|spin| + tan(tilt / 2) angle)^2 with the highest tilt of the cell. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -17,13 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry.great_circle import along, angle_between, towards
+from pkm_post.geometry.torsion import tilt, turn_by_tilt
 from pkm_post.geometry.vectors import Array, norm
 
 Pose = tuple[Array, Array, Array, Array]
 """Tips (N, 3), unit tool axes (N, 3), spins (N,), gauge lengths (N,): the arguments of ``inverse``."""
-
-_ALMOST_DOWN = np.pi / 2 - 1e-3
-"""Half of the highest tilt that has a bound of the turn; a platform does not come near it."""
 
 
 @dataclass(frozen=True)
@@ -95,8 +93,8 @@ class Way:
 
     def half_tilt(self) -> Array:
         """Tangent of half the highest tilt in each cell, (N,)."""
-        tilt = _tilt(self.axis)
-        return _half_tilt(np.concatenate([tilt[:1], tilt[:-1]]), tilt, self.angle)
+        tilts = tilt(self.axis)
+        return _half_tilt(np.concatenate([tilts[:1], tilts[:-1]]), tilts, self.angle)
 
     def turn(self) -> Array:
         """Angle the platform turns in each cell, or more, (N,)."""
@@ -114,13 +112,9 @@ def turn_between(start: Array, end: Array, spin_change: Array) -> Array:
         spin_change: (M,)
     """
     angle = angle_between(start, end)
-    return np.hypot(angle, np.abs(spin_change) + _half_tilt(_tilt(start), _tilt(end), angle) * angle)
-
-
-def _tilt(axis: Array) -> Array:
-    return np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
+    return np.hypot(angle, np.abs(spin_change) + _half_tilt(tilt(start), tilt(end), angle) * angle)
 
 
 def _half_tilt(at_start: Array, at_end: Array, angle: Array) -> Array:
     """Tangent of half the highest tilt on a great circle of which the tilts at its ends are known."""
-    return np.tan(np.minimum((np.maximum(at_start, at_end) + angle / 2) / 2, _ALMOST_DOWN))
+    return turn_by_tilt(np.maximum(at_start, at_end) + angle / 2)

@@ -45,7 +45,7 @@ def reach_findings(
         least_stiffness: what the tip must have along the normals, N/mm.
     """
     shortest = _shortest(machine, way)
-    findings = survey(machine, way, _checks(machine, way, shortest, part))
+    findings = survey(machine, way, all_checks(machine, way, shortest, part))
     if duration is not None:
         findings += (pace_finding(machine, way, shortest, duration),)
     if normal is not None and machine.strut_stiffness is not None:
@@ -53,7 +53,15 @@ def reach_findings(
     return findings
 
 
-def _checks(machine: Machine, way: Way, shortest: float, part: Part | None) -> tuple[Check, ...]:
+def all_checks(machine: Machine, way: Way, shortest: float, part: Part | None) -> tuple[Check, ...]:
+    """All that is checked of a way, in the order of their codes.
+
+    Args:
+        machine: the geometry.
+        way: where the tool goes.
+        shortest: mm that no strut of the way is below.
+        part: what the tool must not meet; None leaves its checks out.
+    """
     return (
         *stroke_checks(machine, way, shortest),
         *joint_checks(machine, way, shortest),
@@ -83,10 +91,10 @@ def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Ar
         way: N poses in order along the trajectory, and what is between them.
         segment: (N,) segment each of them lies on.
     """
-    left = doubtful(machine, way, lambda shortest: _checks(machine, way, shortest, None))
+    left = doubtful(machine, way, lambda shortest: all_checks(machine, way, shortest, None))
     if not left:
         return ()
-    checks = _checks(machine, way, _shortest(machine, way), None)
+    checks = all_checks(machine, way, _shortest(machine, way), None)
     found = survey(machine, way, tuple(checks[number] for number in left), faults_alone=True)
     return faults_of(found, trajectory, segment)
 

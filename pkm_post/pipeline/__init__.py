@@ -4,10 +4,11 @@
 ``steps`` alone knows the order of the steps. Either every file is written and certified, or none is there.
 """
 
+from pkm_post.pipeline.frame import Posted
 from pkm_post.pipeline.options import LINUXCNC, Options
 from pkm_post.pipeline.placed import trajectory_of, work_offset
 from pkm_post.pipeline.run import Log, Progress, quiet, unwatched
-from pkm_post.pipeline.steps import SUFFIX, Posted, post, step_names
+from pkm_post.pipeline.steps import SUFFIX, post, step_names
 
 __all__ = [
     "LINUXCNC",

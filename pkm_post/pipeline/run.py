@@ -41,12 +41,14 @@ class Run:
         progress: is told at the beginning of each step.
         shares: how much of the work each step is, by its name, in any unit.
         warnings: found so far.
+        raised_outside: what log or progress raised, if that could be taken for a fault of our own files.
     """
 
     log: Log
     progress: Progress
     shares: Mapping[str, float]
     warnings: list[Diagnostic] = field(default_factory=list)
+    raised_outside: OSError | None = None
 
     def accept(self, diagnostics: Findings) -> None:
         """Keep warnings, stop at errors."""
@@ -65,11 +67,22 @@ class Run:
     @contextlib.contextmanager
     def step(self, name: str) -> Iterator[list[str]]:
         """Tell that a step begins; log it at its end with its time and what it adds to the list."""
-        self.progress(name, self._done_before(name))
+        self._tell(self.progress, name, self._done_before(name))
         told: list[str] = []
         begin = time.perf_counter()
         yield told
-        self.log(f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(told)}")
+        self._tell(self.log, f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(told)}")
+
+    def end(self) -> None:
+        """Tell that all steps are done."""
+        self._tell(self.progress, "", 1.0)
+
+    def _tell(self, call: Callable[..., None], *what: object) -> None:
+        try:
+            call(*what)
+        except OSError as fault:
+            self.raised_outside = fault
+            raise
 
     def _done_before(self, name: str) -> float:
         names = list(self.shares)

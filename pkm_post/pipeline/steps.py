@@ -7,18 +7,19 @@ the frame: what is the same for all of them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pkm_post import outputs, planning, trajectory_file
 from pkm_post.certificate import certify
-from pkm_post.controllers import TABLES, Controller, controller_of
+from pkm_post.controllers import TABLES, controller_of
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
 from pkm_post.model import Diagnostic, Machine, Motion, Place, Program, Refused, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Tolerances
+from pkm_post.model.certificate import Certificate
 from pkm_post.model.diagnostics import errors
+from pkm_post.pipeline.frame import Frame, Posted
 from pkm_post.pipeline.options import LINUXCNC, Options
 from pkm_post.pipeline.placed import trajectory_of
 from pkm_post.pipeline.run import Findings, Log, Progress, Run, quiet, unwatched
@@ -32,53 +33,6 @@ _SHARES = {_TRAJECTORY: 0.1, _FEED_PLAN: 1.0, _INTERPOLATION: 1.5, _PROGRAM: 0.1
 """The steps in their order, and roughly how long each takes beside the others."""
 _SHARE_OF_ANOTHER = 0.2
 """The same for a file beside the program."""
-
-
-@dataclass(frozen=True)
-class Posted:
-    """What was made.
-
-    Attributes:
-        program: the motion program, or the first of its parts.
-        files: everything that was written, the program included.
-        report: the content of the report file.
-        diagnostics: warnings.
-        parts: the files of the motion program, in the order in which they run.
-    """
-
-    program: Path
-    files: tuple[Path, ...]
-    report: dict[str, Any]
-    diagnostics: Findings
-    parts: tuple[Path, ...]
-
-
-@dataclass(frozen=True)
-class _Frame:
-    """What all steps need to know.
-
-    Attributes:
-        path: of the motion program; the other files take its folder and its stem.
-        machine: that the program is for.
-        controller: of the machine.
-        settings: of the controller, of a class of its own.
-        options: what the user chose.
-    """
-
-    path: Path
-    machine: Machine
-    controller: Controller
-    settings: Any
-    options: Options
-
-    @property
-    def tolerances(self) -> Tolerances:
-        """What was asked for."""
-        return self.options.tolerances
-
-    def beside(self, ending: str) -> Path:
-        """The path of another file."""
-        return self.path.with_name(self.path.stem + ending)
 
 
 def post(
@@ -111,9 +65,11 @@ def post(
     try:
         with staged(program_path.parent) as folder:
             parts, report = _all_steps(run, program, machine, folder / program_path.name, options)
-            progress("", 1.0)
+            run.end()
             names = sorted(path.name for path in folder.iterdir())
     except OSError as fault:
+        if fault is run.raised_outside:
+            raise
         raise Refused([*run.warnings, Diagnostic("F101", Place(str(program_path)), str(fault))]) from fault
     files, programs = (tuple(program_path.parent / name for name in each) for each in (names, parts))
     return Posted(program_path, files, report, tuple(run.warnings), programs)
@@ -137,7 +93,7 @@ def _all_steps(
 ) -> tuple[list[str], dict[str, Any]]:
     """The steps in their order; the names of the parts of the program, and the content of the report."""
     controller = run.value(controller_of(machine))
-    frame = _Frame(path, machine, controller, run.value(controller.settings_of(machine)), options)
+    frame = Frame(path, machine, controller, run.value(controller.settings_of(machine)), options)
     trajectory = _stored_trajectory(run, frame, program)
     tool_path, schedule = _feed_plan(run, frame, trajectory)
     motion, struts = _interpolation(run, frame, trajectory, tool_path, schedule)
@@ -149,7 +105,7 @@ def _all_steps(
     return names, report
 
 
-def _stored_trajectory(run: Run, frame: _Frame, program: Program) -> Trajectory:
+def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
     """The trajectory as its file says it: what is planned is what was stored."""
     with run.step(_TRAJECTORY) as told:
         placed = run.value(trajectory_of(program, frame.machine, frame.options))
@@ -160,7 +116,7 @@ def _stored_trajectory(run: Run, frame: _Frame, program: Program) -> Trajectory:
     return trajectory
 
 
-def _feed_plan(run: Run, frame: _Frame, trajectory: Trajectory) -> tuple[ToolPath, Schedule]:
+def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath, Schedule]:
     """The path with rounded corners, and when the tool is where on it."""
     with run.step(_FEED_PLAN) as told:
         tool_path = planning.tool_path(trajectory, frame.tolerances)
@@ -171,7 +127,7 @@ def _feed_plan(run: Run, frame: _Frame, trajectory: Trajectory) -> tuple[ToolPat
 
 
 def _interpolation(
-    run: Run, frame: _Frame, trajectory: Trajectory, tool_path: ToolPath, schedule: Schedule
+    run: Run, frame: Frame, trajectory: Trajectory, tool_path: ToolPath, schedule: Schedule
 ) -> tuple[Motion, StrutMotion]:
     """Tool poses and strut lengths by time, which the controller can take."""
     with run.step(_INTERPOLATION) as told:
@@ -182,7 +138,7 @@ def _interpolation(
     return motion, struts
 
 
-def _motion_program(run: Run, frame: _Frame, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
+def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
     """Write the program and the set-up it relies on; the names of its parts."""
     with run.step(_PROGRAM) as told:
         controller, settings, machine = frame.controller, frame.settings, frame.machine
@@ -196,7 +152,7 @@ def _motion_program(run: Run, frame: _Frame, trajectory: Trajectory, struts: Str
 
 
 def _certificate(
-    run: Run, frame: _Frame, trajectory: Trajectory, motion: Motion, names: list[str]
+    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, names: list[str]
 ) -> tuple[StrutMotion, Certificate]:
     """The program read back from its text, and what it does."""
     with run.step(_CERTIFICATE) as told:
@@ -209,7 +165,7 @@ def _certificate(
 
 
 def _report(
-    run: Run, frame: _Frame, trajectory: Trajectory, motion: Motion, played: StrutMotion, certificate: Certificate
+    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, played: StrutMotion, certificate: Certificate
 ) -> dict[str, Any]:
     """Write the report as JSON and picture; its content."""
     with run.step(_REPORT) as told:
@@ -222,13 +178,12 @@ def _report(
     return report
 
 
-def _write_another(run: Run, frame: _Frame, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
+def _write_another(run: Run, frame: Frame, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
     """Write a file that was asked for beside the program."""
     with run.step(_another(name)) as told:
         if name == LINUXCNC:
             run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
             return
-        # the last line of the heading speaks of the program
-        found, faults = outputs.write_table(frame.path, TABLES[name], played, summary.heading(trajectory)[:-1])
+        found, faults = outputs.write_table(frame.path, TABLES[name], played, summary.origin(trajectory))
         run.accept(faults)
         told.append(found)

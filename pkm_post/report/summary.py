@@ -21,16 +21,21 @@ from pkm_post.model.certificate import Certificate, Finding, Tolerances
 
 _FORMAT = 1
 """Version of the report's layout, for programs that read it."""
+_AS_IT_IS = "axis values are strut lengths in mm, speeds in mm/s; do not edit: the program is certified as it is"
 
 
 def heading(trajectory: Trajectory) -> list[str]:
     """What a motion program says of itself in its first lines."""
+    return [*origin(trajectory), _AS_IT_IS]
+
+
+def origin(trajectory: Trajectory) -> list[str]:
+    """What any file says in its first lines of where it comes from."""
     tools = ", ".join(f"T{tool.number} {tool.name} length {tool.length:g} mm" for tool in _tools(trajectory))
     return [
         f"PKM Post {pkm_post.__version__}: {trajectory.source}",
         f"machine {trajectory.machine}, machine file SHA-256 {trajectory.machine_fingerprint[:16]}",
         f"tools: {tools}",
-        "axis values are strut lengths in mm, speeds in mm/s; do not edit: the program is certified as it is",
     ]
 
 

@@ -9,7 +9,7 @@ from ways import bodied, counted, samples, upright, wandering, with_limit
 from pkm_post.kinematics import Way
 from pkm_post.kinematics.around import doubtful
 from pkm_post.kinematics.placed import Placed
-from pkm_post.kinematics.workspace import _checks
+from pkm_post.kinematics.workspace import all_checks
 
 SHARES = np.linspace(0.0, 1.0, 150)[1:]
 EXACT_ALONE = "K116"
@@ -30,7 +30,7 @@ def poses_for(way):
     looked_at = []
 
     def checks_for(shortest):
-        checks, looks = counted(_checks(bodied(), way, shortest, None))
+        checks, looks = counted(all_checks(bodied(), way, shortest, None))
         looked_at.append(looks)
         return checks
 
@@ -48,12 +48,12 @@ def test_what_is_proven_holds_everywhere(machine):
         dense = Way.straight(*samples(corners, np.arange(1, 8), SHARES))
         for way in (corners, dense):
             placed = Placed.of(machine, dense.rows(slice(None)))
-            exact = [check.margins(placed).min() for check in _checks(machine, way, 500.0, None)]
+            exact = [check.margins(placed).min() for check in all_checks(machine, way, 500.0, None)]
             less = rng.uniform(-0.05, 0.3, len(exact)) * np.abs(exact)
             limits = np.array(exact) - less
 
             def checks_for(shortest, way=way, limits=limits):
-                return tuple(map(with_limit, _checks(machine, way, shortest, None), limits))
+                return tuple(map(with_limit, all_checks(machine, way, shortest, None), limits))
 
             left = doubtful(machine, way, checks_for)
             for number, check in enumerate(checks_for(500.0)):
@@ -76,12 +76,12 @@ def test_one_bad_row_among_many_is_doubtful():
     bad = Way.straight(tip, way.axis, way.spin, way.tool_length)
     placed = Placed.of(bodied(), bad.rows(slice(7000, 7001)))
     broken = {
-        number for number, check in enumerate(_checks(bodied(), bad, 500.0, None)) if check.margins(placed).min() < 0
+        number for number, check in enumerate(all_checks(bodied(), bad, 500.0, None)) if check.margins(placed).min() < 0
     }
-    left = doubtful(bodied(), bad, lambda shortest: _checks(bodied(), bad, shortest, None))
+    left = doubtful(bodied(), bad, lambda shortest: all_checks(bodied(), bad, shortest, None))
     assert broken and broken <= set(left)
 
 
 def test_a_way_of_one_row_is_proven_by_itself():
     way = Way.straight(*upright([[0.0, 0, 200]]))
-    assert poses_for(way) == len(_checks(bodied(), way, 500.0, None))
+    assert poses_for(way) == len(all_checks(bodied(), way, 500.0, None))

@@ -13,7 +13,7 @@ from pkm_post.kinematics import Part, Way, reach_findings
 from pkm_post.kinematics.between import survey
 from pkm_post.kinematics.checks import HUNDREDTH, shortest_distance
 from pkm_post.kinematics.placed import Placed
-from pkm_post.kinematics.workspace import _checks
+from pkm_post.kinematics.workspace import all_checks
 from pkm_post.model.machine import Box
 
 SHARES = np.linspace(0.0, 1.0, 401)
@@ -30,7 +30,7 @@ HIDING = {"K101": 2, "K115": 2, "K117": 1, "K121": 2}
 
 
 def checks_of(machine, way, part=PART):
-    return _checks(machine, way, shortest_distance(machine, way), part)
+    return all_checks(machine, way, shortest_distance(machine, way), part)
 
 
 def named(findings, name):
@@ -60,7 +60,7 @@ def test_findings_agree_with_looking_everywhere(code):
     for _ in range(30):
         way = wandering(rng, 2, tilt_deg=30, spin_deg=60)
         check = next(
-            check for check in _checks(machine, way, shortest_distance(machine, way), POINTS) if check.code == code
+            check for check in all_checks(machine, way, shortest_distance(machine, way), POINTS) if check.code == code
         )
         margins = check.margins(Placed.of(machine, samples(way, np.array([1]), SHARES))).min(axis=1)
         # Between two samples the margin may go down by half of what its slope allows.

@@ -11,7 +11,7 @@ from pkm_post.geometry import unit
 from pkm_post.kinematics import Part, Way, platform_joints, platform_rotation
 from pkm_post.kinematics.checks import shortest_distance
 from pkm_post.kinematics.placed import Placed
-from pkm_post.kinematics.workspace import _checks
+from pkm_post.kinematics.workspace import all_checks
 from pkm_post.model.machine import Box
 
 STEP = 8.0
@@ -21,7 +21,7 @@ PART = Part.of(boxes=[Box("part", [-40.0, -40, 100], [40.0, 40, 180])])
 
 def margins_of(machine, way, code, part=PART):
     """Margins at the rows of all checks with a code, side by side, and what their columns are called."""
-    checks = [one for one in _checks(machine, way, shortest_distance(machine, way), part) if one.code == code]
+    checks = [one for one in all_checks(machine, way, shortest_distance(machine, way), part) if one.code == code]
     placed = Placed.of(machine, way.rows(slice(None)))
     return [name for one in checks for name in one.parts], np.hstack([one.margins(placed) for one in checks])
 
@@ -177,7 +177,7 @@ def test_what_is_not_stated_is_not_checked():
     way = Way.straight(*upright([[0.0, 0, 200]]))
 
     def codes(machine, part=None):
-        return {check.code for check in _checks(machine, way, 700.0, part)} - {"K101", "K102", "K103", "K104", "K105"}
+        return {check.code for check in all_checks(machine, way, 700, part)} - {"K101", "K102", "K103", "K104", "K105"}
 
     machine = bodied()
     assert codes(machine, PART) == {"K113", "K114", "K115", "K116", "K117", "K121"}
