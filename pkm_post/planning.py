@@ -33,7 +33,7 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import Way, reach_faults, strut_rates
 from pkm_post.model import Diagnostic, Event, Machine, Motion, StrutMotion, Trajectory
 from pkm_post.model.certificate import Tolerances
-from pkm_post.speed_limits import below_feed, bent, bounded_by, feed_at, limits_at, roughly_bounded
+from pkm_post.speed_limits import below_feed, bent, bounded_by, feed_at, limits_at, rough_feed, roughly_bounded
 
 _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
@@ -73,7 +73,7 @@ def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple
     faults = reach_faults(machine, trajectory, *_way(path, stations(path, bent(path, most))))
     if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
         return _without_jumps(path, machine), faults
-    rough = rough_limits(path.feed, roughly_bounded(machine, path, most))
+    rough = rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
     close = below_feed(path, *rough)
     marks = stations(path, close)
     square, along = limits_at(path, marks, close, rough, machine)
@@ -93,8 +93,9 @@ def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
     """The schedule for a machine with limits of jerk."""
     marks = stations(path)
-    bounded = bounded_by(machine, path.within(marks.segment, marks.u))
-    square, along = limits(feed_at(path, marks.segment, marks.u), bounded)
+    poses = path.within(marks.segment, marks.u)
+    bounded = bounded_by(machine, poses)
+    square, along = limits(feed_at(path, poses, marks.u), bounded)
     square[marks.rest] = 0.0
     ceilings = Ceilings(marks.s, marks.rest, square, along)
     _, window_ms, course = min(

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.feed import Bounded, PathBounds, Stations, ToolPath, limits, speed_profile
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry.vectors import Array, norm
 from pkm_post.kinematics import strut_rate_bounds, strut_rates
 from pkm_post.model import Machine, Poses
 
@@ -20,6 +20,8 @@ _STRUT_SPEED_SHARE = 0.95
 """Share of the strut speed that is planned: the controller's cubics swing a little about it."""
 _AT_FEED = 1e-6
 """Part of the speed squared by which a plan at the feed may be below it by rounding."""
+_LONGER = 1.002
+"""By how much the tip may go farther than the path length and count as going as far: the certificate allows 1.01."""
 _STRAIGHT = 0.01, 1e-4
 """mm and rad: by how much a path may leave its segments in blends and still be taken as straight between its joints."""
 _STATIONS_AT_ONCE = 4096
@@ -69,7 +71,8 @@ def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machin
         begin = max(first - 1, 0)
         block = rows[begin : first + _STATIONS_AT_ONCE + 1]
         segment, u = marks.segment[block], marks.u[block]
-        found = limits(feed_at(path, segment, u), bounded_by(machine, path.within(segment, u)))
+        poses = path.within(segment, u)
+        found = limits(feed_at(path, poses, u), bounded_by(machine, poses))
         own = np.flatnonzero(inner[block])
         own = own[(own >= first - begin) & (own < first - begin + _STATIONS_AT_ONCE)]
         square[block[own]], along[block[own]] = found[0][own], found[1][own]
@@ -77,9 +80,26 @@ def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machin
     return square, along
 
 
-def feed_at(path: ToolPath, segment: Array, u: Array) -> Array:
-    """Feed at stations, (M,); at a joint the lower one of its two segments."""
-    return np.minimum(path.feed[segment], path.feed[_following(path, segment, u)])
+def feed_at(path: ToolPath, poses: Poses, u: Array) -> Array:
+    """Feed by path length at stations, (M,); at a joint the lower one of its two segments.
+
+    Args:
+        path: the path.
+        poses: those at the stations.
+        u: (M,) path lengths of the stations on their segments.
+    """
+    lower = np.minimum(path.feed[poses.segment], path.feed[_following(path, poses.segment, u)])
+    return _of_tip(lower, norm(poses.tip_1))
+
+
+def rough_feed(path: ToolPath, most: PathBounds) -> Array:
+    """Feed by path length that is allowed all over each segment, (N,)."""
+    return _of_tip(path.feed, most.tip_1)
+
+
+def _of_tip(feed: Array, way: Array) -> Array:
+    """Speeds by path length where the tip goes by more than that: in blends with arcs."""
+    return feed / np.maximum(1.0, way / _LONGER)
 
 
 def _following(path: ToolPath, segment: Array, u: Array) -> Array:

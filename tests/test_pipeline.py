@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import dataclasses
 import json
+import math
 import resource
 import signal
 from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from programs import ON_PALLET, cone, program, random_job
+from programs import BALL, ON_PALLET, cone, program, random_job
 
 from pkm_post.controllers import pmac
 from pkm_post.machine_file import find_machine, read_machine
-from pkm_post.model import Event, EventKind, Refused
+from pkm_post.model import Event, EventKind, Kind, Refused, Tool
 from pkm_post.pipeline import Options, post, step_names
 
 
@@ -147,6 +148,61 @@ def test_warnings_do_not_stop_the_job(machine, tmp_path):
     fast = np.array([np.nan, 30.0, 900.0])
     posted = post(program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], feed=fast), machine, tmp_path / "job.pmc")
     assert [fault.code for fault in posted.diagnostics] == ["K110"]
+
+
+@pytest.mark.parametrize("jerk", [math.inf, 25000.0])
+@pytest.mark.parametrize("lean", [0.0, 10.0])
+def test_tools_of_different_lengths_are_posted(machine, tmp_path, jerk, lean):
+    """The platform stands while a tool is changed; the tip of the next one begins elsewhere than the last one ended."""
+    tools = {1: BALL, 2: Tool(2, "long", 8.0, 4.0, 125.0), 3: Tool(3, "short", 6.0, 3.0, 90.0)}
+    events = [
+        Event(0, EventKind.TOOL_CHANGE, 1),
+        Event(2, EventKind.TOOL_CHANGE, 2),
+        Event(5, EventKind.TOOL_CHANGE, 3),
+    ]
+    tip = [[0, 0, 60], [10, 0, 60], [20, 0, 60], [30, 0, 60], [30, 5, 60], [20, 5, 60], [10, 5, 70]]
+    tilt = np.radians(lean) * np.arange(len(tip)) / len(tip)
+    axis = np.column_stack([np.sin(tilt), 0 * tilt, np.cos(tilt)])
+    made = program(tip, axis, events=tuple(events), tools=tools)
+    posted = post(made, dataclasses.replace(machine, strut_jerk=jerk), tmp_path / "tools.pmc")
+    assert posted.report["certificate"]["holds"]
+    assert [tool["number"] for tool in posted.report["program"]["tools"]] == [1, 2, 3]
+
+
+@pytest.mark.parametrize("rise", [0.05, 0.1, 0.2, 0.25, 0.3])
+def test_turns_that_rise_by_about_what_is_allowed_are_posted(machine, tmp_path, rise):
+    """Both ends of such a turn are within the tolerance of each other, or nearly."""
+    nowhere, start, centre = [np.nan] * 3, [0, -10, 60], [0, 0, 60]
+    tip = [start, *([0, -10, 60 - rise * number] for number in (1, 2, 3))]
+    kind = [Kind.RAPID, Kind.ARC, Kind.ARC, Kind.ARC]
+    made = program(
+        tip, kind=kind, centre=np.array([nowhere] + [centre] * 3), turn=np.array([nowhere] + [[0, 0, 1.0]] * 3)
+    )
+    made = dataclasses.replace(made, tip_tolerance=np.full(4, 0.1))
+    assert post(made, machine, tmp_path / "ramp.pmc").report["certificate"]["holds"]
+
+
+@pytest.mark.parametrize("radius", [0.2, 1.0, 5.0])
+@pytest.mark.parametrize("allowed", [0.01, 0.3])
+def test_the_tip_keeps_to_the_feed_on_arcs_with_wide_tolerances(machine, tmp_path, radius, allowed):
+    """Where a blend follows a line and an arc that part, the tip goes farther than the path length."""
+    nowhere, centre = [np.nan] * 3, [0, 0, 60]
+    tip = [[-8, -radius, 60], [0, -radius, 60], [radius, 0, 60], [radius, 8, 60]]
+    kind = [Kind.RAPID, Kind.LINE, Kind.ARC, Kind.LINE]
+    centres, turns = np.array([nowhere] * 4), np.array([nowhere] * 4)
+    centres[2], turns[2] = centre, [0, 0, 1]
+    made = program(tip, kind=kind, feed=30.0, centre=centres, turn=turns)
+    made = dataclasses.replace(made, tip_tolerance=np.full(4, allowed))
+    assert post(made, machine, tmp_path / "arc.pmc").report["certificate"]["holds"]
+
+
+def test_a_small_arc_does_not_slow_the_way_to_it(machine, tmp_path):
+    """5 mm in front of a circle of 0.1 um were run at its speed, which took 25 s."""
+    nowhere = [np.nan] * 3
+    centres, turns = np.array([nowhere] * 3), np.array([nowhere] * 3)
+    centres[1], turns[1] = [0.00005, 0, 60], [0, 0, -1]
+    made = program([[0, 0, 60], [0.0001, 0, 60], [1, 0, 60]], kind=[0, 2, 1], feed=10.0, centre=centres, turn=turns)
+    assert post(made, machine, tmp_path / "small.pmc").report["motion"]["duration_s"] < 2.0
 
 
 class Cancelled(Exception):  # noqa: N818 - what a window raises when its user cancels

@@ -12,7 +12,7 @@ from pkm_post import planning, speed_limits
 from pkm_post.feed import PathBounds, cell_times, limits, rough_limits, speed_profile, stations
 from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
-from pkm_post.speed_limits import _following, below_feed, bent, bounded_by, feed_at, roughly_bounded
+from pkm_post.speed_limits import _following, below_feed, bent, bounded_by, feed_at, rough_feed, roughly_bounded
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 LONGER = 1e-3
@@ -49,14 +49,15 @@ def path_of(job):
 
 
 def rough_limits_of(path, machine):
-    return rough_limits(path.feed, roughly_bounded(machine, path, PathBounds.of(path)))
+    most = PathBounds.of(path)
+    return rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
 
 
 def everywhere(path, machine):
     """Stations, the ceiling of the speed squared at them, and the plan, with nothing left out."""
     marks = stations(path)
     poses = path.within(marks.segment, marks.u)
-    square, along = limits(feed_at(path, marks.segment, marks.u), bounded_by(machine, poses))
+    square, along = limits(feed_at(path, poses, marks.u), bounded_by(machine, poses))
     square[marks.rest] = 0.0
     return marks, square, speed_profile(marks.s, square, along)
 
@@ -87,7 +88,7 @@ def test_rough_limits_are_below_the_true_ones(name):
     rough = rough_limits_of(path, machine)
     marks = stations(path)
     poses = path.within(marks.segment, marks.u)
-    true = limits(feed_at(path, marks.segment, marks.u), bounded_by(machine, poses))
+    true = limits(feed_at(path, poses, marks.u), bounded_by(machine, poses))
     following = _following(path, marks.segment, marks.u)
     for below, above in zip(rough, true, strict=True):
         assert np.all(np.minimum(below[marks.segment], below[following]) <= above * (1 + 1e-9))

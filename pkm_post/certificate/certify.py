@@ -9,19 +9,22 @@ diagnostic for everything that does not hold.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.instants import Task
+from pkm_post.certificate.instants import Looked, when_worst
 from pkm_post.certificate.joints import Passed, pass_joints
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.playback import Played, play
+from pkm_post.certificate.structure import structure_faults
 from pkm_post.certificate.struts import off_plan, strut_jerk
+from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
+from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion, Trajectory
 from pkm_post.model.certificate import Certificate, Finding, Tolerances
 
 _FEED_SHARE = 1.01
@@ -48,7 +51,7 @@ def certify(
         motion: the plan; program and plan must have the same knots.
         tolerances: what was asked for.
     """
-    faults = _structure_faults(struts, program_name, trajectory, machine, motion)
+    faults = structure_faults(struts, program_name, trajectory, machine, motion)
     if faults:
         return None, faults
     ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
@@ -76,66 +79,66 @@ def _findings(
 ) -> tuple[Finding, ...]:
     """One row for each quantity: code, name, unit, values, limit, and when and where they were taken."""
     struts, machine, motion = task.struts, task.machine, task.motion
-    intervals = _Series(struts.time_ms[:-1] / 1000, motion.segment[1:])
-    joints = _Series(motion.joint_time, np.arange(len(trajectory)))
-    knots = _Series(struts.time_ms / 1000, motion.segment)
+    starts = partial(_start, motion)
+    knots = partial(_of_columns, struts.time_ms / 1000, motion.segment)
+    joints = partial(_of_columns, motion.joint_time, np.arange(len(trajectory)))
     at_ends = trajectory.tip_tolerances(tolerances.tip)
     axis_limit = math.degrees(tolerances.axis)
+    told = partial(_where_most_was_found, task, passed, played)
     rows: tuple[_Row, ...] = (
-        ("V107", "instants without a pose", "", 1.0 - played.found, 0.0, intervals),
-        ("V101", "deviation of the tool tip", "mm", played.tip, played.tip_tolerance, intervals),
-        ("V102", "deviation of the tool axis", "degrees", np.degrees(played.axis), axis_limit, intervals),
+        ("V107", "interval without a pose", "", 1.0 - played.found, 0.0, starts),
+        ("V101", "deviation of the tool tip", "mm", *told(Looked.TIP, played.tip, played.tip_tolerance)),
+        ("V102", "deviation of the tool axis", "degrees", *told(Looked.AXIS, np.degrees(played.axis), axis_limit)),
         ("V110", "tool tip off a programmed point", "mm", passed.tip, at_ends, joints),
         ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed.axis), axis_limit, joints),
         ("V111", "strut off its plan", "mm", off_plan(struts, task.knots), tolerances.tip, knots),
-        ("V108", "tip speed above the feed", "mm/s", played.tip_speed - task.ceiling, 0.0, intervals),
-        ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, intervals),
-        ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, intervals),
-        ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, intervals),
-        ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, intervals),
+        ("V108", "tip speed", "mm/s", *told(Looked.SPEED, played.tip_speed, task.ceiling)),
+        ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, starts),
+        ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
+        ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, starts),
+        ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, starts),
     )
     if math.isfinite(machine.strut_jerk):
         rows = (*rows, ("V112", "strut jerk", "mm/s^3", strut_jerk(struts), machine.strut_jerk, knots))
     return tuple(_worst(trajectory, *row) for row in rows)
 
 
-@dataclass(frozen=True)
-class _Series:
-    """When and on which trajectory segment the values of a quantity were taken."""
-
-    time: Array
-    segment: Array
+_When = Callable[[int], tuple[float, int]]
+"""When a row of a quantity was taken, s, and the trajectory segment executed then. Asked of the worst row only."""
+_Row = tuple[str, str, str, Array, Array | float, _When]
 
 
-_Row = tuple[str, str, str, Array, Array | float, _Series]
+def _where_most_was_found(
+    task: Task, passed: Passed, played: Played, looked: Looked, values: Array, limit: Array | float
+) -> tuple[Array, float, _When]:
+    """The largest figure by its limit, as that of the interval in which most was found; the limit; and when it was.
+
+    The figure may be another interval's, by what can hide there; nobody can tell when that would be.
+    """
+    interval = int(played.most_found[looked])
+    there = float(np.broadcast_to(limit, values.shape)[interval])
+    figure = np.max(values / limit, keepdims=True) * there
+    return figure, there, lambda _: when_worst(task, passed, looked, interval)
+
+
+def _start(motion: Motion, interval: int) -> tuple[float, int]:
+    """When an interval starts, and what is executed just after that."""
+    time = float(motion.time_ms[interval]) / 1000
+    return time, int(np.searchsorted(motion.joint_time, time, side="right"))
+
+
+def _of_columns(time: Array, segment: Array, row: int) -> tuple[float, int]:
+    return float(time[row]), int(segment[row])
 
 
 def _worst(
-    trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: Array | float, series: _Series
+    trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: Array | float, when: _When
 ) -> Finding:
     """The finding at the largest value, by its limit if limits differ; no number counts as beyond every limit."""
     values, limits = np.where(np.isnan(values), np.inf, values), np.broadcast_to(limit, values.shape)
     row = int(np.argmax(values if np.ndim(limit) == 0 else values / limits))
-    value, most, place = float(values[row]), float(limits[row]), trajectory.place(int(series.segment[row]))
-    return Finding(code, name, unit, value, most, value <= most, float(series.time[row]), place)
-
-
-def _structure_faults(
-    struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, motion: Motion
-) -> tuple[Diagnostic, ...]:
-    """What makes a comparison pointless: another machine, other knots, other events, or motion at the ends."""
-    place = Place(program_name)
-    faults = []
-    if trajectory.machine_fingerprint != machine.fingerprint:
-        faults.append(Diagnostic("T104", place, f"made for {trajectory.machine}, checked on {machine.name}"))
-    if not np.array_equal(struts.time_ms, motion.time_ms):
-        found = f"{len(struts)} points in {struts.time_ms[-1]} ms, planned {len(motion)} in {motion.time_ms[-1]} ms"
-        faults.append(Diagnostic("V110", place, found))
-    if struts.events != motion.events:
-        faults.append(Diagnostic("V109", place, f"{len(struts.events)} events, the job has {len(motion.events)}"))
-    if struts.speed[[0, -1]].any():
-        faults.append(Diagnostic("V105", place, f"last speeds {struts.speed[-1].tolist()} mm/s"))
-    return tuple(faults)
+    value, most, (time, segment) = float(values[row]), float(limits[row]), when(row)
+    return Finding(code, name, unit, value, most, value <= most, time, trajectory.place(segment))
 
 
 def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:

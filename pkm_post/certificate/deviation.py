@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Deviation: how far tool poses are from the programmed trajectory, found without any time or plan.
+"""Deviation: how far tool poses are from segments of the programmed trajectory, found without any time or plan.
 
-A pose is compared with the programmed pose of a segment that fits it best: the one with the least sum of squares of
-tip and axis deviation, each by its tolerance. Of several segments the one counts that the pose fits best. On a helix
-that pose is one step of Newton's method away from the one at the same angle. Looking at some segments only, or at one,
-can make a deviation larger, never smaller.
+Enters: poses, and for each the segment that the caller names. Leaves: how far off tip (mm) and axis (rad) are. A pose
+is compared with the programmed pose of that segment that fits it best: the one with the least sum of squares of tip and
+axis deviation, each by its tolerance. On a helix that pose is one step of Newton's method away from the one at the same
+angle. A segment that is the wrong one can make a deviation larger than that from the trajectory, never smaller.
 """
 
 from __future__ import annotations
@@ -18,10 +18,8 @@ from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Kind, Trajectory
 from pkm_post.model.certificate import Tolerances
 
-_NEARLY = 1e-3
-"""rad: arcs that leave no more open than this begin and end at one angle."""
-_TELLS_TURNS = 2.5
-"""Rise or turn of the tool axis, by the tolerances, from which on a pose within these tells which end is meant."""
+_NEARLY_CLOSED = 4.0
+"""Tolerances of the tip: an arc that leaves no more open than these may have a pose near both of its ends."""
 
 
 class TrajectoryRuler:
@@ -41,51 +39,22 @@ class TrajectoryRuler:
         self._axis_turn = towards(self._axis_before, trajectory.axis)
         self._bend = _bends(trajectory, self._tip_before)
 
-    def deviation(self, tip: Array, axis: Array, first: Array, last: Array) -> tuple[Array, Array]:
-        """Deviations of tip (mm) and axis (rad), (N,) each.
-
-        Args:
-            tip: (N, 3) tips.
-            axis: (N, 3) unit axes.
-            first: (N,) first segment to look at.
-            last: (N,) last segment to look at.
-        """
-        best = np.full((3, len(tip)), np.inf)
-        self._improve(best, tip, axis, first, last, np.arange(len(tip)))
-        return best[0], best[1]
-
-    def deviation_from(self, tip: Array, axis: Array, segment: Array) -> Array:
-        """Deviations of tip (mm) and axis (rad) from one segment each, and what that of the tip may be, (3, N).
-
-        Args:
-            tip: (N, 3) tips.
-            axis: (N, 3) unit axes.
-            segment: (N,) the segment to measure from.
-        """
-        return self._from_segments(tip, axis, segment)
-
     def bend(self, segment: Array) -> Array:
         """Curvature of segments, as they were programmed, 1/mm; of any shape."""
         return np.asarray(self._bend[segment])
 
-    def _improve(self, best: Array, tip: Array, axis: Array, first: Array, last: Array, rows: Array) -> None:
-        """Replace the rows of what was found by what segments from first to last say, where these fit better."""
-        score = self._fit(best)
-        for offset in range(int((last - first)[rows].max(initial=-1)) + 1):
-            rows = rows[first[rows] + offset <= last[rows]]
-            found = self._from_segments(tip[rows], axis[rows], first[rows] + offset)
-            fit = self._fit(found)
-            better = fit < score[rows]
-            score[rows[better]] = fit[better]
-            best[:, rows[better]] = found[:, better]
+    def deviation_from(self, tip: Array, axis: Array, segment: Array) -> Array:
+        """How far poses are from the programmed pose of their segment that fits best, tip and axis each by tolerance.
 
-    def _fit(self, found: Array) -> Array:
-        """The larger of both deviations over their tolerances; infinite where nothing was found yet."""
-        of_tip = np.divide(found[0], found[2], out=np.full(found.shape[1], np.inf), where=np.isfinite(found[2]))
-        return np.maximum(of_tip, found[1] / self.axis_tolerance)
+        Args:
+            tip: (N, 3) tool tips in the machine frame, mm.
+            axis: (N, 3) unit tool axes.
+            segment: (N,) the segment to measure each pose from.
 
-    def _from_segments(self, tip: Array, axis: Array, segment: Array) -> Array:
-        """Deviations from the segment of each pose, and what that of the tip may be, (3, N)."""
+        Returns:
+            (3, N): deviations of the tip, mm, and of the axis, rad, from one and the same programmed pose; and what
+            that of the tip may be, mm.
+        """
         if not len(segment):
             return np.empty((3, 0))
         trajectory, (segments, at) = self._trajectory, among(segment)
@@ -128,8 +97,9 @@ class TrajectoryRuler:
         open_half = (2 * np.pi - sweep) / 2
         angle = np.arctan2(dot(cross(start, here), turn), dot(start, here))
         share = (np.mod(angle + open_half, 2 * np.pi) - open_half) / sweep
-        full = np.flatnonzero(sweep > 2 * np.pi - _NEARLY)
-        share[full] = self._in_full_turn(share[full], tip[full], axis[full], segment[full])
+        gap = (2 * np.pi - sweep) * norm(start)
+        closed = np.flatnonzero(gap <= _NEARLY_CLOSED * self.tip_tolerance[segment])
+        share[closed] = self._in_closed_turn(share[closed], tip[closed], axis[closed], segment[closed])
         rise = dot(trajectory.tip[segment] - self._tip_before[segment], turn)
         rising = np.flatnonzero(rise)
         way = (sweep[:, None] * cross(turn, here) + rise[:, None] * turn)[rising]
@@ -138,18 +108,16 @@ class TrajectoryRuler:
         share[rising] += dot(off, way) / dot(way, way)
         return share
 
-    def _in_full_turn(self, share: Array, tip: Array, axis: Array, segment: Array) -> Array:
-        """Shares of full turns, which begin and end at one angle: rise and tool axis tell which of both is meant."""
-        trajectory, start = self._trajectory, self._tip_before[segment]
-        turn = self._axis_turn[segment]
-        rise = dot(trajectory.tip[segment] - start, trajectory.arc_axis[segment])
-        risen = dot(tip - start, trajectory.arc_axis[segment])
-        by_rise, by_axis = 1 / self.tip_tolerance[segment] ** 2, 1 / self.axis_tolerance**2
-        along_both = by_rise * rise * risen + by_axis * dot(towards(self._axis_before[segment], axis), turn)
-        whole = by_rise * rise**2 + by_axis * dot(turn, turn)
-        tells = whole > _TELLS_TURNS**2
-        meant = np.divide(along_both, whole, out=share.copy(), where=tells)
-        return np.asarray(share + np.round(meant - share))
+    def _in_closed_turn(self, share: Array, tip: Array, axis: Array, segment: Array) -> Array:
+        """Shares of turns that end where they begin: of those a turn apart, the one at which the pose fits best."""
+        turn = 2 * np.pi / self._trajectory.sweep[segment]
+        shares = share + turn * [[0.0], [1.0], [-1.0]]
+        found = np.clip(shares, 0.0, 1.0)
+        off_tip = np.stack([norm(tip - self._on_arc(segment, one)) for one in found])
+        start, axis_turn = self._axis_before[segment], self._axis_turn[segment]
+        off_axis = np.stack([angle_between(axis, along(start, one[:, None] * axis_turn)) for one in found])
+        fit = np.maximum(off_tip / self.tip_tolerance[segment], off_axis / self.axis_tolerance)
+        return np.asarray(shares[np.argmin(fit, axis=0), np.arange(len(share))])
 
     def _on_arc(self, segment: Array, share: Array) -> Array:
         trajectory, start = self._trajectory, self._tip_before[segment]

@@ -1,55 +1,33 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Instants: where the cubics of some intervals bring the tool, at even shares of each, and how far off that is.
+"""Instants: how far off the tool is at even instants of some intervals, and how much more there can be between them.
 
-Enters: a strut motion as read back, and a planned motion as the place where the search for each pose begins; the poses
-found do not depend on it. Leaves: the worst values at the instants, and how much more there can be. The tool is taken
-to be on its course (``tool_course``), and what it can be off that is told with what hides between the instants. Or,
-closely, each pose is found by forward kinematics: most by linear steps from the plan (``kinematics.near``); where the
-Jacobian changes much, or these do not arrive, by Newton's method.
+Enters: what is played, and the intervals that are looked at. Leaves: the worst values at the instants, and what can
+hide, each by what it may be; and of one interval the moment of the worst. Where the tool is comes from ``tool_at``: on
+its course, where what it can be off that is told with what hides, or closely, by forward kinematics.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from enum import IntEnum
 
 import numpy as np
 
 from pkm_post.certificate.between import arch, bow
-from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.knots import Knots
-from pkm_post.certificate.struts import cubics
-from pkm_post.certificate.tool_course import ToolCourse
-from pkm_post.geometry import hermite_columns, hermite_lengths, hermite_speeds
+from pkm_post.certificate.joints import Passed
+from pkm_post.certificate.tool_at import Task, ToolAt, by_kinematics, on_course
 from pkm_post.geometry.vectors import Array, length_of
-from pkm_post.kinematics import NearPoses, carried, forward, near_poses
-from pkm_post.kinematics.jacobian import linearise
-from pkm_post.model import Machine, Motion, StrutMotion
 
-_SPEED_MISSED = 2e-4
-"""Part by which a speed carried by the mean of two inverse Jacobians may be off; see ``knots``."""
+_TO_FIND_THE_WORST = 257
+"""Instants of the one interval in which the moment of the worst is looked for."""
 
 
-@dataclass(frozen=True)
-class Task:
-    """What is played, and what it is measured by.
+class Looked(IntEnum):
+    """What is looked at in instants; the numbers are rows of ``Seen``."""
 
-    Attributes:
-        struts: the motion to play, K + 1 knots.
-        machine: the geometry.
-        ruler: measures poses against the programmed trajectory.
-        motion: the planned motion with the same knots.
-        knots: what the machine is like there.
-        course: where the tool is, about.
-        ceiling: (K,) tip speed that each interval may have, mm/s.
-    """
-
-    struts: StrutMotion
-    machine: Machine
-    ruler: TrajectoryRuler
-    motion: Motion
-    knots: Knots
-    course: ToolCourse
-    ceiling: Array
+    TIP = 0
+    AXIS = 1
+    SPEED = 2
 
 
 @dataclass(frozen=True)
@@ -80,96 +58,66 @@ class Seen:
 
 
 @dataclass(frozen=True)
-class _Tool:
-    """Where the tool is at M instants of N intervals, column after column in memory.
+class _Measured:
+    """What the tool does at M instants of N intervals.
 
     Attributes:
-        tip: (3, M, N) mm.
-        axis: (3, M, N) unit tool axis.
-        velocity: (3, M, N) of the tip, mm/s.
-        missed: (3, N) by how much tip, axis and velocity can be off that.
-        found: (M, N) whether there is a pose.
+        tool: where it is.
+        time: (M, N) s since the start.
+        segment: (M, N) the trajectory segment executed then, from which it is measured.
+        tip_tolerance: (M, N) what the tip may be off there, mm.
+        looked: deviation of the tip by what it may be, of the axis, rad, and speed of the tip, mm/s; (M, N) each.
     """
 
-    tip: Array
-    axis: Array
-    velocity: Array
-    missed: Array
-    found: Array
+    tool: ToolAt
+    time: Array
+    segment: Array
+    tip_tolerance: Array
+    looked: tuple[Array, Array, Array]
 
 
 def look(task: Task, rows: Array, instants: int, closely: bool) -> Seen:
     """Play the intervals that begin at some knots, (N,), and measure them at a number of even instants of each."""
-    motion, shares = task.motion, np.linspace(0, 1, instants)
-    tool = (_by_kinematics if closely else _on_course)(task, rows, shares)
-    begin, end = (task.struts.time_ms[knot] / 1000 for knot in (rows, rows + 1))
-    time = begin + (end - begin) * shares[:, None]
-    segment = np.clip(np.searchsorted(motion.joint_time, time), motion.segment[rows], motion.segment[rows + 1])
-    tip, axis = tool.tip.reshape(3, -1).T, tool.axis.reshape(3, -1).T
-    off = task.ruler.deviation_from(tip, axis, segment.ravel()).reshape(3, *segment.shape)
-    by_tolerance = off[0] / off[2]
+    measured = _measured(task, rows, instants, closely)
+    tool, tip_tolerance, (by_tolerance, off_axis, speed) = measured.tool, measured.tip_tolerance, measured.looked
     worst = np.argmax(by_tolerance, axis=0), np.arange(len(rows))
     axis_tolerance, ceiling = task.ruler.axis_tolerance, task.ceiling[rows]
-    speed = length_of(*tool.velocity).max(axis=0)
     missed_tip, missed_axis, missed_speed = tool.missed
-    hidden_tip = bow(tool.tip) + arch(tool.tip, task.ruler.bend(segment).max(axis=0)) + missed_tip
+    hidden_tip = bow(tool.tip) + arch(tool.tip, task.ruler.bend(measured.segment).max(axis=0)) + missed_tip
     return Seen(
         found=np.asarray(tool.found.all(axis=0)),
-        worst=np.stack([by_tolerance[worst], off[1].max(axis=0) / axis_tolerance, speed / ceiling]),
+        worst=np.stack([by_tolerance[worst], off_axis.max(axis=0) / axis_tolerance, speed.max(axis=0) / ceiling]),
         hidden=np.stack([
-            hidden_tip / off[2].min(axis=0),
+            hidden_tip / tip_tolerance.min(axis=0),
             (bow(tool.axis) + arch(tool.axis, 1.0) + missed_axis) / axis_tolerance,
             (bow(tool.velocity) + missed_speed) / ceiling,
         ]),
-        tip_tolerance=off[2][worst],
+        tip_tolerance=tip_tolerance[worst],
     )  # fmt: skip
 
 
-def _on_course(task: Task, rows: Array, shares: Array) -> _Tool:
-    """Where the tool is at shares of intervals of which the course tells it."""
-    course, share = task.course, shares[:, None]
-    tip, axis, spin = course.at(rows, share)
-    return _Tool(tip, axis, course.velocity(rows, share), course.missed[:, rows], np.ones(spin.shape, dtype=bool))
+def when_worst(task: Task, passed: Passed, looked: Looked, row: int) -> tuple[float, int]:
+    """When in the interval that begins at a knot something is worst, s since the start, and on which segment."""
+    measured = _measured(task, np.array([row]), _TO_FIND_THE_WORST, closely=True)
+    allowed = 1.0, task.ruler.axis_tolerance, task.ceiling[row]
+    joints = np.flatnonzero((passed.intervals == row).any(axis=0))
+    at_joints = passed.off[looked, joints] if looked is not Looked.SPEED else np.zeros(len(joints))
+    values = np.append(measured.looked[looked] / allowed[looked], at_joints)
+    worst = np.argmax(np.where(np.isnan(values), np.inf, values))
+    time = np.append(measured.time, task.motion.joint_time[joints])
+    return float(time[worst]), int(np.append(measured.segment, joints)[worst])
 
 
-def _by_kinematics(task: Task, rows: Array, shares: Array) -> _Tool:
-    """Where the tool is at shares of any intervals."""
-    cubic = cubics(task.struts, rows)
-    length, speed = hermite_lengths(*cubic, shares), hermite_speeds(*cubic, shares)
-    machine, motion, knots = task.machine, task.motion, task.knots
-    tool_length = np.repeat(motion.tool_length[rows + 1], len(shares))
-    inverses = knots.inverse[rows], knots.inverse[rows + 1]
-    pose, found = near_poses(machine, length, _planned(motion, rows, cubic[-1], shares), tool_length, inverses, shares)
-    tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
-    velocity = np.array(carried(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
-    odd = np.flatnonzero(~(found & np.repeat(knots.alike[rows], len(shares))))
-    if len(odd):
-        knot, lengths, speeds = rows[odd // len(shares)], length.reshape(-1, 6)[odd], speed.reshape(-1, 6)[odd]
-        tip[:, odd], axis[:, odd], velocity[:, odd], found[odd] = _by_newton(
-            machine, motion, knot, tool_length[odd], lengths, speeds
-        )
-    columns = np.stack([tip, axis, velocity]).reshape(3, 3, len(rows), -1).swapaxes(2, 3)
-    missed = np.zeros((3, len(rows)))
-    missed[2] = _SPEED_MISSED * length_of(*columns[2]).max(axis=0)
-    return _Tool(columns[0], columns[1], columns[2], missed, found.reshape(len(rows), -1).T)
-
-
-def _planned(motion: Motion, rows: Array, duration: Array, shares: Array) -> NearPoses:
-    """The plan at shares of intervals, by cubics of tip, axis and spin."""
-    place = motion.tip, motion.axis, motion.spin
-    rate = motion.tip_rate, motion.axis_rate, motion.spin_rate
-    p0, v0, p1, v1 = (np.column_stack([of[at] for of in some]).T for at in (rows, rows + 1) for some in (place, rate))
-    columns = hermite_columns(p0, v0, p1, v1, duration, shares[:, None]).swapaxes(1, 2).reshape(7, -1)
-    axis = columns[3:6] / length_of(*columns[3:6])
-    return NearPoses(columns[:3].T, axis.T, columns[6])
-
-
-def _by_newton(
-    machine: Machine, motion: Motion, knot: Array, tool_length: Array, length: Array, speed: Array
-) -> tuple[Array, Array, Array, Array]:
-    """Tip, axis and velocity of the tip, (3, N) each, and whether they were found, from lengths and speeds, (N, 6)."""
-    pose = forward(machine, length, tool_length, motion.tip[knot], motion.axis[knot], motion.spin[knot])
-    jacobian, _ = linearise(machine, pose.tip, pose.rotation, tool_length)
-    jacobian[~pose.converged] = np.eye(6)  # no pose was found there, which is refused as such
-    twist = np.linalg.solve(jacobian, speed[..., None])[..., 0]
-    return pose.tip.T, pose.axis.T, twist[:, :3].T, pose.converged
+def _measured(task: Task, rows: Array, instants: int, closely: bool) -> _Measured:
+    """Where the tool is at even instants of the intervals that begin at some knots, (N,), and how far off that is."""
+    motion, shares = task.motion, np.linspace(0, 1, instants)
+    tool = (by_kinematics if closely else on_course)(task, rows, shares)
+    begin, end = (task.struts.time_ms[knot] / 1000 for knot in (rows, rows + 1))
+    time = begin + (end - begin) * shares[:, None]
+    # an interval that begins at a joint is behind it: there the tool may have been changed for a longer one
+    last = motion.segment[rows + 1]
+    first = np.minimum(np.searchsorted(motion.joint_time, begin, side="right"), last)
+    segment = np.clip(np.searchsorted(motion.joint_time, time), first, last)
+    tip, axis = tool.tip.reshape(3, -1).T, tool.axis.reshape(3, -1).T
+    off = task.ruler.deviation_from(tip, axis, segment.ravel()).reshape(3, *segment.shape)
+    return _Measured(tool, time, segment, off[2], (off[0] / off[2], off[1], length_of(*tool.velocity)))

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.certificate.instants import Task
 from pkm_post.certificate.struts import cubics
+from pkm_post.certificate.tool_at import Task
 from pkm_post.geometry import angle_between, hermite_lengths, norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import forward

@@ -15,9 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.certificate.instants import Seen, Task, look
+from pkm_post.certificate.instants import Seen, look
 from pkm_post.certificate.joints import Passed
 from pkm_post.certificate.struts import cubics, extremes
+from pkm_post.certificate.tool_at import Task
 from pkm_post.geometry.vectors import Array
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
@@ -44,6 +45,8 @@ class Played:
         shortest: shortest strut length, mm.
         longest: longest strut length, mm.
         instants: how many poses were looked at, joints not counted.
+        most_found: (3,) the interval in which most was found of tip, axis and speed, each by what it may be. Another
+            may have a larger figure, by what can hide there.
     """
 
     found: Array
@@ -56,6 +59,7 @@ class Played:
     shortest: Array
     longest: Array
     instants: int
+    most_found: Array
 
 
 def play(task: Task, passed: Passed) -> Played:
@@ -86,6 +90,7 @@ def play(task: Task, passed: Passed) -> Played:
         shortest=shortest,
         longest=longest,
         instants=instants,
+        most_found=seen.worst.argmax(axis=1),
     )
 
 

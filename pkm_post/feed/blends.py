@@ -3,8 +3,10 @@
 
 A joint whose direction changes by D (unit tangents by path length) is rounded over the half width d on both sides
 with the cubic step W(v) = 3 v^2 - 2 v^3, v = (x + d) / 2d: the rounded path starts and ends with the curvature of its
-segments, and at the joint it is off by |D| times the integral of W up to the joint, 3/16 d |D|. The tool axis is
-rounded in step with the tip, in the tangent plane of the sphere at the joint. Enters: changes at the joints, lengths,
+segments, and at the joint it is off by |D| times the integral of W up to the joint, 3/16 d |D|. By what prolonged arcs
+part beyond that change of direction, the path follows them with the quintic step S(v) = 10 v^3 - 15 v^4 + 6 v^5, whose
+second derivative is zero at both ends as well. The tool axis is rounded in step with the tip, in the tangent plane of
+the sphere at the joint. Enters: changes at the joints, lengths,
 tolerances. Leaves: half widths.
 """
 
@@ -16,8 +18,8 @@ from pkm_post.geometry.vectors import Array
 
 OFFSET = 3 / 16
 """Deviation at the joint by half width and change of direction."""
-_BOW = 0.02
-"""Deviation by half width squared and change of curvature: the largest of (2v - 1)^2 W(v) / 2, rounded up."""
+_BOW = 0.0134
+"""Deviation by half width squared and change of curvature: the largest of (2v - 1)^2 S(v) / 2 before the joint."""
 _NEGLIGIBLE = 1e-12
 """Changes below this bound nothing; keeps the quotients finite."""
 _SHARE = 0.45
@@ -44,13 +46,23 @@ def half_widths(
     return np.minimum.reduce([by_tip, by_axis, _SHARE * neighbour])
 
 
-def step(x: Array, half_width: Array) -> tuple[Array, Array, Array, Array]:
-    """The integral of W, W itself, W' and W'' at distances x from the joint, -d <= x <= d, (N,) each."""
+def step(x: Array, half_width: Array) -> tuple[Array, Array, Array]:
+    """The integral of W, W itself and W' at distances x from the joint, -d <= x <= d, (N,) each."""
     width = 2 * half_width
     v = (x + half_width) / width
     return (
         width * v**3 * (1 - v / 2),
         v**2 * (3 - 2 * v),
         6 * v * (1 - v) / width,
-        6 * (1 - 2 * v) / width**2,
+    )
+
+
+def smooth_step(x: Array, half_width: Array) -> tuple[Array, Array, Array]:
+    """S, S' and S'' at distances x from the joint, -d <= x <= d, (N,) each."""
+    width = 2 * half_width
+    v = (x + half_width) / width
+    return (
+        v**3 * (10 - v * (15 - 6 * v)),
+        30 * (v * (1 - v)) ** 2 / width,
+        60 * v * (1 - v) * (1 - 2 * v) / width**2,
     )

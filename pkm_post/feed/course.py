@@ -66,9 +66,10 @@ class Course:
         """Means of path length, speed and acceleration over a window about the times given, (N,) each."""
         s1, v1, way1 = self._summed_at(time + window / 2)
         s0, v0, way0 = self._summed_at(time - window / 2)
-        speed = (s1 - s0) / window
-        speed[speed < _STANDSTILL] = 0.0
-        return ((way1 - way0) / window).astype(np.float64), speed, (v1 - v0) / window
+        speed, way = (s1 - s0) / window, ((way1 - way0) / window).astype(np.float64)
+        still = np.flatnonzero(speed < _STANDSTILL)
+        speed[still], way[still] = 0.0, self.at(time[still])[0]  # at a joint, not beyond it by a rounding
+        return way, speed, (v1 - v0) / window
 
     def _state(self, time: Array) -> tuple[Array, Array, Array, Array, Array]:
         """The cell each time lies in, how long it has been in it, path length, speed and acceleration."""

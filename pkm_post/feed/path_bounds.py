@@ -20,6 +20,9 @@ from pkm_post.geometry.vectors import Array, norm
 
 _STEP = 0.75
 """Largest slope of the cubic step that leads from one segment to the next, by its half width."""
+_PARTING_1, _PARTING_2 = 0.1, 0.73
+"""What following two arcs that part adds to the first derivative of the tip, by half width and bends, and to the second
+by bends: the most of |S - W| |x| + S' x^2 / 2 and of 2 S' |x| + |S''| x^2 / 2 in a blend of half width 1."""
 _WIDEST = 0.5
 """rad: a blend in which the tool axis may turn farther has no bound."""
 _NO_BOUND = 1e12
@@ -69,8 +72,8 @@ def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tu
     corner = norm(tangents[1] - tangents[0])
     bends = np.where(blended, bend[1:] + bend[:-1], 0.0)
     return (
-        _with_joints(first, np.maximum(first[1:], first[:-1]) + _STEP / 2 * bends * width, blended),
-        _with_joints(bend, np.maximum(bend[1:], bend[:-1]) + corner * steepness + 3 * _STEP * bends, blended),
+        _with_joints(first, np.maximum(first[1:], first[:-1]) + _PARTING_1 * bends * width, blended),
+        _with_joints(bend, np.maximum(bend[1:], bend[:-1]) + corner * steepness + _PARTING_2 * bends, blended),
     )
 
 

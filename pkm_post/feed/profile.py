@@ -12,6 +12,9 @@ import numpy as np
 
 from pkm_post.geometry.vectors import Array
 
+_ROUNDING = 4 * np.finfo(np.float64).eps
+"""Of sums of slopes and ceilings."""
+
 
 def cell_times(s: Array, square: Array) -> Array:
     """How long each cell takes, (M - 1,) s: with v^2 straight from place to place, 2 ds / (v0 + v1).
@@ -37,4 +40,6 @@ def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
     climb = np.concatenate([[0.0], np.cumsum(2 * in_cell * np.diff(s))])
     forward = np.minimum.accumulate(ceiling - climb) + climb
     backward = np.minimum.accumulate((forward + climb)[::-1])[::-1] - climb
-    return np.clip(backward, 0.0, ceiling)
+    # what a difference of sums has lost by rounding is not standstill
+    least = np.minimum(ceiling, _ROUNDING * (climb[-1] + ceiling.max()))
+    return np.clip(backward, least, ceiling)

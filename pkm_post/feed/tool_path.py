@@ -13,11 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.feed.blends import half_widths, step
+from pkm_post.feed.blends import half_widths, smooth_step, step
 from pkm_post.feed.segments import Segments
 from pkm_post.geometry import along_rates, norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Poses, Trajectory
+
+_INSIDE = 1 - 1e-9
+"""Part of the half width that counts as the blend: at its very end the segment is itself, whatever was rounded."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,7 @@ class ToolPath:
         spin = [self.segments.spin[segment] + u * rate, rate.copy(), np.zeros_like(rate)]
         distance_to_end = self.segments.extent[segment] - u
         for joint, x in ((segment, u), (segment + 1, -distance_to_end)):
-            rows = np.flatnonzero(np.abs(x) < self.blend[joint])
+            rows = np.flatnonzero(np.abs(x) < _INSIDE * self.blend[joint])
             if len(rows):
                 self._round(joint[rows], x[rows], rows, tip, axis, spin)
         return Poses(*tip, *axis, spin[0], spin[1], spin[2], self.tool_length[segment], segment)
@@ -96,17 +99,18 @@ class ToolPath:
         """Overwrite the rows that lie in blends, at distances x from the joints at the starts of segments ``joint``.
 
         With p1, p2 the two segments prolonged, D the change of tangent and H the integral of W:
-        p = (1 - W) p1 + W p2 + D (H - W x); where both are lines this is p1 + D H.
+        p = p1 + D H + S (p2 - p1 - D x); where both are lines this is p1 + D H.
         """
         before, seg = joint - 1, self.segments
         at_end = seg.extent[before]
-        h, w, w1, w2 = (value[:, None] for value in step(x, self.blend[joint]))
+        h, w, w1 = (value[:, None] for value in step(x, self.blend[joint]))
+        s, s1, s2 = (value[:, None] for value in smooth_step(x, self.blend[joint]))
         change = seg.tip_at(joint, 0 * x)[1] - seg.tip_at(before, at_end)[1]
         one, two = seg.tip_at(before, at_end + x), seg.tip_at(joint, x)
-        apart = two[0] - one[0] - change * x[:, None]
-        tip[0][rows] = one[0] + w * apart + change * h
-        tip[1][rows] = (1 - w) * one[1] + w * two[1] + w1 * apart
-        tip[2][rows] = (1 - w) * one[2] + w * two[2] + w1 * (2 * (two[1] - one[1]) - change) + w2 * apart
+        apart, parting = two[0] - one[0] - change * x[:, None], two[1] - one[1] - change
+        tip[0][rows] = one[0] + change * h + s * apart
+        tip[1][rows] = one[1] + change * w + s * parting + s1 * apart
+        tip[2][rows] = one[2] + change * w1 + s * (two[2] - one[2]) + 2 * s1 * parting + s2 * apart
 
         rate, rate_after = seg.axis_at(before, at_end)[1], seg.axis_rate[joint]
         if rate.any() or rate_after.any():

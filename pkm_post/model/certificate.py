@@ -33,11 +33,12 @@ class Finding:
         code: diagnostic that is given when it does not hold.
         name: what was measured.
         unit: unit of value and limit, as printed.
-        value: the worst value found, in that unit.
-        limit: what it must not exceed; for a margin, what it must not fall below.
+        value: the worst value, with what can hide between the moments looked at, in that unit.
+        limit: what it must not exceed there.
         holds: whether it holds.
-        time: seconds since the start where it is worst.
-        place: the source line that is executed there.
+        time: s since the start: the moment where it is worst; of what is known of an interval between two knots as a
+            whole, like the speed of a strut, its start.
+        place: the source line that is executed at that time.
     """
 
     code: str
@@ -51,8 +52,11 @@ class Finding:
 
     def diagnostic(self) -> Diagnostic:
         """The fault, for a finding that does not hold."""
-        found = f"{self.name} {self.value:.6g} {self.unit}, allowed {self.limit:.6g} {self.unit}"
+        found = f"{self.name} {self._with_unit(self.value)}, allowed {self._with_unit(self.limit)}"
         return Diagnostic(self.code, self.place, f"{found}, {self.time:.3f} s after the start")
+
+    def _with_unit(self, value: float) -> str:
+        return f"{value:.6g} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,10 @@ from pkm_post.placement.symmetry import mirrors, transform
 _NO_MOVE = 1e-9
 """mm and rad: a row that moves less is left out."""
 _HALF_TURN = np.pi - 1e-6
+_BEYOND_REACH = 10
+"""Longest struts: what is farther away from the base is no place of a machine, and need not be looked at closely."""
+_DAY = 86400.0
+"""s; no move takes longer."""
 
 
 def place(
@@ -49,7 +53,7 @@ def place(
         return None, (Diagnostic("K109", Place(machine.name), "the work offset is a mirror"),)
     way = _way(placed, machine)
     keep = (way["length"] > _NO_MOVE) | (way["angle"] > _NO_MOVE)
-    faults = tuple(_faults(placed, machine, way["angle"], keep))
+    faults = tuple(_faults(placed, machine, way, keep))
     if errors(faults):
         return None, faults
     events = _events_on_kept_rows(program.events, keep)
@@ -99,6 +103,7 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
         "sweep": sweep,
         "length": length,
         "angle": angle,
+        "longer": longer,
         "tool": tool,
         "operation": placed.operation,
         "line": placed.line,
@@ -117,6 +122,7 @@ def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Ev
     rows = slice(None) if keep.all() else keep
     columns = {name: column[rows] for name, column in way.items()}
     tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
+    del columns["longer"]
     stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
     stops |= _exact_corners(placed.exact_path[keep], columns, tip_before)
     return columns | {
@@ -136,21 +142,41 @@ def _tool_by_row(program: Program) -> Array:
     return tool
 
 
-def _faults(program: Program, machine: Machine, angle: Array, keep: Array) -> Iterator[Diagnostic]:
+def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array) -> Iterator[Diagnostic]:
     if not keep.any():
         yield Diagnostic("J103", Place(program.source), "no move at all")
-    for turned in np.flatnonzero(angle > _HALF_TURN):
-        yield Diagnostic("K106", program.place(int(turned)), f"{np.degrees(angle[turned]):.3f} degrees")
+    yield from _of_moves(program, machine, way)
     for event in program.events:
         speed = abs(event.value) if event.kind is EventKind.SPINDLE else 0.0
         if speed and not machine.spindle_least_speed <= speed <= machine.spindle_speed:
             found = f"{speed:g} rpm, the machine allows {machine.spindle_least_speed:g} to {machine.spindle_speed:g}"
             yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), found)
     fast = program.feed > machine.feed_speed
-    for operation in np.unique(program.operation[fast]):
-        row = int(np.flatnonzero(fast & (program.operation == operation))[0])
+    for row in _first_of_each(program.operation, fast):
         found = f"F{60 * program.feed[row]:g} mm/min, limited to {60 * machine.feed_speed:g}"
         yield Diagnostic("K110", program.place(row), found)
+
+
+def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterator[Diagnostic]:
+    """What is wrong with single moves: each kind by operation, with its first place."""
+    angle, arc = way["angle"], way["kind"] == Kind.ARC
+    away = norm(way["tip"] - machine.base_joints.mean(axis=0))
+    longest = _BEYOND_REACH * machine.strut_stroke[1]
+    seconds = way["length"] / way["feed"]
+    for code, wrong, values, told in (
+        ("K106", angle > _HALF_TURN, np.degrees(angle), "{:.3f} degrees"),
+        ("K102", ~(away < longest), away, "{:.6g} mm from the middle of the base"),
+        ("K126", arc & (np.abs(way["longer"]) > _NO_MOVE), way["longer"], "{:.6g} mm longer"),
+        ("K127", (seconds > _DAY) & (away < longest), seconds / 3600, "{:.6g} hours"),
+    ):
+        for row in _first_of_each(program.operation, wrong):
+            yield Diagnostic(code, program.place(row), told.format(values[row]))
+
+
+def _first_of_each(operation: Array, wrong: Array) -> list[int]:
+    """The first of the rows that are wrong in each operation."""
+    rows = np.flatnonzero(wrong)
+    return rows[np.unique(operation[rows], return_index=True)[1]].tolist()
 
 
 def _events_on_kept_rows(events: tuple[Event, ...], keep: Array) -> tuple[Event, ...]:

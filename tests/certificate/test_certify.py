@@ -9,7 +9,7 @@ from programs import ON_PALLET, cone, program, steep_helices
 
 from pkm_post import planning
 from pkm_post.certificate import certify
-from pkm_post.model import StrutMotion
+from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
 
@@ -85,11 +85,44 @@ def test_swapped_struts_are_found():
 
 def test_a_dropped_point_is_found():
     keep = np.arange(len(planned()[3])) != 20
-    assert codes(verdict(changed(rows=keep))) == {"V110"}
+    times = planned()[3].time_ms
+    points = f"{len(times) - 1} found, {len(times)} planned"
+    _, (fault,) = verdict(changed(rows=keep))
+    assert (fault.code, fault.found) == ("V110", f"knot 20: {times[21]} ms, planned {times[20]} ms; {points}")
+
+
+def test_a_last_point_that_is_missing_is_told_as_such():
+    times = planned()[3].time_ms
+    points = f"{len(times) - 1} found, {len(times)} planned"
+    _, faults = verdict(changed(rows=slice(-1)))
+    told = {fault.code: fault.found for fault in faults}
+    assert told["V110"] == f"knot {len(times) - 1}: none, planned {times[-1]} ms; {points}"
+
+
+def test_a_shifted_point_is_told_with_both_its_times():
+    times = planned()[3].time_ms.copy()
+    times[[30, 31]] += 1
+    _, (fault,) = verdict(changed(time_ms=times))
+    count = f"{len(times)} found, {len(times)} planned"
+    assert (fault.code, fault.found) == ("V110", f"knot 30: {times[30]} ms, planned {times[30] - 1} ms; {count}")
 
 
 def test_a_dropped_event_is_found():
-    assert codes(verdict(changed(events=()))) == {"V109"}
+    _, (fault,) = verdict(changed(events=()))
+    event = "tool change 1 at knot 0"
+    assert (fault.code, fault.found) == ("V109", f"event 0: none, planned {event}; 0 found, 1 planned")
+
+
+def test_the_first_event_that_is_another_is_told_as_found_and_as_planned():
+    (change,) = planned()[3].events
+    spindle = Event(0, EventKind.SPINDLE, 9000.0)
+    for events, found in (
+        ((dataclasses.replace(change, value=2),), "event 0: tool change 2 at knot 0, planned tool change 1 at knot 0"),
+        ((dataclasses.replace(change, row=7),), "event 0: tool change 1 at knot 7, planned tool change 1 at knot 0"),
+        ((change, spindle), "event 1: spindle 9000.0 at knot 0, planned none"),
+    ):
+        _, (fault,) = verdict(changed(events=events))
+        assert (fault.code, fault.found) == ("V109", f"{found}; {len(events)} found, 1 planned")
 
 
 def test_turning_back_too_early_is_found():
@@ -115,16 +148,22 @@ def test_another_machine_is_found():
     assert codes(verdict(machine=other)) == {"T104"}
 
 
-def test_motion_at_the_end_is_found():
+@pytest.mark.parametrize(("row", "told"), [(0, "first"), (-1, "last")])
+def test_motion_at_an_end_is_found_where_it_is(row, told):
     speed = planned()[3].speed.copy()
-    speed[-1, 0] = 0.5
-    assert codes(verdict(changed(speed=speed))) == {"V105"}
+    speed[row, 0] = 0.5
+    _, (fault,) = verdict(changed(speed=speed))
+    assert (fault.code, fault.found) == ("V105", f"{told} speeds [0.5, 0.0, 0.0, 0.0, 0.0, 0.0] mm/s")
 
 
 def test_lengths_without_a_pose_are_found():
-    length = planned()[3].length.copy()
+    struts = planned()[3]
+    length = struts.length.copy()
     length[30] = [1250, 250, 250, 250, 250, 250]
-    assert "V107" in codes(verdict(changed(length=length)))
+    _, faults = verdict(changed(length=length))
+    (found,) = (fault.found for fault in faults if fault.code == "V107")
+    start = struts.time_ms[29] / 1000  # the interval that ends at that knot is the first without a pose
+    assert found == f"interval without a pose 1, allowed 0, {start:.3f} s after the start"
 
 
 @pytest.mark.parametrize(
@@ -144,8 +183,13 @@ def test_limits_are_checked_in_what_is_played(code, limits):
 def test_too_fast_is_found():
     made_for, trajectory, motion, struts = planned()
     slower = dataclasses.replace(trajectory, feed=trajectory.feed / 2)
-    _, faults = certify(struts, "x.pmc", slower, made_for, motion, TOLERANCES)
-    assert {fault.code for fault in faults} == {"V108"}
+    certificate, (fault,) = certify(struts, "x.pmc", slower, made_for, motion, TOLERANCES)
+    found = next(finding for finding in certificate.findings if finding.code == "V108")
+    # as fast as planned, which is twice what is programmed now
+    assert found.limit in 1.01 * slower.feed + 0.05
+    assert found.value == pytest.approx(2 * (found.limit - 0.05) / 1.01, rel=0.01)
+    assert fault.code == "V108"
+    assert fault.found.startswith(f"tip speed {found.value:.6g} mm/s, allowed {found.limit:.6g} mm/s, ")
 
 
 def test_tighter_tolerances_than_planned_do_not_hold():

@@ -3,6 +3,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from best_segment import deviation_from_any
 from machines import example
 from programs import ON_PALLET, cone, program, square_with_arc
 
@@ -26,9 +27,7 @@ def poses_on(made, count=3000):
 def test_poses_on_the_trajectory_do_not_deviate():
     for made in (cone(), square_with_arc()):
         trajectory, poses = poses_on(made)
-        tip, axis = TrajectoryRuler(trajectory, TOLERANCES).deviation(
-            poses.tip, poses.axis, poses.segment, poses.segment
-        )
+        tip, axis, _ = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(poses.tip, poses.axis, poses.segment)
         assert tip.max() < 1e-9
         assert axis.max() < 1e-9
 
@@ -37,11 +36,8 @@ def test_a_known_offset_is_found():
     # Shifted across the path, straight up for level moves: the distance is the shift.
     trajectory, poses = poses_on(square_with_arc())
     level = (poses.segment > 1) & (poses.segment < 6)
-    tip, axis = TrajectoryRuler(trajectory, TOLERANCES).deviation(
-        poses.tip[level] + [0, 0, 0.01],
-        unit(poses.axis[level] + [1e-4, 0, 0]),
-        poses.segment[level],
-        poses.segment[level],
+    tip, axis, _ = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(
+        poses.tip[level] + [0, 0, 0.01], unit(poses.axis[level] + [1e-4, 0, 0]), poses.segment[level]
     )
     np.testing.assert_allclose(tip, 0.01, atol=1e-9)
     np.testing.assert_allclose(axis, 1e-4, rtol=1e-6)
@@ -55,7 +51,7 @@ def test_against_dense_sampling_of_the_path():
     chosen = rng.choice(level, 100)
     points = dense.tip[chosen] + rng.normal(scale=0.5, size=(100, 3))
     ruler = TrajectoryRuler(trajectory, TOLERANCES)
-    found, _ = ruler.deviation(points, dense.axis[chosen], np.full(100, 2), np.full(100, 5))
+    found, _ = deviation_from_any(ruler, points, dense.axis[chosen], np.full(100, 2), np.full(100, 5))
     nearest = np.array([norm(dense.tip[level] - point).min() for point in points])
     assert np.all(found <= nearest + 1e-9)
     np.testing.assert_allclose(found, nearest, atol=2e-3)
@@ -68,12 +64,12 @@ def test_a_turn_about_the_tool_axis_alone_has_something_to_be_measured_by():
     columns["tip"][-1], columns["spin"][-1], columns["length"][-1] = way.tip[-2], 0.2, 0.0
     trajectory = dataclasses.replace(way, **columns)
     tip, axis = trajectory.tip[still] + [0, 0, 3e-4], trajectory.axis[still]
-    found = TrajectoryRuler(trajectory, TOLERANCES).deviation(tip, axis, still, still)
-    np.testing.assert_allclose(found, [[3e-4], [0]], atol=1e-12)
+    found = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(tip, axis, still)
+    np.testing.assert_allclose(found, [[3e-4], [0], [TOLERANCES.tip]], atol=1e-12)
 
 
 @pytest.mark.parametrize("past", [-1e-3, 1e-6, 1e-4])
-@pytest.mark.parametrize(("rise", "tilt"), [(-4.0, 0.0), (0.0, 5.0)])
+@pytest.mark.parametrize(("rise", "tilt"), [(-4.0, 0.0), (-0.0024, 0.0), (-0.002, 0.0), (-0.001, 0.0), (0.0, 5.0)])
 def test_both_ends_of_a_full_turn_are_told_apart(past, rise, tilt):
     start, centre = np.array([0.0, 0, 40]), np.array([5.0, 0, 40])
     blank = np.full((2, 3), np.nan)
@@ -87,7 +83,7 @@ def test_both_ends_of_a_full_turn_are_told_apart(past, rise, tilt):
         (trajectory.tip_before()[last], trajectory.axis_before()[last]),
         (trajectory.tip[last], trajectory.axis[last]),
     ):
-        off = TrajectoryRuler(trajectory, TOLERANCES).deviation(end + past * tangent, pose, last, last)
+        off = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(end + past * tangent, pose, last)
         assert off[0][0] <= abs(past) + 1e-9
         assert off[1][0] <= np.radians(5) * abs(past) / 10
 
@@ -102,16 +98,35 @@ def test_the_nearest_point_of_a_helix_is_not_the_one_at_the_same_angle(rise):
     trajectory, poses = poses_on(made, 4000)
     last = np.flatnonzero(poses.segment == len(trajectory) - 1)[500:-500]
     shift, way = 1e-3, 1.5 * np.pi * 5
-    found, _ = TrajectoryRuler(trajectory, TOLERANCES).deviation(
-        poses.tip[last] + [0, 0, shift], poses.axis[last], poses.segment[last], poses.segment[last]
+    found = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(
+        poses.tip[last] + [0, 0, shift], poses.axis[last], poses.segment[last]
     )
-    np.testing.assert_allclose(found, shift * way / np.hypot(way, rise), rtol=1e-3)
+    np.testing.assert_allclose(found[0], shift * way / np.hypot(way, rise), rtol=1e-3)
 
 
-def test_more_segments_never_make_it_worse():
-    trajectory, poses = poses_on(cone(), 500)
-    ruler = TrajectoryRuler(trajectory, TOLERANCES)
-    moved = poses.tip + 0.02
-    one, _ = ruler.deviation(moved, poses.axis, poses.segment, poses.segment)
-    more, _ = ruler.deviation(moved, poses.axis, np.maximum(poses.segment - 2, 0), poses.segment)
-    assert np.maximum(more, 0.02).sum() <= np.maximum(one, 0.02).sum() + 1e-9
+def test_no_other_segment_is_measured_from_than_the_one_that_is_named():
+    # A level side after a plunge: measured from the plunge, a pose on it is as far off as it is from their corner.
+    trajectory, poses = poses_on(square_with_arc())
+    plunge, side = 1, np.flatnonzero(poses.segment == 2)
+    off = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(
+        poses.tip[side], poses.axis[side], np.full(len(side), plunge)
+    )
+    np.testing.assert_allclose(off[0], norm(poses.tip[side] - trajectory.tip[plunge]), atol=1e-9)
+    assert off[0].max() > 29
+
+
+def test_what_the_tip_may_be_is_told_by_segment():
+    made = dataclasses.replace(square_with_arc(), tip_tolerance=np.array([0, 0, 0.02, 0, 0.05, 0, 0]))
+    trajectory, poses = poses_on(made, 700)
+    told = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(poses.tip, poses.axis, poses.segment)[2]
+    said = trajectory.tip_tolerance[poses.segment]
+    assert set(np.unique(said)) == {0, 0.02, 0.05}
+    np.testing.assert_array_equal(told, np.where(said > 0, said, TOLERANCES.tip))
+
+
+def test_no_poses_have_no_deviations():
+    trajectory, _ = poses_on(square_with_arc(), 10)
+    nothing = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(
+        np.empty((0, 3)), np.empty((0, 3)), np.empty(0, dtype=int)
+    )
+    assert nothing.shape == (3, 0)

@@ -11,11 +11,12 @@ from pkm_post import planning
 from pkm_post.certificate import joints, playback
 from pkm_post.certificate import knots as knots_module
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.instants import Task, look
+from pkm_post.certificate.instants import look
 from pkm_post.certificate.joints import pass_joints
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.playback import play
 from pkm_post.certificate.struts import off_plan
+from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.kinematics import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion

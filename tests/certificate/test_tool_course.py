@@ -79,8 +79,9 @@ def test_what_leaves_a_cubic_does_so_by_no_more_than_the_looks_and_the_factors_s
     assert np.abs(bases).sum(axis=0).max() == pytest.approx(1.442, abs=1e-3)
     rates = np.gradient(np.array(bases), share, axis=1)
     assert np.abs(rates).sum(axis=0).max() == pytest.approx(11.153, abs=1e-2)
-    assert pytest.approx(1.442 * 1.1, rel=0.01) == course_module._MOST
-    assert pytest.approx(11.153 * 1.1, rel=0.01) == course_module._FASTEST
+    with_room = 1.1  # for the change of the Jacobian
+    assert with_room * np.abs(bases).sum(axis=0).max() <= course_module._MOST
+    assert with_room * np.abs(rates).sum(axis=0).max() <= course_module._FASTEST
 
 
 def test_a_program_that_is_off_its_plan_has_no_course_there():

@@ -15,7 +15,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
 import numpy as np
+from best_segment import deviation_from_any
 
 from pkm_post import planning, trajectory_file
 from pkm_post.certificate.deviation import TrajectoryRuler
@@ -171,7 +174,7 @@ def deviations(machine, program, times, lengths):
     )
     assert pose.converged.all()
     ruler = TrajectoryRuler(trajectory, tolerances)
-    return ruler.deviation(pose.tip, pose.axis, motion.segment[knot], motion.segment[knot + 1])
+    return deviation_from_any(ruler, pose.tip, pose.axis, motion.segment[knot], motion.segment[knot + 1])
 
 
 def main(program):

@@ -26,6 +26,14 @@ def test_against_plain_loops():
         )
 
 
+def test_what_is_slow_behind_what_is_fast_never_stands_still():
+    """A feed of 6e-5 mm/min, v^2 = 1e-12, where the sum of the slopes is 1e8: their difference has no digit of it."""
+    s = np.array([0.0, 10000.0, 20000.0, 20000.001, 20000.002])
+    ceiling = np.array([0.0, 6e4, 1e-12, 1e-12, 0.0])
+    found = speed_profile(s, ceiling, np.full(5, 5000.0))
+    assert found[1] == 6e4 and found[2:4].tolist() == [1e-12, 1e-12] and found[[0, -1]].tolist() == [0.0, 0.0]
+
+
 def test_a_long_straight_is_a_trapezoid():
     # 100 mm at 20 mm/s with 100 mm/s^2: v^2 = 2 a s until 400 at s = 2 mm, and the same before the end.
     s = np.linspace(0, 100, 1001)

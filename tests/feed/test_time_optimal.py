@@ -22,7 +22,7 @@ OPTIMUM_DIGITS = 1e-3
 def test_the_plan_is_no_faster_and_not_much_slower_than_the_optimum(name, limits_name):
     machine, path, marks = stations_of(name, limits_name)
     poses = path.within(marks.segment, marks.u)
-    feed = feed_at(path, marks.segment, marks.u)
+    feed = feed_at(path, poses, marks.u)
     square, along = limits(feed, bounded_by(machine, poses))
     square[marks.rest] = 0.0
     time = float(cell_times(marks.s, speed_profile(marks.s, square, along)).sum())

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
 import pytest
+from best_segment import deviation_from_any
 from machines import example
 from programs import cone, program, square_with_arc
 
@@ -45,6 +46,19 @@ def test_derivatives_against_finite_differences(make):
 
 
 @pytest.mark.parametrize("make", PATHS.values(), ids=PATHS)
+def test_curvature_is_continuous(make):
+    """At both ends of each blend the path bends as its segment does, and at the joint both halves bend alike."""
+    _, path = path_of(make, tip=0.05, axis=0.005)
+    half = path.blend[1:-1][path.blend[1:-1] > 0]
+    joints = path.starts[1:-1][path.blend[1:-1] > 0]
+    edges, tiny = np.concatenate([joints - half, joints, joints + half]), 1e-7 * np.tile(half, 3)
+    before, after = path.at(edges - tiny), path.at(edges + tiny)
+    for name in ("tip_2", "axis_2", "spin_2"):
+        low, high = getattr(before, name), getattr(after, name)
+        np.testing.assert_allclose(low, high, atol=2e-6 * max(1.0, np.abs(low).max()))
+
+
+@pytest.mark.parametrize("make", PATHS.values(), ids=PATHS)
 def test_pose_and_tangent_are_continuous(make):
     _, path = path_of(make)
     joints = path.starts[1:-1][path.blend[1:-1] > 0]
@@ -68,7 +82,7 @@ def test_rounded_corners_stay_within_the_tolerances(make, tip):
     last = len(trajectory) - 1
     ruler = TrajectoryRuler(trajectory, tolerances)
     nearby = np.maximum(poses.segment - 1, 0), np.minimum(poses.segment + 1, last)
-    off_tip, off_axis = ruler.deviation(poses.tip, poses.axis, *nearby)
+    off_tip, off_axis = deviation_from_any(ruler, poses.tip, poses.axis, *nearby)
     assert off_tip.max() <= tip * (1 + 1e-9)
     assert off_axis.max() <= tolerances.axis * (1 + 1e-9)
     np.testing.assert_allclose(norm(poses.axis), 1, atol=1e-12)

@@ -75,9 +75,26 @@ def test_feeds_are_limited_with_a_warning():
     assert "F54000 mm/min, limited to 12000" in str(faults[0])
 
 
+def arc_with_another_tool():
+    """A half circle right after the change to a tool that is 30 mm longer."""
+    centre = np.full((3, 3), np.nan)
+    centre[2] = [15, 0, 60]
+    turn = np.where(np.isnan(centre), np.nan, [0.0, 0.0, 1.0])
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.TOOL_CHANGE, 2))
+    tools = {1: BALL, 2: Tool(2, "long", 8.0, 4.0, 150.0)}
+    kind = [Kind.RAPID, Kind.LINE, Kind.ARC]
+    return program(
+        [[0, 0, 60], [10, 0, 60], [20, 0, 60]], kind=kind, centre=centre, turn=turn, events=events, tools=tools
+    )
+
+
 @pytest.mark.parametrize(
     ("code", "made"),
     [
+        ("K102", program([[0, 0, 60], [12345678.0, 0, 60]])),
+        ("K102", program([[0, 0, 60], [1e300, 0, 60]])),
+        ("K126", arc_with_another_tool()),
+        ("K127", program([[0, 0, 60], [1, 0, 60]], feed=1e-5)),
         ("K106", program([[0, 0, 60], [10, 0, 60]], np.array([[0, 0, 1.0], [0, 0, -1.0]]))),
         ("J103", program([[0, 0, 150]])),
         ("K107", program([[0, 0, 60], [1, 0, 60]], events=(Event(1, EventKind.SPINDLE, -24001),))),

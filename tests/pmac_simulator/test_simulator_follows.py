@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from best_segment import deviation_from_any
 from programs import ON_PALLET, cone
 from simulated import make
 
@@ -68,7 +69,7 @@ def test_the_simulated_machine_keeps_to_the_programmed_path(posted, followed):
     pose = forward(machine, places, length, motion.tip[knot], motion.axis[knot], motion.spin[knot])
     assert pose.converged.all()
     ruler = TrajectoryRuler(trajectory, tolerances)
-    tip, axis = ruler.deviation(pose.tip, pose.axis, motion.segment[knot], motion.segment[knot + 1])
+    tip, axis = deviation_from_any(ruler, pose.tip, pose.axis, motion.segment[knot], motion.segment[knot + 1])
 
     told = {finding["what"]: finding["value"] for finding in made.report["certificate"]["findings"]}
     assert tip.max() <= told["deviation of the tool tip"] + LAST_BITS

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Structure: what a program and its plan must have in common before one can be compared with the other.
+
+Enters: a strut motion as read back, and the plan it was made from. Leaves: diagnostics, each with the first thing that
+differs, as it was found and as it was planned. Times: whole ms, as in the program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import zip_longest
+from typing import TypeVar
+
+import numpy as np
+
+from pkm_post.model import Diagnostic, Event, Machine, Motion, Place, StrutMotion, Trajectory
+
+_Thing = TypeVar("_Thing")
+
+
+def structure_faults(
+    struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, motion: Motion
+) -> tuple[Diagnostic, ...]:
+    """What makes a comparison pointless: another machine, other knots, other events, or motion at the ends.
+
+    Args:
+        struts: the program, read back.
+        program_name: names the program in diagnostics.
+        trajectory: what was programmed.
+        machine: the machine that the program is checked on.
+        motion: the plan.
+    """
+    found = []
+    if trajectory.machine_fingerprint != machine.fingerprint:
+        found.append(("T104", f"made for {trajectory.machine}, checked on {machine.name}"))
+    if not np.array_equal(struts.time_ms, motion.time_ms):
+        times = struts.time_ms.tolist(), motion.time_ms.tolist()
+        found.append(("V110", _first_difference("knot", *times, "{} ms".format)))
+    if struts.events != motion.events:
+        found.append(("V109", _first_difference("event", struts.events, motion.events, _event)))
+    for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):
+        if speed.any():
+            found.append(("V105", f"{which} speeds {speed.tolist()} mm/s"))
+    return tuple(Diagnostic(code, Place(program_name), text) for code, text in found)
+
+
+def _first_difference(
+    what: str, found: Sequence[_Thing], planned: Sequence[_Thing], told: Callable[[_Thing], str]
+) -> str:
+    """The first of two rows of things that differs, by its number from 0, and how many there are in each."""
+    pairs = enumerate(zip_longest(found, planned))
+    number, pair = next((number, pair) for number, pair in pairs if pair[0] != pair[1])
+    here, there = ("none" if thing is None else told(thing) for thing in pair)
+    return f"{what} {number}: {here}, planned {there}; {len(found)} found, {len(planned)} planned"
+
+
+def _event(event: Event) -> str:
+    return f"{event.kind.name.lower().replace('_', ' ')} {event.value} at knot {event.row}"

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tool at: where the cubics of some intervals bring the tool, at shares of each.
+
+Enters: a strut motion as read back, and a planned motion as the place where the search for each pose begins; the poses
+found do not depend on it. Leaves: tip, axis and velocity of the tip, and how far off these can be. Either the tool is
+taken to be on its course (``tool_course``), or each pose is found by forward kinematics: most by linear steps from the
+plan (``kinematics.near``); where the Jacobian changes much, or these do not arrive, by Newton's method.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.knots import Knots
+from pkm_post.certificate.struts import cubics
+from pkm_post.certificate.tool_course import ToolCourse
+from pkm_post.geometry import hermite_columns, hermite_lengths, hermite_speeds
+from pkm_post.geometry.vectors import Array, length_of
+from pkm_post.kinematics import NearPoses, carried, forward, near_poses
+from pkm_post.kinematics.jacobian import linearise
+from pkm_post.model import Machine, Motion, StrutMotion
+
+_SPEED_MISSED = 2e-4
+"""Part by which a speed carried by the mean of two inverse Jacobians may be off; see ``knots``."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is played, and what it is measured by.
+
+    Attributes:
+        struts: the motion to play, K + 1 knots.
+        machine: the geometry.
+        ruler: measures poses against the programmed trajectory.
+        motion: the planned motion with the same knots.
+        knots: what the machine is like there.
+        course: where the tool is, about.
+        ceiling: (K,) tip speed that each interval may have, mm/s.
+    """
+
+    struts: StrutMotion
+    machine: Machine
+    ruler: TrajectoryRuler
+    motion: Motion
+    knots: Knots
+    course: ToolCourse
+    ceiling: Array
+
+
+@dataclass(frozen=True)
+class ToolAt:
+    """Where the tool is at M instants of N intervals, column after column in memory.
+
+    Attributes:
+        tip: (3, M, N) mm.
+        axis: (3, M, N) unit tool axis.
+        velocity: (3, M, N) of the tip, mm/s.
+        missed: (3, N) by how much tip, axis and velocity can be off that.
+        found: (M, N) whether there is a pose.
+    """
+
+    tip: Array
+    axis: Array
+    velocity: Array
+    missed: Array
+    found: Array
+
+
+def on_course(task: Task, rows: Array, shares: Array) -> ToolAt:
+    """Where the tool is at shares of intervals of which the course tells it."""
+    course, share = task.course, shares[:, None]
+    tip, axis, spin = course.at(rows, share)
+    return ToolAt(tip, axis, course.velocity(rows, share), course.missed[:, rows], np.ones(spin.shape, dtype=bool))
+
+
+def by_kinematics(task: Task, rows: Array, shares: Array) -> ToolAt:
+    """Where the tool is at shares of any intervals."""
+    cubic = cubics(task.struts, rows)
+    length, speed = hermite_lengths(*cubic, shares), hermite_speeds(*cubic, shares)
+    machine, motion, knots = task.machine, task.motion, task.knots
+    tool_length = np.repeat(motion.tool_length[rows + 1], len(shares))
+    inverses = knots.inverse[rows], knots.inverse[rows + 1]
+    pose, found = near_poses(machine, length, _planned(motion, rows, cubic[-1], shares), tool_length, inverses, shares)
+    tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
+    velocity = np.array(carried(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
+    odd = np.flatnonzero(~(found & np.repeat(knots.alike[rows], len(shares))))
+    if len(odd):
+        knot, lengths, speeds = rows[odd // len(shares)], length.reshape(-1, 6)[odd], speed.reshape(-1, 6)[odd]
+        tip[:, odd], axis[:, odd], velocity[:, odd], found[odd] = _by_newton(
+            machine, motion, knot, tool_length[odd], lengths, speeds
+        )
+    columns = np.stack([tip, axis, velocity]).reshape(3, 3, len(rows), -1).swapaxes(2, 3)
+    missed = np.zeros((3, len(rows)))
+    missed[2] = _SPEED_MISSED * length_of(*columns[2]).max(axis=0)
+    return ToolAt(columns[0], columns[1], columns[2], missed, found.reshape(len(rows), -1).T)
+
+
+def _planned(motion: Motion, rows: Array, duration: Array, shares: Array) -> NearPoses:
+    """The plan at shares of intervals, by cubics of tip, axis and spin."""
+    place = motion.tip, motion.axis, motion.spin
+    rate = motion.tip_rate, motion.axis_rate, motion.spin_rate
+    p0, v0, p1, v1 = (np.column_stack([of[at] for of in some]).T for at in (rows, rows + 1) for some in (place, rate))
+    columns = hermite_columns(p0, v0, p1, v1, duration, shares[:, None]).swapaxes(1, 2).reshape(7, -1)
+    axis = columns[3:6] / length_of(*columns[3:6])
+    return NearPoses(columns[:3].T, axis.T, columns[6])
+
+
+def _by_newton(
+    machine: Machine, motion: Motion, knot: Array, tool_length: Array, length: Array, speed: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Tip, axis and velocity of the tip, (3, N) each, and whether they were found, from lengths and speeds, (N, 6)."""
+    pose = forward(machine, length, tool_length, motion.tip[knot], motion.axis[knot], motion.spin[knot])
+    jacobian, _ = linearise(machine, pose.tip, pose.rotation, tool_length)
+    jacobian[~pose.converged] = np.eye(6)  # no pose was found there, which is refused as such
+    twist = np.linalg.solve(jacobian, speed[..., None])[..., 0]
+    return pose.tip.T, pose.axis.T, twist[:, :3].T, pose.converged
