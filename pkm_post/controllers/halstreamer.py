@@ -50,11 +50,6 @@ class Stream:
         freeze(self, len(self.length), {"length": (np.float64, (6,))})
 
 
-def streams(motion: StrutMotion, period_ms: int = PERIOD_MS) -> tuple[Stream, ...]:
-    """The tables of a motion; each but an empty one begins with the row that the one before it ended with."""
-    return tuple(Stream(period_ms, lengths_at(motion, stretch.rows_ms(period_ms))) for stretch in stretches(motion))
-
-
 def lengths_at(motion: StrutMotion, time_ms: Array) -> Array:
     """Strut lengths at times in ms, (M, 6), on the cubics of a motion."""
     result = np.empty((len(time_ms), 6))
@@ -64,25 +59,18 @@ def lengths_at(motion: StrutMotion, time_ms: Array) -> Array:
     for start in range(0, len(time_ms), _ROWS_PER_CHUNK):
         time = time_ms[start : start + _ROWS_PER_CHUNK]
         knot = np.clip(np.searchsorted(motion.time_ms, time, side="right") - 1, 0, len(motion) - 2)
-        cubic, begin, span = _cubic(motion, knot)
-        share = (time - begin) / span
-        result[start : start + _ROWS_PER_CHUNK] = hermite_lengths(*cubic, share[:, None])[:, 0]
+        begin = motion.time_ms[knot]
+        share = (time - begin) / (motion.time_ms[knot + 1] - begin)
+        result[start : start + _ROWS_PER_CHUNK] = hermite_lengths(*motion.cubics(knot), share[:, None])[:, 0]
     return result
 
 
-def chord_error(motion: StrutMotion, period_ms: int = PERIOD_MS) -> float:
+def chord_error(motion: StrutMotion) -> float:
     """How far a straight line from row to row can be from the cubics, mm: T^2 / 8 max |p''|."""
     if len(motion) == 1:
         return 0.0
-    cubic, _, _ = _cubic(motion, np.arange(len(motion) - 1))
-    return float((period_ms / 1000) ** 2 / 8 * np.abs(np.stack(hermite_accelerations(*cubic))).max())
-
-
-def _cubic(motion: StrutMotion, knot: Array) -> tuple[tuple[Array, Array, Array, Array, Array], Array, Array]:
-    """The cubic behind each knot, as ``geometry.hermite`` takes it, when it begins and how long it is, in ms."""
-    begin, span = motion.time_ms[knot], np.diff(motion.time_ms)[knot]
-    length, speed, after = motion.length, motion.speed, knot + 1
-    return (length[knot], speed[knot], length[after], speed[after], span / 1000), begin, span
+    accelerations = hermite_accelerations(*motion.cubics(np.arange(len(motion) - 1)))
+    return float((PERIOD_MS / 1000) ** 2 / 8 * np.abs(np.stack(accelerations)).max())
 
 
 def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:

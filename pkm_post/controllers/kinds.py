@@ -20,11 +20,9 @@ class Controller(Protocol):
     """What the module of a controller offers. Settings are a class of its own.
 
     Attributes:
-        SUFFIX: how the name of a program ends.
         SETUP_SUFFIX: how the name of the set-up file goes on behind that of the job.
     """
 
-    SUFFIX: str
     SETUP_SUFFIX: str
 
     def settings_of(self, machine: Machine) -> tuple[Any | None, Findings]:

@@ -79,18 +79,19 @@ class Simulation:
     def greatest_speeds(self) -> Array:
         """The greatest speed of each strut, its direction left out, (6,) in mm/s, between the knots as well."""
         greatest = np.abs(self.struts.speed).max(axis=0)
-        for begin in range(0, len(self.struts.speed) - 1, _AT_ONCE):
-            greatest = np.maximum(greatest, self._greatest_between(slice(begin, begin + _AT_ONCE + 1)))
+        last = len(self.struts) - 1
+        for begin in range(0, last, _AT_ONCE):
+            greatest = np.maximum(greatest, self._greatest_between(np.arange(begin, min(begin + _AT_ONCE, last))))
         return greatest
 
-    def _greatest_between(self, knots: slice) -> Array:
-        """The same, of what the cubics between some knots reach inside."""
-        p, v, time = self.struts.length[knots], self.struts.speed[knots], self.struts.time_ms[knots]
-        duration = np.diff(time) / 1000.0
-        starts, ends = hermite_accelerations(p[:-1], v[:-1], p[1:], v[1:], duration)
+    def _greatest_between(self, rows: Array) -> Array:
+        """The same, of what the cubics that begin at some knots reach inside."""
+        cubics = self.struts.cubics(rows)
+        _, speed, _, _, duration = cubics
+        starts, ends = hermite_accelerations(*cubics)
         turns = starts * ends < 0.0  # there the speed of a cubic is greatest or least
         share = np.divide(starts, starts - ends, out=np.zeros_like(starts), where=turns)
-        reached = v[:-1] + starts * share * duration[:, None] / 2.0
+        reached = speed + starts * share * duration[:, None] / 2.0
         greatest: Array = np.abs(reached).max(axis=0)
         return greatest
 
@@ -110,10 +111,9 @@ class Simulation:
 
     def struts_at(self, seconds: Array) -> tuple[Array, Array]:
         """Strut lengths and speeds at times (T,), (T, 6) each."""
-        start, share, duration = self._between(seconds)
-        p, v = self.struts.length, self.struts.speed
-        cubic = p[start], v[start], p[start + 1], v[start + 1], duration
-        return hermite_lengths(*cubic, share[:, None])[:, 0], hermite_speeds(*cubic, share[:, None])[:, 0]
+        start, share, _ = self._between(seconds)
+        cubics = self.struts.cubics(start)
+        return hermite_lengths(*cubics, share[:, None])[:, 0], hermite_speeds(*cubics, share[:, None])[:, 0]
 
     def block_at(self, seconds: float) -> int:
         """The segment of the trajectory that is driven at a time; the earlier one where two meet."""

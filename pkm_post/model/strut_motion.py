@@ -43,3 +43,17 @@ class StrutMotion:
 
     def __len__(self) -> int:
         return len(self.time_ms)
+
+    def cubics(self, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """The cubics that begin at some knots, as ``geometry.hermite`` takes them.
+
+        Args:
+            rows: (N,) the knots; none of them is the last.
+
+        Returns:
+            Lengths and speeds at the beginning, lengths and speeds at the end, (N, 6) each in mm and mm/s; and the
+            durations, (N,) in s.
+        """
+        after = rows + 1
+        duration = (self.time_ms[after] - self.time_ms[rows]) / 1000
+        return self.length[rows], self.speed[rows], self.length[after], self.speed[after], duration

@@ -130,8 +130,8 @@ def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> 
 
 def _lengths(played: StrutMotion) -> Array:
     """Lengths at the knots and at instants between them, in order, (N, 6)."""
-    cubic = played.length[:-1], played.speed[:-1], played.length[1:], played.speed[1:], np.diff(played.time_ms) / 1000
-    return np.vstack([played.length[:1], hermite_lengths(*cubic, _SHARES).reshape(-1, 6)])
+    cubics = played.cubics(np.arange(len(played) - 1))
+    return np.vstack([played.length[:1], hermite_lengths(*cubics, _SHARES).reshape(-1, 6)])
 
 
 def _reach_faults(found: Solution, tool: Array, trajectory: Trajectory, machine: Machine) -> Findings:

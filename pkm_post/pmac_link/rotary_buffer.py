@@ -13,7 +13,7 @@ import logging
 from collections.abc import Sequence
 from itertools import accumulate
 
-from pkm_post.controllers.pmac import Settings
+from pkm_post.controllers.pmac import Settings, rotary_opening
 from pkm_post.pmac_link.faults import LinkLostError, PmacError
 from pkm_post.pmac_link.listing import words_of
 from pkm_post.pmac_link.session import Session
@@ -36,14 +36,15 @@ class RotaryBuffer:
     def __init__(self, session: Session, settings: Settings, lines: Sequence[str], words: int) -> None:
         self.loaded = self.unsure = 0
         self._session, self._lines, self._system = session, lines, f"&{settings.coordinate_system}"
+        self._opening = rotary_opening(settings)
         self._filled = [0, *accumulate(map(words_of, lines))]
         self._words, self._room = words, words
         self._connections = session.connections
 
     def open(self) -> None:
         """Open it empty, the coordinate system pointed to it."""
-        # Behind OPEN ROT, B0 would be a move. To begin all this anew does no harm: nothing was let go.
-        if ahead := self._ordered("CLOSE", "DELETE GATHER", f"{self._system}B0", "OPEN ROT", "CLEAR"):
+        # To begin all this anew does no harm: nothing was let go.
+        if ahead := self._ordered(*self._opening):
             raise PmacError(f"{ahead} lines are in the rotary buffer after CLEAR")
 
     def empty(self) -> bool:

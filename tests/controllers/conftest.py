@@ -3,14 +3,14 @@
 
 import numpy as np
 import pytest
+from controller_settings import settings_for
 
-from pkm_post.controllers.pmac import Settings
 from pkm_post.model import Event, EventKind, StrutMotion
 
 
 @pytest.fixture(scope="session")
 def settings():
-    return Settings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=10.0)
+    return settings_for()
 
 
 @pytest.fixture(scope="session")

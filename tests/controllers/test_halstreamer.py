@@ -6,13 +6,14 @@ import pytest
 
 from pkm_post.controllers.halstreamer import (
     DECIMALS,
+    PERIOD_MS,
     chord_error,
     lengths_at,
     measured,
     read_stream,
-    streams,
     texts,
 )
+from pkm_post.controllers.stretches import stretches
 from pkm_post.model import Event, EventKind, StrutMotion
 
 HALF_DIGIT = 0.5001 * 10.0**-DECIMALS
@@ -27,16 +28,21 @@ def moving(events=(), knots=40, seed=2):
     return StrutMotion(time_ms, length, speed, tuple(events))
 
 
+def rows_of(motion):
+    """The lengths that the tables of a motion state, before they are rounded."""
+    return [lengths_at(motion, stretch.rows_ms(PERIOD_MS)) for stretch in stretches(motion)]
+
+
 def named(made):
     return [(f"table{number}", text) for number, text in enumerate(made, start=1)]
 
 
 def test_the_rows_meet_every_knot_and_the_cubic_between():
     motion = moving()
-    (stream,) = streams(motion)
-    assert len(stream.length) == motion.time_ms[-1] + 1
-    assert np.array_equal(stream.length[motion.time_ms[:-1]], motion.length[:-1])
-    np.testing.assert_allclose(stream.length[-1], motion.length[-1], rtol=0, atol=1e-12)
+    (rows,) = rows_of(motion)
+    assert len(rows) == motion.time_ms[-1] + 1
+    assert np.array_equal(rows[motion.time_ms[:-1]], motion.length[:-1])
+    np.testing.assert_allclose(rows[-1], motion.length[-1], rtol=0, atol=1e-12)
     # p = p0 + v0 t + c2 t^2 + c3 t^3 as PMAC documents its PVT mode, for strut 1 in the longest interval
     knot = int(np.argmax(np.diff(motion.time_ms)))
     span = (motion.time_ms[knot + 1] - motion.time_ms[knot]) / 1000
@@ -45,17 +51,17 @@ def test_the_rows_meet_every_knot_and_the_cubic_between():
     t, way = 0.007, p1 - p0
     by_hand = p0 + v0 * t + (3 * way - (2 * v0 + v1) * span) / span**2 * t**2
     by_hand += ((v0 + v1) * span - 2 * way) / span**3 * t**3
-    assert stream.length[motion.time_ms[knot] + 7, 0] == pytest.approx(by_hand, abs=1e-9)
+    assert rows[motion.time_ms[knot] + 7, 0] == pytest.approx(by_hand, abs=1e-9)
 
 
 def test_what_was_written_reads_back_to_the_printed_decimals():
     motion = moving([Event(0, EventKind.TOOL_CHANGE, 1.0), Event(15, EventKind.DWELL, 0.0125)])
-    made, planned = texts(motion, ["job Säule"]), streams(motion)
+    made, planned = texts(motion, ["job Säule"]), rows_of(motion)
     assert len(made) == len(planned) == 1
     read, faults = read_stream(made[0], "t")
     assert faults == ()
     assert read.period_ms == 1
-    np.testing.assert_allclose(read.length, planned[0].length, rtol=0, atol=HALF_DIGIT)
+    np.testing.assert_allclose(read.length, planned[0], rtol=0, atol=HALF_DIGIT)
 
 
 def test_every_line_is_one_that_halstreamer_takes():
@@ -68,15 +74,15 @@ def test_every_line_is_one_that_halstreamer_takes():
 
 def test_a_dwell_is_rows_that_stay_the_same():
     still, dwelling = moving(), moving([Event(15, EventKind.DWELL, 0.0125)])
-    (without,), (stream,) = streams(still), streams(dwelling)
+    (without,), (rows,) = rows_of(still), rows_of(dwelling)
     knot = still.time_ms[15]
     # 12.5 ms: the rows behind it are half a millisecond off the clock of the motion
-    assert len(stream.length) == len(without.length) + 13
-    assert np.array_equal(stream.length[: knot + 1], without.length[: knot + 1])
-    assert np.array_equal(stream.length[knot : knot + 13], np.tile(still.length[15], (13, 1)))
+    assert len(rows) == len(without) + 13
+    assert np.array_equal(rows[: knot + 1], without[: knot + 1])
+    assert np.array_equal(rows[knot : knot + 13], np.tile(still.length[15], (13, 1)))
     halves = still.time_ms[0] + np.arange(knot, still.time_ms[-1]) + 0.5
-    np.testing.assert_allclose(stream.length[knot + 13 : -1], lengths_at(still, halves), rtol=0, atol=1e-9)
-    np.testing.assert_allclose(stream.length[-1], still.length[-1], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(rows[knot + 13 : -1], lengths_at(still, halves), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(rows[-1], still.length[-1], rtol=0, atol=1e-12)
 
 
 def test_a_table_ends_where_something_else_than_a_dwell_happens():
@@ -89,11 +95,11 @@ def test_a_table_ends_where_something_else_than_a_dwell_happens():
         Event(39, EventKind.SPINDLE, 0.0),
     ]
     motion = moving(events)
-    first, second = streams(motion)
+    first, second = rows_of(motion)
     knot = int(motion.time_ms[15])
-    assert len(first.length) == knot + 1 + 2
-    assert len(second.length) == motion.time_ms[-1] - knot + 1 + 3
-    assert np.array_equal(first.length[-1], second.length[0])
+    assert len(first) == knot + 1 + 2
+    assert len(second) == motion.time_ms[-1] - knot + 1 + 3
+    assert np.array_equal(first[-1], second[0])
     one, two = texts(motion, [])
     assert "# part 1 of 2" in one and "# before: tool_change 1, spindle 1200\n" in one and "after" not in one
     assert "# part 2 of 2" in two and "# before: coolant 1\n" in two and two.endswith("# after: spindle 0\n")
@@ -101,7 +107,7 @@ def test_a_table_ends_where_something_else_than_a_dwell_happens():
 
 def test_a_motion_of_one_knot_is_one_row():
     motion = StrutMotion(np.array([0]), np.full((1, 6), 500.0), np.zeros((1, 6)), ())
-    assert streams(motion)[0].length.shape == (1, 6)
+    assert rows_of(motion)[0].shape == (1, 6)
     assert chord_error(motion) == 0.0
     assert measured(named(texts(motion, [])), motion)[1] == ()
 
@@ -111,19 +117,17 @@ def test_no_straight_line_between_rows_is_farther_from_the_cubic_than_the_bound(
     time = np.arange(0, 1001, 20) / 1000
     turn = 3 * np.pi * time[:, None] + np.arange(6)
     motion = StrutMotion(np.arange(0, 1001, 20), 700 + 20 * np.sin(turn), 60 * np.pi * np.cos(turn), ())
-    for period in (1, 2, 5):
-        (stream,) = streams(motion, period)
-        times = np.arange(len(stream.length) - 1) * float(period)
-        shares = np.linspace(0, 1, 21)
-        way = np.diff(stream.length, axis=0)
-        off = [
-            np.abs(stream.length[:-1] + share * way - lengths_at(motion, times + share * period)).max()
-            for share in shares
-        ]
-        bound = chord_error(motion, period)
-        assert 0.98 * bound < max(off) <= bound * (1 + 1e-6)
+    (rows,) = rows_of(motion)
+    times = np.arange(len(rows) - 1) * float(PERIOD_MS)
+    way = np.diff(rows, axis=0)
+    off = [
+        np.abs(rows[:-1] + share * way - lengths_at(motion, times + share * PERIOD_MS)).max()
+        for share in np.linspace(0, 1, 21)
+    ]
+    bound = chord_error(motion)
+    assert 0.98 * bound < max(off) <= bound * (1 + 1e-6)
     # by hand: T^2 / 8 times the acceleration 20 (3 pi)^2 of the sine; the cubics swing a little about it
-    assert chord_error(motion, 1) == pytest.approx(1e-6 / 8 * 20 * (3 * np.pi) ** 2, rel=0.005)
+    assert bound == pytest.approx(1e-6 / 8 * 20 * (3 * np.pi) ** 2, rel=0.005)
 
 
 def test_the_distance_from_the_cubics_is_measured_from_the_text():

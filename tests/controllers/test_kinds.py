@@ -32,7 +32,6 @@ def test_a_machine_has_the_controller_of_its_kind(machine, kind):
     settings, faults = controller.settings_of(other)
     assert faults == ()
     assert kind == settings.KIND
-    assert controller.SUFFIX.startswith(".")
 
 
 @pytest.mark.parametrize("kind", [None, "siemens"])
@@ -41,10 +40,6 @@ def test_a_machine_of_no_known_kind_is_told(machine, kind):
     controller, faults = controller_of(other)
     assert controller is None
     assert [fault.code for fault in faults] == ["M104"]
-
-
-def test_programs_have_the_suffix_that_the_doors_give_them():
-    assert {controller.SUFFIX for controller in CONTROLLERS.values()} == {pipeline.SUFFIX}
 
 
 def test_names_of_parts():
@@ -60,5 +55,5 @@ def test_the_other_parts_of_a_program_are_those_it_states():
 
 def test_no_two_files_of_a_job_have_one_name():
     for controller in CONTROLLERS.values():
-        suffixes = [controller.SUFFIX, controller.SETUP_SUFFIX, *(table.SUFFIX for table in TABLES.values())]
+        suffixes = [pipeline.SUFFIX, controller.SETUP_SUFFIX, *(table.SUFFIX for table in TABLES.values())]
         assert len(set(suffixes)) == len(suffixes)

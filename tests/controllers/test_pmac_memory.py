@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import re
+from bisect import bisect_left
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from strut_motions import read_back, with_rests
 
-from pkm_post.controllers.pmac import memory_faults, program_parts, program_text, program_words
+from pkm_post.controllers.pmac import memory_faults, program_parts, program_text
+from pkm_post.controllers.pmac.memory import memory_cuts
 from pkm_post.model import Event, EventKind, StrutMotion
 
 
@@ -14,13 +16,23 @@ def at_rest(knots, events=()):
     return StrutMotion(np.arange(knots) * 20, np.full((knots, 6), 500.0), np.zeros((knots, 6)), tuple(events))
 
 
-def test_every_knot_takes_twelve_words():
+def words_of(motion, settings):
+    """The least memory that takes the program of a motion whole."""
+
+    def is_whole(words):
+        small = replace(settings, memory_words=words)
+        return not memory_faults(motion, small, "job") and not memory_cuts(motion, small)
+
+    return bisect_left(range(1 << 20), True, key=is_whole)
+
+
+def test_every_knot_takes_twelve_words(settings):
     # a value takes one word (Turbo PMAC User Manual, p. 337), and a knot has six lengths and six speeds
-    assert program_words(at_rest(1001)) - program_words(at_rest(1)) == 12 * 1000 + 1
+    assert words_of(at_rest(1001), settings) - words_of(at_rest(1), settings) == 12 * 1000 + 1
 
 
 def test_a_program_that_fills_the_memory_is_written_whole_and_one_word_less_parts_it(job, settings):
-    words = program_words(job)
+    words = words_of(job, settings)
     assert len(program_parts(job, replace(settings, memory_words=words), [])) == 1
     assert len(program_parts(job, replace(settings, memory_words=words - 1), [])) == 2
 
@@ -39,7 +51,7 @@ def test_the_parts_together_are_the_whole_and_each_fits(settings, memory_words):
     for number, text in enumerate(texts, start=1):
         part, faults = read_back([re.sub(r"; part .*\n", "", text)], small)
         assert not faults
-        assert program_words(part) <= memory_words
+        assert words_of(part, settings) <= memory_words
         assert f"; part {number} of {len(texts)}:" in text
     whole, faults = read_back(texts, small)
     assert not faults
@@ -79,6 +91,12 @@ def test_a_motion_without_a_rest_that_is_near_enough_is_refused(settings):
     assert memory_faults(motion, replace(settings, memory_words=700), "job") == ()
 
 
+def test_a_memory_that_does_not_take_one_knot_is_told(settings):
+    (fault,) = memory_faults(at_rest(1), replace(settings, memory_words=31), "job")
+    told = "about 32 words for 1 knots without a rest from 0 s on, the controller has 31"
+    assert (fault.code, fault.found) == ("C102", told)
+
+
 def test_the_estimate_is_not_below_the_numbers_and_words_of_the_text(job, settings):
     body = program_text(job, settings, []).split("CLEAR\n")[1]
-    assert program_words(job) >= len(re.findall(r"[A-Z]+-?[0-9.]+|:|LINEAR|ABS|FRAX", body))
+    assert words_of(job, settings) >= len(re.findall(r"[A-Z]+-?[0-9.]+|:|LINEAR|ABS|FRAX", body))

@@ -4,15 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from controller_settings import settings_for
 from hypothesis import given, strategies
 from hypothesis import settings as hypothesis_settings
 from strut_motions import with_rests
 
-from pkm_post.controllers.pmac import Settings, program_text, read_program
+from pkm_post.controllers.pmac import program_text, read_program
 from pkm_post.controllers.pvt import reader
 from pkm_post.model import Event, EventKind, StrutMotion
 
-SETTINGS = Settings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=12.5)
+SETTINGS = settings_for(approach_speed=12.5)
 FILE = "job.pmc"
 HALF_LENGTH_DIGIT = 0.5e-6 * 1.001
 HALF_SPEED_DIGIT = 0.5e-4 * 1.001

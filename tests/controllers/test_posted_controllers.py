@@ -14,7 +14,7 @@ from pkm_post.controllers.motion_csv import read_table
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Event, EventKind, Refused
 from pkm_post.options import add_options, options_from
-from pkm_post.pipeline import LINUXCNC, Options, post
+from pkm_post.pipeline import LINUXCNC, SUFFIX, Options, post
 from pkm_post.verify import verify
 
 
@@ -36,7 +36,7 @@ def of_kind(machine, kind, **changes):
 @pytest.mark.parametrize("kind", CONTROLLERS)
 def test_a_job_is_posted_and_verified_for_every_kind(machine, tmp_path, kind):
     other, controller = of_kind(machine, kind), CONTROLLERS[kind]
-    posted = post(job(), other, tmp_path / f"job{controller.SUFFIX}")
+    posted = post(job(), other, tmp_path / f"job{SUFFIX}")
     assert posted.report["certificate"]["holds"]
     assert f"job{controller.SETUP_SUFFIX}" in {path.name for path in posted.files}
     assert verify(posted.program, posted.program.with_suffix(".pkmt"), other) == posted.report

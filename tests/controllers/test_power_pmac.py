@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from controller_settings import settings_for
 
 from pkm_post.controllers import pmac
-from pkm_post.controllers.power_pmac import Settings, faults, program_parts, program_text, read_program, setup_text
+from pkm_post.controllers.power_pmac import faults, program_parts, program_text, read_parts, setup_text
 from pkm_post.model import Event, EventKind, StrutMotion
 
-SETTINGS = Settings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=10.0)
+SETTINGS = settings_for("power_pmac")
 FILE = "job.pmc"
-TABLE = {"kind": "power_pmac", "counts_per_mm": 10000, "zero_length": [500] * 6, "approach_speed": 8}
 
 # The words are those of the Power PMAC User's Manual, pp. 670, 706, 724, 778: open prog empties the buffer, so there is
 # no clear; comments begin with //, a semicolon only parts statements; pvt alone states the time of PVT moves.
@@ -49,6 +49,10 @@ close
 """
 
 
+def read(text, settings=SETTINGS):
+    return read_parts([(FILE, text)], settings)
+
+
 def test_a_job_with_every_kind_of_event(job):
     assert program_text(job, SETTINGS, ["job"]) == JOB
     assert program_parts(job, SETTINGS, ["job"]) == (JOB,)
@@ -68,13 +72,13 @@ def test_what_was_written_reads_back_to_the_printed_decimals():
         )
         motion = StrutMotion(time_ms, rng.uniform(300, 1500, (200, 6)), speed, events)
         text = program_text(motion, settings, ["heading"])
-        read, found = read_program(text, settings, FILE)
+        back, found = read(text, settings)
         assert found == ()
-        assert np.array_equal(read.time_ms, motion.time_ms)
-        assert read.events == motion.events
-        np.testing.assert_allclose(read.length, motion.length, rtol=0, atol=0.5001 * 10.0**-decimals)
-        np.testing.assert_allclose(read.speed, motion.speed, rtol=0, atol=0.5001 * 10.0**-speed_decimals)
-        assert program_text(read, settings, ["heading"]) == text
+        assert np.array_equal(back.time_ms, motion.time_ms)
+        assert back.events == motion.events
+        np.testing.assert_allclose(back.length, motion.length, rtol=0, atol=0.5001 * 10.0**-decimals)
+        np.testing.assert_allclose(back.speed, motion.speed, rtol=0, atol=0.5001 * 10.0**-speed_decimals)
+        assert program_text(back, settings, ["heading"]) == text
 
 
 @pytest.mark.parametrize(
@@ -95,34 +99,34 @@ def test_what_was_written_reads_back_to_the_printed_decimals():
 )
 def test_a_malformed_program_is_told_to_the_column(old, new, line, column):
     assert old in JOB
-    read, found = read_program(JOB.replace(old, new, 1), SETTINGS, FILE)
-    assert read is None
+    back, found = read(JOB.replace(old, new, 1))
+    assert back is None
     assert (found[0].code, found[0].place.line, found[0].place.column) == ("C101", line, column)
 
 
 def test_neither_controller_takes_the_program_of_the_other(job):
-    turbo = pmac.Settings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=10.0)
-    assert read_program(pmac.program_text(job, turbo, []), SETTINGS, FILE)[0] is None
+    turbo = settings_for("turbo_pmac")
+    assert read(pmac.program_text(job, turbo, []))[0] is None
     assert pmac.read_program(JOB, turbo, FILE)[0] is None
 
 
 def test_no_changed_character_goes_unnoticed():
-    original = read_program(JOB, SETTINGS, FILE)[0]
+    original = read(JOB)[0]
     rng = np.random.default_rng(5)
     body = JOB.index("open")
     for place in rng.integers(body, len(JOB) - 1, 300):
         other = chr(rng.integers(32, 127))
         if other == JOB[place]:
             continue
-        read, found = read_program(JOB[:place] + other + JOB[place + 1 :], SETTINGS, FILE)
-        same = read is not None and all(
-            np.array_equal(getattr(read, name), getattr(original, name)) for name in ("time_ms", "length", "speed")
+        back, found = read(JOB[:place] + other + JOB[place + 1 :])
+        same = back is not None and all(
+            np.array_equal(getattr(back, name), getattr(original, name)) for name in ("time_ms", "length", "speed")
         )
-        assert found or not same or read.events != original.events, (place, other)
+        assert found or not same or back.events != original.events, (place, other)
 
 
 def test_lines_that_are_too_long_are_told():
-    found = read_program(JOB, replace(SETTINGS, line_limit=112), FILE)[1]
+    found = read(JOB, replace(SETTINGS, line_limit=112))[1]
     assert {fault.code for fault in found} == {"C103"}
 
 
@@ -132,25 +136,8 @@ def test_an_event_without_code_is_told_before_writing(job):
     assert faults(job, SETTINGS, "job") == ()
 
 
-def test_memory_has_no_meaning_here(job):
-    settings = Settings.of(TABLE | {"memory_words": 1})
-    assert not hasattr(settings, "memory_words")
-    assert faults(job, settings, "job") == ()
-
-
-@pytest.mark.parametrize(
-    ("change", "complaint"),
-    [
-        ({"kind": "turbo_pmac"}, "expected 'power_pmac', got 'turbo_pmac'"),
-        ({"colour": "blue"}, r"unknown \['colour'\]"),
-        ({"program": 1000}, "program: expected a whole number from 1 to 999"),
-        ({"letters": list("ABCUVV")}, "letters: expected six different"),
-        ({"codes": {"stop": "PVT20"}}, "not beginning with"),
-    ],
-)
-def test_a_wrong_entry_is_refused_by_name(change, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        Settings.of(TABLE | change)
+def test_memory_has_no_meaning_here():
+    assert not hasattr(SETTINGS, "memory_words")
 
 
 def _commands(text):

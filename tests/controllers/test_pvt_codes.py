@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
 import pytest
+from controller_settings import settings_for
 
-from pkm_post.controllers.pvt.codes import DEFAULT_CODES, MEANINGS, check_codes, code_text, event_faults
+from pkm_post.controllers.pvt.codes import MEANINGS, check_codes, code_text, event_faults
 from pkm_post.model import Event, EventKind, StrutMotion
+
+CODES = settings_for().codes
 
 
 @pytest.mark.parametrize(
@@ -19,22 +22,22 @@ from pkm_post.model import Event, EventKind, StrutMotion
     ],
 )
 def test_an_event_has_one_text(kind, value, text):
-    assert code_text(Event(0, kind, value), DEFAULT_CODES) == text
+    assert code_text(Event(0, kind, value), CODES) == text
 
 
 def test_a_code_with_fixed_decimals_writes_what_it_can_write_exactly():
-    codes = DEFAULT_CODES | {"spindle_clockwise": "S{value:.2f} M3"}
+    codes = CODES | {"spindle_clockwise": "S{value:.2f} M3"}
     check_codes(codes)
     assert code_text(Event(0, EventKind.SPINDLE, 1200.5), codes) == "S1200.50 M3"
     with pytest.raises(ValueError, match="would write it as 3183.10"):
         code_text(Event(0, EventKind.SPINDLE, 3183.0989), codes)
 
 
-def test_the_default_codes_are_in_order_and_tell_all_meanings_apart():
-    check_codes(DEFAULT_CODES)
+def test_the_codes_of_the_example_are_in_order_and_tell_all_meanings_apart():
+    check_codes(CODES)
     values = [3 * meaning.sign if meaning.value is None else meaning.value for meaning in MEANINGS.values()]
     events = [Event(0, meaning.kind, value) for meaning, value in zip(MEANINGS.values(), values, strict=True)]
-    texts = [code_text(event, DEFAULT_CODES) for event in events]
+    texts = [code_text(event, CODES) for event in events]
     assert texts == ["T3 M6", "M5", "S3 M3", "S3 M4", "M9", "M8", "M7", "M0", "M1"]
 
 
@@ -65,12 +68,12 @@ def test_the_default_codes_are_in_order_and_tell_all_meanings_apart():
 )
 def test_a_table_of_codes_must_be_well_formed_and_invertible(change, complaint):
     with pytest.raises(ValueError, match=complaint):
-        check_codes(DEFAULT_CODES | change)
+        check_codes(CODES | change)
 
 
 def test_outputs_can_be_set_with_synchronous_assignments():
     # Turbo PMAC User Manual, p. 250: one behind the last move or dwell of a program is not carried out
-    codes = DEFAULT_CODES | {
+    codes = CODES | {
         "coolant_flood": "M60==1 DWELL0",
         "coolant_off": "M60==0 DWELL0",
         "spindle_clockwise": "M70=={value} DWELL0",
@@ -103,9 +106,9 @@ def test_every_kind_of_event_but_the_dwell_has_a_code():
 def test_an_event_without_code_is_told_before_writing(kind, value, found):
     event = Event(0, kind, value)
     motion = StrutMotion(np.array([0]), np.full((1, 6), 500.0), np.zeros((1, 6)), (event,))
-    assert [(fault.code, fault.found) for fault in event_faults(motion, DEFAULT_CODES, "job")] == [("C104", found)]
+    assert [(fault.code, fault.found) for fault in event_faults(motion, CODES, "job")] == [("C104", found)]
     with pytest.raises(ValueError, match="expected one with a code"):
-        code_text(event, DEFAULT_CODES)
+        code_text(event, CODES)
 
 
 def test_a_job_with_codes_for_all_events_has_no_faults(job, settings):

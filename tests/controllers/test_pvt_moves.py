@@ -3,16 +3,15 @@
 
 import numpy as np
 import pytest
+from controller_settings import settings_for
 from hypothesis import given, strategies
 from hypothesis import settings as hypothesis_settings
 
-from pkm_post.controllers import pmac, power_pmac
 from pkm_post.controllers.pmac.syntax import grammar as turbo
 from pkm_post.controllers.power_pmac.syntax import grammar as power
 from pkm_post.controllers.pvt.moves import lines_of
 
-WHAT = {"counts_per_mm": 1000.0, "zero_length": (500.0,) * 6, "approach_speed": 10.0}
-GRAMMARS = {"turbo": turbo(pmac.Settings(**WHAT)), "power": power(power_pmac.Settings(**WHAT))}
+GRAMMARS = {"turbo": turbo(settings_for("turbo_pmac")), "power": power(settings_for("power_pmac"))}
 LONGEST = 4095
 CHARACTERS = "0123456789-.: \nABCUVWPTpvtFXD;/+,eE\t\r\x00\x7f\x80\xb3\xff\u20ac\u0663\U0001f600"
 

@@ -11,7 +11,9 @@ import threading
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from pkm_post.controllers.pmac import Settings, setup_text
+from controller_settings import settings_for
+
+from pkm_post.controllers.pmac import setup_text
 from pkm_post.pmac_link.ethernet_conversation import EthernetConversation
 from pkm_post.pmac_link.faults import LinkLostError
 from pkm_post.pmac_link.serial_conversation import SerialConversation
@@ -20,7 +22,7 @@ from pkm_post.pmac_simulator import Controller, Line, Packets, Server
 
 STROKE = (450.0, 550.0)
 LONGEST_JOIN_S = 20.0
-SETTINGS = Settings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=10.0)
+SETTINGS = settings_for()
 
 
 def carried(data, out):

@@ -7,9 +7,12 @@ python3 tests/pmac_link/soak.py [FAULTS [FIRST_SEED]]
 import logging
 import sys
 from collections import Counter
+from pathlib import Path
 
-import streams
-from link_faults import by_chance, reference_of, small_program
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+import streams  # noqa: E402
+from link_faults import by_chance, reference_of, small_program  # noqa: E402
 
 DOWNLOADS_PER_STREAM = 50
 

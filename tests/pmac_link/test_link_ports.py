@@ -66,6 +66,11 @@ def test_tcp_carries_bytes_and_tells_the_end(listener):
     link.close()
 
 
+def test_a_name_that_no_name_server_can_be_asked_for():
+    with pytest.raises(LinkLostError, match="aaa, port 1025"):
+        Port("tcp", "a" * 70, 1025).link().restart()
+
+
 def test_nobody_listens(listener):
     number = listener.getsockname()[1]
     listener.close()

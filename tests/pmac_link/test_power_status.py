@@ -5,9 +5,9 @@ import itertools
 
 import numpy as np
 import pytest
+from controller_settings import settings_for
 from gpascii import CLOSED_LOOP, READY, Shell, ShellLink
 
-from pkm_post.controllers.power_pmac import Settings
 from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.faults import LinkLostError, OutcomeUnknownError, RefusedError
 from pkm_post.pmac_link.gpascii_conversation import GpasciiConversation
@@ -15,7 +15,7 @@ from pkm_post.pmac_link.readout import state_text
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import read_status
 
-SETTINGS = Settings(counts_per_mm=1000.0, zero_length=(500.0,) * 6, approach_speed=10.0)
+SETTINGS = settings_for("power_pmac", counts_per_mm=1000.0)
 NANOMETRE = 1e-6
 
 

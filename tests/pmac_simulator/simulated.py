@@ -4,13 +4,13 @@
 from dataclasses import dataclass
 
 import numpy as np
+from controller_settings import settings_for
 
-from pkm_post.controllers.pmac import Settings as ProgramSettings
 from pkm_post.model import StrutMotion
 from pkm_post.pmac_simulator import Controller, Line, Settings
 
 LETTERS = "ABCUVW"
-PROGRAM_SETTINGS = ProgramSettings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=100.0)
+PROGRAM_SETTINGS = settings_for(approach_speed=100.0)
 """Of the machine that ``ready_machine`` makes."""
 
 

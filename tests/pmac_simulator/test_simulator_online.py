@@ -2,9 +2,10 @@
 """On-line commands [Turbo PMAC Software Reference, on-line commands]: variables, programs, identity, resets."""
 
 import pytest
+from controller_settings import settings_for
 from simulated import make
 
-from pkm_post.controllers.pmac import Settings, program_text, setup_text
+from pkm_post.controllers.pmac import program_text, setup_text
 from pkm_post.model import StrutMotion
 from pkm_post.pmac_simulator import Settings as SimulatorSettings
 
@@ -62,7 +63,7 @@ def test_size_counts_the_words_and_is_negative_while_a_buffer_is_open(pmac):
 
 
 def test_a_written_program_is_listed_as_it_was_written_but_for_its_form(pmac):
-    settings = Settings(counts_per_mm=10000.0, zero_length=(500.0,) * 6, approach_speed=10.0)
+    settings = settings_for()
     length = [[512.345678 + strut for strut in range(6)], [-0.000001 * strut - 7 for strut in range(6)]]
     motion = StrutMotion([0, 40], length, [[0.0] * 6] * 2, ())
     text = program_text(motion, settings, ["a comment; with another"])
@@ -156,7 +157,7 @@ def test_the_settings_of_the_factory(machine):
 
 
 def test_the_set_up_file_of_a_machine_is_taken_as_it_is(pmac):
-    settings = Settings(counts_per_mm=-2000.0, zero_length=(700.25,) * 6, approach_speed=10.0, coordinate_system=2)
+    settings = settings_for(counts_per_mm=-2000.0, zero_length=(700.25,) * 6, coordinate_system=2)
     pmac.lines(setup_text(settings, "a machine", (600.0, 900.0)))
     assert pmac.say("#6->") == "-2000W+1400500"
     assert pmac.say("I5290 I113 I114 I127") == "1000\r200500\r-399500\r0"

@@ -3,9 +3,9 @@
 
 from collections.abc import Sequence
 
-from pkm_post.controllers.pmac.memory import memory_faults, program_words
+from pkm_post.controllers.pmac.memory import memory_faults
 from pkm_post.controllers.pmac.program import program_parts, program_text
-from pkm_post.controllers.pmac.rotary import program_of_rotary, rotary_text
+from pkm_post.controllers.pmac.rotary import rotary_opening, rotary_text
 from pkm_post.controllers.pmac.settings import Settings, settings_of
 from pkm_post.controllers.pmac.setup import setup_text
 from pkm_post.controllers.pmac.syntax import grammar
@@ -16,24 +16,21 @@ from pkm_post.model import Diagnostic, StrutMotion
 
 __all__ = [
     "SETUP_SUFFIX",
-    "SUFFIX",
     "Settings",
     "event_faults",
     "faults",
     "memory_faults",
-    "program_of_rotary",
     "program_parts",
     "program_text",
-    "program_words",
     "read_parts",
     "read_program",
+    "rotary_opening",
     "rotary_text",
     "settings_of",
     "setup_text",
     "stated_part",
 ]
 
-SUFFIX = ".pmc"
 SETUP_SUFFIX = "-setup.pmc"
 
 

@@ -28,11 +28,6 @@ _GOOD_FOR_A_CUT = {EventKind.TOOL_CHANGE: 2, EventKind.STOP: 1}
 """Where the machine is best left waiting for the next part: the higher, the better; 0 for any other rest."""
 
 
-def program_words(motion: StrutMotion) -> int:
-    """Estimate the memory of the program of a motion, in 48-bit words."""
-    return WORDS_OF_FRAME + int(_words_by_knot(motion).sum())
-
-
 def _words_by_knot(motion: StrutMotion) -> Array:
     """Words of each knot and of what happens there, (M,)."""
     words = np.full(len(motion), WORDS_PER_KNOT)
@@ -66,8 +61,8 @@ def memory_faults(motion: StrutMotion, settings: Settings, file: str) -> tuple[D
     _, stuck = _cuts(motion, settings)
     if stuck is None:
         return ()
-    resting = np.append(rests(motion, settings), len(motion) - 1)
-    end = int(resting[resting > stuck].min())
+    resting = rests(motion, settings)
+    end = int(resting[resting > stuck].min(initial=len(motion) - 1))
     words = WORDS_OF_FRAME + int(_words_by_knot(motion)[stuck : end + 1].sum())
     found = (
         f"about {words} words for {end - stuck + 1} knots without a rest from {motion.time_ms[stuck] / 1000:g} s on, "

@@ -13,6 +13,7 @@ from pkm_post.controllers.pmac.memory import memory_cuts
 from pkm_post.controllers.pmac.settings import Settings
 from pkm_post.controllers.pvt import parts, writer
 from pkm_post.controllers.pvt.decimals import plain
+from pkm_post.controllers.pvt.settings import APPROACH_RAMP_MS
 from pkm_post.controllers.pvt.words import Words
 from pkm_post.model import StrutMotion
 
@@ -40,9 +41,14 @@ def program_parts(motion: StrutMotion, settings: Settings, heading: Sequence[str
     return tuple(program_text(part, settings, lines) for part, lines in zip(motions, headings, strict=True))
 
 
+def buffer_opening(settings: Settings) -> str:
+    """The lines that open the buffer of the program, empty: all that precedes its modes and moves."""
+    return f"CLOSE\nDELETE GATHER\nOPEN PROG {settings.program}\nCLEAR\n"
+
+
 def _opening(settings: Settings) -> str:
     speed = plain(settings.approach_speed)
     return (
-        f"CLOSE\nDELETE GATHER\nOPEN PROG {settings.program}\nCLEAR\n"
-        f"ABS\nFRAX({','.join(settings.letters)})\nLINEAR\nTA{settings.approach_ramp_ms} TS0 F{speed}\n"
+        f"{buffer_opening(settings)}"
+        f"ABS\nFRAX({','.join(settings.letters)})\nLINEAR\nTA{APPROACH_RAMP_MS} TS0 F{speed}\n"
     )

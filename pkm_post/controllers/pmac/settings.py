@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Settings: how one machine's Turbo PMAC is wired and spoken to.
 
-Enters: the ``[controller]`` table of the machine file. Leaves: checked settings with the memory of the controller.
+Enters: the ``[controller]`` table of the machine file. Leaves: settings with the memory of the controller.
 """
 
 from __future__ import annotations
@@ -21,9 +21,8 @@ class Settings(pvt.Settings):
     """
 
     KIND = "turbo_pmac"
-    RULES = pvt.COMMON_RULES | {"memory_words": pvt.whole(1, 1 << 24)}
 
-    memory_words: int = 237_568
+    memory_words: int
 
 
 def settings_of(machine: Machine) -> tuple[Settings | None, tuple[Diagnostic, ...]]:

@@ -8,6 +8,7 @@ from the writer: a fault of the writer must not be read as if it were none.
 from __future__ import annotations
 
 from pkm_post.controllers.pmac.settings import Settings
+from pkm_post.controllers.pvt.settings import APPROACH_RAMP_MS
 from pkm_post.controllers.pvt.syntax import FLOW_FROM_MODES, PRINTABLE, START, Flow, Grammar, body_forms, form
 
 FLOW: Flow = {
@@ -28,4 +29,4 @@ def grammar(settings: Settings) -> Grammar:
         "clear": form("CLEAR", "CLEAR"),
         **body_forms(settings, str.upper),
     }
-    return Grammar(forms, FLOW, (settings.approach_ramp_ms, 0, settings.approach_speed))
+    return Grammar(forms, FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))

@@ -14,19 +14,16 @@ from pkm_post.model import Diagnostic, StrutMotion
 
 __all__ = [
     "SETUP_SUFFIX",
-    "SUFFIX",
     "Settings",
     "faults",
     "program_parts",
     "program_text",
     "read_parts",
-    "read_program",
     "settings_of",
     "setup_text",
     "stated_part",
 ]
 
-SUFFIX = ".pmc"
 SETUP_SUFFIX = "-setup.cfg"
 
 
@@ -46,17 +43,3 @@ def read_parts(
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
     """Read a motion program; as ``pvt.reader.read_parts``."""
     return reader.read_parts(texts, grammar(settings), settings)
-
-
-def read_program(text: str, settings: Settings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """Read a motion program.
-
-    Args:
-        text: the program.
-        settings: of the controller it was written for.
-        file: its name, for the diagnostics.
-
-    Returns:
-        The motion, or None when there are faults; and the first 20 faults in the order of their lines.
-    """
-    return read_parts([(file, text)], settings)

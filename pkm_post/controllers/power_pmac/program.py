@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pkm_post.controllers.power_pmac.settings import Settings
 from pkm_post.controllers.pvt import writer
 from pkm_post.controllers.pvt.decimals import plain
+from pkm_post.controllers.pvt.settings import APPROACH_RAMP_MS
 from pkm_post.controllers.pvt.words import Words
 from pkm_post.model import StrutMotion
 
@@ -32,5 +33,5 @@ def _opening(settings: Settings) -> str:
     speed = plain(settings.approach_speed)
     return (
         f"open prog {settings.program}\nabs\nfrax({','.join(settings.letters)})\n"
-        f"linear\nta{settings.approach_ramp_ms} ts0 F{speed}\n"
+        f"linear\nta{APPROACH_RAMP_MS} ts0 F{speed}\n"
     )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Settings: how one machine's Power PMAC is wired and spoken to.
 
-Enters: the ``[controller]`` table of the machine file. Leaves: checked settings. The memory for programs is set in the
+Enters: the ``[controller]`` table of the machine file. Leaves: settings. The memory for programs is set in the
 controller's own project, so the machine file does not say how much there is.
 """
 
@@ -18,8 +18,6 @@ class Settings(pvt.Settings):
     """Settings of the Power PMAC of one machine; its numbers are doubles."""
 
     KIND = "power_pmac"
-    RULES = pvt.COMMON_RULES
-    WITHOUT_MEANING = ("memory_words",)
 
 
 def settings_of(machine: Machine) -> tuple[Settings | None, tuple[Diagnostic, ...]]:

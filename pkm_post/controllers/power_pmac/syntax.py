@@ -9,6 +9,7 @@ letters and the other way round; the reader does not, for the writer has no choi
 from __future__ import annotations
 
 from pkm_post.controllers.power_pmac.settings import Settings
+from pkm_post.controllers.pvt.settings import APPROACH_RAMP_MS
 from pkm_post.controllers.pvt.syntax import FLOW_FROM_MODES, PRINTABLE, START, Flow, Grammar, body_forms, form
 
 FLOW: Flow = {START: {"comment": START, "open": "cleared"}, **FLOW_FROM_MODES}
@@ -22,4 +23,4 @@ def grammar(settings: Settings) -> Grammar:
         "open": form(f"open prog {settings.program}", "open prog ", str(settings.program)),
         **body_forms(settings, str.lower),
     }
-    return Grammar(forms, FLOW, (settings.approach_ramp_ms, 0, settings.approach_speed))
+    return Grammar(forms, FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))

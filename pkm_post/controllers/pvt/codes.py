@@ -51,18 +51,6 @@ MEANINGS: dict[str, Meaning] = {
 }
 """The first that covers an event is its code: the stop of the spindle stands before its two directions."""
 
-DEFAULT_CODES: dict[str, str] = {
-    "tool_change": "T{value:d} M6",
-    "spindle_stop": "M5",
-    "spindle_clockwise": "S{value} M3",
-    "spindle_counterclockwise": "S{value} M4",
-    "coolant_off": "M9",
-    "coolant_flood": "M8",
-    "coolant_mist": "M7",
-    "stop": "M0",
-    "optional_stop": "M1",
-}
-
 LONGEST_DWELL = 8388.607
 """s; the controller cuts longer dwells down to this."""
 

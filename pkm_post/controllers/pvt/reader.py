@@ -9,22 +9,16 @@ The reader is strict: a line it does not know, or one in a place where it does n
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from decimal import Decimal
 
 import numpy as np
 
-from pkm_post.controllers.pvt.codes import MEANINGS
-from pkm_post.controllers.pvt.moves import Lines, lines_of
+from pkm_post.controllers.pvt.moves import Lines
 from pkm_post.controllers.pvt.parts import joined, part_faults
+from pkm_post.controllers.pvt.reading import MOST_FAULTS, Reading
 from pkm_post.controllers.pvt.settings import Settings
-from pkm_post.controllers.pvt.syntax import FINISHED, START, Grammar, state_after
-from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
-from pkm_post.model.program import Array
+from pkm_post.controllers.pvt.syntax import Grammar
+from pkm_post.model import Diagnostic, Place, StrutMotion
 
-MOST_FAULTS = 20
-_INTERVAL_MS = 4095
-_DWELL_MS = 8_388_607
-_SHOWN = 40
 _CHUNK = 1 << 20
 
 
@@ -64,7 +58,7 @@ def read_program(
     Returns:
         The motion, or None when there are faults; and the first 20 faults in the order of their lines.
     """
-    reading = _Reading(grammar, settings, file)
+    reading = Reading(grammar, file)
     number = 1
     too_long: list[Diagnostic] = []
     for chunk in _chunks(text):
@@ -93,148 +87,3 @@ def _too_long(number: int, lines: Lines, settings: Settings, file: str) -> Itera
     for row in np.flatnonzero(lengths > settings.line_limit)[:MOST_FAULTS].tolist():
         found = f"{lengths[row]} characters, the controller takes {settings.line_limit}"
         yield Diagnostic("C103", Place(file, line=number + row, column=settings.line_limit + 1), found)
-
-
-class _Reading:
-    """What is known of a program, line by line.
-
-    Attributes:
-        forms: the forms of its lines.
-        faults: what was wrong so far.
-    """
-
-    def __init__(self, grammar: Grammar, settings: Settings, file: str) -> None:
-        self.forms = grammar.forms
-        self.faults: list[Diagnostic] = []
-        self._due = {
-            state: [name for name in self.forms if _kind(name) in kinds] for state, kinds in grammar.flow.items()
-        }
-        self._grammar, self._file = grammar, file
-        self._state = START
-        self._values: list[Array] = []
-        self._knots = self._interval = 0
-        self._intervals: list[Array] = []
-        self._halts: list[tuple[int, int]] = []
-        self._events: list[Event] = []
-        self._acts = {"feed": self._feed, "approach": self._approach, "halt": self._halt, "dwell": self._dwell}
-        self._acts |= {"interval": self._new_interval, "move": self._move}
-
-    def lines_of(self, text: str) -> Lines:
-        """The lines of a text, of which moves and intervals are found already."""
-        # one byte per character: one that is not Latin-1 becomes a question mark, which is in no line of these
-        return lines_of(text.encode("latin-1", "replace"), self.forms["move"], self.forms["interval"], _INTERVAL_MS)
-
-    def take(self, number: int, text: str, lines: Lines) -> None:
-        """Take the lines of a text, the first of them line ``number``."""
-        for row, end in lines.stretches():
-            if len(self.faults) >= MOST_FAULTS:
-                break
-            self._line(number + row, text[lines.edges[row] : lines.edges[row + 1]].removesuffix("\n"))
-            if row + 1 < end:
-                self._moves(*lines.moves(row + 1, end, self._interval))
-
-    def _line(self, number: int, line: str) -> None:
-        name, numbers = self._form_of(line)
-        if numbers is None:
-            name = self._malformed(number, line)
-        elif name not in self._due[self._state]:
-            self._fault(number, 0, line, self._expected())
-        if name:
-            self._state = state_after(self._grammar.flow, self._state, _kind(name))
-        if numbers is not None:
-            self._act(name, number, line, numbers)
-
-    def finish(self, number: int) -> StrutMotion | None:
-        """The motion of a text that ended before line ``number``; None when there were faults."""
-        if self._state != FINISHED:
-            self._fault(number, 0, "", self._expected())
-        if self.faults:
-            return None
-        motion = self._motion()
-        self._check_rest(motion)
-        return None if self.faults else motion
-
-    def _motion(self) -> StrutMotion:
-        values = np.concatenate(self._values)
-        time_ms = np.cumsum(np.concatenate([[0], *self._intervals]))
-        return StrutMotion(time_ms, values[:, :, 0], values[:, :, 1], tuple(self._events))
-
-    def _check_rest(self, motion: StrutMotion) -> None:
-        """Every interruption must find the struts at rest; whether the end does is a matter of the whole motion."""
-        eventful = {event.row for event in motion.events}
-        for knot, number in self._halts:
-            if motion.speed[knot].any() and (knot < len(motion) - 1 or knot in eventful):
-                self._fault(number, 0, self.forms["halt"].name, "struts at rest")
-
-    def _form_of(self, line: str) -> tuple[str, Sequence[str] | None]:
-        """The form of a line, one that is due if there is one, and its numbers; nothing when it has no known form."""
-        for name in (*self._due[self._state], *self.forms):
-            match = self.forms[name].fits(line)
-            if match:
-                return name, match.groups()
-        return "", None
-
-    def _act(self, name: str, number: int, line: str, numbers: Sequence[str]) -> None:
-        if name in MEANINGS:
-            meaning = MEANINGS[name]
-            value = meaning.sign * float(numbers[0]) if meaning.value is None else meaning.value
-            self._events.append(Event(self._knots - 1, meaning.kind, value))
-        elif name in self._acts:
-            self._acts[name](number, line, numbers)
-
-    def _feed(self, number: int, line: str, numbers: Sequence[str]) -> None:
-        if tuple(map(float, numbers)) != self._grammar.feed:
-            expected = "{}, {} and {}".format(*self._grammar.feed)
-            self._fault(number, 0, line, f"the numbers {expected}")
-
-    def _approach(self, number: int, line: str, numbers: Sequence[str]) -> None:
-        self._values.append(np.array([[[float(length), 0.0] for length in numbers]]))
-        self._knots += 1
-
-    def _move(self, number: int, line: str, numbers: Sequence[str]) -> None:
-        self._moves(np.array([[float(number) for number in numbers]]).reshape(1, 6, 2), np.array([self._interval]))
-
-    def _moves(self, values: Array, intervals: Array) -> None:
-        """Take moves: their lengths and speeds, (M, 6, 2), and the time that each takes in ms, (M,)."""
-        self._values.append(values)
-        self._intervals.append(intervals)
-        self._knots += len(values)
-        self._interval = int(intervals[-1])
-
-    def _new_interval(self, number: int, line: str, numbers: Sequence[str]) -> None:
-        self._interval = int(numbers[0])
-        if self._interval > _INTERVAL_MS:
-            self._fault(number, len("PVT"), line, f"at most {_INTERVAL_MS} ms")
-
-    def _halt(self, number: int, line: str, numbers: Sequence[str]) -> None:
-        self._halts.append((self._knots - 1, number))
-
-    def _dwell(self, number: int, line: str, numbers: Sequence[str]) -> None:
-        milliseconds = Decimal(numbers[0])
-        if milliseconds > _DWELL_MS:
-            self._fault(number, len("DWELL"), line, f"at most {_DWELL_MS} ms")
-        self._events.append(Event(self._knots - 1, EventKind.DWELL, float(milliseconds / 1000)))
-
-    def _malformed(self, number: int, line: str) -> str:
-        """Report a line of no known form; the kind of line that was meant, empty when it cannot be told."""
-        agreed, expected, name = max(
-            ((*self.forms[name].agreement(line), name) for name in self._due[self._state]),
-            default=(0, "", ""),
-            key=lambda item: item[0],
-        )
-        self._fault(number, agreed, line, expected if agreed else self._expected())
-        return name if agreed else ""
-
-    def _expected(self) -> str:
-        due = self._due[self._state]
-        names = [self.forms[name].name for name in due if name not in MEANINGS]
-        return " or ".join([*names, "a code"] if len(names) < len(due) else names) or "nothing more"
-
-    def _fault(self, number: int, position: int, line: str, expected: str) -> None:
-        shown = repr(line[position : position + _SHOWN]) if line[position:] else "the end"
-        place = Place(self._file, line=number, column=position + 1)
-        self.faults.append(Diagnostic("C101", place, f"{shown}, expected {expected}"))
-
-
-def _kind(name: str) -> str:
-    return "code" if name in MEANINGS else name

@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Settings: how one machine's controller is wired and spoken to, as far as it is the same for the whole family.
 
-Enters: the ``[controller]`` table of the machine file. Leaves: checked settings that the writer, the reader and the
-set-up file share as data. Units: mm, mm/s, ms, encoder counts.
+Enters: the ``[controller]`` table of a machine, whose entries the reader of machine files has checked one by one.
+Leaves: settings that the writer, the reader and the set-up file share as data. Checked here is what the reader of
+machine files does not know: which kind of controller is spoken to, whether the codes can be told apart, and the number
+of a program that no file states. Units: mm, mm/s, ms, encoder counts.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Self, TypeVar
 
-from pkm_post.controllers.pvt.codes import DEFAULT_CODES, check_codes
+from pkm_post.controllers.pvt.codes import check_codes
 from pkm_post.model import Diagnostic, Machine, Place
 
-Rule = tuple[str, Callable[[Any], bool]]
+APPROACH_RAMP_MS = 500
+"""How long the approach takes to reach its speed, and to stop."""
+_LAST_PROGRAM = 999
+"""From 1000 on live the subprograms of the codes G, M, T, D."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,98 +35,57 @@ class Settings:
         program: number of the motion program.
         length_decimals: digits after the point of a length in mm.
         speed_decimals: digits after the point of a speed in mm/s.
-        approach_ramp_ms: how long the approach takes to reach its speed, and to stop.
         line_limit: longest line the controller takes, in characters.
         codes: text of each event, by the names of ``codes.MEANINGS``.
+
+    Raises:
+        ValueError: the codes cannot be told apart, or the program has a number that is none for a program.
     """
 
     KIND: ClassVar[str]
     """Value of ``controller.kind`` in the machine file."""
-    RULES: ClassVar[Mapping[str, Rule]]
-    """For each entry what is expected of it."""
-    WITHOUT_MEANING: ClassVar[tuple[str, ...]] = ()
-    """Entries of a machine file that other controllers have and this one does not."""
 
     counts_per_mm: float
     zero_length: tuple[float, ...]
     approach_speed: float
-    letters: tuple[str, ...] = ("A", "B", "C", "U", "V", "W")
-    coordinate_system: int = 1
-    program: int = 10
-    length_decimals: int = 6
-    speed_decimals: int = 4
-    approach_ramp_ms: int = 500
-    line_limit: int = 159
-    codes: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_CODES))
+    letters: tuple[str, ...]
+    coordinate_system: int
+    program: int
+    length_decimals: int
+    speed_decimals: int
+    line_limit: int
+    codes: Mapping[str, str]
 
     def __post_init__(self) -> None:
-        for name, (expected, holds) in self.RULES.items():
-            value = getattr(self, name)
-            if not holds(value):
-                raise ValueError(f"controller.{name}: expected {expected}, got {value!r}")
+        # moves by hand and single blocks run under a number that is chosen when the machine is operated
+        if not 1 <= self.program <= _LAST_PROGRAM:
+            raise ValueError(f"program: expected a whole number from 1 to {_LAST_PROGRAM}, got {self.program}")
         check_codes(self.codes)
 
     @classmethod
     def of(cls, controller: Mapping[str, Any]) -> Self:
-        """Settings from the ``[controller]`` table of a machine file; codes it leaves out have their default text.
+        """Settings from ``Machine.controller``; entries that have no meaning for this controller are left out.
 
         Raises:
-            ValueError: an entry is missing, unknown or has a wrong value.
+            ValueError: the table is of another kind of controller, or its codes cannot be told apart.
         """
-        entries = {name: value for name, value in controller.items() if name not in cls.WITHOUT_MEANING}
-        kind = entries.pop("kind", None)
+        kind = controller.get("kind")
         if kind != cls.KIND:
-            raise ValueError(f"controller.kind: expected {cls.KIND!r}, got {kind!r}")
-        unknown = sorted(set(entries) - {item.name for item in fields(cls)})
-        missing = sorted({"counts_per_mm", "zero_length", "approach_speed"} - set(entries))
-        if unknown or missing:
-            raise ValueError(f"controller: expected the entries of Settings, got unknown {unknown}, missing {missing}")
-        for name in ("letters", "zero_length"):
-            if isinstance(entries.get(name), list):
-                entries[name] = tuple(entries[name])
-        return cls(**entries | {"codes": DEFAULT_CODES | dict(entries.get("codes", {}))})
+            raise ValueError(f"kind: expected {cls.KIND}, got {kind!r}")
+        return cls(**{item.name: controller[item.name] for item in fields(cls)})
 
 
 AnySettings = TypeVar("AnySettings", bound=Settings)
 
 
 def settings_of(form: type[AnySettings], machine: Machine) -> tuple[AnySettings | None, tuple[Diagnostic, ...]]:
-    """Settings of a machine's controller; whether its codes can be told apart its file's reader does not know."""
+    """Settings of a machine's controller, or why there are none.
+
+    Args:
+        form: the settings that this kind of controller has.
+        machine: as the reader of machine files made it.
+    """
     try:
         return form.of(machine.controller), ()
     except ValueError as fault:
-        return None, (Diagnostic("M104", Place(machine.name), f"controller: {fault}"),)
-
-
-def whole(least: int, most: int) -> Rule:
-    """The rule of an entry that counts."""
-
-    def holds(value: Any) -> bool:
-        return isinstance(value, int) and not isinstance(value, bool) and least <= value <= most
-
-    return f"a whole number from {least} to {most}", holds
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _are_letters(value: Any) -> bool:
-    return isinstance(value, tuple) and len(value) == 6 and set(value) < set("ABCUVWXYZ") and len(set(value)) == 6
-
-
-COMMON_RULES: dict[str, Rule] = {
-    "counts_per_mm": ("a number other than zero", lambda value: _is_number(value) and value != 0),
-    "zero_length": (
-        "six lengths in mm",
-        lambda value: isinstance(value, tuple) and len(value) == 6 and all(map(_is_number, value)),
-    ),
-    "approach_speed": ("a speed above zero in mm/s", lambda value: _is_number(value) and value > 0),
-    "letters": ("six different letters of ABCUVWXYZ", _are_letters),
-    "coordinate_system": whole(1, 16),
-    "program": whole(1, 999),  # from 1000 on live the subprograms of the codes G, M, T, D
-    "length_decimals": whole(1, 9),
-    "speed_decimals": whole(1, 9),
-    "approach_ramp_ms": whole(1, 10_000),
-    "line_limit": whole(40, 1 << 16),
-}
+        return None, (Diagnostic("M104", Place(machine.name), f"controller.{fault}"),)

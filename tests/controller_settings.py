@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Settings of the controller of the example machine, in round numbers, with what a test changes of them."""
+
+from dataclasses import replace
+
+from pkm_post.controllers import CONTROLLERS
+from pkm_post.machine_file import machine_named
+
+ROUND = {"counts_per_mm": 10000.0, "zero_length": (500.0,) * 6, "approach_speed": 10.0}
+
+
+def settings_for(kind="turbo_pmac", **changes):
+    """The settings that a machine file with these entries gives."""
+    machine, _ = machine_named("example_6tps")
+    settings, faults = CONTROLLERS[kind].settings_of(replace(machine, controller=machine.controller | {"kind": kind}))
+    assert not faults
+    return replace(settings, **ROUND | changes)
