@@ -27,8 +27,8 @@ POST_PROCESSORS: dict[str, str] = {
     " nothing is certified. --also has no meaning here.",
     LINUXCNC: "Writes X Y Z A B C for LinuxCNC's hexapod, in the machine frame. Reach is checked, speed is left to the"
     " controller: nothing is certified. --also has no meaning here.",
-    GCODE: "Writes the program of the job as it is, in the work frame: --form and --inch say how, and all that concerns"
-    " the machine is for the check of its reach alone. --also has no meaning here.",
+    GCODE: "Writes the program of the job as it is, in the work frame: --form and --inch say how. Reach is not checked:"
+    " what concerns the machine changes nothing. --also has no meaning here.",
 }
 """By name what each of them writes, for the help."""
 

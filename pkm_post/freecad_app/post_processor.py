@@ -15,7 +15,7 @@ from Path.Post.Processor import PostProcessor
 
 TOOLTIPS: dict[str, str] = {
     "hexapod_pmac": "Certified motion programs for hexapod machine tools with six telescopic struts and a Turbo PMAC"
-    " controller",
+    " or Power PMAC controller",
     "hexapod_trajectory": "Binary trajectories (.pkmt) for hexapod machine tools: tool tips and tool axes in the"
     " machine frame",
     "hexapod_linuxcnc": "G-code with X Y Z A B C for hexapod machine tools that LinuxCNC moves",

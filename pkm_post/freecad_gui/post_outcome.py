@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post outcome: what came of posting, to look at: the certificate with its picture, or the reasons for a refusal.
 
-What was posted enters, or diagnostics do; a click on a row tells the name of its operation.
+What was posted enters, or diagnostics do; a click on a row tells the operation and the line it is about.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ _HEAD = (
     QT_TRANSLATE_NOOP("PostOutcome", "Unit"),
     QT_TRANSLATE_NOOP("PostOutcome", "Where"),
 )
-_OPERATION = QtCore.Qt.ItemDataRole.UserRole
+_PLACE = QtCore.Qt.ItemDataRole.UserRole
+"""Of a row: the label of its operation, and the number of the command in it."""
 _WIDTH = 380
 """Of the picture, pixels; a click shows it as it is."""
 
@@ -34,8 +35,8 @@ _WIDTH = 380
 class PostOutcome(QtWidgets.QWidget):
     """Verdict, findings, diagnostics and picture; what does not apply is hidden."""
 
-    chosen = QtCore.Signal(str)
-    """The name of the operation of a row that was clicked."""
+    chosen = QtCore.Signal(str, int)
+    """The place of a row that was clicked: label of the operation, number of the command."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,8 +48,8 @@ class PostOutcome(QtWidgets.QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         for part in (self.verdict, self.diagnostics, self.findings, self.picture):
             layout.addWidget(part)
-        self.diagnostics.itemClicked.connect(lambda item: self.chosen.emit(item.data(_OPERATION)))
-        self.findings.itemClicked.connect(lambda item: self.chosen.emit(item.data(_OPERATION)))
+        self.diagnostics.itemClicked.connect(self._choose)
+        self.findings.itemClicked.connect(self._choose)
         self.show_nothing("")
 
     def show_nothing(self, text: str) -> None:
@@ -66,7 +67,10 @@ class PostOutcome(QtWidgets.QWidget):
     def show_posted(self, posted: Posted) -> None:
         """Show the certificate."""
         certificate, seconds = posted.report["certificate"], posted.report["machining_time"]["total_s"]
-        told = translate("PostOutcome", "Certified: every limit is kept at {} poses. {} s at the machine, {} files.")
+        told = translate(
+            "PostOutcome",
+            "Certified: every limit is kept at every moment ({} poses computed). {} s at the machine, {} files.",
+        )
         self.verdict.setText(told.format(certificate["instants"], seconds, len(posted.files)))
         self._show_diagnostics(posted.diagnostics)
         _fill(self.findings, certificate["findings"])
@@ -76,12 +80,15 @@ class PostOutcome(QtWidgets.QWidget):
         if pictures:
             self.picture.show_file(str(pictures[0]))
 
+    def _choose(self, item: Any) -> None:
+        self.chosen.emit(*item.data(_PLACE))
+
     def _show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics.clear()
         for each in diagnostics:
             item = QtWidgets.QListWidgetItem(_icon(self, each), str(each))
             item.setToolTip(RULES[each.code].cure)
-            item.setData(_OPERATION, each.place.operation)
+            item.setData(_PLACE, (each.place.operation, each.place.line))
             self.diagnostics.addItem(item)
         self.diagnostics.setVisible(bool(diagnostics))
 
@@ -118,7 +125,7 @@ def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> 
             (each["what"], f"{each['value']:.4g}", f"{each['limit']:.4g}", each["unit"], where)
         ):
             item = QtWidgets.QTableWidgetItem(text)
-            item.setData(_OPERATION, each["operation"])
+            item.setData(_PLACE, (each["operation"], each["line"]))
             table.setItem(row, column, item)
     table.resizeColumnsToContents()
 

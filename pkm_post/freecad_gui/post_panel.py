@@ -14,10 +14,11 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.job_to_post import read_for_post
+from pkm_post.freecad_app.job_to_post import ReadJob, read_for_post
 from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.deletion_watch import DeletionWatch
 from pkm_post.freecad_gui.job_choices import JobChoices
+from pkm_post.freecad_gui.job_places import show_place
 from pkm_post.freecad_gui.post_outcome import PostOutcome
 from pkm_post.freecad_gui.post_steps import step_text
 from pkm_post.freecad_gui.task import Task
@@ -50,11 +51,11 @@ class PostPanel:
         self.choices = JobChoices(job)
         self.outcome, self.bar, self.step = PostOutcome(), QtWidgets.QProgressBar(), QtWidgets.QLabel()
         self.bar.setRange(0, _PER_MILLE)
-        self.outcome.chosen.connect(self._select)
+        self.outcome.chosen.connect(self._show_place)
         self.post = _button(translate("PostPanel", "Post"), self.begin)
         self.post.setToolTip(translate("PostPanel", "Write the certified motion program and what goes with it"))
         self.stop = _button(translate("PostPanel", "Cancel"), self.cancel)
-        self.stop.setToolTip(translate("PostPanel", "Stop behind the step that is being done, and write nothing"))
+        self.stop.setToolTip(translate("PostPanel", "Stop after the current step, and write nothing"))
         self.folder = _button(translate("PostPanel", "Open folder"), self._open_folder)
         self.folder.setToolTip(translate("PostPanel", "Show the files that were written"))
         self.simulate = _button(translate("PostPanel", "Simulate"), self._simulate)
@@ -92,7 +93,7 @@ class PostPanel:
         task.finished.connect(self._end)
         task.start()
 
-    def _read(self) -> Any:
+    def _read(self) -> ReadJob:
         """The job and its machine, when the job has kept what is chosen."""
         chosen, self._target = self.choices.keep(), self.choices.program()
         return read_for_post(self.job, chosen.machine, options_from(chosen), tool_lengths_from(chosen))
@@ -108,11 +109,11 @@ class PostPanel:
         return True
 
     def cancel(self) -> None:
-        """Stop behind the step that is being done; nothing is written then."""
+        """Stop after the current step; nothing is written then."""
         if self._task is not None:
             self._task.stop()
             self.stop.setEnabled(False)
-            self.step.setText(translate("PostPanel", "Stops behind this step"))
+            self.step.setText(translate("PostPanel", "Stopping after this step"))
 
     def _end(self) -> None:
         task, self._task = self._task, None
@@ -152,12 +153,9 @@ class PostPanel:
         if self.stop.isEnabled():
             self.step.setText(step_text(step))
 
-    def _select(self, operation: str) -> None:
-        """Select the operation of a row."""
-        FreeCADGui.Selection.clearSelection()
-        for each in self.job.Operations.Group:
-            if operation and each.Label == operation:
-                FreeCADGui.Selection.addSelection(each)
+    def _show_place(self, operation: str, line: int) -> None:
+        """Show where in the job a row is about."""
+        show_place(self.job, operation, line)
 
     def _open_folder(self) -> None:
         QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(str(self._target.parent)))
@@ -171,7 +169,7 @@ class PostPanel:
         FreeCADGui.runCommand("PKM_Simulate", 0)
 
     def getStandardButtons(self) -> Any:
-        """There is nothing to accept or reject."""
+        """Apply, which keeps what is chosen and posts nothing, and Close."""
         return _APPLY | QtWidgets.QDialogButtonBox.StandardButton.Close
 
     def modifyStandardButtons(self, box: Any) -> None:

@@ -44,7 +44,7 @@ class CamMenu:
     """FreeCAD keeps no reference of its own."""
 
     def modifyMenuBar(self):
-        """The commands behind CAM's own copy of an operation."""
+        """The commands that follow CAM's own copy of an operation."""
         from pkm_post.freecad_gui.commands import COMMANDS
 
         return [{"append": command.name, "menuItem": "CAM_SimpleCopy"} for command in COMMANDS]

@@ -67,7 +67,7 @@ RULES: dict[str, Rule] = {
     "J121": _error("a property of a document object has no meaning", "set it to another value"),
     "J122": _error(
         "the drilling cycle cannot be carried out",
-        "correct its words; cycles are drilled along Z (G17), behind a move to a known height, in operations without"
+        "correct its words; cycles are drilled along Z (G17), after a move to a known height, in operations without"
         " tool-axis words",
     ),
     # G1: the letters of G-code
@@ -78,7 +78,7 @@ RULES: dict[str, Rule] = {
     "G105": _error("there is no such G or M code", "write G with at most one decimal, M with none, no sign"),
     "G199": _error("there are more faults than are told", "correct those that are told, then check again"),
     # G2: the grammar of G-code
-    "G201": _error("a word has no number", "write a number, a parameter or an expression behind the letter"),
+    "G201": _error("a word has no number", "write a number, a parameter or an expression after the letter"),
     "G202": _error("a block has two values of one letter", "remove one of them, or make it two blocks"),
     "G203": _error("a comment stands in a comment", "remove the inner parentheses"),
     "G204": _error("a comment is not closed", "close it with ) on the same line"),
@@ -91,7 +91,7 @@ RULES: dict[str, Rule] = {
     "G209": _error("a value is missing", "write a number, a parameter or an expression in its place"),
     "G210": _error(
         "something stands in the wrong place of the block",
-        "write / first, then N; O words, LN and % begin a block; NX to TZ stand behind LN",
+        "write / first, then N; O words, LN and % begin a block; NX to TZ stand after LN",
     ),
     "G211": _error("an expression is nested too deeply", "split it, with parameters for its parts"),
     # G3: the execution of a G-code program
@@ -155,7 +155,7 @@ RULES: dict[str, Rule] = {
     ),
     "G506": _error("a feed is so slow that it would be written as zero", "program a feed of 0.001 a minute at least"),
     # L1: the letters of CL data
-    "L101": _error("a character has no meaning here", "remove it, or put the text into a comment behind $$"),
+    "L101": _error("a character has no meaning here", "remove it, or put the text into a comment after $$"),
     "L102": _error("a number is malformed", "write it as -12.5 or 1.0E-05"),
     "L103": _error("a number is too large", "write a number that the machine can reach"),
     "L104": _error("a statement is too long", "split it"),
@@ -184,8 +184,8 @@ RULES: dict[str, Rule] = {
     "L411": _warning("the gauge length of the tool is unknown and 0 is taken", "give the tool with its length"),
     "L412": _error("the cycle cannot be carried out", "correct its items, or let the CAM system write single moves"),
     "L413": _error("nothing moves in the file", "check the file"),
-    "L414": _error("an arc has no end point", "write GOTO behind it"),
-    "L415": _warning("statements behind FINI were passed over", "remove them, or remove FINI"),
+    "L414": _error("an arc has no end point", "write GOTO after it"),
+    "L415": _warning("statements after FINI were passed over", "remove them, or remove FINI"),
     "L416": _error("an inverse time feed needs a way to go", "give such moves a feed in mm/min"),
     "L417": _error("it is not known where the tool is", "write FROM or GOTO before"),
     "L418": _warning(
@@ -243,6 +243,8 @@ RULES: dict[str, Rule] = {
         "something happens in the middle of a pass that is to be run the other way",
         "let it happen between the passes, or do without climb milling",
     ),
+    "K126": _error("an arc begins where a tool of another length was taken", "make a straight move before the arc"),
+    "K127": _error("a move takes longer than a day", "give it a higher feed"),
     # N1: surface normals, and compensation with them
     "N101": _error("a contact point, normal or tool axis is no number or has no direction", "regenerate the path"),
     "N102": _error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),
@@ -347,4 +349,8 @@ RULES: dict[str, Rule] = {
     "F101": _error("the output cannot be written", "check the folder, its permissions and the free space"),
     "F102": _warning("the picture was not made: matplotlib is missing", "install python3-matplotlib"),
     "F103": _error("the file cannot be read", "check the path and its permissions"),
+    "F104": _warning(
+        "files of an earlier result are beside this one and do not belong to it",
+        "remove them, so that nobody runs them with this program",
+    ),
 }

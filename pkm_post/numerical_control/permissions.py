@@ -42,7 +42,7 @@ class Why(enum.Enum):
     NO_JOB = "no program was opened"
     NOT_LOADED = "the program is not loaded"
     NO_BLOCK = "no block comes next"
-    NO_STOP = "the program has no stop with moves behind it"
+    NO_STOP = "the program has no stop with moves after it"
     RUNS = "a program runs"
     HELD = "a program is held"
     NOT_HELD = "no program is held"

@@ -81,6 +81,6 @@ def go_on(
     """
     stops = stops_of(job)
     if not 1 <= number <= len(stops):
-        told = f"the program has {len(stops)} stops (M0, M1) with moves behind them: there is none with number {number}"
+        told = f"the program has {len(stops)} stops (M0, M1) with moves after them: there is none with number {number}"
         raise NotReadyError([told])
     return execute(session, machine, settings, job_behind(job, stops[number - 1], settings), near)

@@ -115,7 +115,7 @@ class StreamError(PmacError):
     """
 
     def __init__(self, why: str, line: int, cleared: bool) -> None:
-        where = f"behind line {line} of the program" if line else "before the first line of the program"
+        where = f"after line {line} of the program" if line else "before the first line of the program"
         left = (
             f"it rests {where} at the latest, and nothing is left in the rotary buffer"
             if cleared

@@ -74,7 +74,7 @@ def resume(session: Session, settings: Settings) -> Status:
     status = read_status(session, settings)
     reasons = list(status.words())
     if not status.held:
-        reasons.append("no program is held; behind a stop (M0, M1) continue it, else start it from its beginning")
+        reasons.append("no program is held; after a stop (M0, M1) continue it, else start it from its beginning")
     if reasons:
         raise NotReadyError(reasons)
     return _go(session, settings, "R", lambda status: status.running and not status.held)

@@ -772,11 +772,11 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>运行到下一个静止处</translation>
     </message>
     <message>
-        <source>Go on behind stop</source>
+        <source>Go on after stop</source>
         <translation>停止后继续</translation>
     </message>
     <message>
-        <source>Start what stands behind the stop (M0, M1) at which the machine stands</source>
+        <source>Start what comes after the stop (M0, M1) at which the machine stands</source>
         <translation>从机床当前停止处 (M0, M1) 之后继续运行</translation>
     </message>
     <message>
@@ -896,7 +896,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>没有下一程序段</translation>
     </message>
     <message>
-        <source>the program has no stop with moves behind it</source>
+        <source>the program has no stop with moves after it</source>
         <translation>程序中没有其后仍有运动的停止点</translation>
     </message>
     <message>
@@ -1782,8 +1782,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>已拒绝。未写出任何内容。</translation>
     </message>
     <message>
-        <source>Certified: every limit is kept at {} poses. {} s at the machine, {} files.</source>
-        <translation>已验证：在 {} 个位姿处均未超出极限。机床运行 {} s，{} 个文件。</translation>
+        <source>Certified: every limit is kept at every moment ({} poses computed). {} s at the machine, {} files.</source>
+        <translation>已验证：任意时刻均未超出极限（计算了 {} 个位姿）。机床运行 {} s，{} 个文件。</translation>
     </message>
     <message>
         <source>Click to see it in full size</source>
@@ -1809,10 +1809,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>取消</translation>
     </message>
     <message>
-        <source>Stop behind the step that is being done, and write nothing</source>
-        <translation>完成当前步骤后停止，不写出任何内容</translation>
-    </message>
-    <message>
         <source>Open folder</source>
         <translation>打开文件夹</translation>
     </message>
@@ -1829,8 +1825,12 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>播放作业的规划运动</translation>
     </message>
     <message>
-        <source>Stops behind this step</source>
-        <translation>完成此步骤后停止</translation>
+        <source>Stop after the current step, and write nothing</source>
+        <translation>完成当前步骤后停止，不写出任何内容</translation>
+    </message>
+    <message>
+        <source>Stopping after this step</source>
+        <translation>此步骤完成后将停止</translation>
     </message>
     <message>
         <source>Stopped. Nothing was written.</source>

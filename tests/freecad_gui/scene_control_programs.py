@@ -98,7 +98,7 @@ def _begin_to_move(sign):
 
 
 @step
-def a_program_goes_on_behind_its_stop():
+def a_program_goes_on_after_its_stop():
     from pkm_post.model import Event, EventKind
 
     panel = the_panel()

@@ -25,8 +25,9 @@ class Panel:
             next(each for each in inside if isinstance(each, kind)) for kind in (GaugeTable, PostChoices, PostOutcome)
         )
         self.buttons = {each.text(): each for each in inside if isinstance(each, QtWidgets.QPushButton)}
-        boxes = [each for each in window.findChildren(QtWidgets.QDialogButtonBox) if each.isVisible()]
-        self.apply = next(filter(None, (box.button(QtWidgets.QDialogButtonBox.StandardButton.Apply) for box in boxes)))
+        # not asked of its box: of those in the window one may just have been deleted
+        buttons = [each for each in window.findChildren(QtWidgets.QPushButton) if each.isVisible()]
+        self.apply = next(each for each in buttons if each.text().replace("&", "") == "Apply")
 
     def field(self, row):
         return self.gauges.table.cellWidget(row, self.gauges.table.columnCount() - 1)

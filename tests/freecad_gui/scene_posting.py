@@ -84,6 +84,14 @@ def typed(field, text):
     field.editingFinished.emit()
 
 
+def clicked(listed, item):
+    """Click a row: names of what is selected then, and what the status bar says."""
+    FreeCADGui.Selection.clearSelection()
+    listed.itemClicked.emit(item)
+    selected = [each.Name for each in FreeCADGui.Selection.getSelection()]
+    return selected, FreeCADGui.getMainWindow().statusBar().currentMessage()
+
+
 def close():
     FreeCADGui.Control.closeDialog()
     settle()
@@ -105,6 +113,8 @@ def posting_shows_the_certificate():
         "picture": panel.outcome.picture.isVisible(),
         "drawn": picture("posted.png"),
         "longest": longest,
+        "clicked": clicked(panel.outcome.findings, panel.outcome.findings.item(0, 0)),
+        "where": panel.outcome.findings.item(0, 4).text(),
     }
     close()
     return found
@@ -136,10 +146,8 @@ def refused_job_is_told_and_leaves_nothing():
     document.recompute()
     panel = open_panel(document)
     panel.post()
-    FreeCADGui.Selection.clearSelection()
-    panel.outcome.diagnostics.itemClicked.emit(panel.outcome.diagnostics.item(0))
-    selected = [each.Name for each in FreeCADGui.Selection.getSelection()]
-    found = {"files": names_in(folder), "told": panel.rows(), "selected": selected, "drawn": picture("refused.png")}
+    place = clicked(panel.outcome.diagnostics, panel.outcome.diagnostics.item(0))
+    found = {"files": names_in(folder), "told": panel.rows(), "clicked": place, "drawn": picture("refused.png")}
     close()
     return found
 

@@ -111,8 +111,8 @@ def test_it_runs_from_rest_to_rest(programs):
     assert (found["step before"], found["step"]) == (False, False)
 
 
-def test_a_program_goes_on_behind_its_stop(programs):
-    found = programs["a_program_goes_on_behind_its_stop"]
+def test_a_program_goes_on_after_its_stop(programs):
+    found = programs["a_program_goes_on_after_its_stop"]
     assert not found["without stops"]
     assert found["out"] == pytest.approx([1.0, 0.0], abs=NEAR_MM)
 

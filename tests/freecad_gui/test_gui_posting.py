@@ -22,6 +22,9 @@ def test_panel_writes_and_shows_the_certificate(session):
     assert found["findings"] >= 11  # rows of the certificate
     assert found["picture"]
     assert found["steps to undo"] == 1
+    selected, told = found["clicked"]
+    operation, line = found["where"].split(": ")
+    assert selected == ["Custom"] and told.startswith(f"{operation}, {line}: ")
     assert session.drew("posted.png")
 
 
@@ -40,7 +43,9 @@ def test_refused_job_is_told_and_leaves_nothing(session):
     found = session["refused_job_is_told_and_leaves_nothing"]
     assert found["files"] == ["refused.FCStd"]
     assert "J105" in found["told"][0]
-    assert found["selected"] == ["Custom"]
+    selected, told = found["clicked"]
+    assert selected == ["Custom"]
+    assert told.startswith("Cut, 4: G1")
 
 
 def test_arguments_without_a_meaning_are_told_and_not_kept(session):

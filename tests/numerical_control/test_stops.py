@@ -95,5 +95,5 @@ def test_an_aborted_program_is_not_gone_on_with(station):
     for stop in (1, 2):
         with pytest.raises(NotReadyError, match="mm from the first point of the program"):
             station.control.go_on(made, stop)
-    with pytest.raises(NotReadyError, match="no program is held; behind a stop"):
+    with pytest.raises(NotReadyError, match="no program is held; after a stop"):
         station.control.resume()

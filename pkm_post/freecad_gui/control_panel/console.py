@@ -41,7 +41,7 @@ class Console(QtCore.QObject):
         connection: to the machine; None while there is none.
         job: the program that was opened.
         loaded: whether it was loaded by this panel.
-        stops: how many stops (M0, M1) it has to go on behind.
+        stops: how many stops (M0, M1) it has to go on after.
         stepping: whether its blocks were taken for single block.
         progress: lines of it that are loaded, and of how many.
         beside: does what needs no controller.

@@ -32,7 +32,7 @@ class ProgramPage(QtWidgets.QWidget):
     Attributes:
         name: of the file that was opened.
         open, load, cancel, start, begin_at, step, go_on: the buttons.
-        block, stop: numbers of the block to begin at, and of the stop to go on behind.
+        block, stop: numbers of the block to begin at, and of the stop to go on after.
         bar: how much is loaded.
     """
 
@@ -58,8 +58,8 @@ class ProgramPage(QtWidgets.QWidget):
              Order.BLOCKS, self._begin_at),
             (translate("ControlPanel", "Next block"), translate("ControlPanel", "Run it to its next rest"),
              Order.STEP, self._step),
-            (translate("ControlPanel", "Go on behind stop"),
-             translate("ControlPanel", "Start what stands behind the stop (M0, M1) at which the machine stands"),
+            (translate("ControlPanel", "Go on after stop"),
+             translate("ControlPanel", "Start what comes after the stop (M0, M1) at which the machine stands"),
              Order.GO_ON, self._go_on),
         )  # fmt: skip
         self.load, self.start, self.begin_at, self.step, self.go_on = (OrderButton(*row) for row in rows)

@@ -25,7 +25,7 @@ WHY = {
     Why.NO_JOB: QT_TRANSLATE_NOOP("ControlPanel", "no program was opened"),
     Why.NOT_LOADED: QT_TRANSLATE_NOOP("ControlPanel", "the program is not loaded"),
     Why.NO_BLOCK: QT_TRANSLATE_NOOP("ControlPanel", "no block comes next"),
-    Why.NO_STOP: QT_TRANSLATE_NOOP("ControlPanel", "the program has no stop with moves behind it"),
+    Why.NO_STOP: QT_TRANSLATE_NOOP("ControlPanel", "the program has no stop with moves after it"),
     Why.RUNS: QT_TRANSLATE_NOOP("ControlPanel", "a program runs"),
     Why.HELD: QT_TRANSLATE_NOOP("ControlPanel", "a program is held"),
     Why.NOT_HELD: QT_TRANSLATE_NOOP("ControlPanel", "no program is held"),

@@ -63,7 +63,7 @@ class FindBar(QtWidgets.QWidget):
             super().keyPressEvent(event)
 
     def find_next(self) -> bool:
-        """Select the next place, from the beginning again behind the last; whether there is one."""
+        """Select the next place, from the beginning again after the last; whether there is one."""
         if not self.wanted.text():
             return False
         text, wanted = self._text.toPlainText(), self._wanted()
