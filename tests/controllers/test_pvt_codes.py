@@ -6,7 +6,7 @@ from controller_settings import settings_for
 from pkm_post.controllers.pvt.codes import MEANINGS, check_codes, code_text, event_faults
 from pkm_post.model import Event, EventKind, StrutMotion
 
-CODES = settings_for().codes
+CODES, LETTERS = settings_for().codes, settings_for().letters
 
 
 @pytest.mark.parametrize(
@@ -27,14 +27,14 @@ def test_an_event_has_one_text(kind, value, text):
 
 def test_a_code_with_fixed_decimals_writes_what_it_can_write_exactly():
     codes = CODES | {"spindle_clockwise": "S{value:.2f} M3"}
-    check_codes(codes)
+    check_codes(codes, LETTERS)
     assert code_text(Event(0, EventKind.SPINDLE, 1200.5), codes) == "S1200.50 M3"
     with pytest.raises(ValueError, match="would write it as 3183.10"):
         code_text(Event(0, EventKind.SPINDLE, 3183.0989), codes)
 
 
 def test_the_codes_of_the_example_are_in_order_and_tell_all_meanings_apart():
-    check_codes(CODES)
+    check_codes(CODES, LETTERS)
     values = [3 * meaning.sign if meaning.value is None else meaning.value for meaning in MEANINGS.values()]
     events = [Event(0, meaning.kind, value) for meaning, value in zip(MEANINGS.values(), values, strict=True)]
     texts = [code_text(event, CODES) for event in events]
@@ -62,13 +62,20 @@ def test_the_codes_of_the_example_are_in_order_and_tell_all_meanings_apart():
         ({"coolant_off": "DWELL0 M60|=1"}, "not beginning with"),
         ({"coolant_off": "M9 M60|=1"}, "expected DWELL0 behind a synchronous assignment"),
         ({"spindle_clockwise": "M60=={value}"}, "expected DWELL0 behind a synchronous assignment"),
+        ({"stop": "INC"}, "no mode and no move of an axis, got INC"),
+        ({"stop": "M0 PVT20"}, "got PVT in"),
+        ({"stop": "m0rapid"}, "got rapid in"),
+        ({"stop": "CLEAR"}, "got CLEAR in"),
+        ({"stop": f"{LETTERS[0]}100"}, f"got {LETTERS[0]} in"),
+        ({"stop": f"M0 {LETTERS[5].lower()} -1.5"}, f"got {LETTERS[5].lower()} in"),
+        ({"tool_change": f"M6 {LETTERS[1]}{{value}}"}, f"got {LETTERS[1]} in"),
         ({"stop": ""}, "stop: expected"),
         ({"pallet": "M60"}, "expected the names"),
     ],
 )
 def test_a_table_of_codes_must_be_well_formed_and_invertible(change, complaint):
     with pytest.raises(ValueError, match=complaint):
-        check_codes(CODES | change)
+        check_codes(CODES | change, LETTERS)
 
 
 def test_outputs_can_be_set_with_synchronous_assignments():
@@ -78,7 +85,7 @@ def test_outputs_can_be_set_with_synchronous_assignments():
         "coolant_off": "M60==0 DWELL0",
         "spindle_clockwise": "M70=={value} DWELL0",
     }
-    check_codes(codes)
+    check_codes(codes, LETTERS)
     assert code_text(Event(0, EventKind.COOLANT, 0.0), codes) == "M60==0 DWELL0"
     assert code_text(Event(0, EventKind.SPINDLE, 900.5), codes) == "M70==900.5 DWELL0"
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from pkm_post.controllers.pvt.decimals import exact, plain
@@ -62,19 +62,25 @@ _FIXED_CODE = re.compile(rf"{_LITERAL}+")
 _VALUE_CODE = re.compile(rf"(?:{_LITERAL}*(?![0-9.-]){_LITERAL})?{FIELD.pattern}(?:(?![0-9.-]){_LITERAL}+)?")
 _RESERVED = ("PVT", "DWELL", "LINEAR", "CLOSE")
 _COMMENTS = ("//", "/*")
+_MODES = re.compile(
+    r"(?<![A-Z])(PVT|LINEAR|RAPID|CIRCLE|SPLINE|INC|ABS|FRAX|NORMAL|OPEN|CLOSE|CLEAR|DELETE)(?![A-Z])", re.IGNORECASE
+)
+"""What changes how the moves after it are taken, or the program itself."""
 _SYNCHRONOUS = re.compile(r"[=&|^]=")
 _WITH_DWELL = re.compile(r".* DWELL *0", re.IGNORECASE)
 _OTHER_NUMBERS = ("7919", "7919.5")
 
 
-def check_codes(codes: Mapping[str, str]) -> None:
-    """Check that a table of codes is complete, well formed and invertible.
+def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
+    """Check that a table of codes is complete, well formed and invertible, and moves no strut.
 
     Args:
         codes: for each name of ``MEANINGS`` its text, with one field where it states the value of the event.
+        letters: those of the axes.
 
     Raises:
-        ValueError: a name is missing or unknown, a text is malformed, or some text would stand for two events.
+        ValueError: a name is missing or unknown, a text is malformed, changes modes or moves an axis, or some text
+            would stand for two events.
     """
     if set(codes) != set(MEANINGS):
         raise ValueError(f"codes: expected the names {', '.join(MEANINGS)}, got {', '.join(codes)}")
@@ -89,6 +95,7 @@ def check_codes(codes: Mapping[str, str]) -> None:
             besides = f"no comment, not beginning with {', '.join(_RESERVED)} or a space"
             raise ValueError(f"codes.{name}: expected {expected}, {besides}, got {template!r}")
         _check_synchronous(name, template)
+        _check_stands(name, template, letters)
     _check_invertible(codes)
 
 
@@ -96,6 +103,14 @@ def _check_synchronous(name: str, template: str) -> None:
     """A synchronous assignment waits for the next move or dwell: behind the last move it would never be carried out."""
     if _SYNCHRONOUS.search(template) and not _WITH_DWELL.fullmatch(template):
         raise ValueError(f"codes.{name}: expected DWELL0 behind a synchronous assignment, got {template!r}")
+
+
+def _check_stands(name: str, template: str, letters: Sequence[str]) -> None:
+    """The certificate knows of no other moves and modes than those of the program itself."""
+    moves = re.compile(rf"(?<![A-Z])({'|'.join(map(re.escape, letters))})\s*[-+.(0-9{{]", re.IGNORECASE)
+    found = _MODES.search(template) or moves.search(template)
+    if found:
+        raise ValueError(f"codes.{name}: expected no mode and no move of an axis, got {found[1]} in {template!r}")
 
 
 def _check_invertible(codes: Mapping[str, str]) -> None:

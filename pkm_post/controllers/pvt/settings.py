@@ -60,7 +60,7 @@ class Settings:
         # moves by hand and single blocks run under a number that is chosen when the machine is operated
         if not 1 <= self.program <= _LAST_PROGRAM:
             raise ValueError(f"program: expected a whole number from 1 to {_LAST_PROGRAM}, got {self.program}")
-        check_codes(self.codes)
+        check_codes(self.codes, self.letters)
 
     @classmethod
     def of(cls, controller: Mapping[str, Any]) -> Self:
