@@ -49,6 +49,19 @@ def between(least: float, most: float) -> Converter[float]:
     return fitting(float, lambda value: least <= value <= most, f"a number from {least} to {most}")
 
 
+def above_zero(most: float) -> Converter[float]:
+    """Numbers that are not 0, up to the most, which is included."""
+    return fitting(float, lambda value: 0 < value <= most, f"a number above 0 and up to {most}")
+
+
+LONGEST_TOOL, FARTHEST_OFFSET = 10_000, 1_000_000
+"""mm; beyond them a number is a slip, and arithmetic with it has no digits left for the rest."""
+tool_length = above_zero(LONGEST_TOOL)
+"""Gauge length or diameter of a tool, mm."""
+offset = between(-FARTHEST_OFFSET, FARTHEST_OFFSET)
+"""A coordinate of a work offset, mm."""
+
+
 def _digits(text: str) -> int:
     if not text.isdecimal():
         raise ValueError(f"text: expected digits, got {text!r}")

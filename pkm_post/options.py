@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.argument_types import number, numbered, positive
+from pkm_post.argument_types import LONGEST_TOOL, above_zero, between, number, numbered, offset, tool_length
 
 if TYPE_CHECKING:
     from pkm_post.model.certificate import Tolerances
@@ -35,14 +35,14 @@ def _work_offset(text: str) -> str | Pose:
         return text
     if len(words) not in (3, 4):
         raise argparse.ArgumentTypeError(f"expected X,Y,Z or X,Y,Z,DEG, got {text!r}")
-    x, y, z, turn = [*map(number, words), 0.0][:4]
-    return x, y, z, turn
+    x, y, z = map(offset, words[:3])
+    return x, y, z, number(words[3]) if words[3:] else 0.0
 
 
 def _sizes(text: str) -> tuple[float, float]:
     """Diameter and corner radius."""
     diameter, _, corner = text.partition(",")
-    return positive(diameter), number(corner) if corner else 0.0
+    return tool_length(diameter), between(0, LONGEST_TOOL)(corner) if corner else 0.0
 
 
 _SPINS = {
@@ -68,7 +68,7 @@ def _spin(text: str) -> tuple[str, float, str]:
     if _SPINS[rule] == "DEG":
         return rule, number(value) if given else 0.0, _OBJECTIVES[0]
     if given and value not in _OBJECTIVES:
-        raise argparse.ArgumentTypeError(f"expected one of {', '.join(_OBJECTIVES)} behind =, got {value!r}")
+        raise argparse.ArgumentTypeError(f"expected one of {', '.join(_OBJECTIVES)} after =, got {value!r}")
     return rule, 0.0, value or _OBJECTIVES[0]
 
 
@@ -103,19 +103,19 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--tip-tolerance": {
         "metavar": "MM",
-        "type": positive,
+        "type": between(1e-6, 100),
         "default": 0.001,
         "help": "how far the tool tip may be from the programmed path (default: %(default)s)",
     },
     "--axis-tolerance": {
         "metavar": "DEG",
-        "type": positive,
+        "type": between(1e-6, 45),
         "default": 0.001,
         "help": "how far the tool axis may be from the programmed axis (default: %(default)s)",
     },
     "--tool-length": {
         "metavar": "NUMBER=MM",
-        "type": numbered(positive, "NUMBER=MM"),
+        "type": numbered(tool_length, "NUMBER=MM"),
         "action": "append",
         "default": [],
         "help": "gauge length of a tool, instead of the GaugeLength of its tool controller; may be repeated",
@@ -146,7 +146,7 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--surface-speed": {
         "metavar": "M/MIN",
-        "type": positive,
+        "type": above_zero(100_000),
         "help": "speed of the cutting edge over the work: each cut gets its own spindle speed (default: as programmed)",
     },
     "--keep-chip-load": {

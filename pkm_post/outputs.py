@@ -7,15 +7,43 @@ LinuxCNC. Nothing here is certified but what is read back and measured.
 
 from __future__ import annotations
 
-from pathlib import Path
+import os
+import re
+from collections.abc import Collection
+from pathlib import Path, PurePath
 
 import numpy as np
 
-from pkm_post.controllers import Table, part_names
+from pkm_post.controllers import CONTROLLERS, TABLES, Table, part_names
 from pkm_post.gcode import Form, write
-from pkm_post.model import Diagnostic, Kind, Program, StrutMotion, Trajectory
+from pkm_post.model import Diagnostic, Kind, Place, Program, StrutMotion, Trajectory
 
 Findings = tuple[Diagnostic, ...]
+
+_FOR_LINUXCNC = "-linuxcnc.ngc"
+_SETUPS = tuple(controller.SETUP_SUFFIX for controller in CONTROLLERS.values())
+
+
+def left_over(program: Path, names: Collection[str]) -> Findings:
+    """The warning that files of an earlier result are beside a new one, or nothing.
+
+    Memory that was smaller made more parts, and what was wished for beside the program may have changed: such files
+    look as if they belonged to the new program.
+
+    Args:
+        program: path of the motion program.
+        names: the files of its folder that were made with it.
+    """
+    endings = (program.suffix, _FOR_LINUXCNC, *_SETUPS, *(table.SUFFIX for table in TABLES.values()))
+    kin = re.compile("|".join(_with_parts(program.stem + ending) for ending in endings))
+    found = sorted(name for name in os.listdir(program.parent) if kin.fullmatch(name) and name not in names)
+    return (Diagnostic("F104", Place(str(program)), ", ".join(found)),) if found else ()
+
+
+def _with_parts(name: str) -> str:
+    """A pattern for the name of a file and those of its parts."""
+    path = PurePath(name)
+    return re.escape(path.stem) + "(?:-part[1-9][0-9]*)?" + re.escape(path.suffix)
 
 
 def write_parts(path: Path, texts: tuple[str, ...]) -> list[str]:
@@ -49,7 +77,7 @@ def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float)
     """Write the trajectory for a control that has the kinematics and plans for itself."""
     text, found = linuxcnc_text(trajectory, tip_tolerance)
     if text is not None:
-        path.with_name(f"{path.stem}-linuxcnc.ngc").write_text(text, encoding="ascii", newline="\n")
+        path.with_name(path.stem + _FOR_LINUXCNC).write_text(text, encoding="ascii", newline="\n")
     return found
 
 

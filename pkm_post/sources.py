@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -57,14 +58,20 @@ def read_part_program(file: Path, reading: Reading) -> Result:
     """
     if not is_part_program(file):
         raise ValueError(f"suffix of {file}: expected one of {', '.join(SUFFIXES)}")
+    name = _storable(file)
     try:
         content = file.read_bytes()
     except OSError as fault:
-        return None, (Diagnostic("F103", Place(str(file)), str(fault)),)
-    program, diagnostics = SUFFIXES[file.suffix.lower()](content, str(file), reading)
+        return None, (Diagnostic("F103", Place(name), str(fault)),)
+    program, diagnostics = SUFFIXES[file.suffix.lower()](content, name, reading)
     if program is not None:
         program = replace(program, source_fingerprint=hashlib.sha256(content).hexdigest())
     return program, diagnostics
+
+
+def _storable(file: Path) -> str:
+    """The name of a file as Unicode, which results keep; bytes that are none become marks."""
+    return os.fsencode(file).decode("utf-8", "replace")
 
 
 def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from pkm_post.argument_types import between, count, fitting, number, numbered, positive, whole, whole_from
+from pkm_post.argument_types import above_zero, between, count, fitting, number, numbered, positive, whole, whole_from
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 NO_NUMBERS = ["", " ", "x", "1,5", "0x10", "1 2", "--1", "nan", "-NaN", "inf", "-infinity", "1e999"]
@@ -42,6 +42,16 @@ def test_a_number_between_two_includes_both(least, most, value):
         assert between(least, most)(repr(value)) == value
     else:
         assert refused(between(least, most), repr(value)).startswith(f"expected a number from {least} to {most}, got")
+
+
+@given(FINITE, FINITE)
+@example(2.0, 2.0)
+@example(2.0, math.nextafter(2.0, 3.0))
+def test_a_number_above_zero_can_have_an_upper_end(most, value):
+    if 0 < value <= most:
+        assert above_zero(most)(repr(value)) == value
+    else:
+        assert refused(above_zero(most), repr(value)).startswith(f"expected a number above 0 and up to {most}, got")
 
 
 @given(st.integers(0, 50), st.integers(0, 50), st.integers(0, 50))

@@ -7,7 +7,7 @@ from machines import example
 from programs import BALL, ON_PALLET, program
 
 from pkm_post.gcode import ReadOptions, read
-from pkm_post.outputs import linuxcnc_text
+from pkm_post.outputs import left_over, linuxcnc_text
 from pkm_post.placement import place
 
 
@@ -21,3 +21,44 @@ def test_stops_and_tolerances_of_the_trajectory_are_in_the_program_for_linuxcnc(
     back, _ = read(text, "part.ngc", ReadOptions(axis_words="RPY", default_tool=BALL))
     assert back.exact_stop.tolist() == trajectory.exact_stop.tolist()
     assert back.tip_tolerance.tolist() == [0.0, 0.0, 0.001, 0.05, 0.0]  # exact stops have none
+
+
+MADE = ["a-setup.pmc", "a.pkmt", "a.pmc"]
+OF_BEFORE = [
+    "a-halstreamer-part2.txt",
+    "a-halstreamer.txt",
+    "a-linuxcnc.ngc",
+    "a-part2.pmc",
+    "a-part13.pmc",
+    "a-setup.cfg",
+    "a.csv",
+]
+OF_OTHERS = [
+    "a.ngc",
+    "b.pmc",
+    "b-part2.pmc",
+    "a-partner.pmc",
+    "a-part0.pmc",
+    "xa-part2.pmc",
+    "a-part2.pmc.bak",
+    "a-notes.txt",
+]
+
+
+def test_what_an_earlier_result_left_is_named(tmp_path):
+    for name in (*MADE, *OF_OTHERS):
+        (tmp_path / name).touch()
+    assert left_over(tmp_path / "a.pmc", MADE) == ()
+    for name in OF_BEFORE:
+        (tmp_path / name).touch()
+    (warning,) = left_over(tmp_path / "a.pmc", MADE)
+    assert (warning.code, warning.place.file) == ("F104", str(tmp_path / "a.pmc"))
+    assert warning.found.split(", ") == sorted(OF_BEFORE)
+    assert left_over(tmp_path / "a.pmc", [*MADE, *OF_BEFORE]) == ()
+
+
+def test_a_name_may_have_what_patterns_are_made_of(tmp_path):
+    for name in ("a+(b).pmc", "a+(b)-part2.pmc", "aab-part2.pmc"):
+        (tmp_path / name).touch()
+    (warning,) = left_over(tmp_path / "a+(b).pmc", ["a+(b).pmc"])
+    assert warning.found == "a+(b)-part2.pmc"

@@ -150,6 +150,13 @@ def test_warnings_do_not_stop_the_job(machine, tmp_path):
     assert [fault.code for fault in posted.diagnostics] == ["K110"]
 
 
+def test_tables_of_an_earlier_result_are_told(machine, tmp_path):
+    made = cone(60, turns=0.3)
+    post(made, machine, tmp_path / "cone.pmc", Options(also=("csv",)))
+    (warning,) = post(made, machine, tmp_path / "cone.pmc").diagnostics
+    assert warning.code == "F104" and ".csv" in warning.found
+
+
 @pytest.mark.parametrize("jerk", [math.inf, 25000.0])
 @pytest.mark.parametrize("lean", [0.0, 10.0])
 def test_tools_of_different_lengths_are_posted(machine, tmp_path, jerk, lean):

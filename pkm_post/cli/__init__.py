@@ -2,18 +2,20 @@
 """The command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and its like.
 
 Exit code 0 when all was done, 1 when the input was refused, or nobody reads the output any more, 2 when the arguments
-make no sense. Each module adds its commands to the parser and runs them.
+make no sense, 130 after Ctrl-C. Each module adds its commands to the parser and runs them.
 """
 
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import sys
 from collections.abc import Sequence
 
 import pkm_post
 from pkm_post.cli import machine, part_programs, pmac, post, reach, reach_map, verify
+from pkm_post.cli.many import INTERRUPTED
 
 __all__ = ["main"]
 
@@ -23,20 +25,33 @@ _OPTIONAL = ("lark", "serial", "paramiko")
 
 def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
-    namespace = _parser().parse_args(arguments)
+    _prepare_streams()
     try:
+        namespace = _parser().parse_args(arguments)
         code: int = namespace.run(namespace, arguments)
         sys.stdout.flush()
     except BrokenPipeError:
         if not _output_is_closed():
             raise
         return 1
+    except KeyboardInterrupt:
+        return INTERRUPTED
     except ImportError as missing:
         if missing.name not in _OPTIONAL:
             raise
         print(missing, file=sys.stderr)
         return 1
     return code
+
+
+def _prepare_streams() -> None:
+    """Give a service, which has no streams, some that lead nowhere; what a stream cannot show it shows as a code."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 - it lasts as long as Python
+        elif mode == "w" and isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _output_is_closed() -> bool:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 from pkm_post.cli.progress_line import ProgressLine
 
-_INTERRUPTED = 130
+INTERRUPTED = 130
 """The exit code of what Ctrl-C ended, as shells have it."""
 _TIME_TO_END = 10.0
 """Seconds a process has to remove what it began, before it is killed."""
@@ -45,6 +45,7 @@ class _Child:
             stderr=subprocess.PIPE,
             encoding="utf-8",
             errors="replace",
+            env=os.environ | {"PYTHONIOENCODING": "utf-8"},  # whatever the locale says
             start_new_session=_APART,
         )
         if not self.is_wanted:
@@ -93,7 +94,7 @@ def run_many(commands: Sequence[Sequence[str]], at_a_time: int, doing: str) -> i
             _end_all(children)
             if not isinstance(fault, KeyboardInterrupt):
                 raise
-            code = _INTERRUPTED
+            code = INTERRUPTED
         finally:
             line.clear()
     return code

@@ -15,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pkm_post.argument_types import count, positive
+from pkm_post.argument_types import above_zero, between, count, positive, tool_length
 from pkm_post.cli import pmac_control, pmac_control_arguments, pmac_simulate
 from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, JobTarget, Target
 from pkm_post.cli.pmac_stream import ROTARY_WORDS
@@ -54,7 +54,9 @@ def _add_port(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rtscts", action="store_true", help="the serial line has RTS and CTS")
     known = "host keys that are trusted over ssh (~/.ssh/known_hosts)"
     parser.add_argument("--known-hosts", type=Path, metavar="FILE", help=known)
-    parser.add_argument("--patience", type=positive, default=2.0, metavar="S", help="longest silence (%(default)s)")
+    parser.add_argument(
+        "--patience", type=above_zero(3600), default=2.0, metavar="S", help="longest silence (%(default)s)"
+    )
 
 
 def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
@@ -67,9 +69,11 @@ def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
     elif name == "abort":
         parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
     elif name == "monitor":
-        parser.add_argument("--tool-length", type=positive, metavar="MM", help="gauge length (that of the rest pose)")
         parser.add_argument(
-            "--rate", type=positive, default=10.0, metavar="HZ", help="readings per second (%(default)s)"
+            "--tool-length", type=tool_length, metavar="MM", help="gauge length (that of the rest pose)"
+        )
+        parser.add_argument(
+            "--rate", type=between(0.001, 1000), default=10.0, metavar="HZ", help="readings per second (%(default)s)"
         )
         parser.add_argument("--seconds", type=positive, metavar="S", help="how long (until Ctrl-C)")
 

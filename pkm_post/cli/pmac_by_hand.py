@@ -70,7 +70,7 @@ def carry_out(
 
 
 def wait_for_end(session: Session, target: Target, seconds: float) -> Status:
-    """The state behind a move that takes so many seconds at 100 %."""
+    """The state after a move that takes so many seconds at 100 %."""
     from pkm_post.numerical_control.execute import wait_for_rest
 
     return wait_for_rest(session, target.settings, _START_S + seconds / _SLOWEST_OVERRIDE)

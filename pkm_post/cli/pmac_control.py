@@ -96,7 +96,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
 
 
 def go_on(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Go on behind a stop (M0, M1) of the program."""
+    """Go on after a stop (M0, M1) of the program."""
     from pkm_post.numerical_control.stops import go_on
     from pkm_post.pmac_link.readout import state_text
 
@@ -117,7 +117,7 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "jog": (jog, "move the tool or one strut a little, planned and checked", ("machine",)),
     "mdi": (mdi, "carry out a line of G-code, planned and checked", ("machine",)),
     "step": (step, "run a program from rest to rest", ("machine", "program")),
-    "continue": (go_on, "go on behind a stop (M0, M1) of a program that was run", ("machine", "program")),
+    "continue": (go_on, "go on after a stop (M0, M1) of a program that was run", ("machine", "program")),
     "override": (override, "how fast time passes in programs, in %%", ("machine",)),
 }
 """As ``pmac_actions.ACTIONS``."""

@@ -6,12 +6,14 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 
-from pkm_post.argument_types import count, fitting, number, positive, whole
+from pkm_post.argument_types import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 from pkm_post.cli.reading import NO_AXIS_WORDS, axis_words
 
 _HIGHEST_PROGRAM = 999
 """From 1000 on live the subprograms of the codes."""
-_percent = fitting(number, lambda percent: 0 < percent <= 100, "a number above 0 and up to 100")
+_percent = above_zero(100)
+_way = between(-LONGEST_TOOL, LONGEST_TOOL)
+_turn = between(-360, 360)
 
 
 def add_own(parser: argparse.ArgumentParser, name: str) -> None:
@@ -27,13 +29,13 @@ def _add_home(parser: argparse.ArgumentParser) -> None:
 
 def _add_jog(parser: argparse.ArgumentParser) -> None:
     for name in ("x", "y", "z"):
-        parser.add_argument(f"--{name}", type=number, default=0.0, metavar="MM", help=f"the tip along {name.upper()}")
+        parser.add_argument(f"--{name}", type=_way, default=0.0, metavar="MM", help=f"the tip along {name.upper()}")
     for name in ("x", "y"):
         told = f"the tool axis about {name.upper()}, the tip stands"
-        parser.add_argument(f"--tilt-{name}", type=number, default=0.0, metavar="DEG", help=told)
-    parser.add_argument("--spin", type=number, default=0.0, metavar="DEG", help="the platform about the tool axis")
+        parser.add_argument(f"--tilt-{name}", type=_turn, default=0.0, metavar="DEG", help=told)
+    parser.add_argument("--spin", type=_turn, default=0.0, metavar="DEG", help="the platform about the tool axis")
     parser.add_argument("--strut", type=int, choices=range(1, 7), help="one strut instead of the tool")
-    parser.add_argument("--by", type=number, default=0.0, metavar="MM", help="how much longer that strut becomes")
+    parser.add_argument("--by", type=_way, default=0.0, metavar="MM", help="how much longer that strut becomes")
     told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
     parser.add_argument("--feed", type=positive, default=300.0, metavar="MM/MIN", help=told)
     _add_by_hand(parser)
@@ -48,7 +50,7 @@ def _add_mdi(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_by_hand(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--tool-length", type=positive, metavar="MM", help="gauge length (that of the rest pose)")
+    parser.add_argument("--tool-length", type=tool_length, metavar="MM", help="gauge length (that of the rest pose)")
     parser.add_argument("--check", action="store_true", help="plan and check it, and send nothing")
     _add_number(parser)
 

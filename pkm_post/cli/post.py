@@ -15,11 +15,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.argument_types import count
+from pkm_post.argument_types import count, whole_from
 from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside
 from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, reading_from
+from pkm_post.cli.result_names import lost_results
 from pkm_post.options import add_options, options_from, tool_lengths_from
 
 if TYPE_CHECKING:
@@ -43,18 +44,18 @@ def add_commands(commands: Any) -> None:
         metavar="N",
         help="how many of several files to post at the same time (default: the number of processors, %(default)s)",
     )
-    post.add_argument(_ONLY, type=int, help=argparse.SUPPRESS)
+    post.add_argument(_ONLY, type=whole_from(0, "0 or more"), help=argparse.SUPPRESS)
     add_options(post)
     add_reading(post)
     post.set_defaults(run=_post)
 
 
 def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    files = namespace.files if namespace.only is None else [namespace.files[namespace.only]]
-    twice = [stem for stem, times in Counter(file.stem for file in files).items() if times > 1]
-    if twice:
-        print(f"several files would be posted as {', '.join(twice)}: post them to different folders", file=sys.stderr)
+    faults = _faults(namespace)
+    if faults:
+        print(*faults, sep="\n", file=sys.stderr)
         return 2
+    files = namespace.files if namespace.only is None else [namespace.files[namespace.only]]
     at_a_time = min(namespace.jobs, len(files))
     if at_a_time > 1:
         return _post_in_processes(files, arguments, at_a_time)
@@ -63,12 +64,24 @@ def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     return max([_post_one(file, namespace) for file in files])
 
 
+def _faults(namespace: argparse.Namespace) -> list[str]:
+    """Why these files cannot be posted in one call."""
+    files = namespace.files
+    if namespace.only is not None and namespace.only >= len(files):
+        return [f"argument {_ONLY}: expected a number below {len(files)}, got {namespace.only}"]
+    twice = [stem for stem, times in Counter(file.stem for file in files).items() if times > 1]
+    if twice:
+        return [f"several files would be posted as {', '.join(twice)}: post them to different folders"]
+    return [f"{lost}: post to different folders" for lost in lost_results(files, namespace.out, namespace.also)]
+
+
 def _post_in_processes(files: Sequence[Path], arguments: Sequence[str], at_a_time: int) -> int:
-    """The same command for each file, in a process of its own."""
+    """The same command for each file, in a process of its own; what tells which file stands before any ``--``."""
+    name, *others = arguments
     commands = []
     for number, file in enumerate(files):
         start = command_inside if is_inside() or needs_freecad([file]) else command_outside
-        commands.append(start([*arguments, f"{_ONLY}={number}"]))
+        commands.append(start([name, f"{_ONLY}={number}", *others]))
     return run_many(commands, at_a_time, "posted") if all(commands) else 1
 
 
@@ -79,9 +92,9 @@ def _post_one(file: Path, namespace: argparse.Namespace) -> int:
 
     post, line = _part_program if is_part_program(file) else _document, ProgressLine(file.name)
     try:
-        results = post(file, namespace, line)
+        with line:
+            results = post(file, namespace, line)
     except Refused as refused:
-        line.clear()
         print(refused, file=sys.stderr)
         return 1
     for result in results:

@@ -22,6 +22,14 @@ class ProgressLine:
         self._subject = subject
         self._is_seen = sys.stderr.isatty()
 
+    def __enter__(self) -> ProgressLine:
+        """The line, while something is being done."""
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        """However that ends, nothing is left in the terminal."""
+        self.clear()
+
     def show(self, step: str, share: float) -> None:
         """Say the step and the share that is done, 0 to 1; as ``pipeline.Progress``."""
         self._write(f"{_CLEAR}{self._subject}: {step} {share:.0%}" if step else _CLEAR)

@@ -12,9 +12,12 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from pkm_post.argument_types import fitting, number, positive
+from pkm_post.argument_types import fitting, number, offset, positive, tool_length
 
 _angle = fitting(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
+
+_MOST_PLACES = 1_000_000
+"""A file of them is some tens of megabytes."""
 
 
 def add_commands(commands: Any) -> None:
@@ -23,7 +26,7 @@ def add_commands(commands: Any) -> None:
     mapping.add_argument("machine", metavar="NAME_OR_FILE")
     mapping.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the CSV and the picture")
     mapping.add_argument(
-        "--length", type=positive, default=120.0, metavar="MM", help="gauge length (default: %(default)s)"
+        "--length", type=tool_length, default=120.0, metavar="MM", help="gauge length (default: %(default)s)"
     )
     for name, default in (("x", "-300:300:50"), ("y", "-300:300:50"), ("z", "0:500:100")):
         mapping.add_argument(f"--{name}", type=_range, default=default, metavar="FROM:TO:STEP", help="mm, %(default)s")
@@ -32,13 +35,14 @@ def add_commands(commands: Any) -> None:
 
 
 def _range(text: str) -> list[float]:
-    try:
-        first, last, step = (float(word) for word in text.split(":"))
-    except ValueError:
-        step = math.nan
-    if not (step > 0 and math.isfinite(last - first) and last >= first):
+    words = text.split(":")
+    if len(words) != 3:
         raise argparse.ArgumentTypeError(f"expected FROM:TO:STEP, got {text!r}")
-    return [first + place * step for place in range(math.floor((last - first) / step * (1 + 1e-12)) + 1)]
+    first, last, step = offset(words[0]), offset(words[1]), positive(words[2])
+    steps = (last - first) / step * (1 + 1e-12)
+    if not 0 <= steps < _MOST_PLACES:
+        raise argparse.ArgumentTypeError(f"expected FROM:TO:STEP with 1 to {_MOST_PLACES} places, got {text!r}")
+    return [first + place * step for place in range(math.floor(steps) + 1)]
 
 
 def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
@@ -50,6 +54,9 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.position import reach_map
     from pkm_post.report.reach_plot import draw_reach
 
+    if math.prod(map(len, (namespace.x, namespace.y, namespace.z))) > _MOST_PLACES:
+        print(f"expected --x, --y and --z with at most {_MOST_PLACES} places together", file=sys.stderr)
+        return 2
     machine, faults = machine_named(namespace.machine)
     for fault in faults:
         print(fault, file=sys.stderr)

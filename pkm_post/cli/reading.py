@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.argument_types import numbered, positive
+from pkm_post.argument_types import numbered, tool_length
 
 if TYPE_CHECKING:
     from pkm_post.sources import Reading
@@ -31,7 +32,7 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
         "--tool",
         dest="tools",
         action="append",
-        type=numbered(positive, "NUMBER=MM"),
+        type=numbered(tool_length, "NUMBER=MM"),
         default=[],
         metavar="NUMBER=MM",
         help="diameter of a tool, for G41 and G42; may be repeated",
@@ -50,7 +51,7 @@ def part_program(text: str) -> Path:
     from pkm_post.sources import SUFFIXES, is_part_program
 
     file = Path(text)
-    if not file.is_file():
+    if not os.path.isfile(file):  # before Python 3.12 Path.is_file raises where a name is too long
         raise argparse.ArgumentTypeError(f"there is no file {text}")
     if not is_part_program(file):
         raise argparse.ArgumentTypeError(f"expected a file ending in {', '.join(SUFFIXES)}, got {text}")

@@ -71,6 +71,7 @@ def post(
         if fault is run.raised_outside:
             raise
         raise Refused([*run.warnings, Diagnostic("F101", Place(str(program_path)), str(fault))]) from fault
+    run.accept(outputs.left_over(program_path, names))
     files, programs = (tuple(program_path.parent / name for name in each) for each in (names, parts))
     return Posted(program_path, files, report, tuple(run.warnings), programs)
 

@@ -116,7 +116,7 @@ class TcpLink(SocketLink):
         try:
             self._socket = socket.create_connection((self.host, self.number), self.timeout)
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        except OSError as fault:
+        except (OSError, UnicodeError) as fault:  # a name that no name server could be asked for
             raise LinkLostError(f"{self.host}, port {self.number}: {fault}") from fault
 
     def close(self) -> None:

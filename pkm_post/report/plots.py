@@ -8,6 +8,7 @@ certificate found. Without matplotlib there is a warning instead of a picture.
 from __future__ import annotations
 
 import importlib.util
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -69,9 +70,17 @@ def draw(
     _lengths(lengths, struts, machine)
     _speeds(speeds, struts, machine)
     _deviations(deviations, certificate, tolerances)
-    figure.suptitle(f"{trajectory.source} on {machine.name}: {certificate.duration:.1f} s, {len(struts)} points")
-    figure.savefig(path, dpi=110, metadata={"Software": None}, pil_kwargs={"compress_level": 1})
+    title = f"{trajectory.source} on {machine.name}: {certificate.duration:.1f} s, {len(struts)} points"
+    figure.suptitle(title, parse_math=False)
+    save(figure, path, dpi=110, pil_kwargs={"compress_level": 1})
     return ()
+
+
+def save(figure: Any, path: Path, **how: Any) -> None:
+    """Save a picture; what a name has in a script that the font lacks is drawn as boxes, which needs no warning."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph \d+ .* missing", UserWarning)
+        figure.savefig(path, metadata={"Software": None}, **how)
 
 
 def _path(axes: Any, trajectory: Trajectory, motion: Motion) -> None:
@@ -88,7 +97,8 @@ def _path(axes: Any, trajectory: Trajectory, motion: Motion) -> None:
     axes.plot(*np.stack([motion.tip[some], ends, gaps], axis=1).reshape(-1, 3).T, color="0.5", linewidth=0.4)
     axes.set_aspect("equal")
     axes.set(xlabel="x mm", ylabel="y mm", zlabel="z mm", title="tool tip and tool axis in the machine frame")
-    axes.legend(fontsize="small", loc="upper left")
+    for name in axes.legend(fontsize="small", loc="upper left").get_texts():
+        name.set_parse_math(False)
 
 
 def _only(points: Array, chosen: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic
-from pkm_post.report.plots import missing_matplotlib
+from pkm_post.report.plots import missing_matplotlib, save
 
 _MOST_LEVELS = 6
 
@@ -43,8 +43,8 @@ def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> tuple[Diagn
         image = _level(panel, tip[level], degrees[level], float(np.nanmax(degrees, initial=1.0)))
         panel.set_title(f"z = {height:g} mm")
     figure.colorbar(image, ax=panels.ravel().tolist()[: len(shown)], label="widest cone of the tool axis, degrees")
-    figure.suptitle(f"Reach of {machine}")
-    figure.savefig(path, dpi=90, metadata={"Software": None})
+    figure.suptitle(f"Reach of {machine}", parse_math=False)
+    save(figure, path, dpi=90)
     return ()
 
 

@@ -91,14 +91,17 @@ def strayed(trajectory: Trajectory, segments: Records) -> dict[str, Array]:
 def missed(trajectory: Trajectory, columns: dict[str, Array]) -> dict[str, Array]:
     """Segments that a player would not end where they say, (N,), by what is elsewhere: a wrong sweep or angle does it.
 
-    A line ends where its shift takes it, and that is how the shift was computed: only arcs and turns can be wrong.
+    A line ends where its shift takes it, and that is how the shift was computed: only arcs and turns can end elsewhere.
+    But how fast a player goes along it follows from the length it says.
 
     Args:
         trajectory: N segments that keep their promises.
         columns: what ``interpolation`` makes of them.
     """
     off = {name: np.zeros(len(trajectory), dtype=np.bool_) for name in ("tip", "axis")}
-    arcs = np.flatnonzero(trajectory.kind == Kind.ARC)
+    arc = trajectory.kind == Kind.ARC
+    off["length"] = _apart(trajectory.length, np.where(arc, trajectory.length, norm(columns["shift"])), 1.0)
+    arcs = np.flatnonzero(arc)
     start, shift, radius, quarter, growth = (
         columns[name][arcs] for name in ("start_tip", "shift", "radius", "quarter", "growth")
     )

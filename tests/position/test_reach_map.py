@@ -88,11 +88,18 @@ def test_the_command_tells_faults(tmp_path, capsys):
     assert "M101" in capsys.readouterr().err
 
 
+def test_a_map_of_more_places_than_fit_is_refused(capsys):
+    assert main(["reach-map", "example_6tps", "--x=0:1000:1", "--y=0:1000:1"]) == 2
+    assert "expected --x, --y and --z with at most 1000000 places together" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--x", "1:0:5"], "expected FROM:TO:STEP, got '1:0:5'"),
-        (["--length", "0"], "expected a number above 0, got '0'"),
+        (["--x", "1:0:5"], "expected FROM:TO:STEP with 1 to 1000000 places, got '1:0:5'"),
+        (["--length", "0"], "expected a number above 0 and up to 10000, got '0'"),
+        (["--x", "0:1e300:1e-300"], "expected a number from -1000000 to 1000000, got '1e300'"),
+        (["--x", "0:1e5:1e-3"], "expected FROM:TO:STEP with 1 to 1000000 places, got '0:1e5:1e-3'"),
         (["--widest", "nan"], "expected a number, got 'nan'"),
         (["--widest", "180"], "expected an angle above 0 and below 180, got '180'"),
     ],

@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-import numpy as np
+import dataclasses
 
+import numpy as np
+from programs import cone
+
+from pkm_post.machine_file import machine_named
+from pkm_post.pipeline import post
 from pkm_post.report.plots import _only, shown
+from pkm_post.report.reach_plot import draw_reach
 
 
 def test_a_short_line_is_drawn_as_it_is():
@@ -31,3 +37,23 @@ def test_runs_of_chosen_points_are_drawn_without_those_between():
     chosen = np.array([False, True, True, False, False, False, True, True])
     x, _, _ = _only(points, chosen)
     np.testing.assert_array_equal(x, [3, 6, np.nan, 18, 21])
+
+
+NO_MATHEMATICS = "$x^_$ \\frac{ 日本"
+"""What matplotlib would take for mathematics, and what its font does not have."""
+
+
+def test_a_picture_shows_names_as_they_are(tmp_path):
+    made = cone()
+    named = dataclasses.replace(
+        made, source=f"{NO_MATHEMATICS}.ngc", operations=tuple(f"{NO_MATHEMATICS} {name}" for name in made.operations)
+    )
+    machine = dataclasses.replace(machine_named("example_6tps")[0], name=NO_MATHEMATICS)
+    assert post(named, machine, tmp_path / "part.pmc").diagnostics == ()
+    assert (tmp_path / "part-report.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_reach_map_shows_the_name_of_the_machine_as_it_is(tmp_path):
+    tip = np.array([[x, y, 200.0] for x in (0.0, 50.0) for y in (0.0, 50.0)])
+    assert draw_reach(tmp_path / "map.png", NO_MATHEMATICS, tip, np.full(4, 0.5)) == ()
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")

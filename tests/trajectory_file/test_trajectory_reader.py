@@ -11,6 +11,7 @@ import pytest
 from made_files import header_of, newer, sealed
 from trajectories import everything, random_trajectory
 
+from pkm_post.model import Kind
 from pkm_post.trajectory_file import decode, read, write
 from pkm_post.trajectory_file.layout import HEADER, MAGIC, MINOR, SEGMENT, STRING, TABLES, offset_of
 from pkm_post.trajectory_file.promises import broken_promises
@@ -238,6 +239,16 @@ def test_values_without_sense_are_told(path, sound, table, field, form, value, f
     assert trajectory is None
     assert {diagnostic.code for diagnostic in diagnostics} == {"T103"}
     assert diagnostics[0].found.startswith(found)
+
+
+@pytest.mark.parametrize("more", [-0.4, -1e-5, 1e-5, 40.0])
+def test_a_line_is_as_long_as_its_shift(path, sound, more):
+    row = int(np.flatnonzero(TRAJECTORY.kind != Kind.ARC)[-1])
+    length = TRAJECTORY.length[row]
+    found = refusal(path, sealed(changed(sound, in_table(sound, "segments", "length", row), "<d", length + more)))
+    assert found == f"T103 segment {row}: the length does not follow from the rest"
+    path.write_bytes(sealed(changed(sound, in_table(sound, "segments", "length", row), "<d", length + more * 1e-9)))
+    assert read(path)[1] == ()
 
 
 BAD_HEADER = [

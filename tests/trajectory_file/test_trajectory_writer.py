@@ -167,7 +167,9 @@ def test_a_segment_moves_tip_axis_or_spin(tmp_path, moving):
             write(trajectory, tmp_path / "part.pkmt")
 
 
-@pytest.mark.parametrize(("column", "on_arc", "what"), [("sweep", True, "tip"), ("angle", False, "axis")])
+@pytest.mark.parametrize(
+    ("column", "on_arc", "what"), [("sweep", True, "tip"), ("angle", False, "axis"), ("length", False, "length")]
+)
 def test_a_segment_ends_where_it_says(tmp_path, column, on_arc, what):
     trajectory = random_trajectory(10)
     row = int(np.flatnonzero((trajectory.kind == 2) == on_arc)[-1])

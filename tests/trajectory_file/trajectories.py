@@ -7,7 +7,7 @@ import numpy as np
 from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
-from pkm_post.geometry import angle_between, arc_sweep, unit
+from pkm_post.geometry import angle_between, arc_sweep, norm, unit
 from pkm_post.model import Event, EventKind, Kind, Tool, Trajectory
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
@@ -69,7 +69,7 @@ def random_tool(rng, number, name):
 
 
 def random_trajectory(seed, count=20, events=6) -> Trajectory:
-    """Not a way that a machine could go: it leaps, and lengths are anything. But segments end where they say."""
+    """Not a way that a machine could go: it leaps, and arcs have any length. But segments end where they say."""
     rng = np.random.default_rng(seed)
     numbers = rng.permutation([0, 3, 12, 2**31 - 1]).tolist()
     names = iter(NAMES[index] for index in rng.integers(len(NAMES), size=9))
@@ -95,12 +95,13 @@ def random_trajectory(seed, count=20, events=6) -> Trajectory:
 
 
 def fitted(trajectory) -> Trajectory:
-    """The same with the sweeps and angles that lead to the ends."""
+    """The same with the sweeps and angles that lead to the ends, and with the lengths of lines."""
     start, arc, sweep = trajectory.tip_before(), trajectory.kind == Kind.ARC, np.zeros(len(trajectory))
     way = start[arc], trajectory.tip[arc], trajectory.arc_centre[arc], trajectory.arc_axis[arc]
     sweep[arc] = arc_sweep(*way)
     angle = angle_between(trajectory.axis_before(), trajectory.axis)
-    return dataclasses.replace(trajectory, sweep=sweep, angle=angle)
+    length = np.where(arc, trajectory.length, norm(trajectory.tip - start))
+    return dataclasses.replace(trajectory, sweep=sweep, angle=angle, length=length)
 
 
 def everything(trajectory):
