@@ -23,12 +23,15 @@ from pkm_post.certificate.structure import structure_faults
 from pkm_post.certificate.struts import off_plan, strut_jerk
 from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry.vectors import Array, norm
 from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion, Trajectory
 from pkm_post.model.certificate import Certificate, Finding, Tolerances
 
 _FEED_SHARE = 1.01
 """How far the cubic may swing about the planned speed where the acceleration changes."""
+_SWING = 1 / 3
+"""Part of the change of speed within one millisecond, which no point can divide: where the tip is at speed long before
+its end, the cubic is faster by that in between, to have gone as far."""
 _FEED_ROUNDING = 0.05
 """mm/s: what rounding lengths to six decimals can do to the speed within one millisecond, with room to spare."""
 
@@ -147,4 +150,6 @@ def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:
     # reduceat over pairs (first, last + 1): the maxima of the ranges are every second result.
     bounds = np.column_stack([first, last + 1]).ravel()
     fastest = np.maximum.reduceat(np.append(trajectory.feed, 0.0), bounds)[::2]
-    return fastest * _FEED_SHARE + _FEED_ROUNDING
+    change = np.abs(np.diff(norm(motion.tip_rate)))
+    indivisible = np.diff(motion.time_ms) == 1
+    return fastest * _FEED_SHARE + _FEED_ROUNDING + np.where(indivisible, _SWING * change, 0.0)

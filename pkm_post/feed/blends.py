@@ -22,18 +22,27 @@ _BOW = 0.0134
 """Deviation by half width squared and change of curvature: the largest of (2v - 1)^2 S(v) / 2 before the joint."""
 _NEGLIGIBLE = 1e-12
 """Changes below this bound nothing; keeps the quotients finite."""
+_BEND = 0.5
+"""rad that an arc may be prolonged by: beyond it the two segments of a joint say little of each other."""
 _SHARE = 0.45
 """Part of the shorter neighbour that a blend may use; two blends on one segment never meet."""
 
 
 def half_widths(
-    tip_change: Array, curvature_change: Array, axis_change: Array, neighbour: Array, tip: Array | float, axis: float
+    tip_change: Array,
+    curvature_change: Array,
+    curvature: Array,
+    axis_change: Array,
+    neighbour: Array,
+    tip: Array | float,
+    axis: float,
 ) -> Array:
     """Half widths of the blends that keep within the tolerances, (N,) in path length.
 
     Args:
         tip_change: (N,) length of the change of the tip's tangent at each joint.
         curvature_change: (N,) length of the change of the tip's curvature vector, 1/mm.
+        curvature: (N,) the higher curvature of the two segments, 1/mm.
         axis_change: (N,) length of the change of the tool axis' rate, rad by path length.
         neighbour: (N,) length of the shorter of the two segments; 0 where the motion stops.
         tip: tolerance of the tip, mm; a number, or (N,).
@@ -43,7 +52,8 @@ def half_widths(
     corner, bow = OFFSET * np.maximum(tip_change, _NEGLIGIBLE), _BOW * curvature_change
     by_tip = 2 * tip / (corner + np.sqrt(corner**2 + 4 * bow * tip))
     by_axis = axis / (OFFSET * np.maximum(axis_change, _NEGLIGIBLE))
-    return np.minimum.reduce([by_tip, by_axis, _SHARE * neighbour])
+    by_bend = _BEND / np.maximum(curvature, _NEGLIGIBLE)
+    return np.minimum.reduce([by_tip, by_axis, by_bend, _SHARE * neighbour])
 
 
 def step(x: Array, half_width: Array) -> tuple[Array, Array, Array]:

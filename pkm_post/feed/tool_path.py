@@ -137,6 +137,7 @@ def _blends(segments: Segments, rests: Array, tip_tolerance: Array | float, axis
     blend[1:-1] = half_widths(
         norm(tangent_start - tangent_end),
         norm(bend_start - bend_end),
+        np.maximum(norm(bend_start), norm(bend_end)),
         norm(axis_change),
         neighbour,
         _of_joints(np.broadcast_to(tip_tolerance, len(segments))),

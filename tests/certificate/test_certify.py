@@ -9,6 +9,8 @@ from programs import ON_PALLET, cone, program, steep_helices
 
 from pkm_post import planning
 from pkm_post.certificate import certify
+from pkm_post.certificate.certify import _SWING
+from pkm_post.geometry import hermite_speeds
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.placement.place import place
@@ -204,3 +206,12 @@ def test_a_limit_of_jerk_is_kept_and_its_breach_is_found():
     found = next(finding for finding in certificate.findings if finding.code == "V112")
     assert 0.2 * jerk < found.value <= jerk
     assert "V112" in codes(verdict(machine=gentle))
+
+
+@pytest.mark.parametrize("ramp", [0.0, 0.1, 0.5, 1.0])
+def test_a_cubic_that_comes_from_rest_swings_by_no_more_than_a_third_of_its_speed(ramp):
+    """What the ceiling of the speed allows for in one millisecond: the plan is at speed after a part of it."""
+    one, at_speed, way = np.ones((1, 6)), 0.536, 0.536 * (1 - ramp / 2) * 1e-3
+    speed = hermite_speeds(0 * one, 0 * one, way * one, at_speed * one, np.array([1e-3]), np.linspace(0, 1, 1001))
+    assert speed.max() <= (1 + _SWING) * at_speed * (1 + 1e-12)
+    assert ramp or speed.max() > (1 + 0.99 * _SWING) * at_speed

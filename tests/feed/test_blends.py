@@ -30,11 +30,12 @@ def test_smooth_step_has_no_second_derivative_at_its_ends():
 
 def test_half_width_obeys_the_tightest_of_its_bounds():
     zero, one = np.zeros(1), np.ones(1)
-    corner = half_widths(one, zero, zero, 100 * one, tip=1e-3, axis=1.0)
+    corner = half_widths(one, zero, zero, zero, 100 * one, tip=1e-3, axis=1.0)
     np.testing.assert_allclose(OFFSET * corner, 1e-3)
-    both = half_widths(one, one, zero, 100 * one, tip=1e-3, axis=1.0)
+    both = half_widths(one, one, one, zero, 100 * one, tip=1e-3, axis=1.0)
     np.testing.assert_allclose(OFFSET * both + 0.0134 * both**2, 1e-3)
-    axis = half_widths(zero, zero, one, 100 * one, tip=1.0, axis=1e-5)
+    axis = half_widths(zero, zero, zero, one, 100 * one, tip=1.0, axis=1e-5)
     np.testing.assert_allclose(OFFSET * axis, 1e-5)
-    assert half_widths(zero, zero, zero, one, tip=1.0, axis=1.0)[0] < 0.5
-    assert half_widths(one, one, one, zero, tip=1.0, axis=1.0)[0] == 0
+    assert half_widths(zero, zero, zero, zero, one, tip=1.0, axis=1.0)[0] < 0.5
+    assert half_widths(one, one, one, one, zero, tip=1.0, axis=1.0)[0] == 0
+    assert half_widths(one, one, 4 * one, one, 100 * one, tip=1.0, axis=1.0)[0] == 0.5 / 4
