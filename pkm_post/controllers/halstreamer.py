@@ -31,7 +31,8 @@ _ROWS_PER_CHUNK = 1 << 16
 
 _LENGTH = r"-?(?:0|[1-9][0-9]*)\.[0-9]+"
 _ROW = rf"{_LENGTH}(?: {_LENGTH}){{5}}\n"
-_PIECES = re.compile(rf"(?P<rows>(?>{_ROW})++)|(?P<period># period (?P<ms>[1-9][0-9]*) ms\n)|(?P<comment>#[ -~]*\n)")
+_PERIOD = r"# period (?P<ms>[1-9][0-9]{0,3}) ms\n"
+_PIECES = re.compile(rf"(?P<rows>(?>{_ROW})++)|(?P<period>{_PERIOD})|(?P<comment>#[ -~]*\n)")
 
 
 @dataclass(frozen=True)
@@ -132,7 +133,10 @@ def read_stream(text: str, file: str) -> tuple[Stream | None, tuple[Diagnostic, 
     if position < len(text) or len(periods) != 1 or not rows:
         found = repr(text[position:].split("\n", 1)[0][:60]) if position < len(text) else "the end"
         return None, (Diagnostic("C106", Place(file, line=text.count("\n", 0, position) + 1), found),)
-    return Stream(periods[0], np.fromstring("".join(rows), sep=" ").reshape(-1, 6)), ()
+    length = np.fromstring("".join(rows), sep=" ").reshape(-1, 6)
+    if not np.isfinite(length).all():
+        return None, (Diagnostic("C106", Place(file), "a length that is too large"),)
+    return Stream(periods[0], length), ()
 
 
 def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:

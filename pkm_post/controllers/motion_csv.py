@@ -26,6 +26,8 @@ _NAMES = [
 _HEADER = ",".join(_NAMES) + "\n"
 _NUMBERS = len(_NAMES) - 1
 _ROWS_PER_CHUNK = 4096
+_LAST_MS = 2**53
+"""Beyond it a double does not tell one millisecond from the next."""
 
 _NUMBER = r"-?[0-9]+(?:\.[0-9]+)?(?:e[-+]?[0-9]+)?"
 _EVENT = rf"({'|'.join(kind.name.lower() for kind in EventKind)})=({_NUMBER})"
@@ -78,6 +80,11 @@ def read_table(text: str, file: str) -> tuple[StrutMotion | None, tuple[Diagnost
         if not line.endswith(",\n")
         for name, value in _EVENTS.findall(line)
     )
+    large = ~np.isfinite(numbers).all(axis=1) | (numbers[:, 0] > _LAST_MS)
+    large[[event.row for event in events if not math.isfinite(event.value)]] = True
+    if large.any():
+        row = int(np.argmax(large))
+        return None, (Diagnostic("C106", Place(file, line=row + 2), "a number that is too large"),)
     time_ms = numbers[:, 0].astype(np.int64)
     slow = np.flatnonzero(np.diff(time_ms) <= 0)
     if len(slow):

@@ -156,6 +156,8 @@ def test_a_table_that_is_not_that_of_the_motion_is_found():
     [
         ("# period 1 ms\n", ""),
         ("# period 1 ms\n", "# period 0 ms\n"),
+        pytest.param("# period 1 ms\n", f"# period {'9' * 5000} ms\n", id="endless period"),
+        pytest.param("# period 1 ms\n", f"# period 1 ms\n{'9' * 400}.0 2.0 3.0 4.0 5.0 6.0\n", id="endless length"),
         ("# period 1 ms\n", "# period 1 ms\n# period 1 ms\n"),
         ("# period 1 ms\n", "# period 1 ms\n\n"),
         ("# period 1 ms\n", "# period 1 ms\n1.0 2.0 3.0 4.0 5.0\n"),

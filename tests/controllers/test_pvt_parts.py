@@ -30,6 +30,7 @@ def test_a_part_states_which_it_is_and_a_whole_program_does_not():
         for mark in (";", "//"):
             text = "".join(f"{mark} {line}\n" for line in heading) + "CLOSE\n"
             assert stated_part(text) == (number, 12)
+    assert stated_part(f"; part 1 of {'9' * 5000}: a lie\nCLOSE\n") == (1, 1)
     assert stated_part("; about part 1 of 2: a job\nCLOSE\n") == (1, 1)
     assert stated_part("; job\nCLOSE\n; part 2 of 3: of another\n") == (1, 1)
 

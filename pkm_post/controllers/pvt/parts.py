@@ -16,8 +16,8 @@ import numpy as np
 
 from pkm_post.model import Diagnostic, Event, Place, StrutMotion
 
-_STATED = re.compile(r"(?:(?:;|//).*\n)*?(?:;|//) part ([1-9][0-9]*) of ([1-9][0-9]*):")
-"""Stands in the comment on top; the rest of a program may be long."""
+_STATED = re.compile(r"(?:(?:;|//).*\n)*?(?:;|//) part ([1-9][0-9]{0,3}) of ([1-9][0-9]{0,3}):")
+"""Stands in the comment on top; the rest of a program may be long. There are not so many parts as a lie could say."""
 
 
 def parted(motion: StrutMotion, cuts: Sequence[int]) -> tuple[StrutMotion, ...]:
