@@ -21,6 +21,8 @@ ROUNDING = 1e-9
 """mm, or of the unit that a property has."""
 SIXTH_DECIMAL = 0.51e-6
 """mm, and of components of unit vectors: FreeCAD saves the words of a path with six decimals."""
+OF_A_PLAN = {"Simulation": 1e-5}
+"""mm, s, mm/s: by how much a motion that another version plans may differ, by the object that holds it."""
 WORDS = {"Report", "Violations", "Problems", "Found", "OutOfLimits", "ProvenMargins", "ExpressionEngine"}
 CLASSES = {
     "PkmMirror": "pkm_post.freecad_app.symmetry.MirroredOperation",
@@ -131,7 +133,7 @@ def test_it_opens_with_its_classes_and_computed_anew_it_is_as_it_was(file, tmp_p
         assert different(before.pop("Path", []), anew[name].pop("Path", []), SIXTH_DECIMAL) == [], name
         # later versions may plan a motion with fewer points, and not with more
         assert anew[name].pop("Points", 0) <= before.pop("Points", 0), name
-        assert different(before, anew[name]) == [], name
+        assert different(before, anew[name], OF_A_PLAN.get(name, ROUNDING)) == [], name
 
 
 @pytest.mark.parametrize("file", VERSIONS, ids=lambda file: file.stem)
