@@ -14,6 +14,7 @@ from functools import partial
 
 import numpy as np
 
+from pkm_post.certificate.coverage import coverage
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.instants import Looked, when_worst
 from pkm_post.certificate.joints import Passed, pass_joints
@@ -73,6 +74,7 @@ def certify(
         tip_deviation=played.tip,
         tip_tolerance=played.tip_tolerance,
         axis_deviation=played.axis,
+        coverage=coverage(machine),
     )
     return certificate, tuple(finding.diagnostic() for finding in findings if not finding.holds)
 

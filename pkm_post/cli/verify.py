@@ -43,5 +43,5 @@ def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     else:
         for finding in report["certificate"]["findings"]:
             print(f"{finding['what']}: {finding['value']:g} of {finding['limit']:g} {finding['unit']}".rstrip())
-        print(f"{namespace.program}: the certificate holds")
+        print(*report["certificate"]["meaning"], f"{namespace.program}: the certificate holds", sep="\n")
     return 0

@@ -42,11 +42,13 @@ class PostOutcome(QtWidgets.QWidget):
         super().__init__()
         self.verdict, self.picture = QtWidgets.QLabel(), _Picture()
         self.findings, self.diagnostics = _table(), QtWidgets.QListWidget()
+        self.meaning = QtWidgets.QLabel()
         self.verdict.setWordWrap(True)
+        self.meaning.setWordWrap(True)
         self.diagnostics.setWordWrap(True)
         layout = QtWidgets.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for part in (self.verdict, self.diagnostics, self.findings, self.picture):
+        for part in (self.verdict, self.diagnostics, self.meaning, self.findings, self.picture):
             layout.addWidget(part)
         self.diagnostics.itemClicked.connect(self._choose)
         self.findings.itemClicked.connect(self._choose)
@@ -56,6 +58,7 @@ class PostOutcome(QtWidgets.QWidget):
         """Show a line and nothing else."""
         self.verdict.setText(text)
         self._show_diagnostics(())
+        self.meaning.hide()
         self.findings.hide()
         self.picture.hide()
 
@@ -73,6 +76,8 @@ class PostOutcome(QtWidgets.QWidget):
         )
         self.verdict.setText(told.format(certificate["instants"], seconds, len(posted.files)))
         self._show_diagnostics(posted.diagnostics)
+        self.meaning.setText("\n".join(certificate["meaning"]))
+        self.meaning.show()
         _fill(self.findings, certificate["findings"])
         self.findings.show()
         pictures = [path for path in posted.files if path.suffix == ".png"]

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Certificate: what was asked for, and what a program was found to do.
+"""Certificate: what was asked for, what a program was found to do, and what was not looked at.
 
-Each quantity has its limit, and the moment and the source line where it is worst.
+Each quantity has its limit, and the moment and the source line where it is worst. Each hazard says how far it is
+covered.
 """
 
 from __future__ import annotations
 
+import enum
 from dataclasses import dataclass
 
 from pkm_post.model.diagnostics import Diagnostic, Place
@@ -59,6 +61,55 @@ class Finding:
         return f"{value:.6g} {self.unit}".rstrip()
 
 
+class Topic(enum.Enum):
+    """What a hazard is about; each topic is one line of what the certificate means."""
+
+    PATH = "tool path"
+    LIMITS = "machine limits"
+    COLLISIONS = "collisions"
+    BESIDE_THE_PATH = "approach, tool change, spindle"
+    SETUP = "machine and set-up"
+
+
+class Extent(enum.Enum):
+    """How far a hazard is covered: by a bound that holds everywhere, by samples, or not at all."""
+
+    PROVEN = "proven"
+    SAMPLED = "sampled"
+    NOT_COVERED = "not covered"
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """How far the certificate covers one hazard.
+
+    Attributes:
+        topic: what it is about.
+        subject: the hazard, such as "spindle and holder against the part".
+        extent: how far it is covered.
+        detail: against what and how it was checked, or why it was not.
+    """
+
+    topic: Topic
+    subject: str
+    extent: Extent
+    detail: str
+
+
+def meaning(coverage: tuple[Coverage, ...]) -> tuple[str, ...]:
+    """What certified means, and what it does not: one line for each topic, by extent."""
+    lines = []
+    for topic in Topic:
+        rows = [row for row in coverage if row.topic is topic]
+        by_extent = (
+            f"{extent.value}: {', '.join(row.subject for row in rows if row.extent is extent)}"
+            for extent in Extent
+            if any(row.extent is extent for row in rows)
+        )
+        lines.append(f"{topic.value}: {'; '.join(by_extent)}")
+    return tuple(lines)
+
+
 @dataclass(frozen=True)
 class Certificate:
     """The result of playing a program.
@@ -72,6 +123,7 @@ class Certificate:
         tip_deviation: (K,) largest in the interval by its tolerance, mm.
         tip_tolerance: (K,) what it may be there, mm: that of the program (G64 P), else what was asked for.
         axis_deviation: (K,) largest in the interval, rad.
+        coverage: one row for each hazard, in the order of the topics.
     """
 
     findings: tuple[Finding, ...]
@@ -82,6 +134,7 @@ class Certificate:
     tip_deviation: Array
     tip_tolerance: Array
     axis_deviation: Array
+    coverage: tuple[Coverage, ...]
 
     @property
     def holds(self) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -72,6 +72,11 @@ class Run:
         begin = time.perf_counter()
         yield told
         self._tell(self.log, f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(told)}")
+
+    def print(self, lines: Iterable[str]) -> None:
+        """Log lines beside those of the steps."""
+        for line in lines:
+            self._tell(self.log, line)
 
     def end(self) -> None:
         """Tell that all steps are done."""

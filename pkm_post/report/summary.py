@@ -17,7 +17,7 @@ import numpy as np
 import pkm_post
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import EventKind, Kind, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Finding, Tolerances
+from pkm_post.model.certificate import Certificate, Coverage, Finding, Tolerances, meaning
 
 _FORMAT = 1
 """Version of the report's layout, for programs that read it."""
@@ -75,7 +75,9 @@ def report(
         "certificate": {
             "holds": certificate.holds,
             "instants": certificate.instants,
+            "meaning": list(meaning(certificate.coverage)),
             "findings": [_finding(finding) for finding in certificate.findings],
+            "coverage": [_coverage(row) for row in certificate.coverage],
         },
     }
 
@@ -136,6 +138,10 @@ def _finding(finding: Finding) -> dict[str, Any]:
         "operation": finding.place.operation,
         "line": finding.place.line,
     }
+
+
+def _coverage(row: Coverage) -> dict[str, str]:
+    return {"topic": row.topic.value, "what": row.subject, "extent": row.extent.value, "detail": row.detail}
 
 
 def _tools(trajectory: Trajectory) -> list[Any]:

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Coverage: what a certificate covers, hazard by hazard, and what it does not.
+
+A machine enters; a row for each hazard leaves. A machine that does not state the size of a body has no check of it, so
+the rows differ from machine to machine. docs/certificate.md has the same table for people.
+"""
+
+from __future__ import annotations
+
+from pkm_post.kinematics.bodies import has_strut_bodies
+from pkm_post.model import Machine
+from pkm_post.model.certificate import Coverage, Extent, Topic
+
+_PATH = (
+    ("tool tip and axis", "the program as written, played at every moment against the trajectory"),
+    ("feed", "the speed of the tip at every moment against the programmed feed"),
+    ("events", "their order and their place on the path"),
+)
+_LIMITS = (
+    ("strut length, speed and acceleration", "the program as written, at every moment"),
+    ("joints and singular poses", "the planned path with its rounded corners, between its points as well"),
+)
+_BESIDE_THE_PATH = (
+    ("approach to the first point", "each strut moves by itself from where it stands, on a way that is not planned"),
+    ("tool change", "tools change where the tip stands"),
+    ("spindle speed at the first cut", "the motion does not wait for the spindle"),
+)
+_SETUP = (
+    ("geometry of the machine", "taken from the machine file"),
+    ("work offset and gauge lengths", "taken from the job"),
+    ("controller set-up, codes and override", "the set-up file states what the program relies on"),
+    ("following error, stiffness, heat and cutting forces", "no model of them is computed"),
+)
+
+
+def coverage(machine: Machine) -> tuple[Coverage, ...]:
+    """The hazards in the order of their topics."""
+    return (
+        *_rows(Topic.PATH, Extent.PROVEN, _PATH),
+        *_rows(Topic.LIMITS, Extent.PROVEN, _LIMITS),
+        *_collisions(machine),
+        *_rows(Topic.BESIDE_THE_PATH, Extent.NOT_COVERED, _BESIDE_THE_PATH),
+        *_rows(Topic.SETUP, Extent.NOT_COVERED, _SETUP),
+    )
+
+
+def _rows(topic: Topic, extent: Extent, rows: tuple[tuple[str, str], ...]) -> tuple[Coverage, ...]:
+    return tuple(Coverage(topic, subject, extent, detail) for subject, detail in rows)
+
+
+def _collisions(machine: Machine) -> tuple[Coverage, ...]:
+    """The bodies that the machine file states are checked on the planned path; a part is not known here."""
+    struts, bodies, fixtures = has_strut_bodies(machine), bool(machine.bodies), bool(machine.fixtures)
+    pairs = (
+        ("strut and strut", struts, "tubes or rods of the struts"),
+        ("strut and platform", struts and bodies, "tubes or rods of the struts and bodies of the platform"),
+        ("strut and fixture", struts and fixtures, "tubes or rods of the struts and fixtures"),
+        ("spindle and fixture", bodies and fixtures, "bodies of the platform and fixtures"),
+    )
+    known = tuple(
+        Coverage(Topic.COLLISIONS, subject, Extent.PROVEN, "the planned path, between its points as well")
+        if stated
+        else Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, f"the machine file does not state {needed}")
+        for subject, stated, needed in pairs
+    )
+    return (*known, *_rows(Topic.COLLISIONS, Extent.NOT_COVERED, (("part and stock", "neither is known"),)))
