@@ -6,18 +6,17 @@ import argparse
 import numpy as np
 import pytest
 
-from pkm_post import options
 from pkm_post.compensation import OffsetOptions
-from pkm_post.options import FIXTURE_OF_THE_JOB, SPIN_WORDS, add_options, options_from, tool_lengths_from
+from pkm_post.options import FIXTURE_OF_THE_JOB, SPIN_WORDS, add_options, arguments, options_from, tool_lengths_from
 from pkm_post.pipeline import Options
 from pkm_post.spin import OBJECTIVES, ZERO_TORSION, Policy, Rule
 from pkm_post.surface_speed import SurfaceSpeed
 
 
-def parsed(*arguments):
+def parsed(*words):
     parser = argparse.ArgumentParser()
     add_options(parser)
-    return parser.parse_args(arguments)
+    return parser.parse_args(words)
 
 
 def test_defaults_are_those_of_the_pipeline():
@@ -63,9 +62,9 @@ def test_surface_speed():
 
 
 def test_every_rule_of_the_spin_can_be_chosen():
-    assert set(options._SPINS) == {rule.value for rule in Rule}
-    assert set(options._OBJECTIVES) == set(OBJECTIVES)
-    assert {options_from(parsed("--spin", rule)).spin.rule for rule in options._SPINS} == set(Rule)
+    assert set(arguments._SPINS) == {rule.value for rule in Rule}
+    assert set(arguments._OBJECTIVES) == set(OBJECTIVES)
+    assert {options_from(parsed("--spin", rule)).spin.rule for rule in arguments._SPINS} == set(Rule)
     assert options_from(parsed()).spin == ZERO_TORSION
 
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Options: what a user may choose, the same words on the command line and in the arguments of a CAM job.
+"""Arguments: the table of what a user may choose, and what was chosen as options in mm and rad.
 
 An argparse parser enters and gets the arguments; what it read becomes ``pipeline.Options``. Degrees end here.
-Nothing is imported for the table itself: FreeCAD reads it for a tooltip.
 """
 
 from __future__ import annotations
