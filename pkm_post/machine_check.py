@@ -8,10 +8,11 @@ pose are told for the tool of the rest pose; lengths in mm, angles in degrees.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pkm_post.controllers import controller_settings
 from pkm_post.geometry import norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import (
@@ -66,6 +67,17 @@ def at_home(machine: Machine) -> Home:
         stiffness=stiffness,
         findings=reach_findings(machine, way),
     )
+
+
+def machine_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
+    """What stands against posting for a machine whose file is well formed: errors of its controller, and its home.
+
+    Args:
+        machine: the machine.
+        file: what the messages call its file.
+    """
+    _, faults = controller_settings(machine)
+    return (*(replace(fault, place=Place(file)) for fault in faults), *home_faults(machine, file))
 
 
 def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:

@@ -12,7 +12,7 @@ from typing import Any
 
 from pkm_post import planning, trajectory_file
 from pkm_post.certificate import certify
-from pkm_post.controllers import controller_of, part_siblings
+from pkm_post.controllers import controller_settings, part_siblings
 from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion
 from pkm_post.model.diagnostics import errors
 from pkm_post.report import summary
@@ -52,12 +52,10 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
 
 def _read(program: Path, machine: Machine) -> StrutMotion:
     """The motion of a program; its other parts lie beside its first one."""
-    controller, faults = controller_of(machine)
-    if controller is None:
+    found, faults = controller_settings(machine)
+    if found is None:
         raise Refused(faults)
-    settings, faults = controller.settings_of(machine)
-    if settings is None:
-        raise Refused(faults)
+    controller, settings = found
     first = _text(program)
     others = part_siblings(controller, program.name, first)
     texts = [(program.name, first), *((name, _text(program.with_name(name))) for name in others)]

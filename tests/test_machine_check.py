@@ -4,6 +4,7 @@
 import dataclasses
 
 import numpy as np
+import programs
 import pytest
 
 from pkm_post.cli import main
@@ -11,6 +12,8 @@ from pkm_post.geometry.vectors import unit
 from pkm_post.kinematics import jacobian_of_tip
 from pkm_post.machine_check import at_home, home_faults, summary
 from pkm_post.machine_file import find_machine, presets, read_machine, templates
+from pkm_post.model import Refused
+from pkm_post.pipeline import post
 
 PRINTED = 5.1e-2  # one decimal
 
@@ -102,3 +105,26 @@ def test_a_home_that_is_out_of_reach_is_a_warning(capsys, tmp_path):
     path.write_text(text.replace("home_tip = [0.0, 0.0, 300.0]", "home_tip = [0.0, 0.0, 900.0]"), encoding="utf-8")
     assert main(["machine", "check", str(path)]) == 0
     assert "warning M108" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ('stop = "M0"', 'stop = "M1"', "got 'M1' for stop and optional_stop"),
+        ('coolant_off = "M9"', 'coolant_off = "PVT3"', "controller.codes.coolant_off: "),
+        ('stop = "M0"', 'stop = "A12"', "got A in 'A12'"),
+    ],
+)
+def test_a_file_is_complete_only_where_a_program_can_be_written_for_it(capsys, tmp_path, old, new, found):
+    path = tmp_path / "codes.toml"
+    text = find_machine("example_6tps").read_text(encoding="utf-8")
+    assert text.count(f"\n{old}") == 1
+    path.write_text(text.replace(f"\n{old}", f"\n{new}"), encoding="utf-8")
+    one, _ = read_machine(path)
+    with pytest.raises(Refused) as refused:
+        post(programs.square_with_arc(), one, tmp_path / "x.pmc")
+    assert main(["machine", "check", str(path)]) == 1
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert f"{path}: error M104" in told.err and found in told.err
+    assert [item.found for item in refused.value.diagnostics] == [told.err.split("form: ")[1].rsplit("; correct", 1)[0]]

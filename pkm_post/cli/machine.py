@@ -34,13 +34,16 @@ def _list(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.machine_check import as_text, home_faults, summary
+    from pkm_post.machine_check import as_text, machine_faults, summary
     from pkm_post.machine_file import machine_named
+    from pkm_post.model.diagnostics import errors
 
     machine, diagnostics = machine_named(namespace.file)
-    for diagnostic in diagnostics if machine is None else home_faults(machine, namespace.file):
+    if machine is not None:
+        diagnostics = machine_faults(machine, namespace.file)
+    for diagnostic in diagnostics:
         print(diagnostic, file=sys.stderr)
-    if machine is None:
+    if machine is None or errors(diagnostics):
         return 1
     print(f"{machine.name}: complete")
     print(as_text(summary(machine)))

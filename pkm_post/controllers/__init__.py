@@ -4,7 +4,23 @@
 A folder for each controller, a table of them by ``controller.kind``, and tables of the motion for other readers.
 """
 
-from pkm_post.controllers.kinds import CONTROLLERS, Controller, controller_of, part_names, part_siblings
+from pkm_post.controllers.kinds import (
+    CONTROLLERS,
+    Controller,
+    controller_of,
+    controller_settings,
+    part_names,
+    part_siblings,
+)
 from pkm_post.controllers.tables import TABLES, Table
 
-__all__ = ["CONTROLLERS", "TABLES", "Controller", "Table", "controller_of", "part_names", "part_siblings"]
+__all__ = [
+    "CONTROLLERS",
+    "TABLES",
+    "Controller",
+    "Table",
+    "controller_of",
+    "controller_settings",
+    "part_names",
+    "part_siblings",
+]

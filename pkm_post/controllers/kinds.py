@@ -56,6 +56,18 @@ def controller_of(machine: Machine) -> tuple[Controller | None, Findings]:
     return None, (Diagnostic("M104", Place(machine.name), found),)
 
 
+def controller_settings(machine: Machine) -> tuple[tuple[Controller, Any] | None, Findings]:
+    """The controller of a machine and its settings, or what stands against writing a program for it.
+
+    Posting and checking a machine file ask this one function, so that a file that is complete can be posted for.
+    """
+    controller, faults = controller_of(machine)
+    if controller is None:
+        return None, faults
+    settings, faults = controller.settings_of(machine)
+    return (None if settings is None else (controller, settings)), faults
+
+
 def part_names(name: str, count: int) -> list[str]:
     """The names of the parts of a file; the first, or the only one, has the name itself."""
     path = PurePath(name)

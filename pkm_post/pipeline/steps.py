@@ -13,7 +13,7 @@ from typing import Any
 
 from pkm_post import outputs, planning, trajectory_file
 from pkm_post.certificate import certify
-from pkm_post.controllers import TABLES, controller_of
+from pkm_post.controllers import TABLES, controller_settings
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
 from pkm_post.model import Diagnostic, Machine, Motion, Place, Program, Refused, StrutMotion, Trajectory
@@ -93,8 +93,7 @@ def _all_steps(
     run: Run, program: Program, machine: Machine, path: Path, options: Options
 ) -> tuple[list[str], dict[str, Any]]:
     """The steps in their order; the names of the parts of the program, and the content of the report."""
-    controller = run.value(controller_of(machine))
-    frame = Frame(path, machine, controller, run.value(controller.settings_of(machine)), options)
+    frame = Frame(path, machine, *run.value(controller_settings(machine)), options)
     trajectory = _stored_trajectory(run, frame, program)
     tool_path, schedule = _feed_plan(run, frame, trajectory)
     motion, struts = _interpolation(run, frame, trajectory, tool_path, schedule)

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Limit pairs: limits of a machine file that cannot both be kept.
+
+Enters: the entries in mm, rad and s, by name. Leaves: entries at fault and what was found there. Limits that are merely
+never reached, like a rapid speed beyond what the struts can do, are no contradiction: the lower one holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pkm_post.machine_file.rest_pose import Check, Values
+
+_STRUTS = 6
+
+
+def _fast_approach(values: Values) -> Iterator[tuple[str, str]]:
+    """Where one strut alone has to move, it has all of the speed that the six have together."""
+    approach, most = values["controller.approach_speed"], values["struts.speed"]
+    if approach > most:
+        yield "controller.approach_speed", f"{approach:g} mm/s, struts.speed is {most:g} mm/s"
+
+
+def _short_lines(values: Values) -> Iterator[tuple[str, str]]:
+    """The shortest line of moves has one digit in front of the point of each speed: ``A750.000000:0.0000``."""
+    length, speed = values["controller.length_decimals"], values["controller.speed_decimals"]
+    digits = len(str(int(values["struts.stroke"][0])))
+    least = _STRUTS * (len("A") + digits + len(".") + length + len(":0.") + speed) + (_STRUTS - 1)
+    if least > values["controller.line_limit"]:
+        decimals = f"{length} and {speed} decimals"
+        found = f"{values['controller.line_limit']} characters, a move with {decimals} has at least {least}"
+        yield "controller.line_limit", found
+
+
+CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
+    (("controller.approach_speed", "struts.speed"), _fast_approach),
+    (
+        ("controller.line_limit", "controller.length_decimals", "controller.speed_decimals", "struts.stroke"),
+        _short_lines,
+    ),
+)
+"""Each check with the entries it needs."""
