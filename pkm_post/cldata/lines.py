@@ -19,7 +19,10 @@ JOINT = "\x1f"
 MARK = "\x02"
 """Stands for a number in the shape of a statement."""
 
-_RESERVED = {ord(JOINT): "\x00", ord(MARK): "\x00", ord("\v"): "\x00", ord("\f"): "\x00"}
+_DOLLAR = "\x03"
+"""Stands for a $ within quotes while comments and continuations are taken away."""
+
+_RESERVED = {ord(JOINT): "\x00", ord(MARK): "\x00", ord(_DOLLAR): "\x00", ord("\v"): "\x00", ord("\f"): "\x00"}
 _DATA_COMMENT = re.compile(
     r"^([ \t]*)(?:\$\$[ \t]*->|REMARK[ \t]*->|\$\$)(?=[ \t]*(?:CUTTER|CSYS|CUTCOM_GEOMETRY_TYPE|FEATNO)[ \t]*/)"
     r"|^([ \t]*)\$\$(?=[ \t]*OPERATION[ \t]+NAME[ \t]*:)",
@@ -36,6 +39,7 @@ _CATIA_FRAME = re.compile(
 )
 _CONTINUED = re.compile(r"^([^$\n]*)\$[ \t]*(?:\$\$[^\n]*)?\n", re.MULTILINE)
 _COMMENT = re.compile(rf"\$\$[^\n{JOINT}]*")
+_QUOTED_OR_COMMENT = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"|\$\$[^\n]*")
 _PERCENT = re.compile(r"^[ \t]*%[ \t]*$", re.MULTILINE)
 
 
@@ -71,16 +75,22 @@ def decoded(text: bytes | str) -> str:
 
 def logical_lines(text: str) -> Lines:
     """The statements of a decoded text."""
+    text = _QUOTED_OR_COMMENT.sub(_without_quoted_dollar, text) if "'" in text or '"' in text else text
     text = _CATIA_FRAME.sub(_frame_statement, text)
     text = _DATA_COMMENT.sub(lambda found: " " * len(found[0]), text)
     text = _CIRCLE_COMMENT.sub(_circle_statement, text)
     if "~" in text:
         text = _TEXT_GOES_ON.sub(lambda found: _TILDE.sub(JOINT, found[0]), text)
     text = _CONTINUED.sub(rf"\1{JOINT}", text)
-    text = _PERCENT.sub("", _COMMENT.sub("", text))
+    text = _PERCENT.sub("", _COMMENT.sub("", text)).replace(_DOLLAR, "$")
     lines = text.split("\n")
     heights = np.array([line.count(JOINT) for line in lines], dtype=np.int64) + 1
     return Lines(lines, np.cumsum(heights) - heights + 1)
+
+
+def _without_quoted_dollar(found: re.Match[str]) -> str:
+    """What is quoted with its $ put out of sight: there it is text; a comment as it is."""
+    return found[0] if found[0].startswith("$$") else found[0].replace("$", _DOLLAR)
 
 
 def _circle_statement(found: re.Match[str]) -> str:
