@@ -31,11 +31,12 @@ class Reading:
 
     Attributes:
         axis_words: how G-code says the tool axis, a key of ``AXIS_WORDS``.
-        diameters: of tools by number, mm.
+        tools: by number, the cutters the file was made for: their diameters and corner radii go before those that it
+            gives. Number 0 is the tool before any is called.
     """
 
     axis_words: str = "none"
-    diameters: Mapping[int, float] = field(default_factory=dict)
+    tools: Mapping[int, Tool] = field(default_factory=dict)
 
 
 AS_WRITTEN = Reading()
@@ -76,8 +77,8 @@ def _storable(file: Path) -> str:
 
 def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
     # A diameter that is no number shows where it was used.
-    unknown = Tool(0, "", math.nan, 0.0, 0.0)
-    options = gcode.ReadOptions(tools=_described(reading), default_tool=unknown, axis_words=reading.axis_words)
+    unknown = Tool(0, "", math.nan, 0.0, 0.0, corner_known=False)
+    options = gcode.ReadOptions(tools=reading.tools, default_tool=unknown, axis_words=reading.axis_words)
     program, diagnostics = gcode.read(content, file, options)
     if program is None:
         return None, diagnostics
@@ -93,11 +94,16 @@ def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
 
 
 def _read_cldata(content: bytes, file: str, reading: Reading) -> Result:
-    return cldata.read(content, file, cldata.ReadOptions(tools=_described(reading)))
+    program, diagnostics = cldata.read(content, file)
+    if program is None:
+        return None, diagnostics
+    tools = {number: _with_cutter(tool, reading.tools.get(number)) for number, tool in program.tools.items()}
+    return replace(program, tools=tools), diagnostics
 
 
-def _described(reading: Reading) -> dict[int, Tool]:
-    return {number: Tool(number, "", diameter, 0.0, 0.0) for number, diameter in reading.diameters.items()}
+def _with_cutter(tool: Tool, cutter: Tool | None) -> Tool:
+    """The tool with another cutter, its name and its length as they are."""
+    return tool if cutter is None else replace(cutter, number=tool.number, name=tool.name, length=tool.length)
 
 
 SUFFIXES: dict[str, Callable[[bytes, str, Reading], Result]] = {

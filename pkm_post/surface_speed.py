@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.compensation import Cutter
+from pkm_post.compensation import Cutter, known_cutter
 from pkm_post.geometry import dot, norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
@@ -54,11 +54,10 @@ def with_surface_speed(
     tool, spindle = _in_force(program, EventKind.TOOL_CHANGE), _in_force(program, EventKind.SPINDLE)
     diameter = np.full(len(program), np.nan)
     for number in np.unique(tool[~np.isnan(tool)]).astype(int).tolist():
-        try:
-            cutter = Cutter.of(program.tools[number])
-        except ValueError as fault:
-            return None, (Diagnostic("N109", Place(program.source), str(fault)),)
         rows = tool == number
+        cutter, faults = _cutter(program, number, rows)
+        if cutter is None:
+            return None, faults
         diameter[rows] = _contact_diameter(program, cutter, rows)
     cut = program.kind != Kind.RAPID
     turning = cut & ~np.isnan(diameter) & (np.nan_to_num(spindle) != 0)
@@ -68,6 +67,13 @@ def with_surface_speed(
     by_cut = np.clip(np.rint(60 * wanted.speed / (math.pi * np.where(count > 0, mean, np.inf))), *limits)
     revolutions = np.where(turning, by_cut[number] * np.sign(np.nan_to_num(spindle)), np.nan)
     return _with_speeds(program, revolutions, spindle, wanted), ()
+
+
+def _cutter(program: Program, number: int, rows: Array) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
+    """The cutter of a tool; without normals the corner, which they need, does not matter."""
+    tool = program.tools[number]
+    normals = bool(np.isfinite(program.normal[rows]).all(axis=1).any())
+    return known_cutter(replace(tool, corner_known=tool.corner_known or not normals), Place(program.source))
 
 
 def _contact_diameter(program: Program, cutter: Cutter, rows: Array) -> Array:

@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 
 from pkm_post.compensation import OffsetOptions
-from pkm_post.options import FIXTURE_OF_THE_JOB, SPIN_WORDS, add_options, arguments, options_from, tool_lengths_from
+from pkm_post.options import (
+    FIXTURE_OF_THE_JOB,
+    SPIN_WORDS,
+    add_options,
+    arguments,
+    options_from,
+    tool_lengths_from,
+    tools_from,
+)
 from pkm_post.pipeline import Options
 from pkm_post.spin import OBJECTIVES, ZERO_TORSION, Policy, Rule
 from pkm_post.surface_speed import SurfaceSpeed
@@ -55,6 +63,15 @@ def test_compensation():
     assert not options_from(parsed()).actual_tools
 
 
+def test_cutters_keep_whether_their_corner_was_given():
+    given = tools_from(parsed("--tool", "1=10", "--tool", "2=10,0", "--tool", "3=8,4", "--tool", "3=9.6,4.8"))
+    assert {number: (tool.diameter, tool.corner_radius, tool.corner_known) for number, tool in given.items()} == {
+        1: (10.0, 0.0, False),
+        2: (10.0, 0.0, True),
+        3: (9.6, 4.8, True),
+    }
+
+
 def test_surface_speed():
     assert options_from(parsed()).surface_speed is None
     wanted = options_from(parsed("--surface-speed", "120", "--keep-chip-load")).surface_speed
@@ -89,7 +106,10 @@ def test_the_numbers_of_the_spin():
         (["--axis-tolerance", "1e300"], "expected a number from 1e-06 to 45, got '1e300'"),
         (["--surface-speed", "1e308"], "expected a number above 0 and up to 100000, got '1e308'"),
         (["--actual-tool", "3=1e300"], "expected a number above 0 and up to 10000, got '1e300'"),
-        (["--actual-tool", "3=10,-1"], "expected a number from 0 to 10000, got '-1'"),
+        (["--actual-tool", "3=10,-1"], "expected a number from 0 to 5.0, got '-1'"),
+        (["--tool", "3=10,5.001"], "expected a number from 0 to 5.0, got '5.001'"),
+        (["--tool", "3=10,"], "expected a number from 0 to 5.0, got ''"),
+        (["--tool", "3"], "expected NUMBER=D[,R], got '3'"),
         (["--work-offset", "1e300,0,0"], "expected a number from -1000000 to 1000000, got '1e300'"),
         (["--work-offset", "1,2"], "expected X,Y,Z or X,Y,Z,DEG, got '1,2'"),
         (["--work-offset", "1,2,"], "expected a number from -1000000 to 1000000, got ''"),

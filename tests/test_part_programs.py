@@ -13,7 +13,7 @@ from pkm_post.check import check, size_of
 from pkm_post.cli import main
 from pkm_post.convert import TARGETS, convert
 from pkm_post.gcode import Form, write
-from pkm_post.model import Kind
+from pkm_post.model import Kind, Tool
 from pkm_post.model.diagnostics import errors
 from pkm_post.sources import Reading, read_part_program
 
@@ -61,7 +61,7 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path):
 def test_compensation_needs_a_diameter(tmp_path):
     source = saved(tmp_path / "part.ngc", "T3 M6\nG0 X0 Y0 Z0\nG41\nG1 X10 F100\nY10\nG40\nX20\n")
     assert "G411" in [one.code for one in check(source).diagnostics]
-    result, found = read_part_program(source, Reading(diameters={3: 8.0}))
+    result, found = read_part_program(source, Reading(tools={3: Tool(3, "", 8.0, 0.0, 0.0, corner_known=False)}))
     assert not errors(found)
     assert result.side_offset.max() == 4.0
 

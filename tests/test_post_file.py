@@ -11,7 +11,7 @@ import pytest
 
 from pkm_post import trajectory_file
 from pkm_post.cli import main
-from pkm_post.model import Refused
+from pkm_post.model import Refused, Tool
 from pkm_post.model.certificate import Tolerances
 from pkm_post.pipeline import Options
 from pkm_post.post_file import post_file
@@ -48,6 +48,10 @@ FINI
 """
 
 
+def cutter(diameter):
+    return Tool(1, "", diameter, 0.0, 0.0, corner_known=False)
+
+
 def posted(folder, name, text, **choices):
     file = folder / name
     file.write_text(text)
@@ -57,7 +61,7 @@ def posted(folder, name, text, **choices):
 
 def test_g_code_and_cl_data_of_one_path_give_one_report(tmp_path):
     reports = [
-        posted(tmp_path, "a.ngc", G_CODE, reading=Reading("vector", {1: 10.0})).report,
+        posted(tmp_path, "a.ngc", G_CODE, reading=Reading("vector", {1: cutter(10.0)})).report,
         posted(tmp_path, "a.cls", CL_DATA).report,
     ]
     assert all(report["certificate"]["holds"] for report in reports)
@@ -79,7 +83,7 @@ M30
 
 
 def test_a_compensated_contour_is_cut_beside_what_is_programmed(tmp_path):
-    made = posted(tmp_path, "contour.ngc", CONTOUR, reading=Reading("none", {1: 8.0}))
+    made = posted(tmp_path, "contour.ngc", CONTOUR, reading=Reading("none", {1: cutter(8.0)}))
     assert made.report["certificate"]["holds"]
     (x0, y0, _), (x1, y1, _) = made.report["program"]["box_mm"]
     assert (x1, y1) == (24.0, 24.0)
@@ -88,7 +92,7 @@ def test_a_compensated_contour_is_cut_beside_what_is_programmed(tmp_path):
 
 def test_a_contour_too_narrow_for_the_tool_is_refused(tmp_path):
     with pytest.raises(Refused) as refused:
-        posted(tmp_path, "a.ngc", CONTOUR.replace("G41", "G42"), reading=Reading("none", {1: 60.0}))
+        posted(tmp_path, "a.ngc", CONTOUR.replace("G41", "G42"), reading=Reading("none", {1: cutter(60.0)}))
     assert {fault.code for fault in refused.value.diagnostics} <= {"N202", "N204", "N205"}
 
 

@@ -96,6 +96,15 @@ def test_a_spindle_that_is_off_stays_off():
     assert speeds(with_surface_speed(made, SurfaceSpeed(1000.0), WIDE)[0]) == []
 
 
+def test_an_unknown_corner_matters_only_where_normals_say_where_it_touches():
+    unknown = dataclasses.replace(BALL, corner_radius=0.0, corner_known=False)
+    wanted = SurfaceSpeed(200_000 / 60)
+    assert with_surface_speed(two_cuts(tool=unknown), wanted, WIDE)[0] is not None
+    made, told = with_surface_speed(two_cuts([[0.5, 0.0, np.sqrt(0.75)], [1.0, 0.0, 0.0]], tool=unknown), wanted, WIDE)
+    assert made is None
+    assert [fault.code for fault in told] == ["N117"]
+
+
 def test_a_tool_of_unknown_diameter_is_refused():
     made, told = with_surface_speed(two_cuts(tool=dataclasses.replace(BALL, diameter=0.0)), SurfaceSpeed(1.0), WIDE)
     assert made is None

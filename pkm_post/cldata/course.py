@@ -114,6 +114,7 @@ class Course:
     motions_at_change: int = 0
     diameter: float = 0.0
     corner: float = 0.0
+    corner_known: bool = False
     bottom_angle: float = 0.0
     side_angle: float = 0.0
     length: float = 0.0

@@ -28,7 +28,10 @@ def cutter(course: Course, row: int, statement: Statement) -> None:
         course.tell("L402", row, f"CUTTER/{shown(statement)}, expected d[,r[,e,f,a,b,h]]")
         return
     d, r, e, f, a, b = _filled(numbers, 6)
-    if _new_cutter(course, row, d, r, a, b) and len(numbers) >= 4:
+    if not _new_cutter(course, row, d, r, a, b):
+        return
+    course.corner_known = len(numbers) > 1
+    if len(numbers) >= 4:
         _check_corner(course, row, e * course.scale, f * course.scale)
 
 
@@ -38,8 +41,10 @@ def tldata(course: Course, row: int, statement: Statement) -> None:
     if not numbers:
         course.tell("L402", row, f"TLDATA/{shown(statement)}, expected a diameter")
         return
-    d, r, _, taper, tip = _filled(numbers[:1] if "DRILL" in statement.words else numbers, 5)
-    _new_cutter(course, row, d, r, tip, taper)
+    told = numbers[:1] if "DRILL" in statement.words else numbers
+    d, r, _, taper, tip = _filled(told, 5)
+    if _new_cutter(course, row, d, r, tip, taper):
+        course.corner_known = len(told) > 1
 
 
 def _check_corner(course: Course, row: int, e: float, f: float) -> None:
@@ -126,7 +131,7 @@ def keep(course: Course) -> None:
     given = course.options.tools.get(course.tool)
     length = course.length or (stands_for.length if stands_for else 0.0)
     shape = (course.diameter, course.corner, length, course.bottom_angle, course.side_angle)
-    known = Tool(course.tool, course.tool_name, *shape)
+    known = Tool(course.tool, course.tool_name, *shape, course.corner_known)
     course.tools[course.tool] = given or known
 
 

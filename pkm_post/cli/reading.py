@@ -9,7 +9,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.argument_types import numbered, tool_length
+from pkm_post.options import tools_from
 
 if TYPE_CHECKING:
     from pkm_post.sources import Reading
@@ -19,7 +19,7 @@ NO_AXIS_WORDS = "none"
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:
-    """Add what the user may say of a part program."""
+    """Add what the user may say of a part program; what its tools measure is among ``options``."""
     parser.add_argument(
         "--axis-words",
         type=axis_words,
@@ -28,22 +28,13 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
         help="how the G-code says the tool axis: vector (I J K after G43.5), AC, BC or AB (rotary words after G43.4),"
         " RPY (A B C of LinuxCNC's hexapod), or none, the default",
     )
-    parser.add_argument(
-        "--tool",
-        dest="tools",
-        action="append",
-        type=numbered(tool_length, "NUMBER=MM"),
-        default=[],
-        metavar="NUMBER=MM",
-        help="diameter of a tool, for G41 and G42; may be repeated",
-    )
 
 
 def reading_from(namespace: argparse.Namespace) -> Reading:
     """What the user said of the part programs."""
     from pkm_post.sources import Reading
 
-    return Reading(namespace.axis_words, dict(namespace.tools))
+    return Reading(namespace.axis_words, tools_from(namespace))
 
 
 def part_program(text: str) -> Path:

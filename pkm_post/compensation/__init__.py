@@ -5,6 +5,7 @@ from pkm_post.compensation.apply import compensate
 from pkm_post.compensation.contact import tip_from_contact, tip_shift
 from pkm_post.compensation.cutter import Cutter
 from pkm_post.compensation.envelope import StockLeft, stock_left
+from pkm_post.compensation.known_cutter import known_cutter
 from pkm_post.compensation.options import OffsetOptions
 from pkm_post.compensation.side import offset_contours
 from pkm_post.compensation.tips import compensate_tips
@@ -15,6 +16,7 @@ __all__ = [
     "StockLeft",
     "compensate",
     "compensate_tips",
+    "known_cutter",
     "offset_contours",
     "stock_left",
     "tip_from_contact",

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from pkm_post.compensation.cutter import Cutter
+from pkm_post.compensation.known_cutter import known_cutter
 from pkm_post.compensation.options import OffsetOptions
 from pkm_post.compensation.side import offset_contours
 from pkm_post.compensation.tips import compensate_tips
@@ -42,14 +42,14 @@ def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | 
     place = Place(program.source)
     if number not in program.tools:
         known = ", ".join(f"T{known}" for known in sorted(program.tools))
-        return None, (Diagnostic("N109", place, f"T{number}, the program has {known}"),)
+        return None, (Diagnostic("N118", place, f"T{number}, the program has {known}"),)
     tool = program.tools[number]
-    try:
-        nominal, ground = Cutter.of(tool), Cutter.of(actual)
-    except ValueError as fault:
-        return None, (Diagnostic("N109", place, str(fault)),)
+    nominal, faults = known_cutter(tool, place)
+    ground, more = known_cutter(actual, place)
+    if nominal is None or ground is None:
+        return None, (*faults, *more)
     moved, told = compensate_tips(program, nominal, ground, number if len(program.tools) > 1 else None)
     if moved is None:
         return None, told
-    ground_tool = replace(tool, diameter=actual.diameter, corner_radius=actual.corner_radius)
+    ground_tool = replace(actual, number=number, name=tool.name, length=tool.length)
     return replace(moved, tools=program.tools | {number: ground_tool}), told

@@ -57,7 +57,13 @@ def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.N
     Raises:
         Refused: they are not understood, J117.
     """
-    return parsed(text, Place(document_name(job.Document), job.Label), post_processor)
+    place = Place(document_name(job.Document), job.Label)
+    chosen = parsed(text, place, post_processor)
+    if chosen.tools:
+        raise Refused(
+            [Diagnostic("J117", place, "--tool is for part programs, a tool bit says what its cutter measures")]
+        )
+    return chosen
 
 
 def parsed(text: str, place: Place, post_processor: str = PMAC) -> argparse.Namespace:

@@ -35,8 +35,8 @@ def _given(blocks: Blocks, letter: str, before: float) -> Array:
 
 
 def tool_in_use(number: int, options: ReadOptions) -> Tool | None:
-    """The tool of a number; before the first change, the default one."""
-    return options.default_tool if number == NONE else options.tool(number)
+    """The tool of a number; before the first change, that of number 0."""
+    return options.tool(0 if number == NONE else number)
 
 
 def spindle_speeds(blocks: Blocks, modal: Modal) -> Array:

@@ -203,6 +203,5 @@ def _tools(numbers: Array, options: ReadOptions) -> dict[int, Tool]:
     """The tools in use, by number."""
     called = [number for number in np.unique(numbers).tolist() if number != NONE]
     found = {number: replace(tool, number=number) for number in called if (tool := options.tool(number))}
-    if not found and options.default_tool is not None:
-        return {options.default_tool.number: options.default_tool}
-    return found
+    standing = options.tool(0)
+    return {standing.number: standing} if standing and not found else found

@@ -123,7 +123,7 @@ RULES: dict[str, Rule] = {
     "G408": _error("a cutting move has no feed", "write F above zero before the move, or in it with G93"),
     "G409": _error("the arc does not fit its end points", "correct end point, centre or radius"),
     "G410": _error("the arc has no centre", "write I J K of its plane, or R"),
-    "G411": _error("the tool is unknown", "add it to the tool table, or give a default tool"),
+    "G411": _error("the tool is unknown", "say what its cutter measures: --tool NUMBER=D[,R]"),
     "G412": _error("where this coordinate system lies is unknown", "give its offset, or set it with G10 L2"),
     "G413": _error("the reference point is unknown", "give it as an option, or set it with G28.1 or G30.1"),
     "G414": _error("rotary words have no meaning here", "say which axes they turn, and write G43.4 before them"),
@@ -263,7 +263,10 @@ RULES: dict[str, Rule] = {
     ),
     "N107": _error("an arc would not stay an arc in 3D compensation", "let the CAM system write straight moves"),
     "N108": _error("there are no surface normals to compensate with", "let the CAM system write normals"),
-    "N109": _error("the cutter the path was made for is not known", "give the tool with its diameter and corner"),
+    "N109": _error(
+        "the cutter the path was made for is not known",
+        "pass --tool NUMBER=D,R with its diameter and corner radius; in a CAM job complete the tool bit",
+    ),
     "N111": _error(
         "a cutting move ends on no face of the model",
         "correct the operation; give the faces it cuts, a LeadLength for leads, or a wider Tolerance",
@@ -282,6 +285,12 @@ RULES: dict[str, Rule] = {
     ),
     "N115": _error("there is no face to touch", "choose the faces anew, or leave Faces empty for all of the model"),
     "N116": _error("compensation does not know the shape of the tool", "take a flat, ball or bull nose end mill"),
+    "N117": _error(
+        "the corner radius of a cutter is not known",
+        "pass it behind the diameter, 0 for a flat end mill, D/2 for a ball nose: --tool NUMBER=D,R for the cutter the"
+        " path was made for, --actual-tool NUMBER=D,R for the one in the spindle",
+    ),
+    "N118": _error("the program has no such tool", "pass --actual-tool with the number of a tool of the program"),
     # N2: cutter compensation in a plane
     "N201": _error("cutter compensation begins or ends on an arc", "begin and end it on a straight move"),
     "N202": _error("the tool is too large for the block", "use a smaller tool, or let such blocks be removed"),

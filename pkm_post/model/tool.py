@@ -26,6 +26,8 @@ class Tool:
         bottom_angle: rise of the bottom from the tip outwards, in rad: 0 for a flat bottom, 31 degrees for a drill
             with a point of 118.
         side_angle: angle of the side to the tool axis in rad, positive where the tool widens upwards.
+        corner_known: whether the source gives the corner radius; where it does not, 0 stands for it: the flat end mill
+            holds every other cutter of its diameter.
     """
 
     number: int
@@ -35,6 +37,7 @@ class Tool:
     length: float
     bottom_angle: float = 0.0
     side_angle: float = 0.0
+    corner_known: bool = True
 
 
 def corner_reach(bottom_angle: float, side_angle: float) -> float:

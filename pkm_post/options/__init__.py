@@ -12,9 +12,11 @@ from pkm_post.options.arguments import (
     SPIN_WORDS,
     add_machine,
     add_options,
+    add_tools,
     options_from,
     tolerances_from,
     tool_lengths_from,
+    tools_from,
 )
 
 __all__ = [
@@ -25,7 +27,9 @@ __all__ = [
     "SPIN_WORDS",
     "add_machine",
     "add_options",
+    "add_tools",
     "options_from",
     "tolerances_from",
     "tool_lengths_from",
+    "tools_from",
 ]

@@ -11,9 +11,10 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.argument_types import LONGEST_TOOL, above_zero, between, number, numbered, offset, tool_length
+from pkm_post.argument_types import above_zero, between, number, numbered, offset, tool_length
 
 if TYPE_CHECKING:
+    from pkm_post.model import Tool
     from pkm_post.model.certificate import Tolerances
     from pkm_post.pipeline import Options
     from pkm_post.spin import Policy
@@ -38,10 +39,11 @@ def _work_offset(text: str) -> str | Pose:
     return x, y, z, number(words[3]) if words[3:] else 0.0
 
 
-def _sizes(text: str) -> tuple[float, float]:
-    """Diameter and corner radius."""
-    diameter, _, corner = text.partition(",")
-    return tool_length(diameter), between(0, LONGEST_TOOL)(corner) if corner else 0.0
+def _sizes(text: str) -> tuple[float, float | None]:
+    """Diameter and corner radius, None where that is not given."""
+    word, comma, corner = text.partition(",")
+    diameter = tool_length(word)
+    return diameter, between(0, diameter / 2)(corner) if comma else None
 
 
 _SPINS = {
@@ -135,13 +137,22 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "default": "refuse",
         "help": "what becomes of blocks that the tool is too large for (default: %(default)s)",
     },
+    "--tool": {
+        "dest": "tools",
+        "metavar": "NUMBER=D[,R]",
+        "type": numbered(_sizes, "NUMBER=D[,R]"),
+        "action": "append",
+        "default": [],
+        "help": "diameter and corner radius in mm of the cutter a part program was made for, instead of those that it"
+        " states: G41 and G42 need the diameter, --actual-tool both; may be repeated",
+    },
     "--actual-tool": {
         "metavar": "NUMBER=D[,R]",
         "type": numbered(_sizes, "NUMBER=D[,R]"),
         "action": "append",
         "default": [],
-        "help": "diameter and corner radius in mm of a cutter that is not the one a program with surface normals was"
-        " made for; may be repeated",
+        "help": "diameter and corner radius in mm of the cutter in the spindle, where it is not the one that a program"
+        " with surface normals was made for; may be repeated",
     },
     "--surface-speed": {
         "metavar": "M/MIN",
@@ -179,6 +190,11 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
     _add(parser, ("--machine",))
 
 
+def add_tools(parser: argparse.ArgumentParser) -> None:
+    """Add the argument that says what cutters a part program was made for."""
+    _add(parser, ("--tool",))
+
+
 def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
     for flag in flags:
         parser.add_argument(flag, **_ARGUMENTS[flag])
@@ -194,7 +210,6 @@ def tolerances_from(namespace: argparse.Namespace) -> Tolerances:
 def options_from(namespace: argparse.Namespace) -> Options:
     """The options of a parsed command line, in mm and rad."""
     from pkm_post.compensation import OffsetOptions
-    from pkm_post.model import Tool
     from pkm_post.pipeline import Options
 
     offset, tolerances = namespace.work_offset, tolerances_from(namespace)
@@ -206,10 +221,23 @@ def options_from(namespace: argparse.Namespace) -> Options:
         contours=OffsetOptions(namespace.corners, namespace.leads, namespace.swallowed),
         surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
         also=namespace.also,
-        actual_tools={
-            tool: Tool(tool, "", diameter, corner, 0.0) for tool, (diameter, corner) in namespace.actual_tool
-        },
+        actual_tools=_cutters(namespace.actual_tool),
     )
+
+
+def tools_from(namespace: argparse.Namespace) -> dict[int, Tool]:
+    """By number, the cutters a part program was made for; of two for one tool the last one."""
+    return _cutters(namespace.tools)
+
+
+def _cutters(sizes: Iterable[tuple[int, tuple[float, float | None]]]) -> dict[int, Tool]:
+    """Tools of which no more than diameter and corner radius matter, mm."""
+    from pkm_post.model import Tool
+
+    return {
+        tool: Tool(tool, "", diameter, corner or 0.0, 0.0, corner_known=corner is not None)
+        for tool, (diameter, corner) in sizes
+    }
 
 
 def tool_lengths_from(namespace: argparse.Namespace) -> dict[int, float]:

@@ -40,6 +40,22 @@ def test_sizes_of_the_tool(statement, expected):
     assert codes == (["L418"] if statement == "CUTTER/10,2,3.3218,2" else [])
 
 
+@pytest.mark.parametrize(
+    ("statement", "known"),
+    [
+        ("CUTTER/10", False),
+        ("CUTTER/10,0", True),
+        ("CUTTER/10,5", True),
+        ("$$-> CUTTER / 10.0", False),
+        ("TLDATA/MILL,10,5,50,0,0", True),
+        ("TLDATA/DRILL,MILL,6.0000,118.0000", False),
+        ("PPRINT/none", False),
+    ],
+)
+def test_a_diameter_alone_leaves_the_corner_open(statement, known):
+    assert tool_and_codes(statement)[0].corner_known is known
+
+
 def test_angles_stay_degrees_in_inches():
     tool, _ = tool_and_codes("CUTTER/1,0.1,0.4,0.13032,15,0,4", "INCHES")
     assert shape(tool) == pytest.approx((25.4, 2.54, 15, 0), abs=1e-9)

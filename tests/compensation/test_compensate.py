@@ -42,18 +42,20 @@ def test_a_smaller_cutter_goes_nearer_and_is_told_as_the_tool():
 
 
 @pytest.mark.parametrize(
-    ("made", "actual"),
+    ("nominal", "actual", "code"),
     [
-        (with_normals(), {7: BALL}),
-        (with_normals(), {1: Tool(1, "", 10.0, 6.0, 0.0)}),
-        (dataclasses.replace(with_normals(), tools={1: dataclasses.replace(BALL, diameter=0.0)}), {1: BALL}),
+        (BALL, {7: BALL}, "N118"),
+        (BALL, {1: Tool(1, "", 10.0, 6.0, 0.0)}, "N109"),
+        (dataclasses.replace(BALL, diameter=0.0), {1: BALL}, "N109"),
+        (dataclasses.replace(BALL, corner_known=False), {1: BALL}, "N117"),
+        (BALL, {1: dataclasses.replace(BALL, corner_known=False)}, "N117"),
     ],
-    ids=["another number", "a corner that does not fit", "unknown diameter"],
+    ids=["another number", "a corner that does not fit", "unknown diameter", "unknown corner", "unknown corner now"],
 )
-def test_a_cutter_that_is_not_known_is_refused(made, actual):
-    moved, told = compensate(made, CONTOURS, actual)
+def test_a_cutter_that_is_not_known_is_refused(nominal, actual, code):
+    moved, told = compensate(dataclasses.replace(with_normals(), tools={1: nominal}), CONTOURS, actual)
     assert moved is None
-    assert [fault.code for fault in told] == ["N109"]
+    assert [fault.code for fault in told] == [code]
 
 
 def test_a_program_without_normals_cannot_be_compensated_for_a_cutter():

@@ -5,9 +5,9 @@ import pytest
 from cam_jobs import add_operation
 from Path.Post.Processor import PostProcessorFactory
 
-from pkm_post.freecad_app.arguments import own_text, parsed, remember, rewritten
+from pkm_post.freecad_app.arguments import job_arguments, own_text, parsed, remember, rewritten
 from pkm_post.freecad_app.post_job import post_job
-from pkm_post.model import Place
+from pkm_post.model import Place, Refused
 from pkm_post.options import options_from, tool_lengths_from
 
 TEXT = "--machine 'my machine.toml' --work-offset=-10,0,150 --tool-length 1=120 --keep-chip-load --tool-length 2=80"
@@ -48,6 +48,14 @@ def test_what_only_another_post_processor_understands_is_left_out(job):
 def test_a_quote_that_does_not_close_is_left_to_who_reads_it(job):
     job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--machine 'my machine.toml"
     assert own_text(job) == job.PostProcessorArgs
+
+
+def test_cutters_of_part_programs_are_none_of_a_job(job):
+    add_operation(job)
+    assert parsed("--tool 1=10,5", Place("part.ngc")).tools == [(1, (10.0, 5.0))]
+    with pytest.raises(Refused) as refused:
+        job_arguments(job, "--tool 1=10,5")
+    assert [fault.code for fault in refused.value.diagnostics] == ["J117"]
 
 
 def test_cam_posts_what_the_job_remembers(job, tmp_path):

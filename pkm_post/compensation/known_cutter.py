@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Known cutter: the shape of a tool where a contact point hangs on it, or what is not known of it.
+
+A tool enters; its cutter leaves, or the diagnostic that says what is missing. A wrong corner radius moves the tip by
+as much as it is wrong, so none is assumed.
+"""
+
+from __future__ import annotations
+
+from pkm_post.compensation.cutter import Cutter
+from pkm_post.model import Diagnostic, Place, Tool
+
+
+def known_cutter(tool: Tool, place: Place) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
+    """The cutter of a tool whose diameter and corner radius are given.
+
+    Args:
+        tool: the tool.
+        place: what diagnostics name.
+
+    Returns:
+        The cutter, or None; and what is not known: N109, N117.
+    """
+    try:
+        cutter = Cutter.of(tool)
+    except ValueError as impossible:
+        return None, (Diagnostic("N109", place, str(impossible)),)
+    if not tool.corner_known:
+        return None, (
+            Diagnostic("N117", place, f"T{tool.number}, of which the diameter alone is given: {tool.diameter:g} mm"),
+        )
+    return cutter, ()
