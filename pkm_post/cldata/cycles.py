@@ -23,6 +23,8 @@ PECKS: dict[str, str] = {
     "DEEP": "out", "DEEP2": "out", "BRKCHP": "break",
 }  # fmt: skip
 """For each cycle whether it pecks, and then comes out of the hole or only breaks the chip."""
+TAPPING = frozenset({"TAP"})
+"""Cycles in step with the spindle."""
 FEED_OUT = frozenset({"REAM", "BORE"})
 """Cycles that leave the hole at the feed."""
 

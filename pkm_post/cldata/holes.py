@@ -19,6 +19,7 @@ from pkm_post.cldata.cycles import (
     PECKS,
     RETURN,
     STEP,
+    TAPPING,
     Cycle,
 )
 from pkm_post.cldata.feeds import FEED_WORDS, feed_of, shown
@@ -34,6 +35,8 @@ def cycle(course: Course, row: int, statement: Statement) -> None:
         course.cycles.append((row, course.cycle))
     elif kind in ("INIT", "CLEAR") and len(statement.items) == 1:
         course.cycle_return = kind == "INIT"
+    elif kind in TAPPING:
+        course.tell("L440", row, f"CYCLE/{kind}")
     elif kind not in PECKS:
         course.tell("L401", row, f"CYCLE/{shown(statement)}")
     else:

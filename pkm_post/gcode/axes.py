@@ -14,7 +14,7 @@ import numpy as np
 from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.codes import Group
 from pkm_post.gcode.findings import Findings
-from pkm_post.gcode.modal import Modal, carried, is_arc
+from pkm_post.gcode.modal import Modal, carried, is_arc, is_cycle
 from pkm_post.gcode.motions import span
 from pkm_post.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
 from pkm_post.gcode.positions import follow
@@ -46,8 +46,8 @@ def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
 
 def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> tuple[Array, Array]:
     """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
-    on_arc = is_arc(modal.in_force[Group.MOTION])
-    words = [_component(blocks, letter, modal.moves & on_arc, faults) for letter in "IJK"]
+    on_arc, in_cycle = is_arc(modal.in_force[Group.MOTION]), is_cycle(modal.in_force[Group.MOTION])
+    words = [_component(blocks, letter, modal.moves & on_arc, in_cycle, faults) for letter in "IJK"]
     count = np.where(modal.moves & ~on_arc, np.sum([~np.isnan(word) for word in words], axis=0, dtype=np.uint8), 0)
     inactive = (count > 0) & (modal.in_force[Group.LENGTH] != _BY_VECTOR)
     faults.tell_all("G415", inactive, lambda _: "I J K without G43.5")
@@ -65,9 +65,9 @@ def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
     return axes, count > 0
 
 
-def _component(blocks: Blocks, letter: str, on_arc: Array, faults: Findings) -> Array:
-    """What is said of a component of the tool axis, in the words of any dialect, (N,)."""
-    value = blocks.word(letter)
+def _component(blocks: Blocks, letter: str, on_arc: Array, in_cycle: Array, faults: Findings) -> Array:
+    """What is said of a component of the tool axis, in the words of any dialect, (N,); K of a cycle repeats it."""
+    value = np.where(in_cycle, np.nan, blocks.word(letter)) if in_cycle.any() else blocks.word(letter)
     for name in VECTOR_WORDS[letter]:
         if name != letter and name in blocks.words:
             said = blocks.has(name)

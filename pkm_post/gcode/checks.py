@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.gcode.blocks import Blocks
-from pkm_post.gcode.codes import ANY_BLOCK, CYCLES, G_CODES, M_CODES, NONE, REFUSED, Code, Group, name_of
+from pkm_post.gcode.codes import ANY_BLOCK, G_CODES, IN_STEP_WITH_SPINDLE, M_CODES, NONE, REFUSED, Code, Group, name_of
 from pkm_post.gcode.findings import Findings
-from pkm_post.gcode.modal import Modal
+from pkm_post.gcode.modal import Modal, is_cycle
 from pkm_post.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
 from pkm_post.model.columns import by_row
 from pkm_post.model.program import Array
@@ -61,7 +61,9 @@ def _unknown_codes(blocks: Blocks, faults: Findings) -> None:
                 continue
             name = name_of(code, letter)
             wrong = _marked(blocks, rows[codes == code])
-            if name in REFUSED:
+            if name in IN_STEP_WITH_SPINDLE:
+                faults.tell_all("G425", wrong, lambda _, name=name: name)  # type: ignore[misc]
+            elif name in REFUSED:
                 faults.tell_all("G402", wrong, lambda _, name=name: f"{name}: {REFUSED[name]}")  # type: ignore[misc]
             else:
                 faults.tell_all("G401", wrong, lambda _, name=name: name)  # type: ignore[misc]
@@ -187,6 +189,5 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: Findings) -> None:
     directly = modal.explicit[Group.ONCE] == 530
     wrong = directly & (motion != 0) & (motion != 10)
     faults.tell_all("G407", wrong, lambda row: f"G53 while {name_of(motion[row])} is in force")
-    cycle = by_row(lambda codes: np.isin(codes, CYCLES), motion)
-    inverse = modal.moves & cycle & (modal.in_force[Group.FEED_MODE] == 930)
+    inverse = modal.moves & is_cycle(motion) & (modal.in_force[Group.FEED_MODE] == 930)
     faults.tell_all("G407", inverse, lambda row: f"{name_of(motion[row])} with inverse time feed (G93)")

@@ -56,7 +56,7 @@ class Code:
     takes_axes: bool = False
 
 
-_DRILL = "XYZRL"
+_DRILL = "XYZRLK"
 _SYSTEMS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 
 G_CODES: dict[int, Code] = {
@@ -69,7 +69,6 @@ G_CODES: dict[int, Code] = {
     810: Code(Group.MOTION, _DRILL),
     820: Code(Group.MOTION, _DRILL + "P"),
     830: Code(Group.MOTION, _DRILL + "Q"),
-    840: Code(Group.MOTION, _DRILL + "P"),
     850: Code(Group.MOTION, _DRILL),
     860: Code(Group.MOTION, _DRILL + "P"),
     890: Code(Group.MOTION, _DRILL + "P"),
@@ -124,8 +123,6 @@ REFUSED: dict[str, str] = {
     "G7": "diameters of a lathe",
     "G15": "polar coordinates",
     "G16": "polar coordinates",
-    "G33": "motion in step with the spindle",
-    "G33.1": "tapping in step with the spindle",
     "G38.2": "probing",
     "G38.3": "probing",
     "G38.4": "probing",
@@ -134,8 +131,7 @@ REFUSED: dict[str, str] = {
     "G50": "scaling",
     "G51": "scaling",
     "G68.2": "tilted planes",
-    "G74": "tapping with a left-hand tap",
-    "G76": "threading cycles",
+    "G76": "threading cycles, and fine boring, which needs an oriented spindle",
     "G87": "back boring, which needs an oriented spindle",
     "G88": "boring with retraction by hand",
     "G96": "constant cutting speed",
@@ -150,7 +146,10 @@ REFUSED: dict[str, str] = {
 }
 """What well-known codes are for that no program for this machine can have."""
 
-CYCLES = (730, 810, 820, 830, 840, 850, 860, 890)
+IN_STEP_WITH_SPINDLE = ("G33", "G33.1", "G74", "G84")
+"""Threads: cut, tapped in step, and tapped left-handed and right-handed."""
+
+CYCLES = (730, 810, 820, 830, 850, 860, 890)
 ARCS = (20, 30)
 ANY_BLOCK = "FNSTO"
 

@@ -2,7 +2,7 @@
 """Cycles: a drilling cycle becomes the moves and dwells it stands for.
 
 Where the tool is and the words of one block enter, in mm and in coordinates of the program; rapid and straight moves
-leave, with what happens between them. G73, G81 to G86 and G89, in any plane, as RS274NGC has them.
+leave, with what happens between them. G73, G81, G82, G83, G85, G86 and G89, in any plane, as RS274NGC has them.
 """
 
 from __future__ import annotations
@@ -22,9 +22,22 @@ PECK_CLEARANCE = 0.254
 MOST_STROKES = 10_000
 """A block with more pecks or holes than this is a slip."""
 
-_DWELLS = (820, 840, 860, 890)
+_DWELLS = (820, 860, 890)
 _PECKS = (730, 830)
-_NEEDS_SPINDLE = (840, 860)
+_STOPS_SPINDLE = 860
+
+
+Words = tuple[float, float, float, float]
+"""R, depth, Q and P of a block, NaN where it has none."""
+
+
+@dataclass(frozen=True)
+class Hole:
+    """Heights of a cycle: where it feeds from, its bottom, and where it ends, never below the first."""
+
+    top: float
+    bottom: float
+    clear: float
 
 
 @dataclass(frozen=True)
@@ -51,6 +64,48 @@ class Cycle:
         return Cycle(self.code, *(before if math.isnan(word) else word for word, before in zip(new, old, strict=True)))
 
 
+@dataclass(frozen=True)
+class Series:
+    """Cycles without another motion between them.
+
+    The tool may stand at R when the next of them begins (G99). What G98 returns to, and what R is a distance from with
+    G91, is the initial level all the same [LinuxCNC; PUMOTIX].
+
+    Attributes:
+        cycle: the last of them, with the words in force.
+        initial: the initial level, the height at which the first of them found the tool.
+    """
+
+    cycle: Cycle
+    initial: float
+
+    @classmethod
+    def after(cls, before: Series | None, code: int, height: float, words: Words) -> Series:
+        """The series with one more cycle.
+
+        Args:
+            before: the series so far; None if another motion was the last one.
+            code: of the cycle.
+            height: where the tool is.
+            words: R, depth, Q and P of its block, NaN where it has none.
+        """
+        if before is None:
+            return cls(Cycle(code).with_words(*words), height)
+        same = before.cycle if before.cycle.code == code else Cycle(code)
+        return cls(same.with_words(*words), before.initial)
+
+    def hole(self, relative: bool, returns: bool) -> Hole:
+        """The heights of the last cycle.
+
+        Args:
+            relative: whether R is a distance from the initial level, and the depth one from R (G91).
+            returns: whether the tool returns to the initial level (G98) rather than to R.
+        """
+        top = self.cycle.retract + (self.initial if relative else 0.0)
+        bottom = self.cycle.bottom + (top if relative else 0.0)
+        return Hole(top, bottom, max(self.initial, top) if returns else top)
+
+
 @dataclass
 class Strokes:
     """The moves of a cycle in the making: by row its kind and end, and (row, kind, value) of what happens before it."""
@@ -74,20 +129,11 @@ class Strokes:
         self.events.append((len(self.ends), kind, value))
 
 
-@dataclass(frozen=True)
-class Hole:
-    """Heights of a cycle: where it feeds from, its bottom, where it ends, and the height the tool comes at."""
-
-    top: float
-    bottom: float
-    clear: float
-
-
 def fault_of(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[str, str] | None:
     """What keeps a cycle from being carried out: code and what was found."""
     name = name_of(cycle.code)
     for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, _DWELLS)):
-        if cycle.code in codes and math.isnan(value) and cycle.code != 840:
+        if cycle.code in codes and math.isnan(value):
             return "G405", f"{name} without {letter}"
     if math.isnan(hole.top):
         return "G405", f"{name} without R"
@@ -97,11 +143,11 @@ def fault_of(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[
         return "G418", f"{name}: R {hole.top:g} is below the bottom {hole.bottom:g}"
     if cycle.code in _PECKS and not cycle.peck > 0:
         return "G418", f"{name} Q{cycle.peck:g}"
-    if not 1 <= repeats <= MOST_STROKES:
-        return "G418", f"{name} L{repeats:g}"
+    if not 1 <= repeats <= MOST_STROKES or repeats != round(repeats):
+        return "G418", f"{name} repeated {repeats:g} times"
     if cycle.code in _PECKS and repeats * (hole.top - hole.bottom) / cycle.peck > MOST_STROKES:
         return "G418", f"{name}: more than {MOST_STROKES} pecks"
-    if cycle.code in _NEEDS_SPINDLE and not spindle:
+    if cycle.code == _STOPS_SPINDLE and not spindle:
         return "G418", f"{name} while the spindle stands still"
     if not cycle.dwell >= 0 and not math.isnan(cycle.dwell):
         return "G418", f"{name} P{cycle.dwell:g}"
@@ -111,7 +157,7 @@ def fault_of(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[
 def strokes(
     cycle: Cycle, hole: Hole, centres: Array, axes: tuple[int, int, int], here: Array, spindle: float
 ) -> Strokes:
-    """The moves of a cycle.
+    """The moves of a cycle: up where the tool is too low, across, down to R, and the hole itself.
 
     Args:
         cycle: what to do.
@@ -123,8 +169,8 @@ def strokes(
     """
     made = Strokes(here)
     normal = axes[2]
-    if here[normal] < hole.top:
-        made.go(Kind.RAPID, normal, hole.top)
+    if here[normal] <= hole.top:
+        made.go(Kind.RAPID, normal, hole.clear)
     for centre in centres:
         made.go(Kind.RAPID, axes[:2], centre)
         made.go(Kind.RAPID, normal, hole.top)
@@ -150,17 +196,12 @@ def _down(cycle: Cycle, hole: Hole, normal: int, made: Strokes) -> None:
 
 
 def _up(cycle: Cycle, hole: Hole, normal: int, made: Strokes, spindle: float) -> None:
-    if cycle.code == 840:
-        made.happen(EventKind.SPINDLE, 0.0)
-        made.happen(EventKind.SPINDLE, -spindle)
     if cycle.code in _DWELLS and cycle.dwell > 0:
         made.happen(EventKind.DWELL, cycle.dwell)
-    if cycle.code == 860:
+    if cycle.code == _STOPS_SPINDLE:
         made.happen(EventKind.SPINDLE, 0.0)
-    if cycle.code in (840, 850, 890):
+    if cycle.code in (850, 890):
         made.go(Kind.LINE, normal, hole.top if cycle.code == 850 else hole.clear)
     made.go(Kind.RAPID, normal, hole.clear)
-    if cycle.code == 840:
-        made.happen(EventKind.SPINDLE, 0.0)
-    if cycle.code in _NEEDS_SPINDLE:
+    if cycle.code == _STOPS_SPINDLE:
         made.happen(EventKind.SPINDLE, spindle)

@@ -1,43 +1,51 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilling: the blocks of a program that are cycles, and the words that stay in force from one to the next.
+"""Drilling: the blocks of a program that are cycles, and what stays in force from one to the next.
 
 A block and the place of the tool enter, in mm and coordinates of the program; the strokes of the cycle leave. R, Q, P
-and the depth stay in force as long as the cycle does. With G91, R is a distance from where the tool is, the depth one
-from R, and L repeats the distance from hole to hole [LinuxCNC, canned cycles].
+and the depth stay in force as long as the cycle does, the initial level as long as no other motion comes between. L, or
+K as Fanuc has it, repeats the hole, with G91 at the same distance each time [LinuxCNC; Fanuc, canned cycles].
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from pkm_post.gcode.blocks import Blocks
-from pkm_post.gcode.codes import NONE, Group, name_of
-from pkm_post.gcode.cycles import Cycle, Hole, Strokes, fault_of, strokes
+from pkm_post.gcode.codes import Group, name_of
+from pkm_post.gcode.cycles import Series, Strokes, fault_of, strokes
 from pkm_post.gcode.findings import Findings
-from pkm_post.gcode.frames import PLANES
-from pkm_post.gcode.modal import Modal
+from pkm_post.gcode.frames import PLANES, Frame
+from pkm_post.gcode.modal import Modal, is_cycle
 from pkm_post.gcode.positions import Coordinates
 from pkm_post.model.program import Array
 
+_REPEATS = "LK"
+_SAME_HEIGHT = 1e-9
+"""mm: what going to {C} and back may change of a coordinate."""
+
 
 class Drilling:
-    """The cycle in force."""
+    """The series of cycles in force."""
 
     def __init__(self, blocks: Blocks, modal: Modal, words: Coordinates, spindle: Array, faults: Findings) -> None:
         self._blocks, self._modal, self._words = blocks, modal, words
         self._spindle, self._faults = spindle, faults
-        self._cycle = Cycle(NONE)
+        self._series: Series | None = None
+        self._row, self._level = 0, np.zeros(3)
+        self._plane = self._written_under = ""
 
-    def strokes(self, row: int, position: Array, known: Array) -> Strokes | None:
+    def strokes(self, row: int, position: Array, known: Array, frame: Frame) -> Strokes | None:
         """The strokes of one block, None where it has a fault.
 
         Args:
             row: the block.
             position: (3,) where the tool is.
             known: (3,) which of its coordinates are known.
+            frame: what these are coordinates of.
         """
         code = int(self._modal.in_force[Group.MOTION][row])
-        cycle = self._in_force(row, code)
         axes = PLANES[int(self._modal.in_force[Group.PLANE][row])]
         relative = bool(self._modal.in_force[Group.DISTANCE][row] == 910)
         said = ~np.isnan(self._words.at(row)) & (not relative)
@@ -45,34 +53,61 @@ class Drilling:
         if not (known | said).all():
             self._faults.tell("G416", row, name_of(code))
             return None
-        hole = self._hole(row, cycle, float(position[axes[2]]), relative)
-        repeats = float(np.nan_to_num(self._blocks.word("L")[row], nan=1.0))
-        spindle = float(self._spindle[row])
-        fault = fault_of(cycle, hole, repeats, spindle)
+        returns = bool(self._modal.in_force[Group.RETRACT][row] == 980)
+        series = self._follow(row, code, position, frame)
+        hole = series.hole(relative, returns)
+        repeats, spindle = self._repeats(row), float(self._spindle[row])
+        lost = self._lost_meaning(row, series, relative or returns, frame)
+        fault = ("G426", lost) if lost else fault_of(series.cycle, hole, repeats, spindle)
+        if math.isnan(repeats):
+            fault = "G418", f"{name_of(code)} with L and K"
         if fault:
             self._faults.tell(fault[0], row, fault[1])
             return None
         centres = self._centres(row, position, axes, relative, int(repeats))
-        return strokes(cycle, hole, centres, axes, position, spindle)
+        return strokes(series.cycle, hole, centres, axes, position, spindle)
 
-    def _in_force(self, row: int, code: int) -> Cycle:
-        """The cycle with the words of this block and of those before that are the same cycle."""
-        before = self._modal.in_force[Group.MOTION][row - 1] if row else NONE
-        if before != code:
-            self._cycle = Cycle(code)
+    def _follow(self, row: int, code: int, position: Array, frame: Frame) -> Series:
+        """The series with the cycle of this block."""
+        normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
         scale = float(self._modal.scale[row])
         retract, peck, dwell = (float(self._blocks.word(letter)[row]) for letter in "RQP")
-        normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
-        self._cycle = self._cycle.with_words(
-            retract * scale, float(self._words.columns[normal][row]), peck * scale, dwell
-        )
-        return self._cycle
+        words = (retract * scale, float(self._words.columns[normal][row]), peck * scale, dwell)
+        goes_on = bool(is_cycle(self._modal.in_force[Group.MOTION][self._row : row]).all())
+        before = self._series if goes_on else None
+        self._series = Series.after(before, code, float(position[normal]), words)
+        self._row = row
+        if before is None:
+            self._level, self._plane = frame.out(position), self._name(Group.PLANE, row)
+        if before is None or not np.isnan(words[:2]).any():
+            self._written_under = self._modes(row)
+        return self._series
 
-    def _hole(self, row: int, cycle: Cycle, height: float, relative: bool) -> Hole:
-        top = cycle.retract + (height if relative else 0.0)
-        bottom = cycle.bottom + (top if relative else 0.0)
-        back = self._modal.in_force[Group.RETRACT][row] == 980
-        return Hole(top, bottom, max(height, top) if back else top)
+    def _modes(self, row: int) -> str:
+        """What gives R and the depth their meaning."""
+        return f"{self._name(Group.DISTANCE, row)} in {'mm' if self._modal.scale[row] == 1 else 'inches'}"
+
+    def _name(self, group: Group, row: int) -> str:
+        return name_of(int(self._modal.in_force[group][row]))
+
+    def _lost_meaning(self, row: int, series: Series, needs_level: bool, frame: Frame) -> str:
+        """What has changed since the words in force were written, so that controls read them differently."""
+        normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
+        name, plane, modes = name_of(series.cycle.code), self._name(Group.PLANE, row), self._modes(row)
+        if plane != self._plane:
+            return f"{name} goes on in {plane}, begun in {self._plane}"
+        if modes != self._written_under:
+            return f"{name} goes on in {modes}, its R and depth are those of {self._written_under}"
+        level = float(frame.into(self._level)[normal])
+        if needs_level and abs(level - series.initial) > _SAME_HEIGHT:
+            return f"{name}: the initial level {series.initial:g} is {level:g} where the origin lies now"
+        return ""
+
+    def _repeats(self, row: int) -> float:
+        """How often the hole is drilled; NaN where two words say it."""
+        said = [float(self._blocks.word(letter)[row]) for letter in _REPEATS]
+        said = [times for times in said if not math.isnan(times)]
+        return 1.0 if not said else said[0] if len(said) == 1 else math.nan
 
     def _centres(self, row: int, position: Array, axes: tuple[int, int, int], relative: bool, repeats: int) -> Array:
         """Places of the holes, (n, 2)."""

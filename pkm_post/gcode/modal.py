@@ -134,13 +134,18 @@ def is_arc(motion: Array) -> Array:
     return by_row(lambda codes: np.isin(codes, ARCS), motion)
 
 
+def is_cycle(motion: Array) -> Array:
+    """Whether motions are cycles, (n,)."""
+    return by_row(lambda codes: np.isin(codes, CYCLES), motion)
+
+
 def _moves(
     blocks: Blocks, explicit: dict[Group, Array], in_force: dict[Group, Array], axis_words: Iterable[str]
 ) -> Array:
     """Whether a block has words that make it move, (N,)."""
     # Of an arc the centre or the radius is enough; G1 I J K turns the tool axis, but of an arc these are the centre.
     moves = _has(blocks, ("X", "Y", "Z", *axis_words)) | (is_arc(in_force[Group.MOTION]) & _has(blocks, "IJKR"))
-    return moves | by_row(lambda codes: np.isin(codes, CYCLES), explicit[Group.MOTION])
+    return moves | is_cycle(explicit[Group.MOTION])
 
 
 def _has(blocks: Blocks, letters: Iterable[str]) -> Array:

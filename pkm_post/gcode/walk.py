@@ -16,7 +16,7 @@ from pkm_post.gcode.drilling import Drilling
 from pkm_post.gcode.findings import Findings
 from pkm_post.gcode.frame_codes import IN_ORDER, SETS_OFFSETS, TIP_CONTROL, FrameCodes
 from pkm_post.gcode.happenings import InCycle
-from pkm_post.gcode.modal import Modal
+from pkm_post.gcode.modal import Modal, is_cycle
 from pkm_post.gcode.motions import Motions, Stretch, span, together
 from pkm_post.gcode.options import ReadOptions
 from pkm_post.gcode.positions import Coordinates, follow
@@ -65,7 +65,7 @@ class Walk:
     def _breaks(self) -> Array:
         """The blocks that change the frame or move in a way of their own, (N,)."""
         explicit = self.modal.explicit
-        breaks = self.modal.moves & by_row(lambda codes: np.isin(codes, CYCLES), self.modal.in_force[Group.MOTION])
+        breaks = self.modal.moves & is_cycle(self.modal.in_force[Group.MOTION])
         alone = by_row(lambda codes: np.isin(codes, _WORKS_ALONE), explicit[Group.ONCE])
         for group in (Group.CHANGE, *IN_ORDER[1:]):
             alone = alone | (explicit[group] != NONE)
@@ -186,7 +186,7 @@ class Walk:
         self._to(row, 0, np.where(said if said.any() else True, np.array(home), np.nan))
 
     def _drill(self, row: int) -> None:
-        made = self.drilling.strokes(row, self.position, self.known)
+        made = self.drilling.strokes(row, self.position, self.known, self.frame)
         if made is None:
             return
         self.in_cycles += [(self._rows + index, row, kind, value) for index, kind, value in made.events]

@@ -35,6 +35,12 @@ def _warning(cause: str, cure: str) -> Rule:
     return Rule(Severity.WARNING, cause, cure)
 
 
+_TAPPING = _error(
+    "tapping needs a feed in step with the spindle, which this machine's programs do not have",
+    "leave the threads out and tap them elsewhere, or mill them as helices",
+)
+"""One fault, with a code for each kind of input."""
+
 RULES: dict[str, Rule] = {
     # J1: the CAM job
     "J101": _error("the file cannot be opened as a FreeCAD document", "check the path, or save the document again"),
@@ -70,6 +76,7 @@ RULES: dict[str, Rule] = {
         "correct its words; cycles are drilled along Z (G17), after a move to a known height, in operations without"
         " tool-axis words",
     ),
+    "J123": _TAPPING,
     # G1: the letters of G-code
     "G101": _error("a character has no meaning here", "remove it, or put the text into a comment"),
     "G102": _error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),
@@ -142,6 +149,12 @@ RULES: dict[str, Rule] = {
         "the tool is tilted, and X Y Z are not those of its tip",
         "write upright words for the tool axis before TRAFOOF, G43 or G49, or TRAORI, G43.4 or G43.5 before the move",
     ),
+    "G425": _TAPPING,
+    "G426": _error(
+        "controls do not agree on what the cycle means here",
+        "write R and the depth again where G90, G91 or the unit changes; write G80 before another plane or height of the"
+        " origin, and the whole cycle after it",
+    ),
     # G5: writing G-code
     "G501": _error("the tool axis tilts, and this form of G-code cannot say it", "choose a form with five axes"),
     "G502": _error("the tool axis points down, and this form of G-code cannot say it", "choose vectors or a head"),
@@ -192,6 +205,7 @@ RULES: dict[str, Rule] = {
         "e and f do not put the corner of the cutter against its bottom and side, and were passed over",
         "write the e and f of a corner that touches both, or leave them out",
     ),
+    "L440": _TAPPING,
     # M1: the machine file
     "M101": _error("the machine file cannot be read", "check the path; python3 -m pkm_post machine list shows presets"),
     "M102": _error("the machine file is not valid TOML", "correct it at the place shown"),

@@ -10,7 +10,7 @@ import numpy as np
 
 PLANES = (("G17", "XYZ", "IJ"), ("G18", "ZXY", "KI"), ("G19", "YZX", "JK"))
 """For each plane: first axis, second axis, axis across; and the words of the centre."""
-CYCLES = ("G73", "G81", "G82", "G83", "G84", "G85", "G86", "G89")
+CYCLES = ("G73", "G81", "G82", "G83", "G85", "G86", "G89")
 PECKS = {"G73": " Q2.5", "G83": " Q3.1", "G81": "", "G85": ""}
 HOLES = (("G17", "Z", "XY"), ("G18", "Y", "XZ"), ("G19", "X", "YZ"))
 UNITS = 25
@@ -95,9 +95,6 @@ class _Maker:
         code = self.chance.choice(CYCLES)
         extra = PECKS.get(code, " P0.5")
         plane, depth, across = self.chance.choice(HOLES)
-        if code == "G84":
-            # The rs274 at hand swaps the coordinates of its feeds in the other planes.
-            plane, depth, across = HOLES[0]
         height = self.chance.choice(("G98", "G99"))
         block = f"{plane} {height} {code} {self.words(across)} {depth}-9.2 R{self.number(-5, 8)}{extra}"
         out = [block + self.chance.choice(("", " L2")), self.words(across)]

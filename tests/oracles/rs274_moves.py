@@ -22,6 +22,12 @@ MOVES = ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED")
 
 def rs274(text):
     """Points in mm, (n, 3), with the kind (0 rapid, 1 line, 2 arc), feed in mm/min and arc centre of each, or None."""
+    output = output_of(text)
+    return None if output is None else moves(output)
+
+
+def output_of(text):
+    """What rs274 prints of a program, None where it refuses it."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder)
         (path / "part.ngc").write_text(text)
@@ -31,28 +37,28 @@ def rs274(text):
         (path / "tools").write_text("".join(rows))
         command = ["rs274", "-t", path / "tools", "-v", path / "var", "-g", path / "part.ngc"]
         run = subprocess.run(command, capture_output=True, text=True, check=False)
-    return moves(run.stdout) if run.returncode == 0 else None
+    return run.stdout if run.returncode == 0 else None
 
 
 def moves(output):
     """The moves in the output of rs274, without those that stay in place."""
-    machine, found = _Machine(), []
+    machine, found = Machine(), []
     for line in output.splitlines():
         match = CALL.match(line)
         if match:
             _, name, text = match.groups()
             if name in MOVES:
-                found.append(machine.move(name, _numbers(text)))
+                found.append(machine.move(name, numbers(text)))
             else:
                 machine.set(name, text)
     return found
 
 
-def _numbers(text):
+def numbers(text):
     return [float(number) for number in re.findall(r"-?\d+\.\d+|-?\d+", text)]
 
 
-class _Machine:
+class Machine:
     """What is in force."""
 
     def __init__(self):
@@ -65,15 +71,21 @@ class _Machine:
         elif name == "SELECT_PLANE":
             self.axes = AXES[text.split("_")[-1]]
         elif name == "SET_G92_OFFSET":
-            self.local = np.array(_numbers(text)[:3]) * self.scale
+            self.local = np.array(numbers(text)[:3]) * self.scale
         elif name == "SET_G5X_OFFSET":
-            self.origin = np.array(_numbers(text)[1:4]) * self.scale
+            self.origin = np.array(numbers(text)[1:4]) * self.scale
         elif name == "SET_XY_ROTATION":
-            self.angle = np.radians(_numbers(text)[0])
+            self.angle = np.radians(numbers(text)[0])
         elif name == "USE_TOOL_LENGTH_OFFSET":
-            self.tool = np.array(_numbers(text)[:3]) * self.scale
+            self.tool = np.array(numbers(text)[:3]) * self.scale
         elif name == "SET_FEED_RATE":
-            self.feed = _numbers(text)[0] * self.scale
+            self.feed = numbers(text)[0] * self.scale
+
+    def shifted(self, name, text, point):
+        """Another call, and the coordinates that a point of the program has after it."""
+        place = self.place(point * self.scale)
+        self.set(name, text)
+        return self.turn().T @ (place - self.origin - self.tool) / self.scale - self.local / self.scale
 
     def move(self, name, values):
         """Kind, place, feed and, of an arc, centre, axis and turns."""

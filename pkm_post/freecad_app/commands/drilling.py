@@ -2,8 +2,9 @@
 """Drilling: the cycles among the commands of an operation become the moves and dwells that they stand for.
 
 Columns of words enter; columns leave in which a cycle is rows of G0, G1 and G4, with its line. The strokes are those of
-the same cycles in G-code (``gcode.cycles``). The words of a cycle stay in force as long as no other motion comes
-between. Behind a hole the tool is as high as before it (G98, and where nothing was said), or at R (G99).
+the same cycles in G-code (``gcode.cycles``). The words of a cycle stay in force, and so does the initial level, as long
+as no other motion comes between. Behind a hole the tool is at that level (G98, and where nothing was said), or at R
+(G99).
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 
 from pkm_post.freecad_app.commands.faults import Faults
 from pkm_post.freecad_app.commands.words import CYCLES, MOVES, Array, Words, in_force, latest
-from pkm_post.gcode.cycles import Cycle, Hole, Strokes, fault_of, strokes
+from pkm_post.gcode.cycles import Series, Strokes, fault_of, strokes
 from pkm_post.model import Kind
 
 _CODES = {Kind.RAPID: "G0", Kind.LINE: "G1"}
@@ -54,7 +55,8 @@ class _Holes:
 
     def __init__(self, words: Words, start: Array) -> None:
         drilled, height = words.among(*CYCLES), words.value("Z")
-        self._words, self._cycle, self._row = words, Cycle(0), -1
+        self._words, self._row = words, -1
+        self._series: Series | None = None
         # with the start in front: what is before a row has its number, what is behind it the next
         before = zip("XY", start[:2], strict=True)
         self._xy = np.column_stack([in_force(np.append(at, words.value(letter)), at) for letter, at in before])
@@ -67,27 +69,27 @@ class _Holes:
 
     def drilled(self, row: int) -> tuple[list[Row], str]:
         """What the cycle of a row stands for, and what is wrong with it; asked for in the order of the rows."""
-        name = self._words.name(row)
-        self._cycle = self._in_force(row, name)
-        height, top = float(self._height[self._latest_height[row]]), self._cycle.retract
-        hole = Hole(top, self._cycle.bottom, top if self._stays_low[row] else max(height, top))
+        name, height = self._words.name(row), float(self._height[self._latest_height[row]])
+        series = self._follow(row, name, height)
+        hole = series.hole(relative=False, returns=not self._stays_low[row])
         here, centre = np.array([*self._xy[row], height]), self._xy[row + 1]
         self._row, self._height[row + 1] = row, hole.clear
         if self._leans:
             return [], f"{name}: other moves have I J K words"
-        fault = fault_of(self._cycle, hole, _ONCE, _STANDS)
+        fault = fault_of(series.cycle, hole, _ONCE, _STANDS)
         if fault:
             return [], fault[1]
         if np.isnan([*centre, height]).any():
             return [], f"{name}: it is not known where the tool is"
-        made = strokes(self._cycle, hole, centre[None], _AXES, here, _STANDS)
+        made = strokes(series.cycle, hole, centre[None], _AXES, here, _STANDS)
         return _rows_of(made, float(self._feed[row])), ""
 
-    def _in_force(self, row: int, name: str) -> Cycle:
-        """The cycle with the words of this row, and with those before if it is still the same."""
-        goes_on = row > 0 and self._latest_motion[row - 1] == self._row and self._words.name(self._row) == name
-        cycle = self._cycle if goes_on else Cycle(10 * int(name[1:]))
-        return cycle.with_words(*self._said[row].tolist())
+    def _follow(self, row: int, name: str, height: float) -> Series:
+        """The series with the cycle of this row; the motion before it is another cycle, or it is the first."""
+        goes_on = row > 0 and self._latest_motion[row - 1] == self._row
+        before, words = self._series if goes_on else None, self._said[row].tolist()
+        self._series = Series.after(before, 10 * int(name[1:]), height, words)
+        return self._series
 
 
 def _rows_of(made: Strokes, feed: float) -> list[Row]:

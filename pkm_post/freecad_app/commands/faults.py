@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.freecad_app.commands.words import COMMENT, CYCLES, LETTERS, Array, Words, latest
+from pkm_post.gcode.codes import IN_STEP_WITH_SPINDLE
 from pkm_post.model import Diagnostic, Place
 from pkm_post.model.diagnostics import errors
 
@@ -60,7 +61,7 @@ def check_words(words: Words, faults: Faults) -> None:
     """Tell commands and words that have no meaning here."""
     for code in words.codes:
         if code not in LETTERS and code != COMMENT:
-            faults.tell("J104", words.among(code), code)
+            faults.tell("J123" if code in IN_STEP_WITH_SPINDLE else "J104", words.among(code), code)
     known = words.among(*LETTERS)
     for letter, given in words.given.items():
         owners = [code for code, letters in LETTERS.items() if letter in letters]
