@@ -91,7 +91,7 @@ class Drilling:
         return name_of(int(self._modal.in_force[group][row]))
 
     def _lost_meaning(self, row: int, series: Series, needs_level: bool, frame: Frame) -> str:
-        """What has changed since the words in force were written, so that controls read them differently."""
+        """What has changed since the words in force were written, so that they may mean something else."""
         normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
         name, plane, modes = name_of(series.cycle.code), self._name(Group.PLANE, row), self._modes(row)
         if plane != self._plane:

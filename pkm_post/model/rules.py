@@ -151,9 +151,9 @@ RULES: dict[str, Rule] = {
     ),
     "G425": _TAPPING,
     "G426": _error(
-        "controls do not agree on what the cycle means here",
-        "write R and the depth again where G90, G91 or the unit changes; write G80 before another plane or height of the"
-        " origin, and the whole cycle after it",
+        "it is not clear what the words in force of the cycle mean here",
+        "write R and the depth again where G90, G91 or the unit changes; write G80 before another plane or height of"
+        " the origin, and the whole cycle after it",
     ),
     # G5: writing G-code
     "G501": _error("the tool axis tilts, and this form of G-code cannot say it", "choose a form with five axes"),

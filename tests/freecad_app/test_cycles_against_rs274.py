@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Series of drilling cycles of CAM operations against rs274: the programs and motions of tests/data/cycles_rs274.json."""
+"""Series of drilling cycles of CAM operations against rs274, by tests/data/cycles_rs274.json."""
 
 import json
 import sys

@@ -28,7 +28,23 @@ def text_of(case):
 def test_there_are_cases():
     assert len(CASES) == 250 and len(REFUSED) > 15
     text = "".join(case["program"] for case in TAKEN)
-    for word in ("G73", "G81", "G82", "G83", "G85", "G86", "G89", "G91", "G98", "G99", "G18", "G19", "G20", " L3", "G92"):
+    for word in (
+        "G73",
+        "G81",
+        "G82",
+        "G83",
+        "G85",
+        "G86",
+        "G89",
+        "G91",
+        "G98",
+        "G99",
+        "G18",
+        "G19",
+        "G20",
+        " L3",
+        "G92",
+    ):
         assert text.count(word) > 5, word
 
 
@@ -92,8 +108,8 @@ def test_k_repeats_as_l_does():
         ["G91 G99 G81 X1 Z-5 R-40", "G52 Z5", "X10"],
     ],
 )
-def test_what_controls_read_differently_is_refused(lines):
-    """rs274 takes the numbers for what they would mean now; Fanuc's controls keep the planes of R and depth."""
+def test_words_in_force_with_two_meanings_are_refused(lines):
+    """rs274 takes the numbers for what they would mean now; a program may as well mean the heights they had."""
     rows, faults = ours("\n".join(["G21 F100", "G90 G0 X0 Y0 Z50", *lines, "M2"]))
     assert rows is None
     assert [(fault.code, fault.place.line) for fault in faults] == [("G426", len(lines) + 2)]

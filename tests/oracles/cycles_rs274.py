@@ -6,9 +6,9 @@
 
 Needs rs274 (Debian: linuxcnc-uspace), numpy and lark. Compared are moves, dwells and whether the spindle turns.
 
-Where the tool stands at R or below and the next hole is higher, or is to be left at the initial level, rs274 goes up and
-across in one rapid. Its manual has it go up first (G-codes, canned cycles, preliminary motion), and so do we: such a
-rapid of rs274 is taken for two.
+Where the tool stands at R or below and the next hole is higher, or is to be left at the initial level, rs274 goes up
+and across in one rapid. Its manual has it go up first (G-codes, canned cycles, preliminary motion), and so do we: such
+a rapid of rs274 is taken for two.
 """
 
 import json
@@ -141,7 +141,9 @@ def write_golden():
     texts = [(program(seed), False) for seed in range(CASES)]
     texts += [(cam_program(seed), True) for seed in range(CAM_CASES)]
     rows = [
-        json.dumps({"program": text, "cam": cam, "rows": theirs(as_rs274(text) if cam else text)}, separators=(",", ":"))
+        json.dumps(
+            {"program": text, "cam": cam, "rows": theirs(as_rs274(text) if cam else text)}, separators=(",", ":")
+        )
         for text, cam in texts
     ]
     GOLDEN.write_text("[\n" + ",\n".join(rows) + "\n]\n", encoding="utf-8", newline="\n")
