@@ -70,14 +70,15 @@ def at_home(machine: Machine) -> Home:
 
 
 def machine_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
-    """What stands against posting for a machine whose file is well formed: errors of its controller, and its home.
+    """What stands against posting for a machine whose file is well formed: its controller, home and tool change.
 
     Args:
         machine: the machine.
         file: what the messages call its file.
     """
     _, faults = controller_settings(machine)
-    return (*(replace(fault, place=Place(file)) for fault in faults), *home_faults(machine, file))
+    told = (replace(fault, place=Place(file)) for fault in faults)
+    return (*told, *home_faults(machine, file), *change_faults(machine, file))
 
 
 def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
@@ -87,9 +88,28 @@ def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
         machine: the machine.
         file: what the messages call its file.
     """
+    return _broken_limits("M108", at_home(machine), file)
+
+
+def change_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
+    """Warnings for limits that the tool-change pose breaks with the tool of the rest pose.
+
+    Args:
+        machine: the machine.
+        file: what the messages call its file.
+    """
+    pose = machine.tool_change
+    if pose is None:
+        return ()
+    tip = pose.tip(machine.rest_tool_length)
+    there = replace(machine, home_tip=tip, home_axis=pose.axis, home_spin=pose.spin)
+    return _broken_limits("M115", at_home(there), file)
+
+
+def _broken_limits(code: str, standing: Home, file: str) -> tuple[Diagnostic, ...]:
     return tuple(
-        Diagnostic("M108", Place(file), f"{one.subject.name}: {one.subject.tell(int(one.part[0]), one.margin[0])}")
-        for one in at_home(machine).findings
+        Diagnostic(code, Place(file), f"{one.subject.name}: {one.subject.tell(int(one.part[0]), one.margin[0])}")
+        for one in standing.findings
         if one.margin[0] < 0.0
     )
 
@@ -97,7 +117,13 @@ def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
 def summary(machine: Machine) -> Rows:
     """What the file says and what follows from it."""
     home = at_home(machine)
-    return [*_geometry(machine), *_limits(machine), *_bodies(machine), *_at_home(machine, home)]
+    return [
+        *_geometry(machine),
+        *_limits(machine),
+        *_tools(machine),
+        *_bodies(machine),
+        *_at_home(machine, home),
+    ]
 
 
 def as_text(rows: Rows) -> str:
@@ -131,6 +157,24 @@ def _limits(machine: Machine) -> Iterator[tuple[str, str]]:
     yield "platform cones", f"{_span(np.degrees(machine.platform_cone), 2)} degrees"
     yield "spindle", f"{machine.spindle_least_speed:g} to {machine.spindle_speed:g} 1/min"
     yield "work offsets", ", ".join(sorted(machine.work_offsets)) or "none"
+
+
+def _tools(machine: Machine) -> Iterator[tuple[str, str]]:
+    yield "largest tool", _up_to(machine.largest_tool_diameter, "diameter")
+    yield "longest tool", _up_to(machine.longest_tool, "gauge length")
+    up, down = machine.spin_up_time, machine.spin_down_time
+    waits = f"{up:g} s to the highest speed, {up if down is None else down:g} s to rest" if up is not None else ""
+    yield "spindle waits", waits or "none: the motion does not wait for the spindle"
+    pose = machine.tool_change
+    if pose is None:
+        yield "tool change", "no pose stated: tools change where the tip stands"
+        return
+    nose = ", ".join(f"{value:g}" for value in pose.nose)
+    yield "tool change", f"spindle nose at ({nose}) mm, tips free from z {pose.safe_height:g} mm upwards"
+
+
+def _up_to(most: float, what: str) -> str:
+    return f"{what} up to {most:g} mm" if np.isfinite(most) else "no limit stated"
 
 
 def _bodies(machine: Machine) -> Iterator[tuple[str, str]]:

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machines for the tests: the assumed example, LinuxCNC's genhexkins default, and the Nategh-Agheli hexapod."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 
-from pkm_post.model import Machine
+from pkm_post.machine_file import find_machine
+from pkm_post.model import Machine, ToolChange
 
 INCH = 25.4
 
@@ -80,3 +84,35 @@ def random_poses(rng, count, tilt_deg=30.0):
     tilt, azimuth = rng.uniform(0, tilt_deg, count), rng.uniform(0, 360, count)
     axis = direction(tilt, azimuth).T
     return tip, axis, np.radians(rng.uniform(-20, 20, count)), np.full(count, 120.0)
+
+
+def with_tool_change(stated: Machine, **changes) -> Machine:
+    """A machine with a tool-change pose beside the middle of the example's workspace, tilted and spun."""
+    pose = {
+        "nose": np.array([90.0, -60.0, 460.0]), "axis": direction(8.0, 30.0), "spin": np.radians(7.0),
+        "safe_height": 270.0,
+    }  # fmt: skip
+    return replace(stated, tool_change=ToolChange(**(pose | changes)))
+
+
+TOOL_CHANGE_TABLES = """
+spin_up_time = 2.0
+spin_down_time = 3.0
+largest_tool_diameter = 40.0
+longest_tool = 180.0
+
+[tool_change]
+nose = [90.0, -60.0, 460.0]
+axis = [0.1, 0.06, 1.0]
+spin = 7.0
+safe_height = 270.0
+"""
+
+
+def tool_change_file(folder) -> Path:
+    """The example's machine file with a tool-change pose, spindle times and the largest tool."""
+    text = find_machine("example_6tps").read_text(encoding="utf-8")
+    assert text.count("speed = 24000.0\n") == 1
+    made = folder / "changes_tools.toml"
+    made.write_text(text.replace("speed = 24000.0\n", "speed = 24000.0\n" + TOOL_CHANGE_TABLES), encoding="utf-8")
+    return made

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Programs for the tests: small jobs built from arrays."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pkm_post.model import Event, EventKind, Kind, Program, Tool
@@ -78,3 +80,21 @@ def random_job(rng) -> Program:
     dwells = (Event(int(row), EventKind.DWELL, 0.1) for row in sorted(rng.integers(1, count, 2)))
     events = (Event(0, EventKind.TOOL_CHANGE, 1), *dwells)
     return program(position, axis, kind=kind, feed=10 ** rng.uniform(0.3, 2.2), events=events)
+
+
+TOOLS = {1: BALL, 2: Tool(2, "long", 8.0, 4.0, 150.0), 3: Tool(3, "short", 10.0, 0.0, 83.5)}
+
+
+def random_changes(rng) -> Program:
+    """A random job whose spindle starts and stops, with up to six changes of tools of other lengths."""
+    job = random_job(rng)
+    count = len(job)
+    rows = sorted(rng.integers(0, count + 1, int(rng.integers(1, 6))).tolist())
+    events = list(job.events[1:])
+    for row in (0, *rows):
+        if rng.random() < 0.5:
+            events.append(Event(row, EventKind.SPINDLE, 0.0))
+        events.append(Event(row, EventKind.TOOL_CHANGE, float(rng.integers(1, 4))))
+        events.append(Event(row, EventKind.SPINDLE, float(rng.integers(-9, 10)) * 1000 or 500.0))
+    events.sort(key=lambda event: event.row)
+    return replace(job, events=tuple(events), tools=TOOLS)

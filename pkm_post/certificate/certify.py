@@ -74,7 +74,7 @@ def certify(
         tip_deviation=played.tip,
         tip_tolerance=played.tip_tolerance,
         axis_deviation=played.axis,
-        coverage=coverage(machine),
+        coverage=coverage(machine, trajectory),
     )
     return certificate, tuple(finding.diagnostic() for finding in findings if not finding.holds)
 

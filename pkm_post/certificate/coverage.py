@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Coverage: what a certificate covers, hazard by hazard, and what it does not.
 
-A machine enters; a row for each hazard leaves. A machine that does not state the size of a body has no check of it, so
-the rows differ from machine to machine. docs/certificate.md has the same table for people.
+A machine and a trajectory enter; a row for each hazard leaves. A machine that does not state the size of a body has no
+check of it, so the rows differ from machine to machine. docs/certificate.md has the same table for people.
 """
 
 from __future__ import annotations
 
+from pkm_post.certificate.beside_the_path import beside_the_path
 from pkm_post.kinematics.bodies import has_strut_bodies
-from pkm_post.model import Machine
+from pkm_post.model import Machine, Trajectory
 from pkm_post.model.certificate import Coverage, Extent, Topic
 
 _PATH = (
@@ -20,11 +21,6 @@ _LIMITS = (
     ("strut length, speed and acceleration", "the program as written, at every moment"),
     ("joints and singular poses", "the planned path with its rounded corners, between its points as well"),
 )
-_BESIDE_THE_PATH = (
-    ("approach to the first point", "each strut moves by itself from where it stands, on a way that is not planned"),
-    ("tool change", "tools change where the tip stands"),
-    ("spindle speed at the first cut", "the motion does not wait for the spindle"),
-)
 _SETUP = (
     ("geometry of the machine", "taken from the machine file"),
     ("work offset and gauge lengths", "taken from the job"),
@@ -33,13 +29,13 @@ _SETUP = (
 )
 
 
-def coverage(machine: Machine) -> tuple[Coverage, ...]:
+def coverage(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
     """The hazards in the order of their topics."""
     return (
         *_rows(Topic.PATH, Extent.PROVEN, _PATH),
         *_rows(Topic.LIMITS, Extent.PROVEN, _LIMITS),
         *_collisions(machine),
-        *_rows(Topic.BESIDE_THE_PATH, Extent.NOT_COVERED, _BESIDE_THE_PATH),
+        *beside_the_path(machine, trajectory),
         *_rows(Topic.SETUP, Extent.NOT_COVERED, _SETUP),
     )
 

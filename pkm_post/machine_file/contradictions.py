@@ -7,11 +7,11 @@ Leaves: a fault for each check that fails. A check runs when everything it needs
 
 from __future__ import annotations
 
-from pkm_post.machine_file import limit_pairs, rest_pose, strut_parts
+from pkm_post.machine_file import limit_pairs, rest_pose, strut_parts, tool_change
 from pkm_post.machine_file.faults import Fault
 from pkm_post.machine_file.rest_pose import Values
 
-_CHECKS = rest_pose.CHECKS + strut_parts.CHECKS + limit_pairs.CHECKS
+_CHECKS = rest_pose.CHECKS + strut_parts.CHECKS + limit_pairs.CHECKS + tool_change.CHECKS
 
 
 def contradictions(values: Values) -> list[Fault]:

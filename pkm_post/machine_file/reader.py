@@ -19,6 +19,7 @@ from pkm_post.machine_file.faults import Fault, not_toml, tell
 from pkm_post.machine_file.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
 from pkm_post.machine_file.forms import NAME, PROSE, FormError, holds_unknown, shown
 from pkm_post.machine_file.rest_pose import rest_axes
+from pkm_post.machine_file.tool_change import tool_change
 from pkm_post.machine_file.units import factor, stated_units
 from pkm_post.machine_file.work_offsets import offset_names, stated_poses, work_offsets
 from pkm_post.model import Diagnostic, Machine, Place
@@ -129,6 +130,7 @@ def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Ma
         platform_rest=platform_rest,
         work_offsets=work_offsets(offsets, values),
         controller=_controller(values),
+        tool_change=tool_change(values),
         # what the file leaves out is left to the machine's own defaults
         **{name: value for name, value in attributes.items() if value is not None},
     )

@@ -16,12 +16,12 @@ _LEAST_ACROSS = 1e-6
 """Least sine of the angle between a strut and the fixed axis of its joint; below, the second axis has no direction."""
 
 
-def _partner(stated: str, partner: str) -> tuple[tuple[str, ...], Check]:
+def partner(stated: str, needed: str) -> tuple[tuple[str, ...], Check]:
     """The check that an entry does not stand alone."""
 
     def check(values: Values) -> Iterator[tuple[str, str]]:
-        if _is_left_out(values, partner):
-            yield partner, f"needed with {stated}"
+        if _is_left_out(values, needed):
+            yield needed, f"needed with {stated}"
 
     return (stated,), check
 
@@ -72,10 +72,10 @@ def _slow_spindle(values: Values) -> Iterator[tuple[str, str]]:
 
 
 CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
-    _partner("struts.tube_radius", "struts.tube_length"),
-    _partner("struts.tube_length", "struts.tube_radius"),
-    _partner("struts.rod_radius", "struts.rod_length"),
-    _partner("struts.rod_length", "struts.rod_radius"),
+    partner("struts.tube_radius", "struts.tube_length"),
+    partner("struts.tube_length", "struts.tube_radius"),
+    partner("struts.rod_radius", "struts.rod_length"),
+    partner("struts.rod_length", "struts.rod_radius"),
     (("struts.stroke", "struts.tube_length"), _long_tube),
     (("struts.stroke", "struts.tube_length", "struts.rod_length"), _gap),
     (("struts.screw_lead", "joints.base_kind", "joints.platform_kind"), _screw_without_axes),

@@ -43,6 +43,7 @@ SPEED = Dimension("mm/s", length=1, time=-1)
 ACCELERATION = Dimension("mm/s^2", length=1, time=-2)
 JERK = Dimension("mm/s^3", length=1, time=-3)
 ANGLE = Dimension("deg", angle=1)
+TIME = Dimension("s", time=1)
 TURNING_RATE = Dimension("deg/s", angle=1, time=-1)
 SPINDLE_SPEED = Dimension("1/min")
 """Revolutions per minute whatever the units of the file: every spindle is named so."""

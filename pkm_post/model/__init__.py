@@ -3,7 +3,7 @@
 
 from pkm_post.model.diagnostics import RULES, Diagnostic, Place, Refused, Rule, Severity
 from pkm_post.model.event import Event, EventKind
-from pkm_post.model.machine import Body, Box, Machine
+from pkm_post.model.machine import Body, Box, Machine, ToolChange
 from pkm_post.model.motion import Motion
 from pkm_post.model.poses import Poses
 from pkm_post.model.program import Kind, Program
@@ -29,5 +29,6 @@ __all__ = [
     "Severity",
     "StrutMotion",
     "Tool",
+    "ToolChange",
     "Trajectory",
 ]

@@ -57,6 +57,30 @@ class Box:
         freeze(self, 3, {"lowest": (np.float64, ()), "highest": (np.float64, ())})
 
 
+@dataclass(frozen=True)
+class ToolChange:
+    """Where tools are changed, and above which height the tool may go there and back.
+
+    Attributes:
+        nose: (3,) centre of the spindle nose in {M}, mm: the tip is below it by the gauge length of the tool.
+        axis: (3,) unit tool axis in {M}.
+        spin: of the platform about it, rad.
+        safe_height: z in {M} at and above which the tip may go from anywhere to anywhere, mm.
+    """
+
+    nose: Array
+    axis: Array
+    spin: float
+    safe_height: float
+
+    def __post_init__(self) -> None:
+        freeze(self, 3, {"nose": (np.float64, ()), "axis": (np.float64, ())})
+
+    def tip(self, tool_length: float) -> Array:
+        """(3,) tip of a tool at the pose, mm: nose - length axis."""
+        return np.asarray(self.nose - tool_length * self.axis)
+
+
 def _no_axes() -> Array:
     return np.zeros((6, 3))
 
@@ -115,6 +139,11 @@ class Machine:
             nothing is stated.
         strut_rigidity: Young's modulus times cross-section of the screw, N: a length l of it has the stiffness
             rigidity / l, in series with ``strut_stiffness``. Infinite when unstated.
+        tool_change: where tools are changed; None where the file states nothing, and they change where the tool is.
+        spin_up_time: of the spindle from rest to its highest speed, s; None when it is not stated.
+        spin_down_time: from its highest speed to rest, s; None when it is that of ``spin_up_time``.
+        largest_tool_diameter: that the spindle takes, mm; infinite when no limit is stated.
+        longest_tool: largest gauge length that the spindle takes, mm; infinite when no limit is stated.
     """
 
     name: str
@@ -162,6 +191,11 @@ class Machine:
     spindle_least_speed: float = 0.0
     strut_stiffness: float | None = None
     strut_rigidity: float = math.inf
+    tool_change: ToolChange | None = None
+    spin_up_time: float | None = None
+    spin_down_time: float | None = None
+    largest_tool_diameter: float = math.inf
+    longest_tool: float = math.inf
 
     def __post_init__(self) -> None:
         for name in ("base_cone", "platform_cone"):

@@ -217,6 +217,9 @@ RULES: dict[str, Rule] = {
         "something of this machine is not known", 'measure it or ask the maker, and write it in place of "unknown"'
     ),
     "M108": _warning("the machine cannot stand at home", "correct tool_path.home_tip, or the limit that is in the way"),
+    "M115": _warning(
+        "the machine cannot stand at the tool-change pose", "correct tool_change.nose, or the limit that is in the way"
+    ),
     # M2: calibration of the machine
     "M201": _error("the measurements cannot be read", "check the path; docs/calibration.md describes the file"),
     "M202": _error("a row of the measurements is malformed", "correct it; docs/calibration.md describes the file"),
@@ -259,6 +262,23 @@ RULES: dict[str, Rule] = {
     ),
     "K126": _error("an arc begins where a tool of another length was taken", "make a straight move before the arc"),
     "K127": _error("a move takes longer than a day", "give it a higher feed"),
+    # K14: tools, tool changes and the spindle
+    "K140": _error(
+        "the tool is larger than the spindle takes",
+        "use a smaller tool, or correct spindle.largest_tool_diameter or spindle.longest_tool of the machine file",
+    ),
+    "K141": _error(
+        "the tip of a tool would be below the safe height at the tool-change pose",
+        "raise tool_change.nose, lower tool_change.safe_height, or use a shorter tool",
+    ),
+    "K142": _error(
+        "the tool lies too flat to be retracted along its axis to the safe height",
+        "tilt the tool less before the tool change and after it",
+    ),
+    "K143": _error(
+        "the program cuts after a tool change without starting the spindle",
+        "start the spindle with M3 or M4 between the tool change and the cut",
+    ),
     # N1: surface normals, and compensation with them
     "N101": _error("a contact point, normal or tool axis is no number or has no direction", "regenerate the path"),
     "N102": _error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),

@@ -8,6 +8,7 @@ an arc, the tool axis along the great circle, the spin linearly, all in step. Un
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -132,6 +133,17 @@ class Trajectory:
     def axis_before(self) -> Array:
         """Tool axis at the start of each segment, (N, 3)."""
         return np.vstack([self.start_axis, self.axis[:-1]])
+
+    def axis_at(self, rows: Sequence[int]) -> Array:
+        """Tool axis where events at these rows take place, (M, 3); row N is the end of all."""
+        return np.vstack([self.start_axis, self.axis])[np.asarray(rows, dtype=np.intp)]
+
+    def nose_before(self, rows: Sequence[int]) -> Array:
+        """Centre of the spindle nose where events at these rows take place, (M, 3) mm; row N is the end of all."""
+        at = np.asarray(rows, dtype=np.intp)
+        length = self.tool_length()
+        tip, length = np.vstack([self.start_tip, self.tip]), np.concatenate([length[:1], length])
+        return np.asarray(tip[at] + length[at, None] * self.axis_at(rows))
 
     def spin_before(self) -> Array:
         """Spin at the start of each segment, (N,)."""

@@ -20,7 +20,9 @@ from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, P
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.tool import lengths_of
 from pkm_post.placement.smoothness import corners, smooth
+from pkm_post.placement.spindle_waits import with_spindle_waits
 from pkm_post.placement.symmetry import mirrors, transform
+from pkm_post.placement.tool_changes import with_tool_changes
 
 _NO_MOVE = 1e-9
 """mm and rad: a row that moves less is left out."""
@@ -51,19 +53,21 @@ def place(
         return None, faults
     if mirrors(machine_from_work):
         return None, (Diagnostic("K109", Place(machine.name), "the work offset is a mirror"),)
+    placed, added = with_tool_changes(placed, machine)
+    placed, waits = with_spindle_waits(placed, machine)
     way = _way(placed, machine)
     keep = (way["length"] > _NO_MOVE) | (way["angle"] > _NO_MOVE)
-    faults = tuple(_faults(placed, machine, way, keep))
+    faults = (*_faults(placed, machine, way, keep), *added, *waits)
     if errors(faults):
         return None, faults
-    events = _events_on_kept_rows(program.events, keep)
+    events = _events_on_kept_rows(placed.events, keep)
     trajectory = Trajectory(
         **_columns(placed, way, keep, events),
         start_tip=machine.home_tip,
         start_axis=machine.home_axis,
         start_spin=machine.home_spin,
         events=events,
-        operations=program.operations,
+        operations=placed.operations,
         tools=program.tools,
         machine_from_work=machine_from_work,
         machine=machine.name,
@@ -151,6 +155,7 @@ def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array
         if speed and not machine.spindle_least_speed <= speed <= machine.spindle_speed:
             found = f"{speed:g} rpm, the machine allows {machine.spindle_least_speed:g} to {machine.spindle_speed:g}"
             yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), found)
+    yield from _of_tools(program, machine, way["tool"])
     fast = program.feed > machine.feed_speed
     for row in _first_of_each(program.operation, fast):
         found = f"F{60 * program.feed[row]:g} mm/min, limited to {60 * machine.feed_speed:g}"
@@ -171,6 +176,20 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
     ):
         for row in _first_of_each(program.operation, wrong):
             yield Diagnostic(code, program.place(row), told.format(values[row]))
+
+
+def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Diagnostic]:
+    """The tools in use that the spindle does not take, each where it is first in use."""
+    for used, row in zip(*np.unique(number, return_index=True), strict=True):
+        tool = program.tools[int(used)]
+        for what, size, most in (
+            ("diameter", tool.diameter, machine.largest_tool_diameter),
+            ("gauge length", tool.length, machine.longest_tool),
+        ):
+            if size > most:
+                yield Diagnostic(
+                    "K140", program.place(int(row)), f"T{tool.number}: {what} {size:g} mm, at most {most:g} mm"
+                )
 
 
 def _first_of_each(operation: Array, wrong: Array) -> list[int]:

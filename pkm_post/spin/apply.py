@@ -10,10 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Machine, Trajectory
+from pkm_post.geometry import norm
+from pkm_post.model import Diagnostic, EventKind, Machine, Trajectory
 from pkm_post.spin.optimise import optimise
 from pkm_post.spin.policy import Policy, Rule
 from pkm_post.spin.rules import spin_in_plane
+
+_SAME = 1e-6
+"""mm, and of unit axes: a tool that ends so near to the tool-change pose stands there."""
 
 
 def with_spin(
@@ -21,11 +25,32 @@ def with_spin(
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The trajectory with the spin of a policy, or where the policy does not tell it.
 
+    At the tool-change pose it is that of the machine file, whatever the policy.
+
     Args:
         trajectory: at least one segment.
         machine: geometry and limits, for a search.
         policy: what is wanted.
     """
+    turned, told = _by_policy(trajectory, machine, policy)
+    return (None if turned is None else _as_tools_change(turned, machine)), told
+
+
+def _as_tools_change(trajectory: Trajectory, machine: Machine) -> Trajectory:
+    """The trajectory with the spin of the tool-change pose where tools change."""
+    pose = machine.tool_change
+    if pose is None:
+        return trajectory
+    changes = [event.row for event in trajectory.events if event.kind is EventKind.TOOL_CHANGE and event.row > 0]
+    off = np.hypot(norm(trajectory.nose_before(changes) - pose.nose), norm(trajectory.axis_at(changes) - pose.axis))
+    spin = trajectory.spin.copy()
+    spin[np.array(changes, dtype=np.intp)[off < _SAME] - 1] = pose.spin
+    return replace(trajectory, spin=spin)
+
+
+def _by_policy(
+    trajectory: Trajectory, machine: Machine, policy: Policy
+) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     if policy.rule is Rule.FILE:
         return trajectory, ()
     if policy.rule is Rule.OPTIMISED:

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beside the path: how far approach, tool changes and the start of the spindle are covered.
+
+A machine and a trajectory enter; rows of coverage leave. What the machine file states is not taken for granted: a row
+says covered where the trajectory has it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import norm
+from pkm_post.model import EventKind, Kind, Machine, Trajectory
+from pkm_post.model.certificate import Coverage, Extent, Topic
+
+_SAME = 1e-6
+"""mm, and of unit axes: a tool that changes so near to the pose of the machine file changes there."""
+_TO_THE_START = (
+    "each strut moves by itself, on a way that is not planned; pmac approach and the panel plan one,"
+    " loading the program by other means does not"
+)
+_Answer = tuple[str, str]
+"""How a hazard is covered, or nothing; and why it is not."""
+
+
+def beside_the_path(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
+    """How the tool comes to the first point, to tool changes and back, and how the spindle comes to its speed."""
+    rows: tuple[tuple[str, _Answer], ...] = (
+        ("way to the start of the program", ("", _TO_THE_START)),
+        ("approach from the start to the first point", (_from_the_start(trajectory), "")),
+        ("tool change", _tool_change(machine, trajectory)),
+        ("spindle speed at the first cut", _spindle(machine, trajectory)),
+    )
+    return tuple(
+        Coverage(Topic.BESIDE_THE_PATH, subject, Extent.PROVEN if how else Extent.NOT_COVERED, how or why_not)
+        for subject, (how, why_not) in rows
+    )
+
+
+def _from_the_start(trajectory: Trajectory) -> str:
+    start = ", ".join(f"{value:g}" for value in trajectory.start_tip)
+    tool = trajectory.tools[int(trajectory.tool[0])]
+    return f"a move of the program, from the tip of T{tool.number} of {tool.length:g} mm at ({start}) mm"
+
+
+def _tool_change(machine: Machine, trajectory: Trajectory) -> _Answer:
+    pose = machine.tool_change
+    if pose is None:
+        return "", "the machine file states no tool-change pose: tools change where the tip stands"
+    rows = _rows(trajectory, EventKind.TOOL_CHANGE)
+    off = np.hypot(norm(trajectory.nose_before(rows) - pose.nose), norm(trajectory.axis_at(rows) - pose.axis))
+    if (off > _SAME).any():
+        return "", "the trajectory changes tools elsewhere than at the tool-change pose of the machine file"
+    nose = ", ".join(f"{value:g}" for value in pose.nose)
+    return f"there and back by moves of the program, to the spindle nose at ({nose}) mm", ""
+
+
+def _spindle(machine: Machine, trajectory: Trajectory) -> _Answer:
+    if machine.spin_up_time is None:
+        return "", "the machine file states no spindle.spin_up_time: the motion does not wait for the spindle"
+    starts = [event.row for event in trajectory.events if event.kind is EventKind.SPINDLE and event.value]
+    cuts = np.flatnonzero(trajectory.kind != Kind.RAPID)
+    if len(cuts) and (not starts or min(starts) > cuts[0]):
+        return "", "the program cuts before it starts the spindle"
+    return f"dwells for a spindle that takes {machine.spin_up_time:g} s to its highest speed", ""
+
+
+def _rows(trajectory: Trajectory, kind: EventKind) -> list[int]:
+    return [event.row for event in trajectory.events if event.kind is kind]

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Safe way: from one pose to another over a height at and above which the tip is free.
+
+The tool leaves along its axis, crosses above the height, and arrives along its axis. Whoever asks for it sees that the
+axes rise. Units: mm, {M}.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry.vectors import Array
+
+FLATTEST = 0.1
+"""Least z of a tool axis that a tool is retracted along: 84 degrees from upright: a height takes ten times its way."""
+
+
+@dataclass(frozen=True)
+class ToolPose:
+    """Where a tool is, or is to go.
+
+    Attributes:
+        tip: (3,) in {M}, mm.
+        axis: (3,) unit tool axis in {M}.
+        spin: of the platform about it, rad; NaN where that is left open.
+    """
+
+    tip: Array
+    axis: Array
+    spin: float
+
+    def rises_to(self, height: float) -> bool:
+        """Whether the tool is at the height, or can be retracted to it along its axis."""
+        return bool(self.tip[2] >= height or self.axis[2] >= FLATTEST)
+
+    def above(self, height: float) -> tuple[ToolPose, ...]:
+        """The pose from which the height is reached along the tool axis; none where the tip is that high already.
+
+        tip + (height - z) / k axis, with z of the tip and k of the axis along z.
+        """
+        rise = (height - self.tip[2]) / self.axis[2]
+        return (ToolPose(self.tip + rise * self.axis, self.axis, self.spin),) if rise > 0.0 else ()
+
+
+def safe_way(start: ToolPose, end: ToolPose, height: float) -> tuple[ToolPose, ...]:
+    """The poses to go through by straight moves, the end with them.
+
+    Args:
+        start: where the tool is.
+        end: where it is to go.
+        height: z in {M} at and above which the tip is free.
+    """
+    return (*start.above(height), *end.above(height), end)
+
+
+def columns(poses: list[ToolPose]) -> tuple[Array, Array, Array]:
+    """Tips (N, 3), axes (N, 3) and spins (N,) of poses."""
+    tips, axes = (np.array([getattr(pose, name) for pose in poses]).reshape(-1, 3) for name in ("tip", "axis"))
+    return tips, axes, np.array([pose.spin for pose in poses])

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Spindle waits: dwells in which the spindle gets to its speed before the motion goes on.
+
+A program enters; the same leaves with a dwell after each change of the spindle's speed, and with the spindle at rest
+before each tool change, which leaves it so [NGC 3.6.3]. The speed changes evenly, as drives do that are set by their
+time from rest to the highest speed and back [VFD-B 01-09].
+
+Where the machine file states no time, nothing waits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Program
+
+_PER_SECOND = 1000
+"""Waits are whole milliseconds."""
+
+
+@dataclass(frozen=True)
+class _Ramp:
+    """How a spindle changes its speed.
+
+    Attributes:
+        up: s for each revolution per minute faster.
+        down: s for each slower.
+    """
+
+    up: float
+    down: float
+
+    def seconds(self, before: float, after: float) -> float:
+        """From one speed to another, signed; the other way round it goes through rest."""
+        if before * after < 0.0:
+            return self.seconds(before, 0.0) + self.seconds(0.0, after)
+        faster = abs(after) - abs(before)
+        return faster * self.up if faster > 0.0 else -faster * self.down
+
+
+def with_spindle_waits(program: Program, machine: Machine) -> tuple[Program, tuple[Diagnostic, ...]]:
+    """The program with the waits of its spindle, and cuts with a spindle that a tool change has stopped.
+
+    Args:
+        program: with its spindle events and tool changes.
+        machine: the times of its spindle.
+    """
+    up = machine.spin_up_time
+    if up is None:
+        return program, ()
+    down = up if machine.spin_down_time is None else machine.spin_down_time
+    ramp = _Ramp(up / machine.spindle_speed, down / machine.spindle_speed)
+    return replace(program, events=tuple(_waited(program.events, ramp))), tuple(_cuts_at_rest(program))
+
+
+def _waited(events: tuple[Event, ...], ramp: _Ramp) -> Iterator[Event]:
+    speed, coasting = 0.0, 0.0  # as was said last, and that from which the spindle may still be coming to rest
+    for event in events:
+        if event.kind is EventKind.TOOL_CHANGE:
+            if speed:
+                yield Event(event.row, EventKind.SPINDLE, 0.0)
+            yield from _wait(event.row, ramp.seconds(speed or coasting, 0.0))
+            speed, coasting = 0.0, 0.0
+            yield event
+        elif event.kind is EventKind.SPINDLE:
+            yield event
+            if event.value:
+                possible = (speed,) if speed else (0.0, coasting)
+                yield from _wait(event.row, max(ramp.seconds(before, event.value) for before in possible))
+            coasting = 0.0 if event.value else speed or coasting
+            speed = event.value
+        else:
+            yield event
+
+
+def _wait(row: int, seconds: float) -> Iterator[Event]:
+    if seconds > 0.0:
+        yield Event(row, EventKind.DWELL, math.ceil(round(seconds * _PER_SECOND, 6)) / _PER_SECOND)
+
+
+def _cuts_at_rest(program: Program) -> Iterator[Diagnostic]:
+    """The first cut between a tool change that stops a running spindle and the next spindle event."""
+    speed = 0.0
+    cuts = np.append(np.flatnonzero(program.kind != Kind.RAPID), len(program))
+    stopped_at: int | None = None
+    for event in (*program.events, Event(len(program), EventKind.SPINDLE, 0.0)):
+        if event.kind is EventKind.SPINDLE:
+            if stopped_at is not None:
+                row = int(cuts[np.searchsorted(cuts, stopped_at)])
+                if row < event.row:
+                    yield Diagnostic("K143", program.place(row), f"the spindle was at {abs(speed):g} rpm before")
+            stopped_at, speed = None, event.value
+        elif event.kind is EventKind.TOOL_CHANGE and speed:
+            stopped_at = event.row
