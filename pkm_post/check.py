@@ -47,11 +47,12 @@ class Size:
 
 @dataclass(frozen=True)
 class Checked:
-    """What was found in a file; ``size`` is None when it could not be read."""
+    """What was found in a file; ``size`` is None when it could not be read, ``reading`` is as in ``model.Program``."""
 
     file: Path
     size: Size | None
     diagnostics: tuple[Diagnostic, ...]
+    reading: tuple[str, ...] = ()
 
     @property
     def is_clean(self) -> bool:
@@ -70,7 +71,9 @@ def check(file: Path, reading: Reading = AS_WRITTEN) -> Checked:
         ValueError: the suffix of the file is not known.
     """
     program, diagnostics = read_part_program(file, reading)
-    return Checked(file, None if program is None else size_of(program), diagnostics)
+    if program is None:
+        return Checked(file, None, diagnostics)
+    return Checked(file, size_of(program), diagnostics, program.reading)
 
 
 def size_of(program: Program) -> Size:
@@ -106,7 +109,7 @@ def _summits(start: Array, end: Array, centre: Array, axis: Array) -> Array:
 
 
 def as_text(results: Iterable[Checked]) -> str:
-    """Diagnostics with the lines they are about, then a row for each file."""
+    """Diagnostics with the lines they are about, how files were taken, then a row for each file."""
     results = tuple(results)
     told = [text for result in results for text in _told(result)]
     return "\n".join([*told, *_rows(results)])
@@ -114,7 +117,8 @@ def as_text(results: Iterable[Checked]) -> str:
 
 def _told(result: Checked) -> list[str]:
     lines = result.file.read_bytes().splitlines() if any(one.place.line for one in result.diagnostics) else []
-    return [text for one in result.diagnostics for text in (str(one), *_with_caret(one, lines))]
+    told = [text for one in result.diagnostics for text in (str(one), *_with_caret(one, lines))]
+    return [*told, *(f"{result.file}: {line}" for line in result.reading)]
 
 
 def _with_caret(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
@@ -166,6 +170,7 @@ def _entry(result: Checked) -> dict[str, Any]:
             }
             for one in result.diagnostics
         ],
+        "reading": list(result.reading),
         "size": None
         if size is None
         else {

@@ -33,10 +33,16 @@ class Reading:
         axis_words: how G-code says the tool axis, a key of ``AXIS_WORDS``.
         tools: by number, the cutters the file was made for: their diameters and corner radii go before those that it
             gives. Number 0 is the tool before any is called.
+        unit: of length, a key of ``cldata.UNITS``: of CL data whatever it says itself, of G-code before G20 or G21.
+        contour_data: one of ``cldata.CONTOUR_DATA``, what the points of CL data under CUTCOM are.
+        wear: by number, by how many mm in radius a tool is larger than CL data with CUTCOM was made for.
     """
 
     axis_words: str = "none"
     tools: Mapping[int, Tool] = field(default_factory=dict)
+    unit: str | None = None
+    contour_data: str | None = None
+    wear: Mapping[int, float] = field(default_factory=dict)
 
 
 AS_WRITTEN = Reading()
@@ -78,8 +84,13 @@ def _storable(file: Path) -> str:
 def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
     # A diameter that is no number shows where it was used.
     unknown = Tool(0, "", math.nan, 0.0, 0.0, corner_known=False)
-    options = gcode.ReadOptions(tools=reading.tools, default_tool=unknown, axis_words=reading.axis_words)
+    options = gcode.ReadOptions(
+        tools=reading.tools, default_tool=unknown, axis_words=reading.axis_words, unit=reading.unit or "mm"
+    )
     program, diagnostics = gcode.read(content, file, options)
+    if reading.wear:
+        found = "this is G-code: say the diameter that the cutter has by --tool"
+        return None, (*diagnostics, Diagnostic("L432", Place(file), found))
     if program is None:
         return None, diagnostics
     missing = np.flatnonzero(np.isnan(program.side_offset))
@@ -94,16 +105,10 @@ def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
 
 
 def _read_cldata(content: bytes, file: str, reading: Reading) -> Result:
-    program, diagnostics = cldata.read(content, file)
-    if program is None:
-        return None, diagnostics
-    tools = {number: _with_cutter(tool, reading.tools.get(number)) for number, tool in program.tools.items()}
-    return replace(program, tools=tools), diagnostics
-
-
-def _with_cutter(tool: Tool, cutter: Tool | None) -> Tool:
-    """The tool with another cutter, its name and its length as they are."""
-    return tool if cutter is None else replace(cutter, number=tool.number, name=tool.name, length=tool.length)
+    options = cldata.ReadOptions(
+        units=reading.unit, tools=reading.tools, contour_data=reading.contour_data, wear=reading.wear
+    )
+    return cldata.read(content, file, options)
 
 
 SUFFIXES: dict[str, Callable[[bytes, str, Reading], Result]] = {

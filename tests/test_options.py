@@ -13,10 +13,12 @@ from pkm_post.options import (
     add_options,
     arguments,
     options_from,
+    part_program_from,
     tool_lengths_from,
     tools_from,
 )
 from pkm_post.pipeline import Options
+from pkm_post.sources import AS_WRITTEN
 from pkm_post.spin import OBJECTIVES, ZERO_TORSION, Policy, Rule
 from pkm_post.surface_speed import SurfaceSpeed
 
@@ -48,6 +50,14 @@ def test_work_offset_as_a_pose():
     pose = options_from(parsed("--work-offset=-10,20,150.5,90")).work_offset
     np.testing.assert_allclose(pose @ [1, 0, 0, 1], [-10, 21, 150.5, 1], atol=1e-12)
     np.testing.assert_allclose(options_from(parsed("--work-offset", "1,2,3")).work_offset[:3, 3], [1, 2, 3])
+
+
+def test_what_a_part_program_does_not_say():
+    words = ["--unit", "inch", "--contour-data=centre", "--wear=3=-0.05", "--wear=3=0.1", "--tool=3=8"]
+    reading = part_program_from(parsed(*words), "vector")
+    assert (reading.axis_words, reading.unit, reading.contour_data) == ("vector", "inch", "centre")
+    assert (reading.wear, reading.tools[3].diameter) == ({3: 0.1}, 8)
+    assert part_program_from(parsed(), "none") == AS_WRITTEN
 
 
 def test_tool_lengths():

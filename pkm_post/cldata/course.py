@@ -85,6 +85,36 @@ class Point:
     start: bool = False
 
 
+@dataclass(frozen=True)
+class Said:
+    """What the file says of its points under CUTCOM: "centre" or "contour", in its own words, and in which row."""
+
+    points: str
+    words: str
+    row: int
+
+
+@dataclass(frozen=True)
+class Cutcom:
+    """A CUTCOM that begins, changes or ends compensation.
+
+    Attributes:
+        row: its statement.
+        side: 1 for LEFT, -1 for RIGHT, 0 for OFF.
+        plane: the coordinate that the plane it names is normal to; None if it names none.
+        tool: number of the tool.
+        radius: of the tool, mm; 0 where it is not known.
+        said: what the points are, None if the file does not say so.
+    """
+
+    row: int
+    side: float
+    plane: int | None
+    tool: int
+    radius: float
+    said: Said | None
+
+
 @dataclass
 class Course:
     """State while reading, and what was noted, each with the row of its statement.
@@ -118,7 +148,7 @@ class Course:
     bottom_angle: float = 0.0
     side_angle: float = 0.0
     length: float = 0.0
-    on_centre: bool = False
+    points_said: Said | None = None
     cycle_return: bool = True
     cycle: Cycle | None = None
     local: Array | None = None
@@ -141,7 +171,7 @@ class Course:
     arcs: list[tuple[int, Arc]] = field(default_factory=list)
     circles: list[tuple[int, Arc]] = field(default_factory=list)
     cycles: list[tuple[int, Cycle | None]] = field(default_factory=list)
-    sides: list[tuple[int, float, int]] = field(default_factory=list)
+    cutcoms: list[Cutcom] = field(default_factory=list)
     starts: list[tuple[int, int]] = field(default_factory=list)
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)
 

@@ -22,6 +22,8 @@ class Dialect:
         frames: major words that say the frame the points are given in; in others such words are for information.
         insert_is_tool: INSERT names the tool.
         pted: points follow on lines of their own, without GOTO, and comments may hold circles.
+        tight_arcs_are_centre: an arc under CUTCOM that no tool of its size could follow beside shows that the points
+            are the centre of the tool; in others it may as well be a tool that is too large.
     """
 
     name: str
@@ -31,6 +33,7 @@ class Dialect:
     frames: frozenset[str] = frozenset()
     insert_is_tool: bool = False
     pted: bool = False
+    tight_arcs_are_centre: bool = False
 
 
 DIALECTS: dict[str, Dialect] = {
@@ -43,7 +46,8 @@ DIALECTS: dict[str, Dialect] = {
         Dialect("catia", "CATIA aptsource",
                 r"\$\$[ \t]*CATIA APT|\$\$\*CATIA0|\$\$[ \t]*OPERATION NAME[ \t]*:|TLON,GOFWD", "right",
                 frozenset({"CATIA0"})),
-        Dialect("solidworks", "SolidWorks CAM, CAMWorks APT", r"CSI_SET_|TRNTYP/|UNIT/", "right", insert_is_tool=True),
+        Dialect("solidworks", "SolidWorks CAM, CAMWorks APT", r"CSI_SET_|TRNTYP/|UNIT/", "right", insert_is_tool=True,
+                tight_arcs_are_centre=True),
         Dialect("makino", "Makino FF APT-CL", r"PPRINT/APTCL-SPEC,MAKINO|PPRINT/BEGIN-SECTION", "left"),
         Dialect("apt", "NCL, APT", r"(?!)", "vote", frozenset({"MSYS", "CSYS", "CATIA0"}), pted=True),
     )

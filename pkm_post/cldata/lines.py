@@ -28,6 +28,11 @@ _DATA_COMMENT = re.compile(
     r"|^([ \t]*)\$\$(?=[ \t]*OPERATION[ \t]+NAME[ \t]*:)",
     re.MULTILINE | re.IGNORECASE,
 )
+_POINTS_COMMENT = re.compile(
+    r"^([ \t]*)\$\$[ \t]*(?:(cent(?:er|re)[ \t-]?line)|contact[ \t]+contour)[ \t]+data[ \t]*$",
+    re.MULTILINE | re.IGNORECASE,
+)
+"""What NX says of the points of a tool path."""
 _CIRCLE_COMMENT = re.compile(r"\$\$[ \t]*(?=(?:CIRCLE|CYLNDR)[ \t]*/[-+.,\dE \t]+$)", re.MULTILINE | re.IGNORECASE)
 _TEXT_GOES_ON = re.compile(
     r"^[ \t]*(?:PARTNO|PPRINT|INSERT|LETTER|DISPLY|TPRINT|REMARK)\b[^\n]*~[ \t]*\n(?:[^\n]*~[ \t]*\n)*",
@@ -78,6 +83,7 @@ def logical_lines(text: str) -> Lines:
     text = _QUOTED_OR_COMMENT.sub(_without_quoted_dollar, text) if "'" in text or '"' in text else text
     text = _CATIA_FRAME.sub(_frame_statement, text)
     text = _DATA_COMMENT.sub(lambda found: " " * len(found[0]), text)
+    text = _POINTS_COMMENT.sub(lambda found: f"{found[1]}_POINTS/{'CENTRE' if found[2] else 'CONTOUR'}", text)
     text = _CIRCLE_COMMENT.sub(_circle_statement, text)
     if "~" in text:
         text = _TEXT_GOES_ON.sub(lambda found: _TILDE.sub(JOINT, found[0]), text)

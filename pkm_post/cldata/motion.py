@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pkm_post.cldata.contour_data import Offset
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.cycles import Hole, hole
 from pkm_post.cldata.fit import Fitted
@@ -36,7 +37,9 @@ class Rows:
     axis: Array
 
 
-def program_of(course: Course, points: Points, arcs: Fitted, source: str) -> Program:
+def program_of(
+    course: Course, points: Points, arcs: Fitted, source: str, offsets: Sequence[Offset], reading: Sequence[str]
+) -> Program:
     """The program of a course.
 
     Args:
@@ -44,11 +47,14 @@ def program_of(course: Course, points: Points, arcs: Fitted, source: str) -> Pro
         points: resolved.
         arcs: with their ends.
         source: name of the file.
+        offsets: of the contours.
+        reading: how the file was taken, in words.
     """
     holes = _holes(course, points)
     rows = _rows(course, points, arcs, holes)
     _inverse_time(course, points, rows)
     point = rows.point
+    sides = [(change.row, change.offset, change.plane) for change in offsets]
     lines = course.statements.lines.number[course.statements.index[points.row]]
     return Program(
         kind=rows.kind,
@@ -63,9 +69,10 @@ def program_of(course: Course, points: Points, arcs: Fitted, source: str) -> Pro
         operations=tuple(course.operations),
         tools=dict(sorted(course.tools.items())),
         source=source,
-        side_offset=_column(course.sides, points.row, 1, 0.0)[point],
-        plane=_column(course.sides, points.row, 2, 2)[point].astype(np.uint8),
+        side_offset=_column(sides, points.row, 1, 0.0)[point],
+        plane=_column(sides, points.row, 2, 2)[point].astype(np.uint8),
         normal=points.normal[point],
+        reading=tuple(reading),
     )
 
 

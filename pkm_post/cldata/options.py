@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -19,6 +20,8 @@ CONTACT = ("px", "py", "pz")
 _VALUES = {*POINT, *AXIS, *NORMAL, *CONTACT}
 _HANDS = ("right", "left", "vote")
 _FRAMES = ("first", "absolute")
+CONTOUR_DATA = ("centre", "contour")
+"""What the points under CUTCOM can be."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,11 @@ class ReadOptions:
             "nx ny nz" the surface normal, "px py pz" the contact point, which is not used.
         frame: "first": the work frame is the first machining frame of the file; "absolute": the frame that those
             are given in.
-        tools: by number; they take precedence over what the file says of them.
+        tools: by number; they take precedence over what the file says of them, but for a name and a length that they
+            do not have.
+        contour_data: "centre" or "contour": what the points under CUTCOM are; overrides what the file says.
+        wear: mm by tool number that CUTCOM offsets the path by beside the radius of the tool, or alone where the
+            points are the centre of the tool; below 0 for a cutter that is smaller.
         default_tool: gives the gauge length of tools for which neither the file nor ``tools`` has one.
     """
 
@@ -44,13 +51,24 @@ class ReadOptions:
     goto_values: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     frame: str = "first"
     tools: Mapping[int, Tool] = field(default_factory=dict)
+    contour_data: str | None = None
+    wear: Mapping[int, float] = field(default_factory=dict)
     default_tool: Tool | None = None
 
     def __post_init__(self) -> None:
-        tables = {"dialect": (None, *DIALECTS), "units": (None, *UNITS), "hand": (None, *_HANDS), "frame": _FRAMES}
+        tables: dict[str, tuple[str | None, ...]] = {
+            "dialect": (None, *DIALECTS),
+            "units": (None, *UNITS),
+            "hand": (None, *_HANDS),
+            "frame": _FRAMES,
+            "contour_data": (None, *CONTOUR_DATA),
+        }
         for name, allowed in tables.items():
             if getattr(self, name) not in allowed:
                 raise ValueError(f"{name}: expected one of {allowed}, got {getattr(self, name)!r}")
+        for number, wear in self.wear.items():
+            if not math.isfinite(wear):
+                raise ValueError(f"wear: expected finite lengths, got {wear} for tool {number}")
         for count, names in self.goto_values.items():
             if len(names) != count or len(set(names)) != count or not {*POINT} <= {*names} <= _VALUES:
                 raise ValueError(f"goto_values: expected {count} different names with x, y, z, got {names!r}")

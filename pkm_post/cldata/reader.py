@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pkm_post.cldata.contour_data import contour_offsets
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.dialects import DIALECTS, detect
 from pkm_post.cldata.faults import Faults
@@ -69,7 +70,10 @@ def _program(course: Course, bulk: Array, names: ValueNames, file: str) -> Progr
     if course.faults.any_errors():
         return None
     _doubts(course, points)
-    return program_of(course, points, arcs, file)
+    offsets, reading = contour_offsets(course, points, frames, arcs)
+    if course.faults.any_errors():
+        return None
+    return program_of(course, points, arcs, file, offsets, reading)
 
 
 def _doubts(course: Course, points: Points) -> None:

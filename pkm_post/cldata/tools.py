@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tools: CUTTER, TLDATA, LOADTL, LOAD/TOOL, TOOLNO, and CUTCOM, which needs the tool's radius.
+"""Tools: CUTTER, TLDATA, LOADTL, LOAD/TOOL and TOOLNO.
 
-Statements enter; tools, tool changes and side offsets leave, in mm. Dialects give the cutter before or after
+Statements enter; tools and tool changes leave, in mm. Dialects give the cutter before or after
 the change, so a tool is known for what it is at the first motion behind both.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.feeds import shown
@@ -15,10 +16,8 @@ from pkm_post.cldata.statements import Statement
 from pkm_post.model import EventKind, Tool
 from pkm_post.model.tool import angles_fit, corner_reach, largest_corner
 
-_PLANES = {"XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
 _TOUCHING = 2e-3
 """How far in mm e and f may be from those of a corner that touches: files round to three decimals."""
-_SIDES = {"LEFT": 1.0, "RIGHT": -1.0}
 
 
 def cutter(course: Course, row: int, statement: Statement) -> None:
@@ -132,25 +131,6 @@ def keep(course: Course) -> None:
     length = course.length or (stands_for.length if stands_for else 0.0)
     shape = (course.diameter, course.corner, length, course.bottom_angle, course.side_angle)
     known = Tool(course.tool, course.tool_name, *shape, course.corner_known)
-    course.tools[course.tool] = given or known
-
-
-def cutcom(course: Course, row: int, statement: Statement) -> None:
-    """CUTCOM/LEFT or RIGHT[,plane][,n], CUTCOM/OFF; CUTCOM/ON keeps what is in force."""
-    words = statement.words
-    side = next((_SIDES[word] for word in words if word in _SIDES), 0.0)
-    if not words or not set(words) <= {*_SIDES, *_PLANES, "OFF", "ON", "ADJUST", "LENGTH"}:
-        course.tell("L401", row, f"CUTCOM/{shown(statement)}")
-        return
-    if not side and "OFF" not in words:
-        return
-    radius = 0.0 if course.on_centre else course.diameter / 2
-    if side and not radius and not course.on_centre:
-        course.tell("L403", row, "compensation for a cutter of unknown diameter")
-    plane = next((_PLANES[word] for word in words if word in _PLANES), 2)
-    course.sides.append((row, side * radius, plane))
-
-
-def cutcom_geometry(course: Course, row: int, statement: Statement) -> None:
-    """CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER or OUTPUT_ON_PROFILE, a comment of Creo."""
-    course.on_centre = "OUTPUT_ON_CENTER" in statement.words
+    if given is not None:
+        known = replace(given, name=given.name or known.name, length=given.length or known.length)
+    course.tools[course.tool] = known

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from pkm_post.cldata import arc_moves, arcs, feeds, frames, guided, holes, points, tools
+from pkm_post.cldata import arc_moves, arcs, cutcom, feeds, frames, guided, holes, points, tools
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.statements import Statement
 
@@ -18,6 +18,8 @@ Handler = Callable[[Course, int, Statement], None]
 
 def _operation(course: Course, row: int, statement: Statement) -> None:
     """TOOL PATH/name,TOOL,tool of NX, OPERATION NAME of CATIA, FEATNO of Creo: an operation begins."""
+    if statement.word == "TOOL PATH":  # what the points of a path are stands in its own header
+        course.points_said = None
     name, _, tool = statement.text.partition(",TOOL,")
     course.insert = tool or course.insert
     number = statement.numbers
@@ -43,7 +45,8 @@ HANDLERS: dict[str, Handler] = {
     "FEDRAT": feeds.fedrat, "RAPID": feeds.rapid, "SPINDL": feeds.spindl, "COOLNT": feeds.coolnt,
     "DELAY": feeds.delay, "DWELL": feeds.delay, "STOP": feeds.stop, "OPSTOP": feeds.stop,
     "CUTTER": tools.cutter, "TLDATA": tools.tldata, "LOADTL": tools.load, "LOAD": tools.load, "TOOLNO": tools.load,
-    "INSERT": tools.insert, "CUTCOM": tools.cutcom, "CUTCOM_GEOMETRY_TYPE": tools.cutcom_geometry,
+    "INSERT": tools.insert,
+    "CUTCOM": cutcom.cutcom, "CUTCOM_GEOMETRY_TYPE": cutcom.geometry_type, "_POINTS": cutcom.points_are,
     "UNITS": frames.units, "UNIT": frames.units, "MSYS": frames.frame, "CSYS": frames.frame, "CATIA0": frames.frame,
     "ORIGIN": frames.origin, "TRANS": frames.trans, "TRACUT": frames.trans, "TRNTYP": frames.trntyp,
     "TOOL PATH": _operation, "OPERATION NAME": _operation, "FEATNO": _operation, "FINI": _fini,

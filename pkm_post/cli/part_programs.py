@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pkm_post.cli.reading import add_reading, one_of, part_program, reading_from
-from pkm_post.options import add_tools
+from pkm_post.options import add_part_program
 
 
 def add_commands(commands: Any) -> None:
@@ -19,7 +19,7 @@ def add_commands(commands: Any) -> None:
     checking.add_argument("files", nargs="+", type=part_program, metavar="FILE")
     checking.add_argument("--json", action="store_true", help="write JSON instead of text")
     add_reading(checking)
-    add_tools(checking)
+    add_part_program(checking)
     checking.set_defaults(run=_check)
 
     converting = commands.add_parser("convert", help="write a part program in another form of G-code")
@@ -29,7 +29,7 @@ def add_commands(commands: Any) -> None:
     converting.add_argument("--out", required=True, type=Path, metavar="FILE", help="the file to write")
     converting.add_argument("--inch", action="store_true", help="write inches (G20)")
     add_reading(converting)
-    add_tools(converting)
+    add_part_program(converting)
     converting.set_defaults(run=_convert)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.options import tools_from
+from pkm_post.options import part_program_from
 
 if TYPE_CHECKING:
     from pkm_post.sources import Reading
@@ -32,9 +32,7 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
 
 def reading_from(namespace: argparse.Namespace) -> Reading:
     """What the user said of the part programs."""
-    from pkm_post.sources import Reading
-
-    return Reading(namespace.axis_words, tools_from(namespace))
+    return part_program_from(namespace, namespace.axis_words)
 
 
 def part_program(text: str) -> Path:

@@ -138,6 +138,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
         tools=_tools(settings.tools, options),
         source=blocks.source,
         source_fingerprint="",
+        reading=(),
     )
 
 

@@ -68,6 +68,7 @@ class Program:
         tools: the tools used, by number.
         source: name of the file the program comes from.
         source_fingerprint: SHA-256 of the bytes of that file, hexadecimal; empty where it is not known.
+        reading: how the file was taken where it can be taken in two ways, and by which evidence; in words, by subject.
         exact_stop: (N,) whether the motion comes to rest at the end of the row (G61); none does by default.
         exact_path: (N,) whether the corners at both ends of the row are followed and not rounded, so that the motion
             rests there (G61.1); none are by default.
@@ -96,6 +97,7 @@ class Program:
     tools: dict[int, Tool]
     source: str
     source_fingerprint: str = ""
+    reading: tuple[str, ...] = ()
     exact_stop: Array = None  # type: ignore[assignment] # filled in below
     exact_path: Array = None  # type: ignore[assignment] # filled in below
     tip_tolerance: Array = None  # type: ignore[assignment] # filled in below

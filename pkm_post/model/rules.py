@@ -193,7 +193,9 @@ RULES: dict[str, Rule] = {
     "L407": _error("a cutting move has no feed", "write FEDRAT before it"),
     "L408": _error("the arc does not fit its end points", "regenerate the path; the radii must agree to 0.05 mm"),
     "L409": _warning("the arc fits its end points badly", "write more decimals; the radii should agree to 0.0005 mm"),
-    "L410": _warning("the unit of length is doubtful", "check the size of the part, and say the unit as an option"),
+    "L410": _warning(
+        "the unit of length is doubtful", "check the size of the part, and say it by --unit mm or --unit inch"
+    ),
     "L411": _warning("the gauge length of the tool is unknown and 0 is taken", "give the tool with its length"),
     "L412": _error("the cycle cannot be carried out", "correct its items, or let the CAM system write single moves"),
     "L413": _error("nothing moves in the file", "check the file"),
@@ -204,6 +206,17 @@ RULES: dict[str, Rule] = {
     "L418": _warning(
         "e and f do not put the corner of the cutter against its bottom and side, and were passed over",
         "write the e and f of a corner that touches both, or leave them out",
+    ),
+    "L429": _error(
+        "CUTCOM has two readings: its points may be the contour of the part or the centre of the tool",
+        "say which by --contour-data contour or --contour-data centre",
+    ),
+    "L430": _warning(
+        "the points under CUTCOM were taken for the centre of the tool, by their arcs",
+        "check the size of the part, and say it by --contour-data centre or contour",
+    ),
+    "L432": _error(
+        "the wear of a tool changes nothing", "give --wear for a tool that the CL data compensates by CUTCOM"
     ),
     "L440": _TAPPING,
     # M1: the machine file

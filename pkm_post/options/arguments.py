@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from pkm_post.model import Tool
     from pkm_post.model.certificate import Tolerances
     from pkm_post.pipeline import Options
+    from pkm_post.sources import Reading
     from pkm_post.spin import Policy
     from pkm_post.surface_speed import SurfaceSpeed
 
@@ -154,6 +155,23 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "help": "diameter and corner radius in mm of the cutter in the spindle, where it is not the one that a program"
         " with surface normals was made for; may be repeated",
     },
+    "--unit": {
+        "choices": ("mm", "inch"),
+        "help": "unit of length of a part program: of CL data whatever it says itself, of G-code before G20 or G21",
+    },
+    "--contour-data": {
+        "choices": ("centre", "contour"),
+        "help": "what the points of CL data under CUTCOM are: the centre of the tool, which wear alone offsets, or the"
+        " contour of the part (default: as the file says)",
+    },
+    "--wear": {
+        "metavar": "NUMBER=MM",
+        "type": numbered(between(-100, 100), "NUMBER=MM"),
+        "action": "append",
+        "default": [],
+        "help": "by how much a tool is larger in radius than the one CL data with CUTCOM was made for, below 0 for a"
+        " worn one; may be repeated",
+    },
     "--surface-speed": {
         "metavar": "M/MIN",
         "type": above_zero(100_000),
@@ -190,9 +208,9 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
     _add(parser, ("--machine",))
 
 
-def add_tools(parser: argparse.ArgumentParser) -> None:
-    """Add the argument that says what cutters a part program was made for."""
-    _add(parser, ("--tool",))
+def add_part_program(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that say what a part program does not say itself."""
+    _add(parser, ("--tool", "--unit", "--contour-data", "--wear"))
 
 
 def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
@@ -223,6 +241,14 @@ def options_from(namespace: argparse.Namespace) -> Options:
         also=namespace.also,
         actual_tools=_cutters(namespace.actual_tool),
     )
+
+
+def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading:
+    """What a parsed command line says of a part program, beside how its G-code says the tool axis."""
+    from pkm_post.sources import Reading
+
+    wear = dict(namespace.wear)
+    return Reading(axis_words, tools_from(namespace), namespace.unit, namespace.contour_data, wear)
 
 
 def tools_from(namespace: argparse.Namespace) -> dict[int, Tool]:

@@ -99,7 +99,7 @@ def _all_steps(
     motion, struts = _interpolation(run, frame, trajectory, tool_path, schedule)
     names = _motion_program(run, frame, trajectory, struts)
     played, certificate = _certificate(run, frame, trajectory, motion, names)
-    report = _report(run, frame, trajectory, motion, played, certificate)
+    report = _report(run, frame, trajectory, motion, played, certificate, program.reading)
     for name in options.also:
         _write_another(run, frame, name, trajectory, played)
     return names, report
@@ -165,12 +165,18 @@ def _certificate(
 
 
 def _report(
-    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, played: StrutMotion, certificate: Certificate
+    run: Run,
+    frame: Frame,
+    trajectory: Trajectory,
+    motion: Motion,
+    played: StrutMotion,
+    certificate: Certificate,
+    reading: tuple[str, ...],
 ) -> dict[str, Any]:
     """Write the report as JSON and picture; its content."""
     with run.step(_REPORT) as told:
         machine, tolerances = frame.machine, frame.tolerances
-        report = summary.report(trajectory, machine, certificate, tolerances, played, motion)
+        report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading)
         summary.write(report, frame.beside("-report.json"))
         picture = frame.beside("-report.png")
         run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))

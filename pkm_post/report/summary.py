@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -46,12 +46,14 @@ def report(
     tolerances: Tolerances,
     struts: StrutMotion,
     motion: Motion,
+    reading: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """The report as data that JSON can hold."""
+    """The report as data that JSON can hold; ``reading`` is as in ``model.Program``."""
     return {
         "format": _FORMAT,
         "program": {
             "source": trajectory.source,
+            "reading": list(reading),
             "operations": list(trajectory.operations),
             "segments": len(trajectory),
             "cutting_length_mm": _rounded(trajectory.length[trajectory.kind != Kind.RAPID].sum(), 3),

@@ -189,7 +189,7 @@ def test_a_solidworks_frame_gives_the_axis_alone():
 
 def test_compensation_has_side_radius_and_plane():
     text = "GOTO/1,0,0\nCUTCOM/LEFT\nGOTO/2,0,0\nCUTCOM/RIGHT,ZXPLAN\nGOTO/3,0,0\nCUTCOM/OFF\nGOTO/4,0,0\n"
-    found = program(HEAD + text)
+    found = program("$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_PROFILE\n" + HEAD + text)
     assert found.side_offset[1:].tolist() == [0, 5, -5, 0]
     assert found.plane[1:].tolist() == [2, 2, 1, 2]
     centre = program("$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER\n" + HEAD + text)

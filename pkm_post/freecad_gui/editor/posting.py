@@ -20,9 +20,8 @@ from pkm_post.freecad_gui.post_steps import step_text
 from pkm_post.freecad_gui.preferences import GROUP, default_arguments
 from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Place, Refused
-from pkm_post.options import options_from, tool_lengths_from, tools_from
+from pkm_post.options import options_from, part_program_from, tool_lengths_from
 from pkm_post.post_file import post_file
-from pkm_post.sources import Reading
 
 translate = FreeCAD.Qt.translate
 
@@ -67,7 +66,7 @@ class Posting(QtCore.QObject):
             return
         options, lengths = options_from(chosen), tool_lengths_from(chosen)
         out = folder or file.parent
-        call = partial(post_file, file, chosen.machine, out, options, lengths, Reading(axis_words, tools_from(chosen)))
+        call = partial(post_file, file, chosen.machine, out, options, lengths, part_program_from(chosen, axis_words))
         task = Task(lambda: call(progress=task.tell), self)
         self._task, self._progress = task, self._bar(task)
         task.finished.connect(self._end)

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contour data: whether the points under CUTCOM are the contour of the part or the centre of the tool.
+
+The CUTCOMs of a course, its points and its arcs enter; how far each CUTCOM offsets the path leaves, in mm, and in
+words how the points were taken and why. Offset beside a contour is the radius of the tool and its wear; beside the
+centre, wear alone. The option decides, else what the file says, else in some dialects its arcs; else the file is
+refused.
+
+An arc that bends towards the tool and is tighter than its radius cannot be followed beside it: no control takes such a
+contour. An arc that bends away and is tighter cannot be the way of a centre round a part. A tool has one offset in a
+program, so what its arcs show of one contour holds for all that it cuts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pkm_post.cldata.course import Course, Cutcom
+from pkm_post.cldata.fit import Fitted
+from pkm_post.cldata.points import Points, in_force
+from pkm_post.geometry.arcs import across
+from pkm_post.geometry.vectors import dot, norm
+from pkm_post.model.program import Array
+
+CENTRE, CONTOUR = "centre", "contour"
+_IN_WORDS = {CENTRE: "the centre of the tool", CONTOUR: "the contour of the part"}
+_TIGHTER = 0.01
+"""mm by which a radius has to be below that of the tool to count: arcs of the radius itself show nothing."""
+
+
+@dataclass(frozen=True)
+class Offset:
+    """How rows behind a statement are compensated: mm to the left in a plane, 0 for not at all."""
+
+    row: int
+    offset: float
+    plane: int
+
+
+@dataclass(frozen=True)
+class _Taken:
+    """What the points of a CUTCOM were taken for, empty if that is not known, by what, and whether that was guessed."""
+
+    points: str = ""
+    evidence: str = ""
+    by_arcs: bool = False
+
+
+@dataclass
+class _Tight:
+    """The arcs of one tool that are tighter than it: their statements and radii."""
+
+    towards: list[tuple[int, float]] = field(default_factory=list)
+    away: list[tuple[int, float]] = field(default_factory=list)
+
+
+def contour_offsets(course: Course, points: Points, frames: Array, arcs: Fitted) -> tuple[list[Offset], list[str]]:
+    """What each CUTCOM comes to, and how its points were taken, in words.
+
+    Args:
+        course: has the CUTCOMs; gets the faults.
+        points: resolved.
+        frames: (P, 4, 4) or (1, 4, 4) what took them to the work frame.
+        arcs: with their ends.
+    """
+    _tell_unused_wear(course)
+    normal = _normals(course, points, frames)
+    tight = _tight_arcs(course, points, arcs, normal)
+    taken = [_taken(course, cutcom, tight) for cutcom in course.cutcoms]
+    _tell_undecided(course, taken, tight)
+    offsets = []
+    for cutcom, how, axis in zip(course.cutcoms, taken, normal, strict=True):
+        plane = int(np.argmax(np.abs(axis)))
+        left = _distance(course, cutcom, how) * cutcom.side * np.sign(axis[plane])
+        offsets.append(Offset(cutcom.row, float(left) + 0.0, plane))
+    return offsets, _told(course, taken)
+
+
+def _normals(course: Course, points: Points, frames: Array) -> Array:
+    """Normals of the planes of compensation, (C, 3): of those that are named, else the tool axis at the next point."""
+    nexts = np.searchsorted(points.row, [cutcom.row for cutcom in course.cutcoms])
+    nexts = np.minimum(nexts, len(points.row) - 1)
+    normal = points.axis[nexts]
+    turn = frames[nexts] if len(frames) > 1 else np.broadcast_to(frames[0], (len(nexts), 4, 4))
+    for index, cutcom in enumerate(course.cutcoms):
+        if cutcom.plane is not None:
+            normal[index] = turn[index, :3, cutcom.plane]
+    return normal
+
+
+def _tight_arcs(course: Course, points: Points, arcs: Fitted, normal: Array) -> dict[int, _Tight]:
+    """By tool, the arcs under its CUTCOMs that are tighter than it."""
+    row = points.row[arcs.point]
+    owner = in_force(row, [cutcom.row for cutcom in course.cutcoms])
+    mine = np.flatnonzero(owner >= 0)
+    owner, end = owner[mine], arcs.point[mine]
+    side = np.array([cutcom.side for cutcom in course.cutcoms])[owner]
+    size = np.array([cutcom.radius for cutcom in course.cutcoms])[owner]
+    radius = norm(across(points.position[end - 1] - arcs.centre[mine], arcs.axis[mine]))
+    bend = side * dot(arcs.axis[mine], normal[owner])
+    found: dict[int, _Tight] = {}
+    for index in np.flatnonzero((radius < size - _TIGHTER) & (np.abs(bend) > 0.5)).tolist():
+        one = found.setdefault(course.cutcoms[owner[index]].tool, _Tight())
+        (one.towards if bend[index] > 0 else one.away).append((int(points.row[end[index]]), float(radius[index])))
+    return found
+
+
+def _taken(course: Course, cutcom: Cutcom, tight: dict[int, _Tight]) -> _Taken:
+    """What the points of a CUTCOM are."""
+    if not cutcom.side:
+        return _Taken()
+    if course.options.contour_data is not None:
+        return _Taken(course.options.contour_data, "as the option says")
+    if cutcom.said is not None:
+        return _Taken(cutcom.said.points, f"as {cutcom.said.words} says")
+    arcs = tight.get(cutcom.tool, _Tight())
+    if course.dialect.tight_arcs_are_centre and arcs.towards and not arcs.away:
+        shown = _shown(course, arcs.towards, "bend towards the tool", cutcom.radius)
+        return _Taken(CENTRE, shown, by_arcs=True)
+    return _Taken()
+
+
+def _distance(course: Course, cutcom: Cutcom, how: _Taken) -> float:
+    """How far the tool goes from the points, to the side of the CUTCOM, mm."""
+    if how.points == CONTOUR and not cutcom.radius:
+        course.tell("L403", cutcom.row, "compensation for a cutter of unknown diameter")
+    radius = cutcom.radius if how.points == CONTOUR else 0.0
+    return radius + course.options.wear.get(cutcom.tool, 0.0)
+
+
+def _told(course: Course, taken: list[_Taken]) -> list[str]:
+    """How points were taken, in words; what was guessed is a warning as well."""
+    rows: dict[_Taken, list[int]] = {}
+    for cutcom, how in zip(course.cutcoms, taken, strict=True):
+        if how.points:
+            rows.setdefault(how, []).append(cutcom.row)
+    for how, mine in rows.items():
+        if how.by_arcs:
+            course.tell("L430", mine[0], how.evidence)
+    return [f"{_lines(course, mine)}: points are {_IN_WORDS[how.points]}, {how.evidence}" for how, mine in rows.items()]
+
+
+def _lines(course: Course, rows: list[int]) -> str:
+    """CUTCOMs by the line of the first one."""
+    others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
+    return f"CUTCOM in line {course.statements.place(rows[0])[0]}{others}"
+
+
+def _tell_undecided(course: Course, taken: list[_Taken], tight: dict[int, _Tight]) -> None:
+    """Tell of each tool whose CUTCOMs can be read in two ways, with what its arcs show."""
+    by_tool: dict[int, list[Cutcom]] = {}
+    for cutcom, how in zip(course.cutcoms, taken, strict=True):
+        if cutcom.side and not how.points:
+            by_tool.setdefault(cutcom.tool, []).append(cutcom)
+    for tool, mine in by_tool.items():
+        arcs, radius = tight.get(tool, _Tight()), mine[0].radius
+        hints = [f"{_lines(course, [cutcom.row for cutcom in mine])} with T{tool}"]
+        if arcs.towards:
+            hints.append(f"{_shown(course, arcs.towards, 'bend towards the tool', radius)}, as the centre may")
+        if arcs.away:
+            hints.append(f"{_shown(course, arcs.away, 'bend away from the tool', radius)}, as a contour may")
+        course.tell("L429", mine[0].row, "; ".join(hints))
+
+
+def _shown(course: Course, arcs: list[tuple[int, float]], how: str, radius: float) -> str:
+    row, tightest = min(arcs, key=lambda arc: arc[1])
+    line = course.statements.place(row)[0]
+    return f"{len(arcs)} arcs {how} and are tighter than its radius of {radius:g} mm, line {line} by {tightest:.6g} mm"
+
+
+def _tell_unused_wear(course: Course) -> None:
+    """Tell wear of tools that are never compensated: it would change nothing."""
+    used = {cutcom.tool for cutcom in course.cutcoms if cutcom.side}
+    for number in sorted(set(course.options.wear) - used):
+        known = ", ".join(f"T{tool}" for tool in sorted(used)) or "no tool"
+        course.faults.add("L432", (0, 0), f"T{number}, CUTCOM is for {known}")
