@@ -36,6 +36,9 @@ class Reading:
         unit: of length, a key of ``cldata.UNITS``: of CL data whatever it says itself, of G-code before G20 or G21.
         contour_data: one of ``cldata.CONTOUR_DATA``, what the points of CL data under CUTCOM are.
         wear: by number, by how many mm in radius a tool is larger than CL data with CUTCOM was made for.
+        cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; by its words if None.
+        cycle_values: what the numbers of CYCLE statements are where they have no words, out of
+            ``cldata.CYCLE_VALUES``.
     """
 
     axis_words: str = "none"
@@ -43,6 +46,8 @@ class Reading:
     unit: str | None = None
     contour_data: str | None = None
     wear: Mapping[int, float] = field(default_factory=dict)
+    cl_dialect: str | None = None
+    cycle_values: tuple[str, ...] = ()
 
 
 AS_WRITTEN = Reading()
@@ -106,7 +111,12 @@ def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
 
 def _read_cldata(content: bytes, file: str, reading: Reading) -> Result:
     options = cldata.ReadOptions(
-        units=reading.unit, tools=reading.tools, contour_data=reading.contour_data, wear=reading.wear
+        dialect=reading.cl_dialect,
+        units=reading.unit,
+        tools=reading.tools,
+        contour_data=reading.contour_data,
+        wear=reading.wear,
+        cycle_values=reading.cycle_values,
     )
     return cldata.read(content, file, options)
 

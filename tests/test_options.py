@@ -6,6 +6,7 @@ import argparse
 import numpy as np
 import pytest
 
+from pkm_post import cldata
 from pkm_post.compensation import OffsetOptions
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
@@ -58,6 +59,19 @@ def test_what_a_part_program_does_not_say():
     assert (reading.axis_words, reading.unit, reading.contour_data) == ("vector", "inch", "centre")
     assert (reading.wear, reading.tools[3].diameter) == ({3: 0.1}, 8)
     assert part_program_from(parsed(), "none") == AS_WRITTEN
+    reading = part_program_from(parsed("--cl-dialect=creo", "--cycle-values=depth,feed,clearance"), "none")
+    assert (reading.cl_dialect, reading.cycle_values) == ("creo", ("depth", "feed", "clearance"))
+
+
+def test_what_cl_data_may_be_said_to_be_is_what_its_reader_knows():
+    assert (*cldata.DIALECTS,) == arguments.CL_DIALECTS
+    assert arguments.CYCLE_VALUES == cldata.CYCLE_VALUES
+
+
+@pytest.mark.parametrize("names", ["depth,feed,depth", "depth,height", "", "depth,"])
+def test_values_of_cycles_are_different_names(names):
+    with pytest.raises(SystemExit):
+        parsed("--cycle-values", names)
 
 
 def test_tool_lengths():

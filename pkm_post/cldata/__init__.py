@@ -2,7 +2,7 @@
 """CL data: APT cutter locations, in the dialects of CAM systems, become a ``Program``."""
 
 from pkm_post.cldata.dialects import DIALECTS, Dialect, detect
-from pkm_post.cldata.options import CONTOUR_DATA, UNITS, ReadOptions
+from pkm_post.cldata.options import CONTOUR_DATA, CYCLE_VALUES, UNITS, ReadOptions
 from pkm_post.cldata.reader import read
 
-__all__ = ["CONTOUR_DATA", "DIALECTS", "UNITS", "Dialect", "ReadOptions", "detect", "read"]
+__all__ = ["CONTOUR_DATA", "CYCLE_VALUES", "DIALECTS", "UNITS", "Dialect", "ReadOptions", "detect", "read"]

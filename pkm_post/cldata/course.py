@@ -149,7 +149,7 @@ class Course:
     side_angle: float = 0.0
     length: float = 0.0
     points_said: Said | None = None
-    cycle_return: bool = True
+    cycle_return: str = ""
     cycle: Cycle | None = None
     local: Array | None = None
     shift: Array | None = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Holes: the CYCLE statement, its items by name in any order.
+"""Holes: the CYCLE statement becomes a cycle, whoever wrote it.
 
 A statement enters; what it says leaves as a cycle of the course, in mm and mm/s.
 """
@@ -10,101 +10,123 @@ import math
 from collections.abc import Mapping
 
 from pkm_post.cldata.course import Course
-from pkm_post.cldata.cycles import (
-    CLEARANCE,
-    DEPTH,
-    FIRST_STEP,
-    MOST_PECKS,
-    NAMES,
-    PECKS,
-    RETURN,
-    STEP,
-    TAPPING,
-    Cycle,
-)
-from pkm_post.cldata.feeds import FEED_WORDS, feed_of, shown
+from pkm_post.cldata.cycle_items import CycleError, CycleItems
+from pkm_post.cldata.cycle_words import CAMWORKS, TAPPING, CycleWords, kind_of_some, words_by_use, words_of_dialect
+from pkm_post.cldata.cycles import Cycle, Strokes
+from pkm_post.cldata.feeds import feed_of, shown
 from pkm_post.cldata.statements import Statement
+
+MOST_PECKS = 10000
+_RETURNS = ("INIT", "CLEAR")
+"""Of CAMWorks: the tool returns to the height before the cycle, or RTRCTO where it is written, or to the clearance."""
 
 
 def cycle(course: Course, row: int, statement: Statement) -> None:
     """CYCLE/kind,items; INIT and CLEAR say where the tool returns to; ON and OFF."""
-    kind = next(iter(statement.words), "")
-    if kind == "OFF":
+    word = next(iter(statement.words), "")
+    if word == "OFF":
         course.cycles.append((row, None))
-    elif kind == "ON" and course.cycle is not None:
+    elif word == "ON" and course.cycle is not None:
         course.cycles.append((row, course.cycle))
-    elif kind in ("INIT", "CLEAR") and len(statement.items) == 1:
-        course.cycle_return = kind == "INIT"
-    elif kind in TAPPING:
-        course.tell("L440", row, f"CYCLE/{kind}")
-    elif kind not in PECKS:
-        course.tell("L401", row, f"CYCLE/{shown(statement)}")
+    elif word in _RETURNS and len(statement.items) == 1 and words_of_dialect(course.dialect.name) in (None, CAMWORKS):
+        course.cycle_return = word
     else:
-        _start(course, row, statement, kind)
+        try:
+            course.cycle = _understood(course, statement)
+            course.cycles.append((row, course.cycle))
+        except CycleError as fault:
+            course.tell(fault.code, row, fault.found)
 
 
-def _start(course: Course, row: int, statement: Statement, kind: str) -> None:
-    """Take a cycle over, if it can be carried out."""
-    values, unknown = _named(statement)
-    if unknown:
-        course.tell("L412", row, f"{unknown}, expected one of {', '.join(sorted(NAMES | FEED_WORDS))}")
-        return
-    found = _cycle(course, kind, values)
-    wrong = _wrong(found)
+def _understood(course: Course, statement: Statement) -> Cycle:
+    """The cycle of a statement."""
+    ours = words_of_dialect(course.dialect.name)
+    words = ours or words_by_use(statement.words)
+    kind = _kind(statement, words, guessed=ours is None)
+    items = CycleItems(words, kind, ours is None, course.options.cycle_values)
+    items.read(statement.items[len(kind.split(",")) :])
+    _check_signs(items)
+    found = _cycle(course, words.kinds[kind], items)
+    wrong = _wrong(found, words)
     if wrong:
-        course.tell("L412", row, f"CYCLE/{kind}: {wrong}")
-        return
-    course.cycle = found
-    course.cycles.append((row, found))
+        raise CycleError("L412", f"CYCLE/{kind}: {wrong}")
+    return found
 
 
-def _named(statement: Statement) -> tuple[dict[str, float], str]:
-    """The numbers by the word before them, a leading one as DEPTH; and the first item that is not understood."""
-    values: dict[str, float] = {}
-    name = "DEPTH"
-    for item in statement.items[1:]:
-        if isinstance(item, str) and item in NAMES | FEED_WORDS:
-            name = item
-        elif isinstance(item, float) and name not in values:
-            values[name] = item
-        elif item is not None:
-            return values, f"{item:g}" if isinstance(item, float) else item if isinstance(item, str) else item.word
-    return values, ""
+def _kind(statement: Statement, words: CycleWords, guessed: bool) -> str:
+    """The kind of a cycle, of two words or of one."""
+    first = [item for item in statement.items[:2] if isinstance(item, str)]
+    candidates = [",".join(first), *first[:1]]
+    if TAPPING & set(first):
+        raise CycleError("L440", f"CYCLE/{candidates[0]}")
+    for kind in candidates:
+        if kind in words.kinds:
+            return kind
+    if guessed and any(map(kind_of_some, candidates)):
+        raise CycleError("L419", f"CYCLE/{shown(statement)}: {candidates[-1]} with the words of {words.maker}")
+    raise CycleError("L401", f"CYCLE/{shown(statement)}")
 
 
-def _cycle(course: Course, kind: str, values: Mapping[str, float]) -> Cycle:
+def _check_signs(items: CycleItems) -> None:
+    """Make the depth positive; refuse a bottom that is not below the point, and other heights that are."""
+    values = items.values
+    written = values.get("depth", items.words.down)
+    values["depth"] = written * items.words.down if "depth" in values else math.nan
+    if values["depth"] <= 0 and items.guessed:
+        raise CycleError("L419", f"depth {written:g}, above the point for {items.words.maker}")
+    wrong = [f"{name} {value:g}" for name, value in values.items() if value < 0 or (name == "depth" and not value)]
+    if wrong:
+        raise CycleError("L412", f"CYCLE/{items.kind}: {', '.join(wrong)}")
+
+
+def _cycle(course: Course, strokes: Strokes, items: CycleItems) -> Cycle:
     """The cycle that the values say; NaN where something is missing."""
-
-    def length(names: tuple[str, ...], default: float) -> float:
-        return next((abs(values[name]) * course.scale for name in names if name in values), default)
-
-    clearance = length(CLEARANCE, math.nan)
-    height = max(length(RETURN, clearance), clearance) if course.cycle_return else clearance
-    unit = next((word for word in values if word in FEED_WORDS), None)
-    current = course.feed_per_turn, course.feed
-    feed = current[1] if unit is None else feed_of(course, unit, values[unit])
-    course.feed_per_turn = current[0]
-    pecks = PECKS[kind] != "none"
+    values, scale = items.values, course.scale
+    clearance = values.get("clearance", math.nan) * scale
+    returns = "return" in values and course.cycle_return != "CLEAR"
+    before = values["return"] == items.words.initial if returns else course.cycle_return == "INIT"
+    pecks = strokes.pecks != "none"
     return Cycle(
-        kind=kind,
-        depth=length(DEPTH, math.nan),
+        strokes=strokes,
+        depth=values["depth"] * scale,
         clearance=clearance,
-        height=height,
-        step=length(STEP, math.nan) if pecks else 0.0,
-        first_step=length(FIRST_STEP, 0.0) if pecks else 0.0,
-        dwell=max(values.get("DWELL", 0.0), 0.0),
-        feed=math.nan if feed is None or feed.inverse else feed.value,
+        start=clearance - values.get("advance", 0.0) * scale,
+        height=max(values["return"] * scale, clearance) if returns else clearance,
+        to_initial=items.to_initial or before,
+        step=values.get("step", math.nan) * scale if pecks else 0.0,
+        first_step=values.get("first step", 0.0) * scale if pecks else 0.0,
+        dwell=_dwell(course, values),
+        feed=_feed(course, items.feed),
     )
 
 
-def _wrong(cycle: Cycle) -> str:
+def _dwell(course: Course, values: Mapping[str, float]) -> float:
+    """The dwell at the bottom in s; of turns of a spindle at rest, which never end, infinite."""
+    turns = values.get("turns", 0.0)
+    return turns * 60 / course.speed if turns and course.speed else math.inf if turns else values.get("dwell", 0.0)
+
+
+def _feed(course: Course, given: tuple[str, float] | None) -> float:
+    """The feed of the cycle in mm/s, NaN if it has none; the feed of the moves around it stays as it is."""
+    if given is None:
+        return math.nan if course.feed is None or course.feed.inverse else course.feed.value
+    per_turn = course.feed_per_turn
+    feed = feed_of(course, given[0] or course.feed_word, given[1])
+    course.feed_per_turn = per_turn
+    return math.nan if feed.inverse else feed.value
+
+
+def _wrong(cycle: Cycle, words: CycleWords) -> str:
     """Why the cycle cannot be carried out, empty if it can."""
-    names = {"depth": DEPTH, "clearance": CLEARANCE, "step": STEP}
-    missing = [" or ".join(words) for field, words in names.items() if math.isnan(getattr(cycle, field))]
+    missing = [words.words_for(name) for name in ("depth", "clearance", "step") if math.isnan(getattr(cycle, name))]
     if missing:
         return f"{', '.join(missing)} is missing"
     if not cycle.feed > 0:
         return "it has no feed in mm/min"
-    if PECKS[cycle.kind] != "none" and not cycle.step * MOST_PECKS > cycle.depth:
+    if cycle.start < 0:
+        return f"the feed begins {-cycle.start:g} mm below the point"
+    if not math.isfinite(cycle.dwell):
+        return "it dwells for turns of a spindle at rest"
+    if cycle.strokes.pecks != "none" and not cycle.step * MOST_PECKS > cycle.depth:
         return f"the step is {cycle.step:g} mm"
     return ""

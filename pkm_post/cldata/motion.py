@@ -14,7 +14,8 @@ import numpy as np
 
 from pkm_post.cldata.contour_data import Offset
 from pkm_post.cldata.course import Course
-from pkm_post.cldata.cycles import Hole, hole
+from pkm_post.cldata.cycle_moves import Hole
+from pkm_post.cldata.drilled import drilled_holes
 from pkm_post.cldata.fit import Fitted
 from pkm_post.cldata.points import Points, in_force
 from pkm_post.geometry.arcs import arc_length, arc_sweep
@@ -31,6 +32,7 @@ class Rows:
     point: Array
     kind: Array
     position: Array
+    tool_axis: Array
     feed: Array
     inverse: Array
     centre: Array
@@ -50,7 +52,7 @@ def program_of(
         offsets: of the contours.
         reading: how the file was taken, in words.
     """
-    holes = _holes(course, points)
+    holes = drilled_holes(course, points)
     rows = _rows(course, points, arcs, holes)
     _inverse_time(course, points, rows)
     point = rows.point
@@ -59,7 +61,7 @@ def program_of(
     return Program(
         kind=rows.kind,
         position=rows.position,
-        tool_axis=points.axis[point],
+        tool_axis=rows.tool_axis,
         feed=rows.feed,
         arc_centre=rows.centre,
         arc_axis=rows.axis,
@@ -83,20 +85,6 @@ def _column(changes: Sequence[tuple[float, ...]], row: Array, item: int, first: 
     return column
 
 
-def _holes(course: Course, points: Points) -> dict[int, Hole]:
-    """The points at which a cycle is in force, with its moves."""
-    cycles = [None, *(cycle for _, cycle in course.cycles)]
-    active = in_force(points.row, [row for row, _ in course.cycles]) + 1
-    drilling = np.array([cycle is not None for cycle in cycles], dtype=np.bool_)[active]
-    holes: dict[int, Hole] = {}
-    for point in np.flatnonzero(drilling & ~points.start).tolist():
-        cycle = cycles[active[point]]
-        before = holes[point - 1].position[-1] if point - 1 in holes else points.position[point - 1]
-        if cycle is not None:
-            holes[point] = hole(cycle, before if point else None, points.position[point], points.axis[point])
-    return holes
-
-
 def _rows(course: Course, points: Points, arcs: Fitted, holes: dict[int, Hole]) -> Rows:
     """The rows: of one point one, but for holes and arcs of several turns."""
     count = np.ones(len(points.row), dtype=np.int64)
@@ -115,7 +103,8 @@ def _rows(course: Course, points: Points, arcs: Fitted, holes: dict[int, Hole]) 
     feed = in_force(points.row, [row for row, _ in course.feeds]) + 1
     kind = np.where(_rapid(course, points), Kind.RAPID, Kind.LINE)[point]
     kind[is_arc] = Kind.ARC
-    rows = Rows(start, point, kind, points.position[point], feeds[feed][point], inverse[feed][point], centre, axis)
+    position, tool_axis = points.position[point], points.axis[point]
+    rows = Rows(start, point, kind, position, tool_axis, feeds[feed][point], inverse[feed][point], centre, axis)
     _fill_turns(points, arcs, rows)
     for index, moves in holes.items():
         _fill_hole(rows, start[index], moves)
@@ -148,7 +137,8 @@ def _fill_turns(points: Points, arcs: Fitted, rows: Rows) -> None:
 def _fill_hole(rows: Rows, first: int, moves: Hole) -> None:
     """Write the moves of a hole."""
     mine = slice(first, first + len(moves.feed))
-    rows.position[mine], rows.feed[mine], rows.inverse[mine] = moves.position, moves.feed, False
+    rows.position[mine], rows.tool_axis[mine] = moves.position, moves.axis
+    rows.feed[mine], rows.inverse[mine] = moves.feed, False
     rows.kind[mine] = np.where(np.isnan(moves.feed), Kind.RAPID, Kind.LINE)
     rows.centre[mine] = rows.axis[mine] = np.nan
 

@@ -22,6 +22,8 @@ _HANDS = ("right", "left", "vote")
 _FRAMES = ("first", "absolute")
 CONTOUR_DATA = ("centre", "contour")
 """What the points under CUTCOM can be."""
+CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell")
+"""What a number without a word in a CYCLE statement may be."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,8 @@ class ReadOptions:
             whole file the hand under which most arcs are shorter than half a turn.
         goto_values: for GOTO with other than 3 or 6 values what each value is: "x y z", "i j k" the tool axis,
             "nx ny nz" the surface normal, "px py pz" the contact point, which is not used.
+        cycle_values: what the numbers of a CYCLE statement are that follows its kind without words, in order, out of
+            ``CYCLE_VALUES``: depth down from the point, clearance and return height up from it.
         frame: "first": the work frame is the first machining frame of the file; "absolute": the frame that those
             are given in.
         tools: by number; they take precedence over what the file says of them, but for a name and a length that they
@@ -49,6 +53,7 @@ class ReadOptions:
     units: str | None = None
     hand: str | None = None
     goto_values: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    cycle_values: tuple[str, ...] = ()
     frame: str = "first"
     tools: Mapping[int, Tool] = field(default_factory=dict)
     contour_data: str | None = None
@@ -69,6 +74,8 @@ class ReadOptions:
         for number, wear in self.wear.items():
             if not math.isfinite(wear):
                 raise ValueError(f"wear: expected finite lengths, got {wear} for tool {number}")
+        if len(set(self.cycle_values)) != len(self.cycle_values) or not {*self.cycle_values} <= {*CYCLE_VALUES}:
+            raise ValueError(f"cycle_values: expected different names out of {CYCLE_VALUES}, got {self.cycle_values!r}")
         for count, names in self.goto_values.items():
             if len(names) != count or len(set(names)) != count or not {*POINT} <= {*names} <= _VALUES:
                 raise ValueError(f"goto_values: expected {count} different names with x, y, z, got {names!r}")

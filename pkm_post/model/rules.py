@@ -207,6 +207,17 @@ RULES: dict[str, Rule] = {
         "e and f do not put the corner of the cutter against its bottom and side, and were passed over",
         "write the e and f of a corner that touches both, or leave them out",
     ),
+    "L419": _error(
+        "makers of CAM systems mean different things by the words of this cycle",
+        "name the CAM system with --cl-dialect, or let it write single moves",
+    ),
+    "L420": _error(
+        "the cycle has numbers without words, and what they are is not known",
+        "say it with --cycle-values, such as depth,feed,clearance",
+    ),
+    "L421": _error(
+        "the tool axis turns by more than 60 degrees on the way to a hole", "let the CAM system write the moves between"
+    ),
     "L429": _error(
         "CUTCOM has two readings: its points may be the contour of the part or the centre of the tool",
         "say which by --contour-data contour or --contour-data centre",

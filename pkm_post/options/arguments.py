@@ -86,6 +86,20 @@ def _also(text: str) -> tuple[str, ...]:
     return tuple(name for name in ALSO if name in chosen)
 
 
+CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "makino", "apt")
+"""Who writes CL data, as ``cldata.DIALECTS`` has them."""
+CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell")
+"""What a number of a cycle may be, as ``cldata.CYCLE_VALUES`` has them."""
+
+
+def _cycle_values(text: str) -> tuple[str, ...]:
+    """Names, each at most once, in their order."""
+    chosen = tuple(text.split(","))
+    if not set(chosen) <= set(CYCLE_VALUES) or len(set(chosen)) < len(chosen):
+        raise argparse.ArgumentTypeError(f"expected different names out of {', '.join(CYCLE_VALUES)}, got {text!r}")
+    return chosen
+
+
 def _spin_words() -> str:
     return ", ".join(rule + (f"[={value}]" if value else "") for rule, value in _SPINS.items())
 
@@ -172,6 +186,17 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "help": "by how much a tool is larger in radius than the one CL data with CUTCOM was made for, below 0 for a"
         " worn one; may be repeated",
     },
+    "--cl-dialect": {
+        "choices": CL_DIALECTS,
+        "help": "the CAM system that wrote CL data (default: the one whose words it has)",
+    },
+    "--cycle-values": {
+        "metavar": "NAMES",
+        "type": _cycle_values,
+        "default": (),
+        "help": "what the numbers of CYCLE statements of CL data are where they have no words, in order and joined by"
+        f" commas: {', '.join(CYCLE_VALUES)}",
+    },
     "--surface-speed": {
         "metavar": "M/MIN",
         "type": above_zero(100_000),
@@ -210,7 +235,7 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
 
 def add_part_program(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that say what a part program does not say itself."""
-    _add(parser, ("--tool", "--unit", "--contour-data", "--wear"))
+    _add(parser, ("--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values"))
 
 
 def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
@@ -247,8 +272,15 @@ def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading
     """What a parsed command line says of a part program, beside how its G-code says the tool axis."""
     from pkm_post.sources import Reading
 
-    wear = dict(namespace.wear)
-    return Reading(axis_words, tools_from(namespace), namespace.unit, namespace.contour_data, wear)
+    return Reading(
+        axis_words,
+        tools_from(namespace),
+        namespace.unit,
+        namespace.contour_data,
+        dict(namespace.wear),
+        namespace.cl_dialect,
+        namespace.cycle_values,
+    )
 
 
 def tools_from(namespace: argparse.Namespace) -> dict[int, Tool]:

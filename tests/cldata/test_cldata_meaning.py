@@ -204,8 +204,8 @@ def heights(cycle):
 
 def test_a_drilled_hole():
     z, kind, found = heights("CYCLE/DRILL,FEDTO,5,MMPM,120,RAPTO,2,RTRCTO,20,DWELL,1.5")
-    assert z == pytest.approx([30, 3, -4, 3, 21])
-    assert kind == [Kind.RAPID, Kind.RAPID, Kind.LINE, Kind.RAPID, Kind.RAPID]
+    assert z == pytest.approx([30, 3, -4, 21])
+    assert kind == [Kind.RAPID, Kind.RAPID, Kind.LINE, Kind.RAPID]
     assert found.feed[4] == pytest.approx(2)
     assert [(e.row, e.value) for e in found.events if e.kind is EventKind.DWELL] == [(5, 1.5)]
 
@@ -217,18 +217,103 @@ def test_a_drilled_hole():
         ("CYCLE/BRKCHP,DEPTH,5,STEP,3,CLEAR,1", [30, 2, -2, -1.5, -4, 2]),
         ("CYCLE/DEEP2,FEDTO,5,1STPECK,4,SUBPECK,2,RAPTO,1", [30, 2, -3, 2, -2.5, -4, 2]),
         ("CYCLE/CLEAR\nCYCLE/DRILL,FEDTO,5,RAPTO,2,RTRCTO,20", [30, 3, -4, 3]),
-        ("CYCLE/BORE,FEDTO,-5,RAPTO,2", [30, 3, -4, 3]),
+        ("CYCLE/INIT\nCYCLE/DRILL,FEDTO,5,RAPTO,2", [30, 3, -4, 30]),
     ],
 )
 def test_cycles_that_peck(cycle, z):
     assert heights(cycle)[0] == pytest.approx(z)
 
 
+@pytest.mark.parametrize(
+    "dialect, cycle, z",
+    [
+        ("nx", "CYCLE/DRILL,RAPTO,2,FEDTO,-5", [30, 3, -4, 3]),
+        ("nx", "CYCLE/DRILL,CLEAR,2,FEDTO,-5,RTRCTO,AUTO,MMPM,60", [30, 3, -4, 30]),
+        ("nx", "CYCLE/DRILL,RAPTO,2,FEDTO,-5,RTRCTO,9,MANUAL,MMPM,60", [30, 3, -4, 10]),
+        ("nx", "CYCLE/DRILL,DEEP,STEP,3,RAPTO,1,FEDTO,-5", [30, 2, -2, 2, -1.5, -4, 2]),
+        ("nx", "CYCLE/DRILL,BRKCHP,STEP,3,RAPTO,1,FEDTO,-5", [30, 2, -2, -1.5, -4, 2]),
+        ("nx", "CYCLE/DRILL,CSINK,RAPTO,2,FEDTO,-5", [30, 3, -4, 3]),
+        ("nx", "CYCLE/BORE,RAPTO,2,FEDTO,-5", [30, 3, -4, 3]),
+        ("creo", "CYCLE/DRILL,DEPTH,5,MMPM,60,CLEAR,6,RAPTO,4", [30, 3, -4, 7]),
+        ("creo", "CYCLE/DRILL,DEPTH,5,MMPM,60,CLEAR,6,RETURN,9", [30, 7, -4, 10]),
+        ("creo", "CYCLE/DRILL,DEPTH,5,MMPM,60,CLEAR,6,RETURN,0", [30, 7, -4, 30]),
+        ("creo", "CYCLE/CSINK,DEPTH,5,MMPM,60,CLEAR,6", [30, 7, -4, 7]),
+        ("creo", "CYCLE/REAM,DEPTH,5,MMPM,60,CLEAR,6,RAPTO,4", [30, 3, -4, 3, 7]),
+        ("creo", "CYCLE/DEEP,DEPTH,5,STEP,3,MMPM,60,CLEAR,6,RAPTO,5", [30, 2, -2, 7, -1.5, -4, 7]),
+        ("solidworks", "CYCLE/DRILL,FEDTO,5,MMPM,60,RAPTO,2,RTRCTO,9,DWELL,0", [30, 3, -4, 10]),
+        ("solidworks", "CYCLE/DEEP,FEDTO,5,INCR,3,MMPM,60,RAPTO,1,RTRCTO,9", [30, 2, -2, 2, -1.5, -4, 10]),
+    ],
+)
+def test_each_maker_has_words_of_its_own(dialect, cycle, z):
+    found = program(f"{HEAD}GOTO/0,0,30\n{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", dialect=dialect)
+    assert found.position[2:, 2] == pytest.approx(z)
+
+
+@pytest.mark.parametrize(
+    "names, cycle, z, feed",
+    [
+        ("depth feed clearance", "DRILL,5.,60.,2.,MMPM", [30, 3, -4, 3], 1),
+        ("depth feed clearance", "DRILL,5.,60.,MMPM,2.", [30, 3, -4, 3], 1),
+        ("depth feed clearance", "DRILL,5.,IPM,6.,2.", [30, 3, -4, 3], 2.54),
+        ("depth feed clearance step", "DEEP,5,60,MMPM,1,3", [30, 2, -2, 2, -1.5, -4, 2], 1),
+        ("feed depth clearance return dwell", "DRILL,60,5,2,9,3", [30, 3, -4, 10], 1),
+        ("depth clearance", "DRILL,5,2,STEP", None, None),
+        ("depth clearance", "DRILL,5,2,60", None, None),
+        ("", "DRILL,5,2", None, None),
+    ],
+)
+@pytest.mark.parametrize("dialect", ["catia", "creo", "nx", None])
+def test_numbers_without_words_are_what_an_option_says(names, cycle, z, feed, dialect):
+    options = ReadOptions(dialect=dialect, cycle_values=tuple(names.split()))
+    if dialect == "nx":
+        cycle = cycle.replace("DEEP", "DRILL,DEEP")
+    found, told = read(f"{HEAD}GOTO/0,0,30\nCYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", "part.cl", options)
+    if z is None:
+        assert [fault.code for fault in errors(told)] == ["L412" if names else "L420"]
+    else:
+        assert found.position[2:, 2] == pytest.approx(z)
+        assert found.feed[4] == pytest.approx(feed)
+
+
+@pytest.mark.parametrize(
+    "dialect, cycle, code",
+    [
+        ("nx", "DRILL,RAPTO,2,FEDTO,5", "L412"), ("nx", "DRILL,RAPTO,2,CLEAR,3,FEDTO,-5", "L412"),
+        ("nx", "DRILL,RAPTO,-2,FEDTO,-5", "L412"), ("nx", "DRILL,RAPTO,2,FEDTO,-5,CAM,3", "L412"),
+        ("nx", "DRILL,RAPTO,2,FEDTO,-5,DWELL,ON", "L412"), ("nx", "BORE,BACK,RAPTO,2,FEDTO,-5", "L412"),
+        ("nx", "DRILL,TEXT,RAPTO,2,FEDTO,-5", "L412"), ("nx", "TAP,RAPTO,2,FEDTO,-5", "L440"),
+        ("creo", "DRILL,DEPTH,5,CLEAR,2,RAPTO,3", "L412"), ("creo", "THRU,DEPTH,5,CLEAR,2", "L401"),
+        ("creo", "BORE,DEPTH,5,CLEAR,2", "L401"), ("creo", "DRILL,DEPTH,-5,CLEAR,2", "L412"),
+        ("creo", "BRKCHP,DEPTH,5,STEP,2,CLEAR,2,DWELL,1", "L412"),
+        ("creo", "DEEP,DEPTH,5,STEP,2,STEP,1,CLEAR,2", "L412"),
+        ("creo", "BRKCHP,DEPTH,5,STEP,2,CLEAR,2,TIMES,1", "L412"), ("creo", "DRILL,DEPTH,5,CLEAR,2,REV,3", "L412"),
+        ("creo", "DRILL,DEPTH,5,CLEAR,2,DWELL,-1", "L412"), ("creo", "INIT", "L401"),
+        ("solidworks", "BRKCHP,FEDTO,5,STEP,2,RAPTO,2", "L401"), ("solidworks", "DRILL,FEDTO,-5,RAPTO,2", "L412"),
+        (None, "DRILL,FEDTO,-5,RAPTO,2", "L419"), (None, "DEEP,FEDTO,5,RAPTO,2,STEP,3", "L419"),
+        (None, "DRILL,FEDTO,5,CLEAR,2", "L419"), (None, "DRILL,DEPTH,5,FEDTO,5,CLEAR,2", "L419"),
+        (None, "DRILL,FEDTO,5,RAPTO,2,RTRCTO,AUTO", "L419"), (None, "TWIST,DEPTH,5,CLEAR,2", "L401"),
+        (None, "DRILL,DEPTH,5,CLEAR,2,TWIST,3", "L412"), (None, "DRILL,DEPTH,CLEAR,2", "L412"),
+        ("makino", "DRILL,FEDTO,-5,RAPTO,2", "L419"), ("catia", "DRILL,FEDTO,-5,RAPTO,2", "L419"),
+    ],
+)  # fmt: skip
+def test_cycles_that_are_refused(dialect, cycle, code):
+    found, told = read(f"{HEAD}CYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", "part.cl", ReadOptions(dialect=dialect))
+    assert found is None
+    assert [fault.code for fault in errors(told)] == [code]
+
+
+def test_a_dwell_in_turns_follows_the_spindle():
+    for dialect, cycle in (("nx", "RAPTO,2,FEDTO,-5,DWELL,REV,3"), ("creo", "DEPTH,5,CLEAR,2,REV,3")):
+        text = f"{HEAD}SPINDL/RPM,120,CLW\nCYCLE/DRILL,{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n"
+        (dwell,) = [event for event in program(text, dialect=dialect).events if event.kind is EventKind.DWELL]
+        assert dwell.value == pytest.approx(1.5)
+
+
 def test_holes_follow_the_tool_axis():
     text = "GOTO/20,0,0,1,0,0\nCYCLE/DRILL,FEDTO,5,RAPTO,2\nGOTO/10,0,0\nGOTO/10,9,0\nCYCLE/OFF\n"
     found = program(HEAD + text)
-    assert found.position[2:6, 0] == pytest.approx([20, 12, 5, 12])
-    assert found.position[6:, 1] == pytest.approx(9)
+    assert found.position[2:5, 0] == pytest.approx([12, 5, 12])
+    assert found.position[5:, 1] == pytest.approx(9)
 
 
 def test_two_words_for_one_tool_change_are_one():

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cycle items: what stands behind the kind of a CYCLE statement, each number by the word before it.
+
+Items enter, with the words of their maker; numbers leave by what they are, as written. Where numbers stand without a
+word before the first one, an option says what they are: CATIA writes them as the table of the post-processor says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from pkm_post.cldata.cycle_words import AUTO, MANUAL, CycleWords, known_to_some
+from pkm_post.cldata.feeds import FEED_WORDS
+from pkm_post.cldata.statements import Statement
+
+Item = float | str | Statement | None
+
+
+class CycleError(Exception):
+    """Why a CYCLE statement cannot be taken over: a code, and what was found."""
+
+    def __init__(self, code: str, found: str) -> None:
+        super().__init__(found)
+        self.code, self.found = code, found
+
+
+@dataclass
+class CycleItems:
+    """The items of one statement while they are read.
+
+    Attributes:
+        words: of the maker.
+        kind: of the cycle.
+        guessed: the maker is known by these words alone.
+        positions: what numbers without a word are, in order; a depth among them counts down from the point.
+        values: the numbers by what they are.
+        feed: with its unit; the unit is empty where none is written.
+        to_initial: the tool returns to the height it had before the cycle.
+    """
+
+    words: CycleWords
+    kind: str
+    guessed: bool
+    positions: tuple[str, ...] = ()
+    values: dict[str, float] = field(default_factory=dict)
+    feed: tuple[str, float] | None = None
+    to_initial: bool = False
+    _unit: str = ""
+    _waiting: str = ""
+    _placed: int = 0
+
+    def read(self, items: Iterable[Item]) -> None:
+        """Read the items behind the kind.
+
+        Raises:
+            CycleError: one of them is not understood.
+        """
+        present = [item for item in items if item is not None]
+        by_position = bool(present) and isinstance(present[0], float)
+        if by_position and not self.positions:
+            raise CycleError("L420", f"CYCLE/{self.kind},{present[0]:g}")
+        for item in present:
+            if isinstance(item, Statement):
+                raise CycleError("L412", f"{item.word}, {self._expected()}")
+            if isinstance(item, str):
+                self._word(item, by_position)
+            else:
+                self._number(item)
+        self._no_word_waits()
+        if by_position and "feed" in self.values:
+            self.feed = self._unit, self.values.pop("feed")
+
+    def _word(self, word: str, by_position: bool) -> None:
+        """Take a word: the name of the next number, a unit, or one that stands alone."""
+        if self.words.down < 0 and word == AUTO and self._means("return"):
+            self.to_initial, self._waiting = True, ""
+        elif self.words.down < 0 and word == MANUAL and not self._waiting and "return" in self.values:
+            pass
+        elif word == "REV" and self._means("dwell"):
+            self._waiting = word
+        else:
+            if word not in FEED_WORDS and word not in self.words.known_words(self.kind):
+                self._refuse(word)
+            self._no_word_waits()
+            if word in FEED_WORDS:
+                self._unit = word
+            self._waiting = "" if by_position and word in FEED_WORDS else word
+
+    def _means(self, meaning: str) -> bool:
+        """Whether the word that waits for its number has a meaning."""
+        return self.words.words.get(self._waiting) == meaning
+
+    def _number(self, number: float) -> None:
+        """Take a number."""
+        name, self._waiting = self._waiting, ""
+        if name in FEED_WORDS:
+            if self.feed is not None:
+                raise CycleError("L412", f"{name},{number:g}, a second feed")
+            self.feed = name, number
+            return
+        meaning = self.words.words[name] if name else self._next_position(number)
+        if not name and meaning == "depth":
+            number *= self.words.down
+        if meaning in self.values:
+            raise CycleError("L412", f"{name},{number:g}, a second {meaning}")
+        self.values[meaning] = number
+
+    def _next_position(self, number: float) -> str:
+        """What the next number without a word is."""
+        if self._placed >= len(self.positions):
+            raise CycleError("L412", f"{number:g}, {self._expected()}")
+        self._placed += 1
+        return self.positions[self._placed - 1]
+
+    def _no_word_waits(self) -> None:
+        if self._waiting:
+            raise CycleError("L412", f"{self._waiting} without a number")
+
+    def _refuse(self, word: str) -> None:
+        if self.guessed and known_to_some(word):
+            raise CycleError("L419", f"{word} beside the words of {self.words.maker}")
+        raise CycleError("L412", f"{word}, {self._expected()}")
+
+    def _expected(self) -> str:
+        return f"expected one of {', '.join(sorted(self.words.known_words(self.kind) | FEED_WORDS))}"
