@@ -19,13 +19,14 @@ def drilled_holes(course: Course, points: Points) -> dict[int, Hole]:
     """The points at which a cycle is in force, with its moves; tells axes that are too far from each other."""
     cycles = [None, *(cycle for _, cycle in course.cycles)]
     active = in_force(points.row, [row for row, _ in course.cycles]) + 1
-    drilling = np.array([cycle is not None for cycle in cycles], dtype=np.bool_)[active]
+    on = np.array([cycle is not None for cycle in cycles], dtype=np.bool_)
+    drilling, series = on[active], np.cumsum(~on)[active]
     holes: dict[int, Hole] = {}
     initial: Array | None = None
     for point in np.flatnonzero(drilling & ~points.start).tolist():
         cycle = cycles[active[point]]
         before = _stand(points, holes, point)
-        if point - 1 not in holes:
+        if point - 1 not in holes or series[point] != series[point - 1]:
             initial = before.position if before else None
         if cycle is not None and _within_reach(course, points, before, point):
             holes[point] = hole(cycle, before, initial, points.position[point], points.axis[point])
