@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pkm_post.cldata.cycles import Cycle
 from pkm_post.cldata.dialects import Dialect
 from pkm_post.cldata.faults import Faults
+from pkm_post.cldata.length_unit import LengthUnit
 from pkm_post.cldata.options import UNITS, ReadOptions
 from pkm_post.cldata.statements import Statements
 from pkm_post.model import EventKind, Tool
@@ -119,7 +120,8 @@ class Cutcom:
 class Course:
     """State while reading, and what was noted, each with the row of its statement.
 
-    ``goto_rows`` are the rows of plain GOTO statements, ``gotos_before`` is for each row their number before it.
+    ``goto_rows`` are the rows of plain GOTO statements, ``gotos_before`` is for each row their number before it;
+    ``file_unit`` is what the file says of its lengths.
     """
 
     statements: Statements
@@ -128,6 +130,7 @@ class Course:
     faults: Faults
     goto_rows: Array
     gotos_before: Array
+    file_unit: LengthUnit
 
     scale: float = 1.0
     unit: str = ""
@@ -176,7 +179,7 @@ class Course:
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.unit = self.options.units or "mm"
+        self.unit = self.options.units or self.file_unit.name or "mm"
         self.scale = UNITS[self.unit]
         self.scales.append((-1, self.scale))
 

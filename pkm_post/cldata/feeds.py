@@ -41,8 +41,9 @@ def feed_of(course: Course, word: str, value: float) -> Feed:
 
 
 def _unit_overridden(course: Course, stated: float) -> bool:
-    """Whether a unit of the file is replaced by the one that the options say."""
-    return course.options.units is not None and stated in UNITS.values()
+    """Whether a feed is in the unit of the file where the options say another one instead."""
+    unit = course.file_unit.name
+    return course.options.units not in (None, unit) and stated == UNITS.get(unit)
 
 
 def fedrat(course: Course, row: int, statement: Statement) -> None:

@@ -11,18 +11,18 @@ import numpy as np
 
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.feeds import shown
+from pkm_post.cldata.length_unit import UNIT_WORDS
 from pkm_post.cldata.options import UNITS
 from pkm_post.cldata.statements import Statement
 from pkm_post.model.program import Array
 
-_UNIT_WORDS = {"MM": "mm", "INCHES": "inch", "INCH": "inch", "IN": "inch"}
 _SQUARE = 1e-3
 """How far axes of a frame may be from unit length and right angles."""
 
 
 def units(course: Course, row: int, statement: Statement) -> None:
     """UNITS/MM or INCHES; an option takes precedence."""
-    name = _UNIT_WORDS.get(next(iter(statement.words), ""))
+    name = UNIT_WORDS.get(next(iter(statement.words), ""))
     if name is None:
         course.tell("L402", row, f"{statement.word}/{shown(statement)}, expected MM or INCHES")
         return

@@ -14,6 +14,7 @@ from pkm_post.cldata.course import Course
 from pkm_post.cldata.dialects import DIALECTS, detect
 from pkm_post.cldata.faults import Faults
 from pkm_post.cldata.fit import fit_arcs
+from pkm_post.cldata.length_unit import length_unit
 from pkm_post.cldata.lines import decoded, logical_lines
 from pkm_post.cldata.motion import program_of
 from pkm_post.cldata.options import ReadOptions
@@ -50,7 +51,8 @@ def read(
     faults = Faults(file)
     statements = scan(logical_lines(whole), faults)
     bulk, names = bulk_rows(statements, options, dialect)
-    course = Course(statements, dialect, options, faults, np.flatnonzero(bulk), np.cumsum(bulk))
+    unit = length_unit(statements, whole)
+    course = Course(statements, dialect, options, faults, np.flatnonzero(bulk), np.cumsum(bulk), unit)
     program = _program(course, bulk, names, file)
     return (None if faults.any_errors() else program), faults.diagnostics()
 
@@ -69,21 +71,35 @@ def _program(course: Course, bulk: Array, names: ValueNames, file: str) -> Progr
     arcs = fit_arcs(course, points, frames)
     if course.faults.any_errors():
         return None
-    _doubts(course, points)
+    unit = _unit(course, points)
+    _lengths(course)
     offsets, reading = contour_offsets(course, points, frames, arcs)
     if course.faults.any_errors():
         return None
-    return program_of(course, points, arcs, file, offsets, reading)
+    return program_of(course, points, arcs, file, offsets, [*unit, *reading])
 
 
-def _doubts(course: Course, points: Points) -> None:
-    """Tell a doubtful unit and tools of unknown length."""
+def _unit(course: Course, points: Points) -> list[str]:
+    """How the unit of length was taken, in words, if UNITS does not say it; tells a doubtful or missing one."""
+    if course.options.units is not None:
+        return [f"lengths are in {course.options.units}, as the option says"]
+    unit, size = course.file_unit, float(np.ptp(points.position, axis=0).max())
+    if not unit.name:
+        course.faults.add("L431", (0, 0), unit.words)
+        return []
+    if not unit.stated:
+        course.faults.add("L410", (0, 0), f"there is no UNITS; {unit.name}, by {unit.words}")
+    if unit.doubt:
+        course.faults.add("L410", (0, 0), f"{unit.words}, but {unit.doubt}: each is taken as it says")
+    if course.unit == "inch" and size > LARGE_INCHES:
+        found = f"{unit.words}, and the path is {size / 25.4:.6g} inches = {size:.6g} mm wide"
+        course.faults.add("L410", (0, 0), found)
+    return [] if unit.stated else [f"lengths are in {unit.name}, by {unit.words}"]
+
+
+def _lengths(course: Course) -> None:
+    """Tell tools of unknown length."""
     keep(course)
-    size = float(np.ptp(points.position, axis=0).max())
-    if course.options.units is None and course.unit == "inch" and size > LARGE_INCHES:
-        course.faults.add("L410", (0, 0), f"INCHES, and the path is {size / 25.4:.6g} inches = {size:.6g} mm wide")
-    elif course.options.units is None and len(course.scales) == 1:
-        course.faults.add("L410", (0, 0), "the file has no UNITS, mm is taken")
     for number, tool in sorted(course.tools.items()):
         if not tool.length > 0:
             course.faults.add("L411", (0, 0), f"tool {number}")

@@ -226,6 +226,7 @@ RULES: dict[str, Rule] = {
         "the points under CUTCOM were taken for the centre of the tool, by their arcs",
         "check the size of the part, and say it by --contour-data centre or contour",
     ),
+    "L431": _error("the unit of length is not known", "say it by --unit mm or --unit inch"),
     "L432": _error(
         "the wear of a tool changes nothing", "give --wear for a tool that the CL data compensates by CUTCOM"
     ),
