@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 
 from pkm_post import cldata, gcode
-from pkm_post.gcode.options import AXIS_WORDS
+from pkm_post.gcode.options import AXIS_WORDS, DWELL_UNITS
 from pkm_post.model import Diagnostic, Place, Program, Tool
 
-__all__ = ["AS_WRITTEN", "AXIS_WORDS", "SUFFIXES", "Reading", "is_part_program", "read_part_program"]
+__all__ = ["AS_WRITTEN", "AXIS_WORDS", "DWELL_UNITS", "SUFFIXES", "Reading", "is_part_program", "read_part_program"]
 
 Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
@@ -39,6 +39,7 @@ class Reading:
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; by its words if None.
         cycle_values: what the numbers of CYCLE statements are where they have no words, out of
             ``cldata.CYCLE_VALUES``.
+        dwell_unit: of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``.
     """
 
     axis_words: str = "none"
@@ -48,6 +49,7 @@ class Reading:
     wear: Mapping[int, float] = field(default_factory=dict)
     cl_dialect: str | None = None
     cycle_values: tuple[str, ...] = ()
+    dwell_unit: str = "s"
 
 
 AS_WRITTEN = Reading()
@@ -90,7 +92,11 @@ def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
     # A diameter that is no number shows where it was used.
     unknown = Tool(0, "", math.nan, 0.0, 0.0, corner_known=False)
     options = gcode.ReadOptions(
-        tools=reading.tools, default_tool=unknown, axis_words=reading.axis_words, unit=reading.unit or "mm"
+        tools=reading.tools,
+        default_tool=unknown,
+        axis_words=reading.axis_words,
+        unit=reading.unit or "mm",
+        dwell_unit=reading.dwell_unit,
     )
     program, diagnostics = gcode.read(content, file, options)
     if reading.wear:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,11 +29,18 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
         help="how the G-code says the tool axis: vector (I J K after G43.5), AC, BC or AB (rotary words after G43.4),"
         " RPY (A B C of LinuxCNC's hexapod), or none, the default",
     )
+    parser.add_argument(
+        "--dwell-unit",
+        choices=("s", "ms"),
+        default="s",
+        help="unit of the dwells of G-code, P of G4, G82, G86 and G89 (default: %(default)s); those of CAM jobs and CL"
+        " data are in s",
+    )
 
 
 def reading_from(namespace: argparse.Namespace) -> Reading:
     """What the user said of the part programs."""
-    return part_program_from(namespace, namespace.axis_words)
+    return replace(part_program_from(namespace, namespace.axis_words), dwell_unit=namespace.dwell_unit)
 
 
 def part_program(text: str) -> Path:

@@ -25,7 +25,7 @@ from pkm_post.freecad_app.property_proxy import PropertyProxy
 from pkm_post.freecad_app.tool_controller import answered
 from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
 from pkm_post.model.diagnostics import Severity
-from pkm_post.sources import AXIS_WORDS, SUFFIXES, Reading, is_part_program, read_part_program
+from pkm_post.sources import AXIS_WORDS, DWELL_UNITS, SUFFIXES, Reading, is_part_program, read_part_program
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
@@ -39,6 +39,8 @@ _PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyFile", "File", _G, QT_TRANSLATE_NOOP("App::Property", "The part program, G-code or CL data"), ""),
     ("App::PropertyEnumeration", "AxisWords", _G,
      QT_TRANSLATE_NOOP("App::Property", "How G-code says the tool axis"), list(AXIS_WORDS)),
+    ("App::PropertyEnumeration", "DwellUnit", _G,
+     QT_TRANSLATE_NOOP("App::Property", "The unit of dwells of G-code"), list(DWELL_UNITS)),
 )  # fmt: skip
 _RESULTS: tuple[Row, ...] = (
     ("App::PropertyStringList", "Found", _G,
@@ -62,18 +64,19 @@ class PartProgram(PropertyProxy):
             obj.Path = Path.Path(commands_of(program))
 
 
-def create_program(document: Any, file: str | FilePath, axis_words: str = "none") -> Any:
+def create_program(document: Any, file: str | FilePath, axis_words: str = "none", dwell_unit: str = "s") -> Any:
     """Add a part program to a document.
 
     Args:
         document: where to; it is recomputed, and what is found in the file is shown in the report view.
         file: G-code or CL data.
         axis_words: how G-code says the tool axis, a key of ``AXIS_WORDS``.
+        dwell_unit: of G-code, a key of ``DWELL_UNITS``.
     """
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
     PartProgram(obj)
-    obj.File, obj.AxisWords, obj.Label = str(path), axis_words, path.name
+    obj.File, obj.AxisWords, obj.DwellUnit, obj.Label = str(path), axis_words, dwell_unit, path.name
     if App.GuiUp:
         importlib.import_module(_VIEW).ProgramView(obj.ViewObject)
     document.recompute()
@@ -85,7 +88,7 @@ def read_program(obj: Any) -> tuple[Program | None, Findings]:
     file = FilePath(obj.File)
     if not is_part_program(file):
         return None, (Diagnostic("F103", Place(str(file)), f"its name ends with none of {', '.join(SUFFIXES)}"),)
-    program, found = read_part_program(file, Reading(obj.AxisWords))
+    program, found = read_part_program(file, Reading(obj.AxisWords, dwell_unit=obj.DwellUnit))
     if program is None:
         return None, found
     compensated, told = compensate(program, OffsetOptions(), {})

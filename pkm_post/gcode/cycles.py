@@ -22,7 +22,8 @@ PECK_CLEARANCE = 0.254
 MOST_STROKES = 10_000
 """A block with more pecks or holes than this is a slip."""
 
-_DWELLS = (820, 860, 890)
+DWELLS = (820, 860, 890)
+"""Cycles that wait at the bottom."""
 _PECKS = (730, 830)
 _STOPS_SPINDLE = 860
 
@@ -132,7 +133,7 @@ class Strokes:
 def fault_of(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[str, str] | None:
     """What keeps a cycle from being carried out: code and what was found."""
     name = name_of(cycle.code)
-    for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, _DWELLS)):
+    for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, DWELLS)):
         if cycle.code in codes and math.isnan(value):
             return "G405", f"{name} without {letter}"
     if math.isnan(hole.top):
@@ -196,7 +197,7 @@ def _down(cycle: Cycle, hole: Hole, normal: int, made: Strokes) -> None:
 
 
 def _up(cycle: Cycle, hole: Hole, normal: int, made: Strokes, spindle: float) -> None:
-    if cycle.code in _DWELLS and cycle.dwell > 0:
+    if cycle.code in DWELLS and cycle.dwell > 0:
         made.happen(EventKind.DWELL, cycle.dwell)
     if cycle.code == _STOPS_SPINDLE:
         made.happen(EventKind.SPINDLE, 0.0)

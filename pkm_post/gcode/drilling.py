@@ -29,9 +29,11 @@ _SAME_HEIGHT = 1e-9
 class Drilling:
     """The series of cycles in force."""
 
-    def __init__(self, blocks: Blocks, modal: Modal, words: Coordinates, spindle: Array, faults: Findings) -> None:
+    def __init__(
+        self, blocks: Blocks, modal: Modal, words: Coordinates, spindle: Array, dwells: Array, faults: Findings
+    ) -> None:
         self._blocks, self._modal, self._words = blocks, modal, words
-        self._spindle, self._faults = spindle, faults
+        self._spindle, self._dwells, self._faults = spindle, dwells, faults
         self._series: Series | None = None
         self._row, self._level = 0, np.zeros(3)
         self._plane = self._written_under = ""
@@ -71,8 +73,8 @@ class Drilling:
         """The series with the cycle of this block."""
         normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
         scale = float(self._modal.scale[row])
-        retract, peck, dwell = (float(self._blocks.word(letter)[row]) for letter in "RQP")
-        words = (retract * scale, float(self._words.columns[normal][row]), peck * scale, dwell)
+        retract, peck = (scale * float(self._blocks.word(letter)[row]) for letter in "RQ")
+        words = (retract, float(self._words.columns[normal][row]), peck, float(self._dwells[row]))
         goes_on = bool(is_cycle(self._modal.in_force[Group.MOTION][self._row : row]).all())
         before = self._series if goes_on else None
         self._series = Series.after(before, code, float(position[normal]), words)

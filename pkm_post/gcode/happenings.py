@@ -26,8 +26,8 @@ InCycle = tuple[int, int, EventKind, float]
 """Row of the motion it precedes, block, kind and value."""
 
 
-def happenings(blocks: Blocks, modal: Modal, tools: Array, spindle: Array) -> list[Happening]:
-    """What happens beside the motions, by block and rank."""
+def happenings(blocks: Blocks, modal: Modal, tools: Array, spindle: Array, dwells: Array) -> list[Happening]:
+    """What happens beside the motions, by block and rank; ``dwells`` are in s."""
     found: list[Happening] = []
     tool_changes, stops = modal.explicit[Group.CHANGE], modal.explicit[Group.STOP]
     for row in np.flatnonzero(tool_changes == 6).tolist():
@@ -39,7 +39,7 @@ def happenings(blocks: Blocks, modal: Modal, tools: Array, spindle: Array) -> li
     for row, code in zip(blocks.m_row[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
         found.append((row, -2, EventKind.COOLANT, _COOLANT[code]))
     for row in blocks.g_row[blocks.g == 40].tolist():
-        found.append((row, -1, EventKind.DWELL, float(blocks.word("P")[row])))
+        found.append((row, -1, EventKind.DWELL, float(dwells[row])))
     for row in np.flatnonzero(stops != NONE).tolist():
         if stops[row] in ENDS:
             found.extend(_at_the_end(row, spindle, found))

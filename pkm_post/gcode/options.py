@@ -33,6 +33,9 @@ def axis_names(axis_words: str) -> tuple[str, ...]:
 UNITS: dict[str, float] = {"mm": 1.0, "inch": 25.4}
 """mm in one unit of length."""
 
+DWELL_UNITS: dict[str, float] = {"s": 1.0, "ms": 0.001}
+"""s in one unit of dwells."""
+
 
 @dataclass(frozen=True)
 class ReadOptions:
@@ -51,6 +54,7 @@ class ReadOptions:
         start: where the tool tip is before the program, in {C}; without it nothing moves before X, Y and Z are said.
         block_delete: whether blocks that begin with ``/`` are left out.
         unit: of lengths before G20 or G21, a key of ``UNITS``.
+        dwell_unit: of P of G4 and of cycles, a key of ``DWELL_UNITS``.
     """
 
     tools: Mapping[int, Tool] = field(default_factory=dict)
@@ -62,9 +66,10 @@ class ReadOptions:
     start: Point | None = None
     block_delete: bool = False
     unit: str = "mm"
+    dwell_unit: str = "s"
 
     def __post_init__(self) -> None:
-        for name, allowed in (("axis_words", AXIS_WORDS), ("unit", UNITS)):
+        for name, allowed in (("axis_words", AXIS_WORDS), ("unit", UNITS), ("dwell_unit", DWELL_UNITS)):
             if getattr(self, name) not in allowed:
                 raise ValueError(f"{name}: expected one of {', '.join(allowed)}, got {getattr(self, name)!r}")
 

@@ -43,5 +43,5 @@ def read(
     executed, told_of_execution = execute(scanned, limits, options.block_delete)
     if executed is None:
         return None, told + told_of_execution
-    program, told_of_meaning = resolve(executed, options)
+    program, told_of_meaning = resolve(executed, options, text)
     return program, told + told_of_execution + (located(told_of_meaning, text) if told_of_meaning else ())

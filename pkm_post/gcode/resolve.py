@@ -17,6 +17,7 @@ from pkm_post.gcode.axes import spins, surface_normals, tool_axes
 from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.checks import check
 from pkm_post.gcode.codes import NONE, Group
+from pkm_post.gcode.dwells import check_dwells, dwell_words
 from pkm_post.gcode.feeds import INVERSE_TIME, feeds
 from pkm_post.gcode.findings import Findings
 from pkm_post.gcode.frames import RowFrames, normal_coordinate
@@ -37,12 +38,15 @@ _KIND[[0, 10, 20, 30]] = Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC
 """By code of a motion."""
 
 
-def resolve(blocks: Blocks, options: ReadOptions) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def resolve(
+    blocks: Blocks, options: ReadOptions, text: bytes | str = ""
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """The program that plain blocks describe.
 
     Args:
         blocks: blocks without parameters, expressions and O words, in the order in which they are executed.
         options: what the program does not say itself.
+        text: what they were read from, if it is there: for what columns of numbers do not show.
 
     Returns:
         The program, None if there are errors; and the diagnostics in the order of the lines.
@@ -56,6 +60,7 @@ def resolve(blocks: Blocks, options: ReadOptions) -> tuple[Program | None, tuple
     faults = Findings(blocks)
     modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words))
     check(blocks, modal, options, faults)
+    check_dwells(blocks, modal, options, text, faults)
     if faults.stop():
         return None, faults.in_order()
     program = _program(blocks, modal, options, faults)
@@ -110,7 +115,8 @@ def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
 def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Program | None:
     settings = _settings(blocks, modal, options, faults)
     modes = path_modes(blocks, modal, options.axis_words, faults)
-    motions = Walk(blocks, modal, settings.tools, settings.spindle, options, faults).motions()
+    dwells = dwell_words(blocks, options)
+    motions = Walk(blocks, modal, settings.tools, settings.spindle, dwells, options, faults).motions()
     centre, axis = arcs_of(blocks, modal, motions, faults)
     if faults.stop():
         return None
@@ -133,7 +139,9 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
     }
     return Program(
         **{name: locked(column) for name, column in columns.items()},
-        events=events(happenings(blocks, modal, settings.tools, settings.spindle), motions.in_cycles, motions.block),
+        events=events(
+            happenings(blocks, modal, settings.tools, settings.spindle, dwells), motions.in_cycles, motions.block
+        ),
         operations=("",),
         tools=_tools(settings.tools, options),
         source=blocks.source,

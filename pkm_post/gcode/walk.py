@@ -30,14 +30,21 @@ class Walk:
     """The tool on its way through the blocks."""
 
     def __init__(
-        self, blocks: Blocks, modal: Modal, tools: Array, spindle: Array, options: ReadOptions, faults: Findings
+        self,
+        blocks: Blocks,
+        modal: Modal,
+        tools: Array,
+        spindle: Array,
+        dwells: Array,
+        options: ReadOptions,
+        faults: Findings,
     ):
         self.blocks, self.modal, self.options, self.faults = blocks, modal, options, faults
         self.tools, self.spindle = tools, spindle
         self.words = Coordinates.of(blocks, modal)
         self.relative = modal.in_force[Group.DISTANCE] == 910
         self.codes = FrameCodes(blocks, modal, self.words, tools, options, faults)
-        self.drilling = Drilling(blocks, modal, self.words, spindle, faults)
+        self.drilling = Drilling(blocks, modal, self.words, spindle, dwells, faults)
         self.home = {280: options.home, 300: options.second_home}
         self.in_cycles: list[InCycle] = []
         self._stretches: list[Stretch] = []

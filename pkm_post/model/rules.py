@@ -77,6 +77,9 @@ RULES: dict[str, Rule] = {
         " tool-axis words",
     ),
     "J123": _TAPPING,
+    "J124": _warning(
+        "a dwell lasts longer than a minute", "dwells of CAM commands are in seconds: correct it if not meant"
+    ),
     # G1: the letters of G-code
     "G101": _error("a character has no meaning here", "remove it, or put the text into a comment"),
     "G102": _error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),
@@ -154,6 +157,14 @@ RULES: dict[str, Rule] = {
         "it is not clear what the words in force of the cycle mean here",
         "write R and the depth again where G90, G91 or the unit changes; write G80 before another plane or height of"
         " the origin, and the whole cycle after it",
+    ),
+    "G427": _error(
+        "a dwell in milliseconds has a decimal point",
+        "write whole milliseconds without a point, or seconds in the whole program and --dwell-unit s",
+    ),
+    "G428": _warning(
+        "a dwell lasts longer than a minute",
+        "check it; read a part program whose dwells are in ms with --dwell-unit ms",
     ),
     # G5: writing G-code
     "G501": _error("the tool axis tilts, and this form of G-code cannot say it", "choose a form with five axes"),

@@ -120,6 +120,10 @@
         <translation>G 代码中刀轴的表示方式</translation>
     </message>
     <message>
+        <source>The unit of dwells of G-code</source>
+        <translation>G 代码中暂停时间的单位</translation>
+    </message>
+    <message>
         <source>What was found in reading the file</source>
         <translation>读取文件时发现的问题</translation>
     </message>
@@ -1114,6 +1118,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>How the G-code says the tool axis</source>
         <translation>G 代码中刀轴的表示方式</translation>
+    </message>
+    <message>
+        <source>The unit of dwells of the G-code</source>
+        <translation>G 代码中暂停时间的单位</translation>
     </message>
     <message>
         <source>{} replaced</source>

@@ -99,6 +99,18 @@ def test_object_follows_its_file_and_its_axis_words(document, file):
     assert [words["J"] for name, words in moves(obj) if name == "G1"] == pytest.approx([0, 0.6, 0])
 
 
+def test_object_has_a_unit_of_dwells(document, tmp_path):
+    file = written(tmp_path, "part.ngc", GCODE.replace("G1 X10", "G4 P2000\nG1 X10"))
+    obj = create_program(document, file)
+    assert ["G428" in text for text in obj.Found] == [True]
+    obj.DwellUnit = "ms"
+    document.recompute()
+    assert obj.Found == []
+    assert [words for name, words in moves(obj) if name == "G4"] == [{"P": 2}]
+    in_ms = create_program(document, file, dwell_unit="ms")
+    assert moves(in_ms) == moves(obj)
+
+
 def test_saved_document_keeps_the_path_without_the_file(document, file, tmp_path):
     obj = create_program(document, file)
     before, name = moves(obj), obj.Name

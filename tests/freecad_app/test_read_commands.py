@@ -181,6 +181,15 @@ def test_cutting_move_without_the_tool_axis_that_others_have():
     assert "and 1 more" in faults[0].found
 
 
+def test_a_dwell_of_more_than_a_minute_is_told():
+    """CAM has seconds: its Drilling writes the property DwellTime as P, and its linuxcnc post hands that on."""
+    program, faults = read(FIRST, "G82 X1 Z-1 R1 P500 F1", "G4 P60", "G4 P61")
+    assert [(fault.code, fault.place.line, fault.found) for fault in faults] == [
+        ("J124", 2, "G82 P500, and 1 more like it")
+    ]
+    assert [event.value for event in program.events] == [500, 60, 61]
+
+
 @pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("letter", ["X", "F", "I"])
 def test_numbers_that_are_none(letter, number):

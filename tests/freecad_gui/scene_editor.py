@@ -216,7 +216,7 @@ def editor_decodes_and_posts():
     messages, ended = [], []
     editor.posting.ended.connect(lambda: ended.append(True))
     answer(messages)
-    editor.posting.post(editor.body.file, "none", "--work-offset=0,0,250 --tool-length 1=120")
+    editor.posting.post(editor.body.file, "none", "s", "--work-offset=0,0,250 --tool-length 1=120")
     until(lambda: ended, 60)
     files = sorted(file.name for file in FOLDER.glob("program*"))
     FreeCAD.closeDocument(program.Name)

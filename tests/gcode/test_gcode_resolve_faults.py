@@ -20,7 +20,8 @@ TOOLS = {1: Tool(1, "end mill", 10.0, 0.0, 60.0), 2: Tool(2, "drill", 5.0, 0.0, 
 def options(words):
     if words == "G54=":
         return ReadOptions(tools=TOOLS, work_offsets={"G54": (0.0, 0.0, 0.0, 0.0)})
-    return ReadOptions(tools=TOOLS, axis_words=words.removeprefix("axis_words=") if words else "none")
+    name, _, value = (words or "axis_words=none").partition("=")
+    return ReadOptions(tools=TOOLS, **{name: value})
 
 
 def test_there_are_programs_for_every_code():

@@ -14,6 +14,7 @@ import numpy as np
 
 from pkm_post.freecad_app.commands.words import COMMENT, CYCLES, LETTERS, Array, Words, latest
 from pkm_post.gcode.codes import IN_STEP_WITH_SPINDLE
+from pkm_post.gcode.dwells import LONG
 from pkm_post.model import Diagnostic, Place
 from pkm_post.model.diagnostics import errors
 
@@ -71,6 +72,7 @@ def check_words(words: Words, faults: Faults) -> None:
     for code, letter in _NEEDED.items():
         faults.tell("J104", words.among(code) & ~words.has(letter), f"{code} without {letter}")
         faults.tell("J104", words.among(code) & (words.value(letter) < 0), _shown(words, letter))
+    faults.tell("J124", words.among("G4", *CYCLES) & (words.value("P") > LONG), _shown(words, "P"))
     number = words.value("T")
     faults.tell("J104", words.among("M6") & np.isfinite(number) & (number != np.round(number)), _shown(words, "T"))
     faults.tell("J106", words.among("G2", "G3") & ~_in_xy_plane(words), "an arc after G18 or G19")

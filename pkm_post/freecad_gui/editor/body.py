@@ -21,7 +21,7 @@ from pkm_post.freecad_gui.editor.shown_block import ShownBlock
 from pkm_post.freecad_gui.editor.text_view import TextView
 from pkm_post.model import Program
 from pkm_post.program_text import CheckedText, Language, language_of, renumbered, ways_of_line
-from pkm_post.sources import AXIS_WORDS, Reading
+from pkm_post.sources import AXIS_WORDS, DWELL_UNITS, Reading
 
 translate = FreeCAD.Qt.translate
 
@@ -46,9 +46,11 @@ class Body(QtWidgets.QWidget):
         self._shown = ShownBlock()
         self.text, self.findings, self.size = TextView(self), Findings(self), QtWidgets.QLabel(self)
         self.find_bar = FindBar(self.text, self)
-        self.axis_words = QtWidgets.QComboBox(self)
+        self.axis_words, self.dwell_unit = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.axis_words.addItems(list(AXIS_WORDS))
         self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
+        self.dwell_unit.addItems(list(DWELL_UNITS))
+        self.dwell_unit.setToolTip(translate("PKM_Editor", "The unit of dwells of the G-code"))
         self._progress = QtWidgets.QProgressBar(self)
         self._progress.hide()
         layout = QtWidgets.QVBoxLayout(self)
@@ -63,7 +65,8 @@ class Body(QtWidgets.QWidget):
         self.text.edits.progressed.connect(self._tell_progress)
         self.text.textChanged.connect(self._changed)
         self.text.cursorPositionChanged.connect(self._show_block)
-        self.axis_words.currentTextChanged.connect(self._read_otherwise)
+        for choice in (self.axis_words, self.dwell_unit):
+            choice.currentTextChanged.connect(self._read_otherwise)
 
     def name(self) -> str:
         """The name of the file, or the one that stands in for it."""
@@ -78,7 +81,10 @@ class Body(QtWidgets.QWidget):
         self.file = file
         obj = linked.object_of(file)
         if obj is not None:
-            self.axis_words.setCurrentText(obj.AxisWords)
+            # Each change is told to the object at once: both are taken before.
+            axis_words, dwell_unit = obj.AxisWords, obj.DwellUnit
+            self.axis_words.setCurrentText(axis_words)
+            self.dwell_unit.setCurrentText(dwell_unit)
         self.text.set_language(self.language())
         self.checker.request()
 
@@ -86,7 +92,11 @@ class Body(QtWidgets.QWidget):
         """The file was written: let its object read it again."""
         obj = linked.object_of(self.file)
         if obj is not None:
-            linked.bring_up_to_date(obj, self.axis_words.currentText())
+            linked.bring_up_to_date(obj, *self.choices())
+
+    def choices(self) -> tuple[str, str]:
+        """How the G-code says the tool axis, and its unit of dwells."""
+        return self.axis_words.currentText(), self.dwell_unit.currentText()
 
     def renumber(self) -> None:
         """Give each block a line number; CL data has none."""
@@ -107,18 +117,19 @@ class Body(QtWidgets.QWidget):
         return self.text.edits.busy() or self.checker.busy()
 
     def _text_to_check(self) -> tuple[str, str, Reading]:
-        return self.text.toPlainText(), self.name(), Reading(self.axis_words.currentText())
+        axis_words, dwell_unit = self.choices()
+        return self.text.toPlainText(), self.name(), Reading(axis_words, dwell_unit=dwell_unit)
 
     def _changed(self) -> None:
         self.program = None
         self._show_block()
         self.checker.request()
 
-    def _read_otherwise(self, axis_words: str) -> None:
+    def _read_otherwise(self) -> None:
         self.checker.request()
         obj = linked.object_of(self.file)
-        if obj is not None and obj.AxisWords != axis_words:
-            linked.bring_up_to_date(obj, axis_words)
+        if obj is not None and (obj.AxisWords, obj.DwellUnit) != self.choices():
+            linked.bring_up_to_date(obj, *self.choices())
 
     def _tell_progress(self, share: float) -> None:
         self._progress.setVisible(share < 1)

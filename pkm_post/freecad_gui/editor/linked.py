@@ -29,10 +29,11 @@ def object_of(file: Path | None) -> Any:
     return next((item for item in items if is_program(item) and Path(item.File) == file), None)
 
 
-def bring_up_to_date(obj: Any, axis_words: str) -> None:
+def bring_up_to_date(obj: Any, axis_words: str, dwell_unit: str) -> None:
     """Let the object read its file again."""
-    if obj.AxisWords != axis_words:
-        obj.AxisWords = axis_words
+    for name, chosen in (("AxisWords", axis_words), ("DwellUnit", dwell_unit)):
+        if getattr(obj, name) != chosen:
+            setattr(obj, name, chosen)
     obj.touch()
     obj.Document.recompute()
 
@@ -58,7 +59,7 @@ def chosen_job(parent: QtWidgets.QWidget, title: str) -> Any:
     return known[label] if chosen else None
 
 
-def decode_file(file: Path, axis_words: str, job: Any) -> Any:
+def decode_file(file: Path, axis_words: str, dwell_unit: str, job: Any) -> Any:
     """Make a file an operation of a job, in one step to undo; it gets a program object if it has none.
 
     Raises:
@@ -66,4 +67,4 @@ def decode_file(file: Path, axis_words: str, job: Any) -> Any:
     """
     document = job.Document
     with transaction(document, translate("PKM_Editor", "Decode into a job")):
-        return decode(object_of(file) or create_program(document, file, axis_words), job)
+        return decode(object_of(file) or create_program(document, file, axis_words, dwell_unit), job)

@@ -6,6 +6,7 @@ What can be chosen is asked for in the fields of the post panel, and kept in the
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -41,17 +42,17 @@ class Posting(QtCore.QObject):
         self._task: Task | None = None
         self._progress: Any = None
 
-    def ask_and_post(self, file: Path, axis_words: str) -> None:
+    def ask_and_post(self, file: Path, axis_words: str, dwell_unit: str) -> None:
         """Ask for what can be chosen, in the fields of the post panel, and post a file into its folder."""
         kept = FreeCAD.ParamGet(GROUP).GetString(_ENTRY, default_arguments() or _AT_FIRST)
         dialog = _Dialog(PostChoices(kept, str(file.parent)), self._title, self._window)
         if dialog.is_accepted():
             text, folder = dialog.fields.text(), dialog.fields.folder.text().strip()
             FreeCAD.ParamGet(GROUP).SetString(_ENTRY, text)
-            self.post(file, axis_words, text, Path(folder or file.parent))
+            self.post(file, axis_words, dwell_unit, text, Path(folder or file.parent))
         dialog.deleteLater()
 
-    def post(self, file: Path, axis_words: str, arguments: str, folder: Path | None = None) -> None:
+    def post(self, file: Path, axis_words: str, dwell_unit: str, arguments: str, folder: Path | None = None) -> None:
         """Post a file, beside it if no folder is given.
 
         ``ended`` tells when its files are there, or why they are not was told.
@@ -66,7 +67,8 @@ class Posting(QtCore.QObject):
             return
         options, lengths = options_from(chosen), tool_lengths_from(chosen)
         out = folder or file.parent
-        call = partial(post_file, file, chosen.machine, out, options, lengths, part_program_from(chosen, axis_words))
+        reading = replace(part_program_from(chosen, axis_words), dwell_unit=dwell_unit)
+        call = partial(post_file, file, chosen.machine, out, options, lengths, reading)
         task = Task(lambda: call(progress=task.tell), self)
         self._task, self._progress = task, self._bar(task)
         task.finished.connect(self._end)

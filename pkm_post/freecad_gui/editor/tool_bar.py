@@ -63,6 +63,7 @@ def tool_bar(editor: ProgramEditor, parent: QtWidgets.QWidget) -> QtWidgets.QToo
     for key, call in _SHORTCUTS:
         _add(editor, QtGui.QAction(editor), key, call)
     bar.addWidget(editor.body.axis_words)
+    bar.addWidget(editor.body.dwell_unit)
     return bar
 
 
