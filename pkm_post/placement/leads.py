@@ -1,37 +1,50 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Leads of reversed passes: the lift gone back as a plunge, and the plunge gone back as a lift.
 
-Rows of the old program enter: approach and departure of a pass. Rows of the new one leave. A rapid move never comes
-down to where a pass begins, and goes no deeper than one went before.
+A lead is the way between a pass and the travel, by its distance from the pass. It stays where it is; what is done on it
+changes places: the way down takes feeds and stations of the plunge, the way up those of the lift, whichever end of the
+pass they lead to. So a plunge keeps its feed, and a second reversal takes both back. A rapid move never comes down to
+where a pass begins, and goes no deeper than one went before.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import norm
-from pkm_post.geometry.vectors import Array, dot
+from pkm_post.geometry import dot, norm
+from pkm_post.geometry.great_circle import along, towards
+from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Program
+from pkm_post.placement.passes import lifts
 
-_ONE_AXIS = 1e-3
-"""rad: tool axes nearer than this are one."""
 LEVEL = 1e-6
 """mm: as high as another point, with six decimals."""
+_ON_LINE = 1e-5
+"""mm, and rad: how far a station may be off the motion that it divides, with six decimals."""
 
 
 @dataclass(frozen=True)
 class Rows:
     """Rows of the new program, (n,) each: the old row whose end is reached, the old row of the way, the feed.
 
-    The feed is NaN for a rapid move; ``back`` says that the way is gone from its end to its start.
+    The feed is NaN for a rapid move; ``back`` says that the way is gone from its end to its start. ``position`` and
+    ``tool_axis``, (n, 3) each, are given where they are not those of the old row's end.
     """
 
     point: Array
     way: Array
     feed: Array
     back: bool = False
+    position: Array | None = None
+    tool_axis: Array | None = None
+
+    def poses(self, program: Program) -> tuple[Array, Array]:
+        """Tips and tool axes at the ends of the rows, (n, 3) each."""
+        tip, axis = self.position, self.tool_axis
+        given = program.position[self.point], program.tool_axis[self.point]
+        return given[0] if tip is None else tip, given[1] if axis is None else axis
 
 
 def as_is(program: Program, rows: Array) -> Rows:
@@ -39,42 +52,164 @@ def as_is(program: Program, rows: Array) -> Rows:
     return Rows(rows, rows, program.feed[rows])
 
 
-def gone_down(program: Program, approach: Array, departure: Array, first: int) -> Rows:
-    """The departure gone back to the pass: at the feeds of the approach, and rapid no deeper than that was rapid."""
-    if not len(departure):
-        return as_is(program, departure)
-    way = departure[::-1]
-    point, old = way - 1, program.feed[approach]
-    shared = min(len(way), len(old))
-    feed = np.full(len(way), np.nan)
-    feed[len(way) - shared :] = old[len(old) - shared :]
-    plunged = bool(np.any(np.isfinite(old[-1:])))
-    deep = ~as_high(program, point, approach, departure, first) | (not plunged)
-    deep[-1] = True
-    slow = old[-1] if plunged else program.feed[first]
-    return Rows(point, way, np.where(np.isnan(feed) & deep, slow, feed), back=True)
+@dataclass(frozen=True)
+class Lead:
+    """A way from a pass outwards, n rows between n + 1 stations.
 
-
-def as_high(program: Program, point: Array, approach: Array, departure: Array, first: int) -> Array:
-    """Whether points above the end of a pass are as high as the one above its start to which a rapid move went, (n,).
-
-    With one tool axis that is height along it; with two, the height above the end and the start of the pass.
+    Attributes:
+        position: (n + 1, 3) stations, the end of the pass first.
+        tool_axis: (n + 1, 3) tool axes there.
+        point: (n + 1,) old rows that end there.
+        way: (n,) old rows of the way.
+        feed: (n,) feeds, NaN where it is rapid.
+        slanted: (n,) whether it is a feed move that does not go along the tool axis.
+        height: (n + 1,) how far the stations are from the pass along the way, or their heights above a plane; none is
+            lower than the one before.
     """
-    plunges = int(np.argmin(np.append(np.isfinite(program.feed[approach][::-1]), False)))
-    start, end = first - 1, departure[0] - 1
-    rapid_to = approach[-plunges] - 1 if plunges else start
-    up, up_at_end = program.tool_axis[start], program.tool_axis[end]
-    turned = float(norm(up - up_at_end)) > _ONE_AXIS
-    origins = (end, start) if turned else (start, start)
-    height = dot(program.position[point] - program.position[origins[0]], up_at_end)
-    high: Array = height >= dot(program.position[rapid_to] - program.position[origins[1]], up) - LEVEL
-    return high
+
+    position: Array
+    tool_axis: Array
+    point: Array
+    way: Array
+    feed: Array
+    slanted: Array
+    height: Array
+
+    def row_at(self, height: Array) -> Array:
+        """The row that goes through a height, (m,); n above the lead, 0 below it."""
+        row: Array = np.clip(np.searchsorted(self.height, height, side="right") - 1, 0, len(self.way))
+        return row
+
+    def feed_at(self, height: Array) -> Array:
+        """The feed at a height, (m,); rapid above the lead."""
+        return np.append(self.feed, np.nan)[self.row_at(height)]
+
+    @property
+    def rapid_to(self) -> float:
+        """Height of the lowest station that a rapid move leads to or from."""
+        rapid = np.flatnonzero(np.isnan(self.feed))
+        return float(self.height[rapid[0] if len(rapid) else -1])
 
 
-def gone_up(program: Program, approach: Array, departure: Array) -> Rows:
-    """The approach gone back from the pass, at the feeds of the departure; what is higher than that, by rapid moves."""
-    way = approach[::-1]
-    shared = min(len(way), len(departure))
-    feed = np.full(len(way), np.nan)
-    feed[:shared] = program.feed[departure[:shared]]
-    return Rows(way - 1, way, feed, back=True)
+def approach(program: Program, rows: Array, first: int) -> Lead:
+    """The lead of the approach to the pass that begins with the row ``first``."""
+    return _lead(program, np.append(first - 1, rows[::-1] - 1), rows[::-1])
+
+
+def departure(program: Program, rows: Array, behind: int) -> Lead:
+    """The lead of the departure from the pass that ends before the row ``behind``."""
+    return _lead(program, np.append(behind - 1, rows), rows)
+
+
+def _lead(program: Program, point: Array, way: Array) -> Lead:
+    position, axis, feed = program.position[point], program.tool_axis[point], program.feed[way]
+    height = np.append(0.0, np.cumsum(norm(np.diff(position, axis=0))))
+    made = Lead(position, axis, point, way, feed, np.isfinite(feed) & (lifts(program)[way] == 0), height)
+    # A move that turns the tool and goes on from rapid to feed is a rapid lift that was divided.
+    turning = norm(np.diff(axis, axis=0)[:-1]) > _ON_LINE
+    divided = turning & _straight_on(made) & np.isnan(feed[1:])
+    return replace(made, slanted=made.slanted & ~np.append(divided, False)[: len(way)])
+
+
+def above_plane(lead: Lead, origin: Array) -> Lead:
+    """The lead with its heights above a point, along the tool axis at the pass."""
+    height = dot(lead.position - origin, lead.tool_axis[0])
+    return replace(lead, height=np.maximum.accumulate(height))
+
+
+def gone_down(lead: Lead, plunge: Lead, slow: float) -> Rows:
+    """A lead gone to the pass with feeds and stations of a plunge.
+
+    Args:
+        lead: the departure that becomes the approach.
+        plunge: the old approach of the pass.
+        slow: feed where the plunge has none and a rapid move would come too deep, mm/s.
+    """
+    made, row = _divided(lead, _stations(plunge))
+    feed, rises = _feeds(made, plunge), np.diff(made.height) > 0.0
+    deep = (made.height[:-1] < plunge.rapid_to - LEVEL) | lead.slanted[row]
+    deep[:1] = True
+    feed = np.where(np.isnan(feed) & deep & rises, slow, feed)
+    ends = slice(-2, None, -1) if len(row) else slice(0)
+    return Rows(made.point[ends], made.way[::-1], feed[::-1], True, made.position[ends], made.tool_axis[ends])
+
+
+def gone_up(lead: Lead, lift: Lead, slow: float) -> Rows:
+    """A lead gone from the pass with feeds and stations of a lift.
+
+    A plunge that does not go along the tool axis is never gone back by a rapid move: where the lift is one, it keeps
+    its feed. A lift that has that feed there stands for a rapid one, so that a second reversal finds it.
+
+    Args:
+        lead: the approach that becomes the departure.
+        lift: the old departure of the pass.
+        slow: feed of the plunge, mm/s.
+    """
+    kept = lift.slanted & (lift.feed == slow)
+    stations = _stations(replace(lift, feed=np.where(kept, np.nan, lift.feed)))
+    stations = stations[~np.isin(stations, lift.height[np.append(kept, False) | np.append(False, kept)])]
+    lift = replace(lift, feed=np.where(kept, np.nan, lift.feed))
+    ends = lead.height[1:][lead.slanted & ~np.append(lead.slanted[1:], False)[: len(lead.way)]]
+    made, row = _divided(lead, np.append(stations, ends[np.isnan(lift.feed_at(ends - LEVEL))]))
+    feed = _feeds(made, lift)
+    feed = np.where(lead.slanted[row] & np.isnan(feed), lead.feed[row], feed)
+    return Rows(made.point[1:], made.way, feed, True, made.position[1:], made.tool_axis[1:])
+
+
+def _feeds(made: Lead, role: Lead) -> Array:
+    """Feeds of the rows of a divided lead by those of another one at their heights, (n,)."""
+    middle = (made.height[:-1] + made.height[1:]) / 2
+    return np.where(np.diff(made.height) > 0.0, role.feed_at(middle), np.nan)
+
+
+def _stations(lead: Lead) -> Array:
+    """Heights of the stations by choice: the motion goes on straight there, or its feed changes."""
+    feed = np.nan_to_num(lead.feed, nan=-1.0)
+    heights: Array = lead.height[1:-1][_straight_on(lead) | (feed[1:] != feed[:-1])]
+    return heights
+
+
+def _straight_on(lead: Lead) -> Array:
+    """Whether the motion goes on as it was at the stations between the first and the last, (n - 1,)."""
+    way = np.diff(lead.position, axis=0)
+    before, after = way[:-1], way[1:]
+    whole = np.maximum(norm(before + after), _ON_LINE)
+    start, end = lead.tool_axis[:-2], lead.tool_axis[2:]
+    even = along(start, (norm(before) / whole)[:, None] * towards(start, end))
+    on_line = (norm(cross(before, after)) / whole < _ON_LINE) & (dot(before, after) > 0.0)
+    flags: Array = on_line & (norm(even - lead.tool_axis[1:-1]) < _ON_LINE)
+    return flags
+
+
+def _divided(lead: Lead, heights: Array) -> tuple[Lead, Array]:
+    """The lead with other stations, and the old row on which each of its rows is.
+
+    Stations of its own remain where the motion turns.
+    """
+    rows = len(lead.way)
+    if not rows:
+        return lead, lead.way
+    corners = np.flatnonzero(np.concatenate([[True], ~_straight_on(lead), [True]]))
+    new = heights[(heights > lead.height[0] + _ON_LINE) & (heights < lead.height[-1] - _ON_LINE)]
+    new = np.unique(new[np.abs(new[:, None] - lead.height[corners]).min(axis=1, initial=np.inf) > _ON_LINE])
+    row = lead.row_at(new)
+    place = np.sort(np.append(corners, row + (new - lead.height[row]) / (lead.height[row + 1] - lead.height[row])))
+    row = np.minimum(place.astype(np.int64), rows - 1)
+    share = place - row
+    made = Lead(
+        position=_between(lead.position, row, share),
+        tool_axis=along(lead.tool_axis[row], share[:, None] * towards(lead.tool_axis[row], lead.tool_axis[row + 1])),
+        point=lead.point[np.ceil(place).astype(np.int64)],
+        way=lead.way[on := np.floor((place[:-1] + place[1:]) / 2).astype(np.int64)],
+        feed=lead.feed[on],
+        slanted=lead.slanted[on],
+        height=_between(lead.height, row, share),
+    )
+    return made, on
+
+
+def _between(values: Array, row: Array, share: Array) -> Array:
+    """Values at shares of the ways from rows to the next ones; exactly those of the rows at shares 0 and 1."""
+    shares = share.reshape(-1, *[1] * (values.ndim - 1))
+    between: Array = (1.0 - shares) * values[row] + shares * values[row + 1]
+    return between

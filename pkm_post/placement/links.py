@@ -2,8 +2,9 @@
 """Links: how the tool leaves a pass, travels, and comes to the next one.
 
 A program with its passes enters; for each link the rows leave: departure, travel, approach. Departure and approach run
-along the tool axis, or are the rapid move next to the pass where no move does. Before the first pass all but the
-approach is travel, and behind the last one all but the departure.
+along the tool axis, with the plunges and lifts next to the pass that do not, and the rapid moves that turn the tool on
+the way; or they are the rapid move next to the pass where no such move is. Before the first pass all but the approach
+is travel, and behind the last one all but the departure.
 """
 
 from __future__ import annotations
@@ -13,12 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import norm
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry.vectors import Array, dot
 from pkm_post.model import Kind, Program
-from pkm_post.placement.passes import lifts, moving
+from pkm_post.placement.passes import cutting, lifts, moving, rises, steps
 
 _SAME = 1e-6
 """mm, and of unit vectors: saved documents have six decimals."""
+_STEEP = 0.7
+"""Cosine of the angle between a rapid move that turns the tool and the tool axis, above which it leads up or down."""
+_STRAIGHT = 1.0 - 1e-6
+"""Cosine of the angle between two moves in line."""
 
 
 @dataclass(frozen=True)
@@ -45,20 +50,66 @@ def links(program: Program, runs: Array) -> list[Link]:
         program: of N rows.
         runs: (P, 2) its passes.
     """
-    up, moves, rapid = lifts(program), moving(program), program.kind == Kind.RAPID
+    swings, moves, rapid = _swings(program), moving(program), program.kind == Kind.RAPID
+    up, down = _leading_ways(program, runs, swings)
     moves[:1] = True
     firsts, lasts = np.append(0, runs[:, 1]), np.append(runs[:, 0], len(program))
     made = []
     for number, (first, last) in enumerate(zip(firsts, lasts, strict=True)):
         every = np.arange(first, last)
         rows = every[moves[every]]
-        away = 0 if number == 0 else _leading(up[rows] > 0, rapid[rows])
+        away = 0 if number == 0 else _leading(up[rows], rapid[rows])
         rest = rows[away:]
         # Row 0 has no start: it is a point that is travelled to.
         own = rest[1:] if number == 0 else rest
-        to = 0 if number == len(runs) else _leading(up[own][::-1] < 0, rapid[own][::-1])
+        to = 0 if number == len(runs) else _leading(down[own][::-1], rapid[own][::-1])
+        if 0 < number < len(runs) and away + to == len(rows):
+            # Between two passes something has to be travel, and a move that turns the tool may be.
+            back = away > 0 and bool(swings[rows[away - 1]])
+            away, to = away - back, to - (not back and to > 0 and bool(swings[rows[-to]]))
+            rest = rows[away:]
         made.append(Link(every, rows[:away], rest[: len(rest) - to], rest[len(rest) - to :]))
     return made
+
+
+def _turns(program: Program) -> Array:
+    """Whether a rapid move turns the tool, (N,)."""
+    turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
+    flags: Array = (program.kind == Kind.RAPID) & (turn > _SAME)
+    return flags
+
+
+def _swings(program: Program) -> Array:
+    """Whether a rapid move turns the tool while it goes up or down, (N,)."""
+    flags: Array = _turns(program) & (norm(steps(program)) >= _SAME) & (np.abs(rises(program)) > _STEEP)
+    return flags
+
+
+def _leading_ways(program: Program, runs: Array, swings: Array) -> tuple[Array, Array]:
+    """Whether rows may lead up from a pass, and down to one, (N,) each."""
+    rise, lift = rises(program), lifts(program)
+    plunges = cutting(program) & ~_within(runs, len(program))
+    leads = plunges | swings | _in_line(program, plunges)
+    here = _turns(program) & (norm(steps(program)) < _SAME)
+    return (lift > 0) | (leads & (rise > 0)) | here, (lift < 0) | (leads & (rise < 0)) | here
+
+
+def _within(runs: Array, rows: int) -> Array:
+    """Whether rows are within the passes, (N,)."""
+    edges = np.bincount(runs[:, 0], minlength=rows + 1) - np.bincount(runs[:, 1], minlength=rows + 1)
+    inside: Array = np.cumsum(edges)[:rows] > 0
+    return inside
+
+
+def _in_line(program: Program, plunges: Array) -> Array:
+    """Rapid moves that go on in the line of a plunge or lift beside them, (N,)."""
+    way = steps(program)
+    direction = way / np.maximum(norm(way), _SAME)[:, None]
+    ahead = np.append(dot(direction[:-1], direction[1:]) > _STRAIGHT, False)
+    behind = np.append(False, ahead[:-1])
+    next_one, last_one = np.append(plunges[1:], False), np.append(False, plunges[:-1])
+    flags: Array = (program.kind == Kind.RAPID) & ((ahead & next_one) | (behind & last_one))
+    return flags
 
 
 def closed(program: Program, runs: Array) -> Array:
@@ -68,6 +119,12 @@ def closed(program: Program, runs: Array) -> Array:
     turned = norm(program.tool_axis[begin] - program.tool_axis[end])
     same: Array = (off < _SAME) & (turned < _SAME)
     return same
+
+
+def same_pose(program: Program, row: int, other: int) -> bool:
+    """Whether tip and tool axis are the same at the ends of two rows."""
+    off = norm(program.position[row] - program.position[other])
+    return bool(off < _SAME and norm(program.tool_axis[row] - program.tool_axis[other]) < _SAME)
 
 
 def _leading(along: Array, rapid: Array) -> int:

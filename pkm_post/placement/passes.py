@@ -17,6 +17,8 @@ _NO_MOVE = 1e-9
 """mm, and of unit vectors: a row that moves less stands."""
 _ALONG = 1e-3
 """rad: a straight move this near to the direction of the tool axis goes along it."""
+_SLANTED = 0.5
+"""Sine of the angle against the plane across the tool axis above which a move is a plunge or lift."""
 _ARC_STEPS = 24
 """Points for each arc, a full turn at most: 15 degrees apart."""
 
@@ -43,6 +45,40 @@ def lifts(program: Program) -> Array:
     up = straight & (norm(direction - program.tool_axis) < _ALONG)
     down = straight & (norm(direction + program.tool_axis) < _ALONG)
     return up.astype(np.int8) - down.astype(np.int8)
+
+
+def rises(program: Program) -> Array:
+    """How far straight rows go up along the tool axis, as a share of their way, (N,): 1 along it, 0 on other rows."""
+    way = steps(program)
+    axis = program.tool_axis + np.concatenate([program.tool_axis[:1], program.tool_axis[:-1]])
+    size = norm(way) * norm(axis)
+    share: Array = np.where(
+        (program.kind != Kind.ARC) & (size > _NO_MOVE), dot(way, axis) / np.maximum(size, _NO_MOVE), 0
+    )
+    return share
+
+
+def without_plunges(program: Program, runs: Array) -> Array:
+    """The passes without the plunges and lifts at their ends that do not go along the tool axis, (P, 2).
+
+    These are the straight rows down at the beginning and up at the end, whose feed is not that of the cut next to them.
+    """
+    rise = rises(program)
+    inner = np.array(runs)
+    for number, (first, behind) in enumerate(runs.tolist()):
+        rows = np.arange(first, behind)
+        inner[number, 0] += _plunging(-rise[rows], program.feed[rows])
+        inner[number, 1] -= _plunging(rise[rows][::-1], program.feed[rows][::-1])
+    return inner
+
+
+def _plunging(down: Array, feed: Array) -> int:
+    """How many rows from an end of a pass are a plunge to it; none where that would be all."""
+    going = np.append(down > _SLANTED, False)
+    count = int(np.argmin(going))
+    if count == len(feed):
+        return 0
+    return int(np.argmax(np.append(feed[:count] == feed[count], True)))
 
 
 def cutting(program: Program) -> Array:

@@ -6,14 +6,14 @@ so that depths are still cut from the top. Point columns go with the points, fee
 turns about the opposite axis, and what was left of the path is right of it then.
 
 A pass that ends where it began is still reached and left as before. Another one is reached by the way on which it was
-left, and left by the way on which it was reached. The tool never comes down to where such a pass begins by a rapid
-move: what was a rapid lift takes the feed of the plunge, down from the height at which that plunge began.
+left, and left by the way on which it was reached. What goes down does so as the plunge did and what goes up as the lift
+did: rapid and feed by height, so the tool never comes down to where such a pass begins by a rapid move.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,14 +23,18 @@ from pkm_post.geometry.vectors import Array, dot
 from pkm_post.model import Diagnostic, Kind, Program
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS
-from pkm_post.placement.leads import LEVEL, Rows, as_high, as_is, gone_down, gone_up
-from pkm_post.placement.links import Link, closed, links
-from pkm_post.placement.passes import passes
+from pkm_post.placement.exchanged import Exchange, exchanges
+from pkm_post.placement.leads import LEVEL, Rows, as_is
+from pkm_post.placement.links import Link, closed, links, same_pose
+from pkm_post.placement.passes import passes, without_plunges
 from pkm_post.placement.reversed_events import misplaced, moved_events
 
 _POINT_COLUMNS = ("position", "tool_axis", "normal", "spin", "exact_stop", "side_offset")
 """What is said of the end of a row: on the row where compensation begins, only its end has the offset yet. All other
 columns are of the way there."""
+
+
+_POSE = ("position", "tool_axis")
 
 
 @dataclass(frozen=True)
@@ -51,18 +55,18 @@ class _Part:
 def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """The program with every pass run the other way, or what stands against it (K122 to K125).
 
-    Doing it twice brings all points and passes back. It gives the very same program where the heights of lifts are
-    those of plunges, as with CAM's safe and clearance heights; elsewhere a rapid move that became feed may stay feed.
+    Doing it twice gives the same program: ``docs/conventions.md`` says where a rapid move may stay a feed move.
 
     Args:
         program: cutter locations; a program without passes comes back as it is.
     """
-    runs = passes(program)
+    runs = without_plunges(program, passes(program))
     if not len(runs):
         return program, ()
     between, whole = links(program, runs), closed(program, runs)
-    parts = _parts(program, runs, between, whole)
-    faults = tuple(_faults(program, runs, parts, between, whole))
+    leads = exchanges(program, runs, between, whole)
+    parts = _parts(program, runs, between, whole, leads)
+    faults = tuple(_faults(program, runs, parts, between, whole, leads))
     if errors(faults):
         return None, faults
     made = _taken(program, [part.rows for part in parts])
@@ -72,22 +76,23 @@ def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic,
     return dataclasses.replace(made, events=events), faults
 
 
-def _parts(program: Program, runs: Array, between: list[Link], whole: Array) -> list[_Part]:
+def _parts(
+    program: Program, runs: Array, between: list[Link], whole: Array, leads: Mapping[int, Exchange]
+) -> list[_Part]:
     """The new program in its order."""
     kept = _unchanged(whole)
-    parts = []
+    parts: list[_Part] = []
+    tip = -1
     for number, (first, behind) in enumerate(runs):
-        before, after, open_pass = between[number], between[number + 1], not whole[number]
-        enter = (
-            gone_down(program, before.approach, after.departure, first)
-            if open_pass
-            else as_is(program, before.approach)
-        )
-        top = int(first - 1 if not len(before.approach) else before.approach[0] - 1)
-        if open_pass:
-            top = int(behind - 1 if not len(after.departure) else after.departure[-1])
-        travel = as_is(program, before.travel) if kept[number] else _to(program, before, top, number == 0)
-        leave = gone_up(program, before.approach, after.departure) if open_pass else as_is(program, after.departure)
+        before, after = between[number], between[number + 1]
+        if number in leads:
+            enter, leave, top, end = leads[number].ways()
+        else:
+            enter, leave = as_is(program, before.approach), as_is(program, after.departure)
+            top = int(before.approach[0] if len(before.approach) else first) - 1
+            end = int(after.departure[-1] if len(after.departure) else behind - 1)
+        travel = as_is(program, before.travel) if kept[number] else _to(program, before, tip, top, number == 0)
+        tip = end
         way = np.arange(behind - 1, first - 1, -1)
         parts += [
             _Part("travel", number, travel),
@@ -104,15 +109,25 @@ def _unchanged(whole: Array) -> Array:
     return either
 
 
-def _to(program: Program, link: Link, top: int, at_start: bool) -> Rows:
-    """One rapid move to the point above a pass. At the start of all, what came before the old such point is kept."""
+def _to(program: Program, link: Link, tip: int, top: int, at_start: bool) -> Rows:
+    """One rapid move to the point above a pass, none where the tool is there already.
+
+    At the start of all, what came before the old such point is kept.
+    """
+    if not at_start and same_pose(program, tip, top):
+        return as_is(program, link.travel[:0])
     kept = link.travel[:-1] if at_start else link.travel[:0]
     way = np.append(kept, link.travel[-1] if len(link.travel) else top)
     return Rows(np.append(kept, top), way, np.append(program.feed[kept], np.nan))
 
 
 def _faults(
-    program: Program, runs: Array, parts: list[_Part], between: list[Link], whole: Array
+    program: Program,
+    runs: Array,
+    parts: list[_Part],
+    between: list[Link],
+    whole: Array,
+    leads: Mapping[int, Exchange],
 ) -> Iterator[Diagnostic]:
     sizes = {(part.name, part.number): len(part.rows.way) for part in parts}
     for number in (np.flatnonzero(~_unchanged(whole)[1:-1]) + 1).tolist():
@@ -125,8 +140,7 @@ def _faults(
         yield Diagnostic(code, program.place(int(runs[0, 1]) - 1), "no lift leads away from the end of this pass")
     for number in np.flatnonzero(~whole).tolist():
         first, behind = runs[number].tolist()
-        approach, departure = between[number].approach, between[number + 1].departure
-        if len(departure) and not np.all(as_high(program, departure[-1:], approach, departure, first)):
+        if not leads[number].is_high():
             yield Diagnostic(
                 "K122", program.place(behind - 1), "the lift from this pass ends below where rapid moves went"
             )
@@ -154,6 +168,9 @@ def _taken(program: Program, parts: list[Rows]) -> Program:
     names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS} - {*_POINT_COLUMNS}
     columns: dict[str, Any] = {name: getattr(program, name)[way] for name in names}
     columns |= {name: getattr(program, name)[point] for name in _POINT_COLUMNS}
+    columns |= {
+        name: np.concatenate([part.poses(program)[number] for part in parts]) for number, name in enumerate(_POSE)
+    }
     arc = back & (columns["kind"] == Kind.ARC)
     columns["kind"] = np.where(arc, Kind.ARC, np.where(np.isnan(feed), Kind.RAPID, Kind.LINE))
     columns["feed"] = feed

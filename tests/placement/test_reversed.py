@@ -75,6 +75,20 @@ def points_of(made):
     return {tuple(point) for point in np.round(np.hstack([made.position, made.tool_axis]), 9).tolist()}
 
 
+def cut_points(made):
+    """Where passes begin, lead to, and end."""
+    rows = np.concatenate([np.arange(first - 1, behind) for first, behind in passes(made)])
+    return {tuple(point) for point in np.round(made.position[rows], 9).tolist()}
+
+
+def off_the_ways(made, before):
+    """How far points are off the straight ways of another program, at most."""
+    start, way = before.position[:-1], steps(before)[1:]
+    share = np.einsum("abc,bc->ab", made.position[:, None] - start, way) / np.maximum(np.sum(way**2, axis=1), 1e-12)
+    foot = start + np.clip(share, 0, 1)[..., None] * way
+    return norm(made.position[:, None] - foot).min(axis=1).max()
+
+
 def ways_of(made):
     """Feed, middle, length and centre of each row that cuts, in no order."""
     rows = np.concatenate([np.arange(first, behind) for first, behind in passes(made)])
@@ -134,18 +148,19 @@ def test_leads_change_places_with_the_feed_of_the_plunge():
     np.testing.assert_array_equal(after.feed[-2:], [np.nan, np.nan])
 
 
-def test_a_lift_in_one_go_becomes_a_plunge_in_one_go():
+def test_a_lift_in_one_go_is_gone_back_rapidly_to_where_the_plunge_began():
     rows = [(0, 0, CLEAR, 0), (0, 0, SAFE, 0), (0, 0, 0, PLUNGE), (20, 0, 0, CUT), (20, 0, CLEAR, 0)]
     after = turned(made_of(rows))
-    assert after.position[:2].tolist() == [[20, 0, CLEAR], [20, 0, 0]]
-    assert after.feed[1] == PLUNGE
+    assert after.position[:3].tolist() == [[20, 0, CLEAR], [20, 0, SAFE], [20, 0, 0]]
+    np.testing.assert_array_equal(after.feed[:3], [np.nan, np.nan, PLUNGE])
+    assert after.position[-2:].tolist() == [[0, 0, 0], [0, 0, CLEAR]]
 
 
 def test_a_lift_through_what_may_be_material_is_not_gone_back_rapidly():
     rows = [(0, 0, CLEAR, 0), (0, 0, SAFE, 0), (0, 0, 0, PLUNGE), (20, 0, 0, CUT), (20, 0, 10, 0), (20, 0, CLEAR, 0)]
     after = turned(made_of(rows))
-    assert after.position[1:3].tolist() == [[20, 0, 10], [20, 0, 0]]
-    assert after.feed[1:3].tolist() == [PLUNGE, PLUNGE]  # 10 is below the height that was approached rapidly
+    assert after.position[1:3].tolist() == [[20, 0, SAFE], [20, 0, 0]]
+    assert after.feed[2] == PLUNGE  # 10 is below the height that was approached rapidly
 
 
 def test_a_closed_contour_is_reached_and_left_as_before():
@@ -290,11 +305,13 @@ def random_job(rng):
 def test_laws_hold_for_random_jobs(seed):
     before = random_job(np.random.default_rng(seed))
     once = turned(before)
-    assert points_of(once) == points_of(before)
+    assert cut_points(once) == cut_points(before)
+    assert off_the_ways(once, before) < 1e-9
     assert ways_of(once) == ways_of(before)
     twice = turned(once)
     assert ways_of(twice) == ways_of(before)
-    np.testing.assert_allclose(twice.position, before.position, atol=ROUNDING)
+    for name in ("kind", "position", "tool_axis", "feed"):
+        np.testing.assert_allclose(getattr(twice, name), getattr(before, name), atol=1e-9, err_msg=name)
     rapid = once.kind == Kind.RAPID
     straight_up = lifts(once) == 1
     assert np.all(once.position[rapid & ~straight_up, 2] >= SAFE - ROUNDING)
