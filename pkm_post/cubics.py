@@ -2,7 +2,7 @@
 """Cubics: how well what the controller plays between two points follows the plan.
 
 Enters: path, schedule and machine, then starts and ends of intervals in whole ms. Leaves: the worst of the deviations
-of tip and axis, of the speed of the tip and of speeds and accelerations of the struts, each by what it may be.
+of tip and axis, of speed and acceleration of tip and struts, and of the turning rate, each by what it may be.
 
 The plan is compared with the cubics of the tool at the joints of the path and between them, without kinematics. What
 the struts' cubics do differently, the drift, is bounded, and where the bound says too little, measured and added.
@@ -99,7 +99,7 @@ class Cubics:
         if len(rows):
             at_joints = self._in_passes(self._off_at_joints, intervals[rows], cubics[rows], drift[:, rows])
             off[rows] = np.maximum(off[rows], at_joints)
-        return np.asarray(np.maximum.reduce([demand.struts, swing, off]))
+        return np.asarray(np.maximum.reduce([demand.limits, swing, off]))
 
     def _in_passes(self, off: _Off, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """What is off in intervals, (N,), some of them at once."""
@@ -115,7 +115,7 @@ class Cubics:
         if self._path.attitude is None:
             return self._measured(intervals, cubics)
         bound = bounded_demand(self._machine, float(self._path.attitude[2][0]), cubics, intervals.duration)
-        rows = np.flatnonzero((bound.tip > self._little) | (bound.struts > 1))
+        rows = np.flatnonzero((bound.tip > self._little) | (bound.limits > 1))
         known = replace(bound, tip=np.zeros(len(bound.tip)))
         return known.but(rows, self._measured(intervals[rows], cubics[rows])) if len(rows) else known
 

@@ -16,8 +16,8 @@ from pkm_post.geometry.vectors import Array, norm
 from pkm_post.kinematics import strut_rate_bounds, strut_rates
 from pkm_post.model import Machine, Poses
 
-_STRUT_SPEED_SHARE = 0.95
-"""Share of the strut speed that is planned: the controller's cubics swing a little about it."""
+_SPEED_SHARE = 0.95
+"""Share of the speeds of struts and tool axis that is planned: the controller's cubics swing a little about it."""
 _AT_FEED = 1e-6
 """Part of the speed squared by which a plan at the feed may be below it by rounding."""
 _LONGER = 1.002
@@ -131,11 +131,11 @@ def _limited(machine: Machine, struts: Pair, tip: Pair, axis: Pair) -> tuple[Bou
         Bounded(
             first=struts[0],
             second=struts[1],
-            speed=_STRUT_SPEED_SHARE * machine.strut_speed,
+            speed=_SPEED_SHARE * machine.strut_speed,
             acceleration=machine.strut_acceleration,
             each=True,
             jerk=machine.strut_jerk,
         ),
         Bounded(tip[0], tip[1], np.inf, machine.tip_acceleration, each=False, jerk=machine.tip_jerk),
-        Bounded(axis[0], axis[1], machine.axis_speed, np.inf, each=False),
+        Bounded(axis[0], axis[1], _SPEED_SHARE * machine.axis_speed, np.inf, each=False),
     )

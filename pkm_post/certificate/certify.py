@@ -21,12 +21,13 @@ from pkm_post.certificate.joints import Passed, pass_joints
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.playback import Played, play
 from pkm_post.certificate.structure import structure_faults
-from pkm_post.certificate.struts import off_plan, strut_jerk
+from pkm_post.certificate.struts import acceleration_steps, off_plan, strut_jerk
 from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
+from pkm_post.certificate.tool_limits import tip_jerk, tool_limits
 from pkm_post.geometry.vectors import Array, norm
 from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Finding, Tolerances
+from pkm_post.model.certificate import Certificate, Figure, Finding, Tolerances
 
 _FEED_SHARE = 1.01
 """How far the cubic may swing about the planned speed where the acceleration changes."""
@@ -75,6 +76,7 @@ def certify(
         tip_tolerance=played.tip_tolerance,
         axis_deviation=played.axis,
         coverage=coverage(machine, trajectory),
+        figures=_figures(task, trajectory),
     )
     return certificate, tuple(finding.diagnostic() for finding in findings if not finding.holds)
 
@@ -85,11 +87,12 @@ def _findings(
     """One row for each quantity: code, name, unit, values, limit, and when and where they were taken."""
     struts, machine, motion = task.struts, task.machine, task.motion
     starts = partial(_start, motion)
-    knots = partial(_of_columns, struts.time_ms / 1000, motion.segment)
+    knots = _at_knots(task)
     joints = partial(_of_columns, motion.joint_time, np.arange(len(trajectory)))
     at_ends = trajectory.tip_tolerances(tolerances.tip)
     axis_limit = math.degrees(tolerances.axis)
     told = partial(_where_most_was_found, task, passed, played)
+    axis_speed, tip_acceleration = tool_limits(task)
     rows: tuple[_Row, ...] = (
         ("V107", "interval without a pose", "", 1.0 - played.found, 0.0, starts),
         ("V101", "deviation of the tool tip", "mm", *told(Looked.TIP, played.tip, played.tip_tolerance)),
@@ -100,12 +103,35 @@ def _findings(
         ("V108", "tip speed", "mm/s", *told(Looked.SPEED, played.tip_speed, task.ceiling)),
         ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, starts),
         ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
+        (
+            "V113",
+            "turning rate of the tool axis",
+            "degrees/s",
+            np.degrees(axis_speed),
+            math.degrees(machine.axis_speed),
+            starts,
+        ),
+        ("V114", "tip acceleration", "mm/s^2", tip_acceleration, machine.tip_acceleration, starts),
         ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, starts),
         ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, starts),
     )
     if math.isfinite(machine.strut_jerk):
         rows = (*rows, ("V112", "strut jerk", "mm/s^3", strut_jerk(struts), machine.strut_jerk, knots))
+    if math.isfinite(machine.tip_jerk):
+        rows = (*rows, ("V115", "tip jerk", "mm/s^3", tip_jerk(task), machine.tip_jerk, knots))
     return tuple(_worst(trajectory, *row) for row in rows)
+
+
+def _figures(task: Task, trajectory: Trajectory) -> tuple[Figure, ...]:
+    """What is measured and has no limit."""
+    steps = acceleration_steps(task.struts)
+    return (_figure(trajectory, "step of strut acceleration at a knot", "mm/s^2", steps, _at_knots(task)),)
+
+
+def _figure(trajectory: Trajectory, name: str, unit: str, values: Array, when: _When) -> Figure:
+    row = int(np.argmax(values))
+    time, segment = when(row)
+    return Figure(name, unit, float(values[row]), time, trajectory.place(segment))
 
 
 _When = Callable[[int], tuple[float, int]]
@@ -130,6 +156,10 @@ def _start(motion: Motion, interval: int) -> tuple[float, int]:
     """When an interval starts, and what is executed just after that."""
     time = float(motion.time_ms[interval]) / 1000
     return time, int(np.searchsorted(motion.joint_time, time, side="right"))
+
+
+def _at_knots(task: Task) -> _When:
+    return partial(_of_columns, task.struts.time_ms / 1000, task.motion.segment)
 
 
 def _of_columns(time: Array, segment: Array, row: int) -> tuple[float, int]:

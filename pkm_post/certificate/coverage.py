@@ -7,6 +7,8 @@ check of it, so the rows differ from machine to machine. docs/certificate.md has
 
 from __future__ import annotations
 
+import math
+
 from pkm_post.certificate.beside_the_path import beside_the_path
 from pkm_post.kinematics.bodies import has_strut_bodies
 from pkm_post.model import Machine, Trajectory
@@ -19,6 +21,7 @@ _PATH = (
 )
 _LIMITS = (
     ("strut length, speed and acceleration", "the program as written, at every moment"),
+    ("tip acceleration and turning rate of the tool axis", "the program as written, at every moment"),
     ("joints and singular poses", "the planned path with its rounded corners, between its points as well"),
 )
 _SETUP = (
@@ -29,11 +32,17 @@ _SETUP = (
 )
 
 
+_JERK = "the mean acceleration from one interval to the next"
+_NO_JERK = "the machine file states no {}"
+_STEPS = "none is stated; the report has the largest"
+
+
 def coverage(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
     """The hazards in the order of their topics."""
     return (
         *_rows(Topic.PATH, Extent.PROVEN, _PATH),
         *_rows(Topic.LIMITS, Extent.PROVEN, _LIMITS),
+        *_jerks(machine),
         *_collisions(machine),
         *beside_the_path(machine, trajectory),
         *_rows(Topic.SETUP, Extent.NOT_COVERED, _SETUP),
@@ -42,6 +51,21 @@ def coverage(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
 
 def _rows(topic: Topic, extent: Extent, rows: tuple[tuple[str, str], ...]) -> tuple[Coverage, ...]:
     return tuple(Coverage(topic, subject, extent, detail) for subject, detail in rows)
+
+
+def _jerks(machine: Machine) -> tuple[Coverage, ...]:
+    """Jerk is looked at from one interval to the next, where a limit is stated; steps at the knots have no limit."""
+    limits = (
+        ("strut jerk", "struts.jerk", machine.strut_jerk),
+        ("tip jerk", "tool_path.tip_jerk", machine.tip_jerk),
+    )
+    known = tuple(
+        Coverage(Topic.LIMITS, subject, Extent.SAMPLED, _JERK)
+        if math.isfinite(limit)
+        else Coverage(Topic.LIMITS, subject, Extent.NOT_COVERED, _NO_JERK.format(entry))
+        for subject, entry, limit in limits
+    )
+    return (*known, Coverage(Topic.LIMITS, "steps of acceleration at knots", Extent.NOT_COVERED, _STEPS))
 
 
 def _collisions(machine: Machine) -> tuple[Coverage, ...]:

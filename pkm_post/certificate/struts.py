@@ -75,8 +75,32 @@ def strut_jerk(struts: StrutMotion) -> Array:
     The mean acceleration of an interval is the change of its speeds by its duration. From one interval to the next
     it changes by no more than the jerk times the time between their middles.
     """
-    duration = np.diff(struts.time_ms / 1000)
-    still = np.zeros((1, 6))
-    mean = np.concatenate([still, np.diff(struts.speed, axis=0) / duration[:, None], still])
+    changes, apart = mean_changes(struts.time_ms, struts.speed)
+    return np.asarray(np.abs(changes).max(axis=1) / apart)
+
+
+def mean_changes(time_ms: Array, speed: Array) -> tuple[Array, Array]:
+    """By how much mean accelerations change at knots, and the times between the middles of their intervals.
+
+    Args:
+        time_ms: (K + 1,) whole ms.
+        speed: (K + 1, C) by s.
+
+    Returns:
+        (K + 1, C) and (K + 1,) s, with rests before the first and behind the last knot.
+    """
+    duration = np.diff(time_ms / 1000)
+    still = np.zeros((1, speed.shape[1]))
+    mean = np.concatenate([still, np.diff(speed, axis=0) / duration[:, None], still])
     apart = (np.append(duration, 0.0) + np.append(0.0, duration)) / 2
-    return np.asarray(np.abs(np.diff(mean, axis=0)).max(axis=1) / apart)
+    return np.diff(mean, axis=0), apart
+
+
+def acceleration_steps(struts: StrutMotion) -> Array:
+    """Largest step of a strut's acceleration at each knot, (K + 1,) mm/s^2, from rest and to rest at the ends.
+
+    Cubics with given lengths and speeds meet with the same speed, not with the same acceleration.
+    """
+    begin, end = hermite_accelerations(*cubics(struts, np.arange(len(struts) - 1)))
+    still = np.zeros((1, 6))
+    return np.asarray(np.abs(np.concatenate([begin, still]) - np.concatenate([still, end])).max(axis=1))

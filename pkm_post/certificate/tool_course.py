@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.struts import cubics
-from pkm_post.geometry import hermite_column_speeds, hermite_columns, hermite_lengths
+from pkm_post.geometry import hermite_accelerations, hermite_column_speeds, hermite_columns, hermite_lengths
 from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.kinematics import NearPoses, attitude_rates, carried, moved, strut_lengths
 from pkm_post.model import Machine, Motion, StrutMotion
@@ -25,11 +25,15 @@ _LOOKS = np.array([[0.25], [0.5], [0.75]])
 _MOST = 1.6
 """What leaves a cubic as x^2 (1 - x)^2 times a quadratic leaves it by at most 1.442 of what it does at the looks."""
 _FASTEST = 12.3
-"""The same of its rate, at most 11.153 of what it is at the looks by the duration. Both with a tenth of room."""
+"""The same of its rate, at most 11.153 of what it is at the looks by the duration."""
+_BENDS = 356.0
+"""The same of its second derivative, at most 323.56 by the square of the duration. All three with a tenth of room."""
 _NEAR_PLAN = 1e-4
 """mm of a strut off its plan at a knot; beyond it, one linear step from the plan would be too coarse."""
 _STEP_MISSES = np.array([1e-9, 1e-9, 1e-4])[:, None]
 """mm, rad and mm/s, more than what such a step misses, and what speeds carried by the Jacobian before it do."""
+_TURN_MISSES = 2e-6
+"""rad/s: the same of turning rates."""
 _NEAR_CUBIC = 0.01
 """mm of a strut between cubic and program, beyond which the difference is not told by linear steps."""
 _SMALL_TURN = 0.3
@@ -84,6 +88,33 @@ class ToolCourse:
         """Velocity of the tip there, (3, M, N) mm/s."""
         p0, v0, p1, v1, duration = self._ends(rows)
         return hermite_column_speeds(p0[:3], v0[:3], p1[:3], v1[:3], duration, share)
+
+    def rates(self) -> tuple[Array, Array]:
+        """Turning rate of the tool axis, rad/s, and acceleration of the tip, mm/s^2, of the K intervals.
+
+        The acceleration of a cubic is largest at an end, its speed no more than the largest of its Bezier coefficients.
+        The cubic of the axis is in the hull of its control points, so with a turn of g it is no shorter than
+        cos(g / 2) - g^2 / 6 > 1 - 0.3 g^2, and the axis turns faster than it by no more than that.
+
+        Returns:
+            What is found at the knots, and by how much more there can be at any moment, (2, K) each; the latter is
+            infinite where nothing is known.
+        """
+        begin, begin_rate, end, end_rate, duration = self._ends(np.arange(len(self.duration)))
+        both = hermite_accelerations(begin[:3].T, begin_rate[:3].T, end[:3].T, end_rate[:3].T, duration)
+        acceleration = np.maximum(*(length_of(*one.T) for one in both))
+        first, last = begin_rate[3:6], end_rate[3:6]
+        middle = 3 * (end[3:6] - begin[3:6]) / duration - first - last
+        at_knots = np.maximum(length_of(*first), length_of(*last))
+        hull = np.maximum(at_knots, length_of(*middle))
+        turn = hull * duration
+        off_tip, off_axis, _ = (self.missed - _STEP_MISSES) / [[_MOST], [_MOST], [_FASTEST]]
+        step = 12 * _STEP_MISSES[0] / duration**2 + 6 * _STEP_MISSES[2] / duration
+        more = (
+            hull / np.maximum(1 - 0.3 * turn**2, 0.5) - at_knots + _FASTEST * off_axis / duration + _TURN_MISSES,
+            _BENDS * off_tip / duration**2 + step,
+        )
+        return np.stack([at_knots, acceleration]), np.where(np.isfinite(self.missed[0]), np.stack(more), np.inf)
 
     def _ends(self, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
         after, place, rate = rows + 1, self.place, self.rate

@@ -61,6 +61,9 @@ class Bounded:
 def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
     """Highest speed squared and highest acceleration along the path at each station, (M,) each.
 
+    The rate y' v is limited by the largest y' of a station and its two neighbours: from one station to the next neither
+    v^2 nor y' is beyond the larger of its two ends, so the limit is kept all the way, even if both are there at once.
+
     Args:
         feed: (M,) programmed speed by path length.
         bounded: everything with limits of its own.
@@ -69,7 +72,7 @@ def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
     square = feed**2
     for item in bounded:
         first, second = item.sizes()
-        square = _least(square, item.speed, first, 2)
+        square = _least(square, item.speed, _of_neighbours(first), 2)
         square = _least(square, _FOR_CURVATURE * PLANNED_SHARE * item.acceleration, second, 1)
     along = np.full(len(feed), _STEEPEST)
     for item in bounded:

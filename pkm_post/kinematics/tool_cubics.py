@@ -34,6 +34,8 @@ _ROOM = 1.1
 """For a drift that is not quite as x^2 (1 - x)^2."""
 _STEEPEST = 16 / np.sqrt(27)
 """Highest slope of 16 x^2 (1 - x)^2."""
+_CURVED = 32.0
+"""Largest second derivative of 16 x^2 (1 - x)^2, at both ends."""
 
 
 @dataclass(frozen=True)
@@ -66,20 +68,22 @@ class ToolCubics:
         return np.asarray(found)
 
     def sizes(self) -> tuple[Array, Array, Array]:
-        """Most of first, second and third derivative of the tip by the share, (N,) mm each.
-
-        The square of the first is a polynomial of degree four: no more than the largest of its Bezier coefficients.
-        """
+        """Most of first, second and third derivative of the tip by the share, (N,) mm each."""
         _, begin, square, cube = self.powers[:, :3]
         middle, bend = begin + square, square + 3 * cube
-        end = middle + bend
-        inner = (2 * _dot(middle, middle) + _dot(begin, end)) / 3
-        hull = _dot(begin, begin), _dot(begin, middle), inner, _dot(middle, end), _dot(end, end)
         return (
-            np.sqrt(np.maximum.reduce(hull)),
+            _fastest(begin, middle, middle + bend),
             2 * np.maximum(length_of(*square), length_of(*bend)),
             6 * length_of(*cube),
         )
+
+    def turn(self) -> Array:
+        """Most of the first derivative of the tool axis by the share, (N,) rad; zero where the attitude stays."""
+        if self.powers.shape[1] == 3:
+            return np.zeros(self.powers.shape[2])
+        _, begin, square, cube = self.powers[:, 3:6]
+        middle = begin + square
+        return _fastest(begin, middle, middle + square + 3 * cube)
 
 
 @dataclass(frozen=True)
@@ -90,13 +94,14 @@ class Demand:
         tip: (N,) drift of the tip, mm.
         axis: (N,) drift of the tool axis, rad.
         tip_speed: (N,) highest speed of the tip, mm/s.
-        struts: (N,) highest speed or acceleration of a strut by its limit.
+        limits: (N,) highest by its limit of: speed and acceleration of a strut, acceleration of the tip, turning rate
+            of the tool axis.
     """
 
     tip: Array
     axis: Array
     tip_speed: Array
-    struts: Array
+    limits: Array
 
     def but(self, rows: Array, other: Demand) -> Demand:
         """The same with another demand in some rows."""
@@ -126,9 +131,14 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
     lever = (machine.spindle_nose + tool_length) / machine.characteristic_length
     gain = np.sqrt(6) * np.hypot(1.0, lever) / machine.least_singular_value
     acceleration = (bend + speed * turn + fourth / 12) / duration**2
-    struts = np.maximum(speed / duration / machine.strut_speed, acceleration / machine.strut_acceleration)
+    tip_acceleration = (bend + gain * fourth / 12) / duration**2
+    by_limit = (
+        speed / duration / machine.strut_speed,
+        acceleration / machine.strut_acceleration,
+        tip_acceleration / machine.tip_acceleration,
+    )
     drift = gain * fourth / 384
-    return Demand(drift, np.zeros(len(duration)), (speed + _STEEPEST * drift) / duration, struts)
+    return Demand(drift, np.zeros(len(duration)), (speed + _STEEPEST * drift) / duration, np.maximum.reduce(by_limit))
 
 
 def measured_demand(
@@ -146,9 +156,24 @@ def measured_demand(
     """
     found = stray(machine, first, last, inside, duration, _MIDDLE)
     tip, axis = _ROOM * found.tip[:, 0], _ROOM * found.axis[:, 0]
-    speed, acceleration = fastest(first, last, duration), steepest(first, last, duration)
-    struts = np.maximum(speed / machine.strut_speed, acceleration / machine.strut_acceleration)
-    return Demand(tip, axis, (cubics.sizes()[0] + _STEEPEST * tip) / duration, struts)
+    speed, bend, _ = cubics.sizes()
+    by_limit = (
+        fastest(first, last, duration) / machine.strut_speed,
+        steepest(first, last, duration) / machine.strut_acceleration,
+        (bend + _CURVED * tip) / duration**2 / machine.tip_acceleration,
+        (cubics.turn() + _STEEPEST * axis) / duration / machine.axis_speed,
+    )
+    return Demand(tip, axis, (speed + _STEEPEST * tip) / duration, np.maximum.reduce(by_limit))
+
+
+def _fastest(begin: Array, middle: Array, end: Array) -> Array:
+    """Most of a derivative with these Bezier coefficients, (N,).
+
+    Its square is a polynomial of degree four: no more than the largest of the Bezier coefficients of that.
+    """
+    inner = (2 * _dot(middle, middle) + _dot(begin, end)) / 3
+    hull = _dot(begin, begin), _dot(begin, middle), inner, _dot(middle, end), _dot(end, end)
+    return np.asarray(np.sqrt(np.maximum.reduce(hull)))
 
 
 def _dot(left: Array, right: Array) -> Array:

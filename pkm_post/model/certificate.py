@@ -61,6 +61,25 @@ class Finding:
         return f"{value:.6g} {self.unit}".rstrip()
 
 
+@dataclass(frozen=True)
+class Figure:
+    """One quantity at its largest, which has no limit.
+
+    Attributes:
+        name: what was measured.
+        unit: as printed.
+        value: in that unit.
+        time: s since the start.
+        place: the source line that is executed at that time.
+    """
+
+    name: str
+    unit: str
+    value: float
+    time: float
+    place: Place
+
+
 class Topic(enum.Enum):
     """What a hazard is about; each topic is one line of what the certificate means."""
 
@@ -124,6 +143,7 @@ class Certificate:
         tip_tolerance: (K,) what it may be there, mm: that of the program (G64 P), else what was asked for.
         axis_deviation: (K,) largest in the interval, rad.
         coverage: one row for each hazard, in the order of the topics.
+        figures: what was measured and has no limit, in a fixed order.
     """
 
     findings: tuple[Finding, ...]
@@ -135,6 +155,7 @@ class Certificate:
     tip_tolerance: Array
     axis_deviation: Array
     coverage: tuple[Coverage, ...]
+    figures: tuple[Figure, ...]
 
     @property
     def holds(self) -> bool:

@@ -424,6 +424,9 @@ RULES: dict[str, Rule] = {
     "V110": _error("the program does not follow the whole path", "post the job again; do not edit it"),
     "V111": _error("the struts leave their plan", "post the job again; do not edit the program"),
     "V112": _error("the acceleration of a strut changes too fast", "report this as a fault of the feed planner"),
+    "V113": _error("the tool axis turns faster than the machine allows", "report this as a fault of the feed planner"),
+    "V114": _error("the tip accelerates more than the machine allows", "report this as a fault of the feed planner"),
+    "V115": _error("the acceleration of the tip changes too fast", "report this as a fault of the feed planner"),
     # F1: files
     "F101": _error("the output cannot be written", "check the folder, its permissions and the free space"),
     "F102": _warning("the picture was not made: matplotlib is missing", "install python3-matplotlib"),

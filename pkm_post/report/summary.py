@@ -17,7 +17,7 @@ import numpy as np
 import pkm_post
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import EventKind, Kind, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Coverage, Finding, Tolerances, meaning
+from pkm_post.model.certificate import Certificate, Coverage, Figure, Finding, Tolerances, meaning
 
 _FORMAT = 1
 """Version of the report's layout, for programs that read it."""
@@ -79,6 +79,7 @@ def report(
             "instants": certificate.instants,
             "meaning": list(meaning(certificate.coverage)),
             "findings": [_finding(finding) for finding in certificate.findings],
+            "figures": [_figure(figure) for figure in certificate.figures],
             "coverage": [_coverage(row) for row in certificate.coverage],
         },
     }
@@ -127,6 +128,17 @@ def verdict(certificate: Certificate) -> list[str]:
         for finding in certificate.findings
         if finding.code in ("V101", "V102")
     ]
+
+
+def _figure(figure: Figure) -> dict[str, Any]:
+    return {
+        "what": figure.name,
+        "unit": figure.unit,
+        "value": _significant(figure.value),
+        "time_s": figure.time,
+        "operation": figure.place.operation,
+        "line": figure.place.line,
+    }
 
 
 def _finding(finding: Finding) -> dict[str, Any]:

@@ -95,3 +95,12 @@ def test_the_spindle_counts_as_covered_where_the_motion_waits_for_it():
         trajectory = place(replace(job, events=events), stated, ON_PALLET)[0]
         assert beside_the_path(stated, trajectory)["spindle speed at the first cut"][0] is extent
         assert why in beside_the_path(stated, trajectory)["spindle speed at the first cut"][1]
+
+
+def test_jerk_is_covered_where_a_limit_is_stated():
+    before, after = (
+        extents(machine, Topic.LIMITS) for machine in (example(), replace(example(), strut_jerk=1e6, tip_jerk=1e6))
+    )
+    changed = {subject for subject in before if before[subject] is not after[subject]}
+    assert changed == {"strut jerk", "tip jerk"}
+    assert all(before[subject] is Extent.NOT_COVERED and after[subject] is Extent.SAMPLED for subject in changed)

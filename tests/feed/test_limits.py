@@ -23,6 +23,18 @@ def test_a_vector_is_limited_as_a_whole():
     np.testing.assert_allclose(square, 4.0)
 
 
+def test_a_rate_that_drops_to_nothing_keeps_its_limit_between_stations():
+    # From one station to the next v^2 is linear and, in a blend, y' at most linear: their product bulges in between.
+    size = np.array([2.0, 2.0, 1.0, 0.01, 0.01, 0.5, 3.0])[:, None]
+    square, _ = limits(np.full(7, 1e4), [Bounded(size, 0 * size, speed=5.0, acceleration=np.inf, each=False)])
+    share = np.linspace(0, 1, 101)[:, None]
+    squares = square[:-1] + share * np.diff(square)
+    sizes = size[:-1, 0] + share * np.diff(size[:, 0])
+    assert (sizes * np.sqrt(squares)).max() <= 5.0 * (1 + 1e-12)
+    at_station = (5.0 / size[:, 0]) ** 2
+    assert (sizes * np.sqrt(at_station[:-1] + share * np.diff(at_station))).max() > 3 * 5.0  # with none of that
+
+
 def test_planned_share_leaves_room_for_the_overshoot_of_a_cubic():
     # Full acceleration that switches to full braking inside one interval; every switching time is tried. The integral
     # of |4 - 6x| over the interval, 5/3, is the bound for any such plan.

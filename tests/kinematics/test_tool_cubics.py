@@ -120,11 +120,11 @@ def test_nothing_exceeds_the_bounds_where_the_attitude_stays():
     assert Ends.of(machine, start).length.min() > machine.strut_stroke[0]
     assert np.all(drift <= bound.tip + FORWARD)
     assert np.all(speed <= bound.tip_speed * (1 + 1e-4) + FORWARD / duration)  # by the Jacobian beside the drift
-    assert np.all(struts <= bound.struts * (1 + 1e-9))
+    assert np.all(struts <= bound.limits * (1 + 1e-9))
     told = drift > 100 * FORWARD
     assert told.sum() > 50
     assert np.median(bound.tip[told] / drift[told]) < 40
-    assert np.median(struts / bound.struts) > 0.3
+    assert np.median(struts / bound.limits) > 0.3
 
 
 @pytest.mark.parametrize(
@@ -154,7 +154,7 @@ def test_the_drift_in_the_middle_stands_for_the_whole_interval(machine, long):
         assert np.all(most <= told + 0.2 * told.max() + FORWARD)
         assert np.median(most) > 0.8 * np.median(told)
     assert np.all(speed <= found.tip_speed * (1 + 1e-3))
-    assert np.all(struts <= found.struts * (1 + 1e-9))
+    assert np.all(struts <= found.limits * (1 + 1e-9))
 
 
 def test_some_rows_of_a_demand_are_replaced():
@@ -165,6 +165,6 @@ def test_some_rows_of_a_demand_are_replaced():
     rows = np.array([1, 4])
     other = bounded_demand(machine, LEVER, cubics[rows], duration[rows] / 2)
     mixed = demand.but(rows, other)
-    np.testing.assert_array_equal(mixed.struts[rows], other.struts)
-    np.testing.assert_array_equal(np.delete(mixed.struts, rows), np.delete(demand.struts, rows))
-    assert np.all(demand.struts[rows] < mixed.struts[rows])
+    np.testing.assert_array_equal(mixed.limits[rows], other.limits)
+    np.testing.assert_array_equal(np.delete(mixed.limits, rows), np.delete(demand.limits, rows))
+    assert np.all(demand.limits[rows] < mixed.limits[rows])

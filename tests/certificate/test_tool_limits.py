@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Turning rate of the tool axis and acceleration of the tip: no instant exceeds the figure, no posted job the limit."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from posted_jobs import NARROW, UNEQUAL, WIDE, finding, of, played, posted, preset
+from programs import cone, random_job
+
+from pkm_post.certificate.tool_course import ToolCourse
+from pkm_post.geometry import norm
+
+MACHINES = ("example_6tps", "linuxcnc_genhexkins", "nategh_agheli_nominal")
+SEEDS = (2, 4, 6, 10)
+"""On the genhexkins preset all turned the axis by 20 to 33 % too fast with wide tolerances."""
+COARSE, DENSE, WORST = 9, 1001, 5
+"""Instants of every interval, and of those where these find most."""
+DIFFERENCES = 1e-6
+"""Part by which finite differences may be off."""
+CASES = [
+    (name, seed, tolerances, (6, 4)) for name in MACHINES for seed in SEEDS for tolerances in (NARROW, WIDE, UNEQUAL)
+]
+FEW_DECIMALS = [(name, 6, WIDE, decimals) for name in MACHINES for decimals in ((5, 3), (4, 4), (3, 2))]
+
+
+def densely(job):
+    """The highest turning rate, degrees/s, and acceleration found in a job, mm/s^2."""
+    machine, _, motion, struts, *_ = job
+    rows, highest = np.arange(len(motion) - 1), []
+    found = played(machine, motion, struts, rows, COARSE)
+    for quantity in (0, 1):
+        worst = rows[np.argsort(norm(found[quantity]).max(axis=1))[-WORST:]]
+        highest.append(norm(played(machine, motion, struts, worst, DENSE)[quantity]).max())
+    return np.degrees(highest[0]), highest[1]
+
+
+@pytest.mark.parametrize(("name", "seed", "tolerances", "decimals"), [*CASES, *FEW_DECIMALS])
+def test_no_instant_is_above_the_figures(name, seed, tolerances, decimals):
+    job = posted(name, seed, tolerances, decimals)
+    assert job is not None
+    for value, row in zip(densely(job), ("turning rate of the tool axis", "tip acceleration"), strict=True):
+        told = finding(job[4], row)
+        assert value <= told.value * (1 + DIFFERENCES)
+        assert told.value <= max(1.006 * value, 0.5 * told.limit)  # and little above what there is
+
+
+@pytest.mark.parametrize(("name", "seed", "tolerances", "decimals"), CASES)
+def test_jobs_are_posted_within_the_limits(name, seed, tolerances, decimals):
+    *_, certificate, faults = posted(name, seed, tolerances, decimals)
+    assert faults == ()
+    assert all(row.value <= row.limit for row in certificate.findings)
+
+
+def test_where_the_course_says_nothing_the_figures_are_those_of_newtons_method(monkeypatch):
+    *_, told, _ = posted("example_6tps", 6, NARROW)
+    blind = lambda course: (np.zeros((2, len(course.duration))), np.full((2, len(course.duration)), np.inf))  # noqa: E731
+    monkeypatch.setattr(ToolCourse, "rates", blind)
+    *_, closely, _ = of(preset("example_6tps"), random_job(np.random.default_rng(6)), NARROW)
+    for row in ("turning rate of the tool axis", "tip acceleration"):
+        assert finding(closely, row).value == pytest.approx(finding(told, row).value, rel=6e-3)
+
+
+def test_a_circle_has_the_acceleration_of_a_circle():
+    """Run steadily, it is v^2 / r, and the axis of a cone turns at sin(tilt) v / r: textbook formulas."""
+    turn, radius, feed, tilt = np.linspace(0, 2 * np.pi, 721), 40.0, 100.0, np.radians(15)
+    program = cone(len(turn), tilt_deg=15)
+    position = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.full(len(turn), 60.0)])
+    program = dataclasses.replace(program, position=position, feed=np.where(np.isnan(program.feed), np.nan, feed))
+    machine, _, motion, struts, certificate, _ = of(preset("example_6tps"), program, (0.01, 0.05))
+    rows = np.flatnonzero(np.abs(norm(motion.tip_rate)[:-1] - feed) < 1.0)
+    axis_rate, acceleration = played(machine, motion, struts, rows[:: max(1, len(rows) // 20)], COARSE)
+    assert np.median(norm(acceleration)) == pytest.approx(feed**2 / radius, rel=0.02)
+    assert np.median(norm(axis_rate)) == pytest.approx(np.sin(tilt) * feed / radius, rel=0.02)
+    assert finding(certificate, "tip acceleration").value >= feed**2 / radius * 0.98
+    assert (
+        finding(certificate, "turning rate of the tool axis").value >= np.degrees(np.sin(tilt) * feed / radius) * 0.98
+    )
+
+
+def test_the_tip_keeps_a_limit_of_jerk_and_is_told_where_it_does_not():
+    limited = dataclasses.replace(preset("example_6tps"), tip_jerk=50_000.0)
+    for tolerances in (NARROW, WIDE):
+        *_, certificate, faults = of(limited, random_job(np.random.default_rng(7)), tolerances)
+        assert faults == ()
+        assert finding(certificate, "tip jerk").value <= 50_000
+    *_, certificate, faults = of(preset("example_6tps"), random_job(np.random.default_rng(7)), WIDE)
+    assert "tip jerk" not in [row.name for row in certificate.findings]
+
+
+def test_the_jerk_of_the_tip_is_that_of_the_velocities_at_the_knots():
+    limited = dataclasses.replace(preset("example_6tps"), tip_jerk=1e9, strut_jerk=1e9)
+    _, _, motion, struts, certificate, _ = of(limited, random_job(np.random.default_rng(3)), NARROW)
+    duration = np.diff(struts.time_ms) / 1000
+    mean = np.diff(motion.tip_rate, axis=0) / duration[:, None]
+    middles = duration[1:] / 2 + duration[:-1] / 2
+    inner = (norm(np.diff(mean, axis=0)) / middles).max()
+    ends = [norm(mean[row : row + 1 or None][:1])[0] / (duration[row] / 2) for row in (0, -1)]
+    assert finding(certificate, "tip jerk").value == pytest.approx(max(inner, *ends), rel=1e-2)
+
+
+def test_steps_of_acceleration_are_told_and_have_no_limit():
+    _, _, _, struts, certificate, _ = posted("example_6tps", 6, WIDE)
+    figure = next(each for each in certificate.figures if each.name.startswith("step of strut acceleration"))
+    h = np.diff(struts.time_ms)[:, None] / 1000
+    d, v0, v1 = np.diff(struts.length, axis=0), struts.speed[:-1], struts.speed[1:]
+    c2, c3 = (3 * d - (2 * v0 + v1) * h) / h**2, ((v0 + v1) * h - 2 * d) / h**3  # docs/certificate.md
+    inside = np.abs(2 * c2[1:] - (2 * c2 + 6 * c3 * h)[:-1]).max()
+    ends = max(np.abs(2 * c2[0]).max(), np.abs((2 * c2 + 6 * c3 * h)[-1]).max())
+    assert figure.value == pytest.approx(max(inside, ends), rel=1e-9)
