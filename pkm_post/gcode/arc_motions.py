@@ -61,6 +61,7 @@ def _arc_words(blocks: Blocks, modal: Modal, motions: Motions, rows: Array) -> t
         centre=np.column_stack([blocks.word(letter)[block] * scale for letter in "IJK"]),
         absolute=modal.in_force[Group.ARC_DISTANCE][block] == 901,
         radius=blocks.word("R")[block] * scale,
+        unit=scale,
     )
     return words, known
 

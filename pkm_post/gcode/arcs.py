@@ -2,7 +2,8 @@
 """Arcs: centre words or a radius become a centre, and several turns become several arcs.
 
 Columns in coordinates of the program enter and leave, in mm. An arc lies in one of the three planes; a change of the
-third coordinate makes it a helix. Tolerances are those of LinuxCNC, so that a program that runs there is read here.
+third coordinate makes it a helix. Tolerances are those of LinuxCNC, so that a program that runs there is read here: end
+points may have been rounded to a hundredth of a millimetre or a thousandth of an inch [LinuxCNC, interp_internal.hh].
 """
 
 from __future__ import annotations
@@ -13,14 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.gcode.frames import normal_coordinate, plane_axes
+from pkm_post.gcode.options import UNITS
 from pkm_post.geometry import arc_points, arc_sweep
 from pkm_post.model.program import Array
 
-RADIUS_ABSOLUTE = 2.83
-"""mm that the radii at start and end may differ at most."""
+ROUNDED_MM, ROUNDED_INCH = 0.01, 0.001 * UNITS["inch"]
+"""mm to which the end points of arcs may have been rounded in programs in mm and in inches."""
 RADIUS_RELATIVE = 1e-3
-"""Part of the radius that they may differ, where it is more than ``RADIUS_SMALL``."""
-RADIUS_SMALL = 0.0283
+"""Part of the radius that the radii at start and end may differ, where it is more than what rounding makes of it."""
+RADIUS_MOST = 100
+"""How many times as much as rounding makes of it they may differ at most."""
 HALF_CIRCLE = 0.00127
 """mm that a radius may be less than half the chord."""
 _NO_RADIUS = 1e-9
@@ -38,6 +41,7 @@ class ArcWords:
         centre: (n, 3) words I J K in mm, NaN where there is none.
         absolute: (n,) whether these are coordinates (G90.1) rather than distances from the start.
         radius: (n,) word R in mm, NaN where there is none.
+        unit: (n,) mm in the unit that they are written in.
     """
 
     start: Array
@@ -47,6 +51,7 @@ class ArcWords:
     centre: Array
     absolute: Array
     radius: Array
+    unit: Array
 
 
 def arc_axes(words: ArcWords) -> Array:
@@ -90,7 +95,8 @@ def _faults(words: ArcWords, start: Array, end: Array, said: Array, flat: Array)
     off, larger = np.abs(first - last), np.maximum(first, last)
     half = _length((end - start)[:, :2]) / 2
     lacking = ~by_radius & np.where(words.absolute, ~given[:, :2].all(axis=1), ~given[:, :2].any(axis=1))
-    beyond = (off > RADIUS_ABSOLUTE) | ((off > RADIUS_SMALL) & (off > RADIUS_RELATIVE * larger))
+    rounding = _rounding(words.unit)
+    beyond = (off > RADIUS_MOST * rounding) | ((off > rounding) & (off > RADIUS_RELATIVE * larger))
     no_circle = (larger < _NO_RADIUS) | (first < _NO_RADIUS)
     found: tuple[tuple[str, Array, Callable[[int], str]], ...] = (
         ("G410", by_radius & given.any(axis=1), lambda i: f"R{words.radius[i]:g} and centre words"),
@@ -105,6 +111,11 @@ def _faults(words: ArcWords, start: Array, end: Array, said: Array, flat: Array)
         ("G409", ~by_radius & ~lacking & (beyond | no_circle), lambda i: _radii(float(first[i]), float(last[i]))),
     )
     return [(i, code, text(i)) for code, wrong, text in found for i in np.flatnonzero(wrong).tolist()]
+
+
+def _rounding(unit: Array) -> Array:
+    """By how many mm the radii at start and end differ at most where all three points were rounded, (n,)."""
+    return 2 * np.sqrt(2) * np.where(unit == UNITS["inch"], ROUNDED_INCH, ROUNDED_MM)
 
 
 def _length(flat: Array) -> Array:
