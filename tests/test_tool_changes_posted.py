@@ -3,12 +3,13 @@
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from machines import tool_change_file
-from programs import TOOLS, program, random_changes
+from programs import TOOLS, cone, program, random_changes
 
 sys.path.insert(0, str(Path(__file__).parent / "numerical_control"))
 
@@ -90,6 +91,16 @@ def test_the_report_tells_the_times_of_tool_changes(machine, tmp_path):
     times = {operation["name"]: operation for operation in posted.report["machining_time"]["operations"]}
     assert times["tool change T2"]["rapid_s"] > 0.5 and times["tool change T2"]["cutting_s"] == 0.0
     assert times["tool change T2"]["dwell_s"] == 1.0  # 12000 of 24000 rpm in half of 2 s, at the pose
+
+
+def test_the_heading_names_the_pose_that_the_program_starts_from(tmp_path):
+    machine, _ = read_machine(find_machine("example_6tps"))
+    leaning = replace(machine, home_axis=np.array([0.06, 0.0, np.sqrt(1 - 0.0036)]), home_spin=np.radians(2.5))
+    text = post(cone(9, turns=0.02), leaning, tmp_path / "a.pmc").program.read_text()
+    assert (
+        "; start of the program, at rest: tip of T1 at X0 Y0 Z300, axis I0.06 J0 K0.998198, spin 2.5 degrees,"
+        " in the machine frame\n"
+    ) in text
 
 
 def three_tools():

@@ -64,8 +64,10 @@ def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
         rotary = "size of the rotary buffer, as it was defined (%(default)s)"
         parser.add_argument("--rotary", type=count, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
     if name in ("run", "stream"):
-        near = "how far each strut may be from the first point (%(default)s)"
-        parser.add_argument("--near", type=positive, default=1.0, metavar="MM", help=near)
+        from pkm_post.pmac_link.near import NEAR_MM
+
+        near = "how far each strut and the tip may be from the first point (%(default)s)"
+        parser.add_argument("--near", type=positive, default=NEAR_MM, metavar="MM", help=near)
     elif name == "abort":
         parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
     elif name == "monitor":

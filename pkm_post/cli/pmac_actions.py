@@ -95,7 +95,7 @@ def start(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
-    return _tell(operate.run(session, target.settings, job.program, job.first, namespace.near))
+    return _tell(operate.run(session, target.settings, job.program, job.first, namespace.near, target.machine))
 
 
 def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:

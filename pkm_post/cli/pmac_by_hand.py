@@ -78,8 +78,8 @@ def wait_for_end(session: Session, target: Target, seconds: float) -> Status:
 
 def ended_elsewhere(status: Status, lengths: Array) -> bool:
     """Whether a move ended otherwise than at the lengths it leads to, which is told."""
-    from pkm_post.numerical_control.defaults import NEAR_MM
     from pkm_post.numerical_control.execute import off_target
+    from pkm_post.pmac_link.near import NEAR_MM
 
     words = ["it is held; resume or abort it"] if status.held else list(status.words())
     if not words and off_target(status, lengths) > NEAR_MM:

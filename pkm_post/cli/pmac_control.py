@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     Action = Callable[[Session, Any, argparse.Namespace], int]
 
 _WATCH_S = 0.2
+_THERE_MM = 1e-3
+"""Of a strut; nearer to the start of a program nothing needs to be planned."""
 
 
 def home(session: Session, target: Target, namespace: argparse.Namespace) -> int:
@@ -70,11 +72,24 @@ def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     return carry_out(session, target, namespace, control, plan, told)
 
 
+def approach(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
+    """Bring the tool to the start of a program."""
+    from pkm_post.numerical_control.execute import off_target
+    from pkm_post.pmac_link.status import read_status
+
+    if off_target(read_status(session, target.settings), target.job.first) <= _THERE_MM:
+        print("the tool is at the start of the program")
+        return 0
+    control = control_of(session, target, namespace)
+    plan, told = control.plan_approach(target.job, namespace.feed / 60)
+    return carry_out(session, target, namespace, control, plan, told)
+
+
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Run a program from rest to rest; each line of the standard input starts a block."""
-    from pkm_post.numerical_control.defaults import NEAR_MM
     from pkm_post.numerical_control.single_block import blocks_of
     from pkm_post.pmac_link.faults import NotReadyError
+    from pkm_post.pmac_link.near import NEAR_MM
 
     control = control_of(session, target, namespace)
     count = len(blocks_of(target.job, target.settings, namespace.number))
@@ -116,13 +131,14 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "home": (home, "which struts are homed; start and watch the homing of the machine", ("machine",)),
     "jog": (jog, "move the tool or one strut a little, planned and checked", ("machine",)),
     "mdi": (mdi, "carry out a line of G-code, planned and checked", ("machine",)),
+    "approach": (approach, "bring the tool to the start of a program, planned and checked", ("machine", "program")),
     "step": (step, "run a program from rest to rest", ("machine", "program")),
     "continue": (go_on, "go on after a stop (M0, M1) of a program that was run", ("machine", "program")),
     "override": (override, "how fast time passes in programs, in %%", ("machine",)),
 }
 """As ``pmac_actions.ACTIONS``."""
 
-_STARTING = ("run", "stream", "home", "jog", "mdi", "step", "continue")
+_STARTING = ("run", "stream", "home", "jog", "mdi", "approach", "step", "continue")
 _OF_WHAT_RUNS = ("hold", "resume", "abort", "override", "monitor")
 
 

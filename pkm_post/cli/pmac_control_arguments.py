@@ -49,6 +49,14 @@ def _add_mdi(parser: argparse.ArgumentParser) -> None:
     _add_by_hand(parser)
 
 
+def _add_approach(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.numerical_control.defaults import APPROACH_MM_S
+
+    told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
+    parser.add_argument("--feed", type=positive, default=60 * APPROACH_MM_S, metavar="MM/MIN", help=told)
+    _add_by_hand(parser)
+
+
 def _add_by_hand(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool-length", type=tool_length, metavar="MM", help="gauge length (that of the rest pose)")
     parser.add_argument("--check", action="store_true", help="plan and check it, and send nothing")
@@ -56,15 +64,17 @@ def _add_by_hand(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_step(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.pmac_link.near import NEAR_MM
+
     parser.add_argument("--block", type=count, default=1, metavar="N", help="begin at this block (%(default)s)")
-    near = "how far each strut may be from where a block begins (%(default)s)"
-    parser.add_argument("--near", type=positive, default=1.0, metavar="MM", help=near)
+    near = "how far each strut and the tip may be from where the first block begins (%(default)s)"
+    parser.add_argument("--near", type=positive, default=NEAR_MM, metavar="MM", help=near)
     parser.set_defaults(tool_length=None)
     _add_number(parser)
 
 
 def _add_continue(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.numerical_control.defaults import NEAR_MM
+    from pkm_post.pmac_link.near import NEAR_MM
 
     told = "which stop of the program it stands at, from 1"
     parser.add_argument("--stop", type=count, required=True, metavar="N", help=told)
@@ -97,6 +107,7 @@ _OWN: dict[str, Callable[[argparse.ArgumentParser], None]] = {
     "home": _add_home,
     "jog": _add_jog,
     "mdi": _add_mdi,
+    "approach": _add_approach,
     "step": _add_step,
     "continue": _add_continue,
     "override": _add_override,

@@ -32,7 +32,15 @@ def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -
     progress = _show_progress if sys.stderr.isatty() else _no_progress
     with _interrupted_once() as is_cancelled:
         done = stream(
-            session, target.settings, job.program, job.first, namespace.rotary, namespace.near, progress, is_cancelled
+            session,
+            target.settings,
+            job.program,
+            job.first,
+            namespace.rotary,
+            namespace.near,
+            progress,
+            is_cancelled,
+            target.machine,
         )
     print(f"{done.lines} lines carried out in {done.segments} segments, SHA-256 {done.digest}")
     if done.resumptions:

@@ -27,8 +27,9 @@ from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.download import Loaded, Progress, download
 from pkm_post.pmac_link.faults import CancelledError, LinkLostError, NotReadyError, PmacError
 from pkm_post.pmac_link.job import Job
+from pkm_post.pmac_link.near import NEAR_MM
 from pkm_post.pmac_link.readout import Pose, Readout, standing_pose
-from pkm_post.pmac_link.ready import NEAR_MM, check_setup
+from pkm_post.pmac_link.ready import check_setup
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
 
@@ -141,6 +142,17 @@ class NumericalControl:
         """
         return self._planned(*mdi.line_trajectory(line, self._machine, self._here(), self.tool_length, reading))
 
+    def plan_approach(self, job: Job, feed: float = defaults.APPROACH_MM_S) -> tuple[Plan | None, Findings]:
+        """Plan the way from where the machine stands to the start of a program; as ``moves.approach``.
+
+        Raises:
+            NotReadyError: nobody knows where the tool is, or it moves; or no pose belongs to the start.
+        """
+        here, start = self._here(), standing_pose(self._machine, job.first, self.tool_length)
+        if start is None:
+            raise NotReadyError(["no pose of the platform that small steps from home lead to is that of the start"])
+        return self._planned(*moves.approach(self._machine, here, start, self.tool_length, feed))
+
     def execute(self, plan: Plan) -> Status:
         """Load a plan, list it back and start it; as ``execute.execute``."""
         return self._moving(lambda: execution.execute(self._session, self._machine, self._settings, plan.job))
@@ -155,9 +167,10 @@ class NumericalControl:
 
     def start(self, job: Job, near: float = NEAR_MM) -> Status:
         """Start a program that is loaded, from its beginning; as ``operate.run``."""
-        return self._moving(lambda: operate.run(self._session, self._settings, job.program, job.first, near))
+        order = self._session, self._settings, job.program, job.first, near, self._machine
+        return self._moving(lambda: operate.run(*order))
 
-    def go_on(self, job: Job, stop: int, near: float = defaults.NEAR_MM) -> Status:
+    def go_on(self, job: Job, stop: int, near: float = NEAR_MM) -> Status:
         """Go on behind a stop (M0, M1) of a program, numbered from 1, at which it stands; as ``stops.go_on``."""
         return self._moving(lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
 
@@ -177,7 +190,7 @@ class NumericalControl:
         self._blocks = blocks, at
         return len(blocks)
 
-    def step(self, near: float = defaults.NEAR_MM) -> Array:
+    def step(self, near: float = NEAR_MM) -> Array:
         """Start the block that comes next; the one behind it comes next then.
 
         Returns:

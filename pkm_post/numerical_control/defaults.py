@@ -3,5 +3,5 @@
 
 OWN_PROGRAM = 999
 """Number of the program of a move by hand; jobs have others."""
-NEAR_MM = 0.05
-"""How far a strut may be from where the move was planned from: what following errors of standing struts make."""
+APPROACH_MM_S = 10.0
+"""Speed of the tip on the planned way to the start of a program, of a turn in place in degrees per second."""

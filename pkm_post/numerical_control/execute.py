@@ -10,11 +10,11 @@ import numpy as np
 
 from pkm_post.controllers.pmac import Settings
 from pkm_post.model import Machine
-from pkm_post.numerical_control.defaults import NEAR_MM
 from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.download import download
 from pkm_post.pmac_link.faults import PmacError
 from pkm_post.pmac_link.job import Job
+from pkm_post.pmac_link.near import NEAR_MM
 from pkm_post.pmac_link.ready import check_setup, check_start
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
@@ -37,10 +37,10 @@ def execute(session: Session, machine: Machine, settings: Settings, job: Job, ne
         DownloadError: it could not be loaded; nothing was started.
         CancelledError: a stop came first; nothing was started.
     """
-    check_start(read_status(session, settings), job.first, near)
+    check_start(read_status(session, settings), job.first, near, machine)
     check_setup(session, settings, machine.strut_stroke)
     download(session, job.program, is_cancelled=session.is_waited_for)
-    return operate.run(session, settings, job.program, job.first, near)
+    return operate.run(session, settings, job.program, job.first, near, machine)
 
 
 def wait_for_rest(

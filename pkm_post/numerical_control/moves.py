@@ -8,6 +8,7 @@ lengths of which one grows. Units: mm, rad, mm/s; directions are those of {M}.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,6 +18,7 @@ from pkm_post.geometry import angle_between, norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import follow, platform_rotation, strut_lengths
 from pkm_post.model import Diagnostic, Event, Kind, Machine, Place, Tool, Trajectory
+from pkm_post.placement.safe_way import ToolPose, columns, safe_way
 from pkm_post.pmac_link.readout import Pose, spin_of
 
 SOURCE = "jog"
@@ -87,6 +89,34 @@ def trajectory_of(
     else:
         poses = _of_tool(jog, here)
     return _through(machine, here, poses, tool_length, min(feed, machine.feed_speed))
+
+
+def approach(
+    machine: Machine, here: Pose, start: Pose, tool_length: float, feed: float
+) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+    """The safe way to where a program starts: up along the tool axis, across, down along the axis of the start.
+
+    It crosses at the height of the start, or at the safe height of the machine file if that is higher.
+
+    Args:
+        machine: the geometry, the safe height and the highest feed.
+        here: where the tool is.
+        start: where it is to go.
+        tool_length: gauge length of the tool in the spindle, mm.
+        feed: of the tip, mm/s; where it stands, degrees per second.
+    """
+    height = float(start.tip[2])
+    if machine.tool_change is not None:
+        height = max(height, machine.tool_change.safe_height)
+    begin, end = (ToolPose(pose.tip, pose.axis, pose.spin) for pose in (here, start))
+    if not (begin.rises_to(height) and end.rises_to(height)):
+        return None, (Diagnostic("K142", Place("approach"), f"to z {height:.3f} mm"),)
+    way = [begin, *safe_way(begin, end, height)]
+    moved = [pose for before, pose in itertools.pairwise(way) if not before.is_at(pose)]
+    if not moved:
+        return None, (Diagnostic("C201", Place("approach"), "the tool is at the start of the program"),)
+    trajectory, told = _through(machine, here, columns(moved), tool_length, min(feed, machine.feed_speed))
+    return None if trajectory is None else replace(trajectory, source="approach"), told
 
 
 def standing(machine: Machine, here: Pose, tool_length: float, events: tuple[Event, ...]) -> Trajectory:

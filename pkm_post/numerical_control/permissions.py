@@ -23,6 +23,7 @@ class Order(enum.Enum):
     LINE = "line"
     LOAD = "load"
     BLOCKS = "blocks"
+    APPROACH = "approach"
     START = "start"
     STEP = "step"
     GO_ON = "go on"
@@ -60,6 +61,7 @@ AGAINST: dict[Order, tuple[Why, ...]] = {
     Order.LINE: (*_ORDERS, *_READY),
     Order.LOAD: (*_ORDERS, Why.NO_JOB, *_AT_REST),
     Order.BLOCKS: (*_ORDERS, Why.NO_JOB, *_AT_REST),
+    Order.APPROACH: (*_ORDERS, Why.NO_JOB, *_READY),
     Order.START: (*_ORDERS, Why.NO_JOB, Why.NOT_LOADED, *_READY),
     Order.STEP: (*_ORDERS, Why.NO_JOB, Why.NO_BLOCK, *_READY),
     Order.GO_ON: (*_ORDERS, Why.NO_JOB, Why.NO_STOP, *_READY),

@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 from pkm_post.controllers.pmac import Settings
 from pkm_post.controllers.pvt.parts import parted
 from pkm_post.model import EventKind, Machine
-from pkm_post.numerical_control.defaults import NEAR_MM
 from pkm_post.numerical_control.execute import execute
 from pkm_post.numerical_control.single_block import job_of
 from pkm_post.pmac_link.faults import NotReadyError
 from pkm_post.pmac_link.job import Job
+from pkm_post.pmac_link.near import NEAR_MM
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status
 

@@ -16,6 +16,9 @@ from pkm_post.geometry.vectors import Array
 FLATTEST = 0.1
 """Least z of a tool axis that a tool is retracted along: 84 degrees from upright: a height takes ten times its way."""
 
+_NO_MOVE = 1e-8
+"""mm, rad, and of unit axes."""
+
 
 @dataclass(frozen=True)
 class ToolPose:
@@ -34,6 +37,11 @@ class ToolPose:
     def rises_to(self, height: float) -> bool:
         """Whether the tool is at the height, or can be retracted to it along its axis."""
         return bool(self.tip[2] >= height or self.axis[2] >= FLATTEST)
+
+    def is_at(self, other: ToolPose) -> bool:
+        """Whether both are one pose, but for rounding."""
+        apart = (*(self.tip - other.tip), *(self.axis - other.axis), self.spin - other.spin)
+        return bool(np.abs(apart).max() < _NO_MOVE)
 
     def above(self, height: float) -> tuple[ToolPose, ...]:
         """The pose from which the height is reached along the tool axis; none where the tip is that high already.

@@ -15,10 +15,12 @@ import logging
 from collections.abc import Callable
 
 from pkm_post.controllers.pmac import Settings
+from pkm_post.model import Machine
 from pkm_post.pmac_link.download import listing_of
 from pkm_post.pmac_link.faults import LinkLostError, NotReadyError, OutcomeUnknownError, PmacError
 from pkm_post.pmac_link.listing import Program
-from pkm_post.pmac_link.ready import NEAR_MM, check_start
+from pkm_post.pmac_link.near import NEAR_MM
+from pkm_post.pmac_link.ready import check_start
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
 
@@ -36,7 +38,14 @@ _POLL_S = 0.02
 _log = logging.getLogger(__name__)
 
 
-def run(session: Session, settings: Settings, program: Program, first: Array, near: float = NEAR_MM) -> Status:
+def run(
+    session: Session,
+    settings: Settings,
+    program: Program,
+    first: Array,
+    near: float = NEAR_MM,
+    machine: Machine | None = None,
+) -> Status:
     """Start a program from its beginning.
 
     Args:
@@ -45,6 +54,7 @@ def run(session: Session, settings: Settings, program: Program, first: Array, ne
         program: what has to be in the controller; it is listed and compared again.
         first: (6,) strut lengths of its first point, mm.
         near: how far each strut may be from it, mm.
+        machine: its geometry, where the pose of the tool is to be compared as well.
 
     Raises:
         NotReadyError: the program is not there as it was written, or the machine is not ready.
@@ -54,7 +64,7 @@ def run(session: Session, settings: Settings, program: Program, first: Array, ne
     there = listing_of(session, program)
     if not there.same:
         raise NotReadyError([f"program {program.number} in the controller is another one: {there.difference}"])
-    check_start(read_status(session, settings), first, near)
+    check_start(read_status(session, settings), first, near, machine)
     return _go(session, settings, f"B{program.number}R", lambda status: status.running)
 
 

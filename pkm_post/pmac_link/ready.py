@@ -14,16 +14,16 @@ from decimal import Decimal
 import numpy as np
 
 from pkm_post.controllers.pmac import Settings
+from pkm_post.model import Machine
 from pkm_post.pmac_link.faults import LinkLostError, NotReadyError, PmacError
+from pkm_post.pmac_link.near import NEAR_MM
 from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.start_pose import start_faults
 from pkm_post.pmac_link.status import MOTORS, Array, Status
 
 _DEFINITION = re.compile(r"([-+]?[\d.]+)?([A-Z])([-+][\d.]+)?")
 _REAL = r"[-+]?\d+(?:\.\d*)?"
 _ROTARY = "ABC"
-
-NEAR_MM = 1.0
-"""How far a strut may be from the first point of a program when it starts, unless the user says otherwise."""
 
 
 def check_setup(session: Session, settings: Settings, stroke: tuple[float, float]) -> None:
@@ -46,13 +46,14 @@ def check_setup(session: Session, settings: Settings, stroke: tuple[float, float
         raise NotReadyError(reasons)
 
 
-def check_start(status: Status, first: Array, near: float = NEAR_MM) -> None:
+def check_start(status: Status, first: Array, near: float = NEAR_MM, machine: Machine | None = None) -> None:
     """Whether a program may start: struts homed, in closed loop, without faults, standing near its first point.
 
     Args:
         status: of the struts.
         first: (6,) strut lengths of the first point, mm.
         near: how far each strut may be from it, mm.
+        machine: its geometry, where the pose of the tool is to be compared as well.
 
     Raises:
         NotReadyError: with every reason against it.
@@ -68,6 +69,8 @@ def check_start(status: Status, first: Array, near: float = NEAR_MM) -> None:
         for motor, distance in zip(MOTORS, away, strict=True)
         if not distance <= near
     ]
+    if machine is not None and all(status.homed):
+        reasons += start_faults(machine, status.length, first, near)
     if reasons:
         raise NotReadyError(tuple(dict.fromkeys(reasons)))
 

@@ -17,10 +17,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pkm_post.controllers.pmac import Settings
+from pkm_post.model import Machine
 from pkm_post.pmac_link.faults import CancelledError, PmacError, StreamError
 from pkm_post.pmac_link.gates import segments_of
 from pkm_post.pmac_link.listing import Program
-from pkm_post.pmac_link.ready import NEAR_MM, check_start
+from pkm_post.pmac_link.near import NEAR_MM
+from pkm_post.pmac_link.ready import check_start
 from pkm_post.pmac_link.rotary import Progress, RotaryStream
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, read_status
@@ -54,6 +56,7 @@ def stream(
     near: float = NEAR_MM,
     progress: Progress = lambda done, sent, all_lines: None,
     is_cancelled: Callable[[], bool] = lambda: False,
+    machine: Machine | None = None,
 ) -> Streamed:
     """Run a program from the rotary buffer.
 
@@ -66,6 +69,7 @@ def stream(
         near: how far each strut may be from the first point, and from the rest that it goes on from, mm.
         progress: is told how far it is.
         is_cancelled: asked again and again; the machine then rests at the end of the segment that runs.
+        machine: its geometry, where the pose of the tool is to be compared with the first point as well.
 
     Raises:
         NotReadyError: the program cannot be streamed, or the machine is not ready; nothing was sent.
@@ -74,7 +78,7 @@ def stream(
     """
     streaming = RotaryStream(session, settings, segments_of(program, settings, words), words, near)
     streaming.rest = first
-    check_start(read_status(session, settings), first, near)
+    check_start(read_status(session, settings), first, near, machine)
     try:
         streaming.open()
         streaming.run(progress, is_cancelled)

@@ -26,7 +26,16 @@ _AS_IT_IS = "axis values are strut lengths in mm, speeds in mm/s; do not edit: t
 
 def heading(trajectory: Trajectory) -> list[str]:
     """What a motion program says of itself in its first lines."""
-    return [*origin(trajectory), _AS_IT_IS]
+    return [*origin(trajectory), _start(trajectory), _AS_IT_IS]
+
+
+def _start(trajectory: Trajectory) -> str:
+    """The pose that the program has to begin from."""
+    tool = trajectory.tools[int(trajectory.tool[0])]
+    x, y, z, i, j, k = (f"{value + 0.0:.6g}" for value in (*trajectory.start_tip, *trajectory.start_axis))
+    spin = math.degrees(trajectory.start_spin)
+    pose = f"tip of T{tool.number} at X{x} Y{y} Z{z}, axis I{i} J{j} K{k}, spin {spin:.6g} degrees"
+    return f"start of the program, at rest: {pose}, in the machine frame"
 
 
 def origin(trajectory: Trajectory) -> list[str]:

@@ -752,6 +752,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>下载到控制器，回读并比较</translation>
     </message>
     <message>
+        <source>Approach</source>
+        <translation>接近起点</translation>
+    </message>
+    <message>
+        <source>Bring the tool to the start of the program, planned and checked</source>
+        <translation>将刀具移到程序起点，路径经过规划和检查</translation>
+    </message>
+    <message>
         <source>Start</source>
         <translation>启动</translation>
     </message>
@@ -794,6 +802,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{:.1f} s</source>
         <translation>{:.1f} s</translation>
+    </message>
+    <message>
+        <source>Not sent: there is no way to the start</source>
+        <translation>未发送：没有通往起点的路径</translation>
     </message>
     <message>
         <source>The program has {} blocks; block {} comes next</source>

@@ -65,6 +65,29 @@ def a_program_is_loaded_held_and_resumed():
 
 
 @step
+def it_starts_from_its_start_alone_and_is_brought_there():
+    panel = the_panel()
+    face, page = panel.face, panel.face.program
+    face.stops.override.setValue(100)
+    until(lambda: newest().status.override == 100, 10)
+    idle()
+    face.jog.step.setProperty("rawValue", 3.0)
+    click(face.jog.buttons["X", 1])
+    idle()
+    found = {"away": newest().pose.tip.tolist()}
+    for name, button in (("refused", page.start), ("approached", page.approach), ("started", page.start)):
+        until(lambda button=button: button.isEnabled())
+        before = len(messages())
+        click(button)
+        until(lambda: not panel.console.has_orders, 30)
+        settle()
+        idle()
+        found[name] = messages()[before:]
+        found[f"{name} at"] = newest().pose.tip.tolist()
+    return found
+
+
+@step
 def it_runs_from_rest_to_rest():
     panel = the_panel()
     face, console = panel.face, panel.console

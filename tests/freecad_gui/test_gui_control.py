@@ -104,6 +104,15 @@ def test_a_program_is_loaded_held_and_resumed(programs):
     assert found["ended"] == pytest.approx(0.0, abs=NEAR_MM)
 
 
+def test_a_program_starts_from_its_start_alone_and_the_tool_is_brought_there(programs):
+    found = programs["it_starts_from_its_start_alone_and_is_brought_there"]
+    assert found["away"] == pytest.approx([3, 0, 300], abs=10 * NEAR_MM)
+    assert "the tool is away from the start of the program: tip 3.000 mm" in "".join(found["refused"])
+    assert found["refused at"] == pytest.approx([3, 0, 300], abs=10 * NEAR_MM)
+    assert found["approached"] == [] and found["approached at"] == pytest.approx([0, 0, 300], abs=10 * NEAR_MM)
+    assert found["started"] == [] and found["started at"] == pytest.approx([0, 0, 300], abs=10 * NEAR_MM)
+
+
 def test_it_runs_from_rest_to_rest(programs):
     found = programs["it_runs_from_rest_to_rest"]
     assert found["blocks"] == ["The program has 2 blocks; block 1 comes next", [1, 2]]

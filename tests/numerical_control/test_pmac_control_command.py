@@ -67,6 +67,25 @@ def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
     assert 999 not in made.memory.programs
 
 
+def test_the_way_to_the_start_of_a_program(simulator, capsys, tmp_path):
+    made, port = simulator
+    file = tmp_path / "job.pmc"
+    file.write_text(program_text(job(SETTINGS, ()).motion, SETTINGS, ["job"]))
+    assert pmac("approach", port, file) == 0
+    assert "the tool is at the start of the program" in capsys.readouterr().out
+    assert pmac("download", port, file) == 0
+    assert pmac("jog", port, "--x", 4, "--tilt-y", 1, "--feed", 3000) == 0
+    capsys.readouterr()
+    assert pmac("run", port, file) == 1
+    assert "away from the start of the program: tip 4.000 mm, axis 1.0000 degrees" in capsys.readouterr().err
+    assert pmac("approach", port, file, "--check") == 0
+    assert pmac("run", port, file) == 1
+    assert pmac("approach", port, file, "--feed", 3000) == 0
+    assert "arrived" in capsys.readouterr().out
+    assert pmac("run", port, file) == 0
+    until_it_rests(made)
+
+
 def test_home(simulator, capsys):
     made, port = simulator
     assert pmac("home", port) == 0
@@ -137,6 +156,8 @@ def until_it_rests(made):
         ["jog", "--x", "nan"],
         ["jog", "--feed", "0"],
         ["jog", "--number", "1000"],
+        ["approach"],
+        ["approach", "x.pmc", "--feed", "0"],
         ["home", "--trigger", "I5190=1"],
         ["override", "120"],
         ["step", "x.pmc", "--block", "0"],

@@ -7,7 +7,6 @@ A file enters, is read beside the window, and goes to the controller when that i
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import FreeCAD
 from PySide import QtWidgets
@@ -16,10 +15,9 @@ from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.model import Diagnostic
 from pkm_post.numerical_control.control import NumericalControl, State
-from pkm_post.numerical_control.defaults import NEAR_MM as NEAR_BLOCK_MM
 from pkm_post.numerical_control.permissions import Order, Why
+from pkm_post.numerical_control.plan import Plan
 from pkm_post.pmac_link.job import Job, read_job
-from pkm_post.pmac_link.ready import NEAR_MM
 
 translate = FreeCAD.Qt.translate
 
@@ -31,14 +29,14 @@ class ProgramPage(QtWidgets.QWidget):
 
     Attributes:
         name: of the file that was opened.
-        open, load, cancel, start, begin_at, step, go_on: the buttons.
+        open, load, cancel, approach, start, begin_at, step, go_on: the buttons.
         block, stop: numbers of the block to begin at, and of the stop to go on after.
         bar: how much is loaded.
     """
 
     def __init__(self, console: Console) -> None:
         super().__init__()
-        self._console, self._is_first = console, False
+        self._console = console
         self.name, self.block, self.bar = QtWidgets.QLabel(), QtWidgets.QSpinBox(), QtWidgets.QProgressBar()
         self.stop = QtWidgets.QSpinBox()
         self.block.setRange(1, _MOST_BLOCKS)
@@ -52,6 +50,9 @@ class ProgramPage(QtWidgets.QWidget):
         rows = (
             (translate("ControlPanel", "Load"), translate("ControlPanel", "Load it, list it back and compare"),
              Order.LOAD, console.load),
+            (translate("ControlPanel", "Approach"),
+             translate("ControlPanel", "Bring the tool to the start of the program, planned and checked"),
+             Order.APPROACH, self._approach),
             (translate("ControlPanel", "Start"), translate("ControlPanel", "Start it from its beginning"),
              Order.START, self._start),
             (translate("ControlPanel", "Begin at block"), translate("ControlPanel", "Take it for single block"),
@@ -62,9 +63,9 @@ class ProgramPage(QtWidgets.QWidget):
              translate("ControlPanel", "Start what comes after the stop (M0, M1) at which the machine stands"),
              Order.GO_ON, self._go_on),
         )  # fmt: skip
-        self.load, self.start, self.begin_at, self.step, self.go_on = (OrderButton(*row) for row in rows)
+        self.load, self.approach, self.start, self.begin_at, self.step, self.go_on = (OrderButton(*row) for row in rows)
         layout = QtWidgets.QVBoxLayout(self)
-        for row in ((self.open, self.name), (self.load, self.cancel, self.start)):
+        for row in ((self.open, self.name), (self.load, self.cancel, self.approach, self.start)):
             layout.addLayout(side_by_side(*row))
         layout.addWidget(self.bar)
         layout.addLayout(side_by_side(self.begin_at, self.block, self.step))
@@ -74,7 +75,7 @@ class ProgramPage(QtWidgets.QWidget):
     def refresh(self, _state: State, found: frozenset[Why]) -> None:
         """Show what can be done, and how far loading is."""
         console, (done, lines) = self._console, self._console.progress
-        refresh_all((self.load, self.start, self.begin_at, self.step, self.go_on), found)
+        refresh_all((self.load, self.approach, self.start, self.begin_at, self.step, self.go_on), found)
         self.open.setEnabled(not {Why.NOT_CONNECTED, Why.WATCH_ONLY} & found and not console.waits)
         self.cancel.setEnabled(console.has_orders and not console.loaded and lines > 0)
         self.bar.setRange(0, max(lines, 1))
@@ -109,6 +110,14 @@ class ProgramPage(QtWidgets.QWidget):
             self.name.setText(f"{file.name}, {seconds}")
             self.name.setToolTip(str(file))
 
+    def _approach(self) -> None:
+        job = self._console.job
+        self._console.move(lambda control: control.plan_approach(job), self._planned)
+
+    def _planned(self, plan: Plan | None) -> None:
+        if plan is None:
+            self._console.told.emit(translate("ControlPanel", "Not sent: there is no way to the start"), True)
+
     def _start(self) -> None:
         job = self._console.job
         self._console.order(lambda control: control.start(job))
@@ -130,14 +139,9 @@ class ProgramPage(QtWidgets.QWidget):
         self._console.order(opening, self._opened)
 
     def _opened(self, count: int) -> None:
-        self._console.stepping = self._is_first = True
+        self._console.stepping = True
         told = translate("ControlPanel", "The program has {} blocks; block {} comes next")
         self._console.told.emit(told.format(count, min(self.block.value(), count)), False)
 
     def _step(self) -> None:
-        # Only what comes first is begun by hand; the others begin where the one before them ended.
-        near = NEAR_MM if self._is_first else NEAR_BLOCK_MM
-        self._console.order(lambda control: control.step(near), self._stepped)
-
-    def _stepped(self, _lengths: Any) -> None:
-        self._is_first = False
+        self._console.order(lambda control: control.step())
