@@ -7,10 +7,12 @@ motion would be another one without it. All other words are told once with their
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 from pkm_post.cldata import arc_moves, arcs, cutcom, feeds, frames, guided, holes, points, tools
 from pkm_post.cldata.course import Course
+from pkm_post.cldata.feeds import shown
 from pkm_post.cldata.statements import Statement
 
 Handler = Callable[[Course, int, Statement], None]
@@ -25,6 +27,21 @@ def _operation(course: Course, row: int, statement: Statement) -> None:
     number = statement.numbers
     course.starts.append((row, len(course.operations)))
     course.operations.append(f"{statement.word} {number[0]:g}" if number else name.strip())
+
+
+def _tlcomp(course: Course, row: int, statement: Statement) -> None:
+    """TLCOMP/OFF ends a compensation of the control that no path here has; any other asks for one."""
+    if statement.items != ("OFF",):
+        course.tell("L401", row, f"TLCOMP/{shown(statement)}")
+
+
+def _syn(course: Course, row: int, statement: Statement) -> None:
+    """SYN/'new','old',... gives words another meaning: refused where such a word follows."""
+    words = [item.strip("'\"") for item in statement.words[::2]]
+    later = "\n".join(course.statements.lines.text[course.statements.index[row] + 1 :])
+    renamed = [word for word in words if re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", later, re.IGNORECASE)]
+    if renamed:
+        course.tell("L401", row, f"SYN/{shown(statement)} with {renamed[0]} behind it")
 
 
 def _fini(course: Course, row: int, statement: Statement) -> None:
@@ -49,6 +66,7 @@ HANDLERS: dict[str, Handler] = {
     "CUTCOM": cutcom.cutcom, "CUTCOM_GEOMETRY_TYPE": cutcom.geometry_type, "_POINTS": cutcom.points_are,
     "UNITS": frames.units, "UNIT": frames.units, "MSYS": frames.frame, "CSYS": frames.frame, "CATIA0": frames.frame,
     "ORIGIN": frames.origin, "TRANS": frames.trans, "TRACUT": frames.trans, "TRNTYP": frames.trntyp,
+    "TLCOMP": _tlcomp, "SYN": _syn,
     "TOOL PATH": _operation, "OPERATION NAME": _operation, "FEATNO": _operation, "FINI": _fini,
 }  # fmt: skip
 """Words with a meaning."""
@@ -66,5 +84,6 @@ REFUSED = frozenset({
     "POLYGON", "ROTABL", "ROTHED", "ROTATE", "PIVOT", "TURRET", "MIRROR", "COPY", "INDEX", "LOOPST", "LOOPND", "JUMPTO",
     "MACRO", "CALL", "IF", "DO", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "OFFSET", "GOHOME",
     "TLLFT", "TLRGT", "TLON", "TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GORGT", "THREAD", "PITCH", "REFSYS",
+    "RETRCT", "CALSUB", "DEFSUB", "ENDSUB", "PIVOTZ", "PROBE", "DNTCUT",
 })  # fmt: skip
 """Words that change the motion and are not carried out."""

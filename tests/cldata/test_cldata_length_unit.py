@@ -137,7 +137,7 @@ def test_words_behind_the_end_say_nothing():
 
 
 def test_a_feed_within_a_cycle_says_the_unit():
-    drilled = NX + "LOAD/TOOL,1\nGOTO/1,0,2\nCYCLE/DRILL,FEDTO,1,IPM,6,RAPTO,.1\nGOTO/1,0,0\nCYCLE/OFF\n"
+    drilled = NX + "LOAD/TOOL,1\nGOTO/1,0,2\nCYCLE/DRILL,FEDTO,-1,IPM,6,RAPTO,.1\nGOTO/1,0,0\nCYCLE/OFF\n"
     program, codes, _ = found(drilled)
     assert codes == ["L410"]
     assert program.position[:, 2].min() == pytest.approx(-25.4)

@@ -329,3 +329,18 @@ def test_tools_are_kept_apart():
     assert (found.tools[1].diameter, found.tools[1].length) == (10, 0)
     assert found.tools[2].name == "ball"
     assert program(text, default_tool=Tool(0, "", 0.0, 0.0, 90.0)).tools[1].length == 90
+
+
+@pytest.mark.parametrize(
+    "statement, code",
+    [
+        ("TLCOMP/OFF", None), ("TLCOMP/ON", "L401"), ("TLCOMP/ON,LENGTH,3", "L401"), ("TLCOMP/ADJUST,1", "L401"),
+        ("TLCOMP", "L401"), ("RETRCT", "L401"), ("RETRCT/ON", "L401"), ("CALSUB/1", "L401"), ("DEFSUB/1", "L401"),
+        ("DNTCUT", "L401"), ("SYN/'TLAXIS','$$*TLAXIS'", None), ("SYN/'GOTO','FROM'", "L401"),
+        ("SYN/'MOVETO','GOTO'\nMOVETO/1,2,3", "L401"), ("SYN/'TO','GOTO'", None), ('SYN/"A","B","rapid","C"', "L401"),
+    ],
+)  # fmt: skip
+def test_words_that_would_change_the_motion_are_refused(statement, code):
+    found, told = read(f"{HEAD}{statement}\nRAPID\nGOTO/7,0,1\n", "part.cl")
+    assert [fault.code for fault in errors(told)] == ([code] if code else [])
+    assert (found is None) == bool(code)
