@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from cycles_by_hand import BACK_ABOVE_BOTTOM, ByHand, without_standing_still
 
+from pkm_post import gcode
 from pkm_post.cldata import ReadOptions, read
 from pkm_post.model import Kind
 from pkm_post.model.diagnostics import errors
@@ -174,3 +175,26 @@ def test_every_hole_is_reached_at_its_depth_and_cut_at_the_feed(dialect):
             cut = np.maximum.accumulate(np.where(cutting, depth, -np.inf))[:-1]
             down = (np.diff(depth) > NANOMETRE) & ~cutting[1:] & (depth[1:] > NANOMETRE)
             assert (depth[1:][down] <= cut[down] - BACK_ABOVE_BOTTOM + NANOMETRE).all(), text
+
+
+def tips(program):
+    """Where the tip goes, standing still left out."""
+    moved = np.abs(np.diff(program.position, axis=0)).max(axis=1) > 1e-9
+    return program.position[np.concatenate([[True], moved])]
+
+
+def test_upright_series_are_those_of_canned_cycles():
+    """RTRCTO,AUTO is G98 and no RTRCTO G99; what G-code does in series is compared with rs274 in tests/gcode."""
+    random = np.random.default_rng(98)
+    for _ in range(100):
+        back = random.choice(["", ",RTRCTO,AUTO"])
+        cl = ["UNITS/MM", "RAPID", "GOTO/0,0,10,0,0,1"]
+        nc = ["G21 G90 G17 G94", "G0 X0 Y0 Z10", "G98" if back else "G99"]
+        for x, y, z, clear, depth in random.integers(1, 25, (random.integers(1, 7), 5)).tolist():
+            cl += [f"CYCLE/DRILL,RAPTO,{clear},FEDTO,{-depth},MMPM,100{back}", f"GOTO/{x},{y},{z}"]
+            nc += [f"G81 X{x} Y{y} R{z + clear} Z{z - depth} F100"]
+        drilled, told = read("\n".join(cl), "part.cls", ReadOptions(dialect="nx"))
+        assert not errors(told)
+        canned, told = gcode.read("\n".join([*nc, "G80", "M2"]), "part.ngc")
+        assert not errors(told)
+        assert tips(drilled) == pytest.approx(tips(canned), abs=NANOMETRE), cl

@@ -302,6 +302,13 @@ def test_cycles_that_are_refused(dialect, cycle, code):
     assert [fault.code for fault in errors(told)] == [code]
 
 
+def test_words_may_follow_numbers():
+    text = f"{HEAD}GOTO/0,0,30\nCYCLE/DRILL,  5.000,MMPM, 60.000,RAPTO,  2.0,RTRCTO, $\n 9.\nGOTO/7,0,1\nCYCLE/OFF\n"
+    found = program(text, dialect="catia", cycle_values=("depth", "feed"))
+    assert found.position[2:, 2] == pytest.approx([30, 3, -4, 10])
+    assert found.feed[4] == pytest.approx(1)
+
+
 def test_a_dwell_in_turns_follows_the_spindle():
     for dialect, cycle in (("nx", "RAPTO,2,FEDTO,-5,DWELL,REV,3"), ("creo", "DEPTH,5,CLEAR,2,REV,3")):
         text = f"{HEAD}SPINDL/RPM,120,CLW\nCYCLE/DRILL,{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n"
