@@ -4,31 +4,35 @@
 __version__ = "0.1.0"
 
 
-def post_job(job, machine="example_6tps", out=".", **choices):  # type: ignore[no-untyped-def]
+def post_job(job, machine=None, out=".", **choices):  # type: ignore[no-untyped-def]
     """Post a CAM job from a macro: the same as ``pkm_post.freecad_app.post_job.post_job``.
 
     Args:
         job: the CAM job, a document object.
-        machine: name of a machine that comes with PKM Post, or path of a machine file.
+        machine: name of a machine that comes with PKM Post, or path of a machine file; None for that of the job.
         out: folder for the results.
-        choices: options, tool_lengths and log of that function.
+        choices: arguments, options, tool_lengths, log and progress of that function.
     """
     from pkm_post.freecad_app.post_job import post_job as post
 
     return post(job, machine, out, **choices)
 
 
-def post(source, machine="example_6tps", out=".", **choices):  # type: ignore[no-untyped-def]
+def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-def]
     """Post whatever can be posted: a CAM job, a FreeCAD document, G-code or CL data.
+
+    A job is posted with the arguments it keeps. What is said here goes before them, and is told by J125.
 
     Args:
         source: a CAM job, a document object, or the path of a file. A FreeCAD document (``.FCStd``) needs FreeCAD;
             G-code and CL data do not, and are told apart by what the name ends with.
-        machine: name of a machine that comes with PKM Post, or path of a machine file.
+        machine: name of a machine that comes with PKM Post, or path of a machine file; None for that of the job, or for
+            the example machine.
         out: folder for the results.
-        choices: ``options`` (``pkm_post.pipeline.Options``), ``tool_lengths`` (mm by tool number), ``log`` (takes a
-            line for each step) and ``progress`` (``pkm_post.pipeline.Progress``) for all; ``job_name`` for documents,
-            ``reading`` (``pkm_post.sources.Reading``) for part programs.
+        choices: ``arguments`` (text as on the command line, option by option) or ``options``
+            (``pkm_post.pipeline.Options``, which stand in for all that the job says), ``tool_lengths`` (mm by tool
+            number), ``log`` (takes a line for each step) and ``progress`` (``pkm_post.pipeline.Progress``) for all;
+            ``job_name`` for documents, ``reading`` (``pkm_post.sources.Reading``) for part programs.
 
     Returns:
         A tuple with a ``pkm_post.pipeline.Posted`` for each motion program: one, or one for each job of a document.
@@ -36,7 +40,7 @@ def post(source, machine="example_6tps", out=".", **choices):  # type: ignore[no
     Raises:
         pkm_post.model.Refused: something in the input or the folder does not allow it. Of a document with several jobs,
             those posted before stay posted; of anything else nothing was written.
-        ValueError: the suffix of the file is not known.
+        ValueError: the suffix of the file is not known, or there are both arguments and options.
     """
     from os import PathLike
     from pathlib import Path

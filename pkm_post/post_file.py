@@ -1,35 +1,51 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post file: from a part program, G-code or CL data, to a certified motion program.
 
-A file and the name of a machine enter; the files of the pipeline leave. All faults of the file and of the machine file
+A file and what is chosen for it enter; the files of the pipeline leave. All faults of the file and of the machine file
 are collected before anything is refused. What a part program seldom says is asked for: how long its tools are.
 """
 
 from __future__ import annotations
 
+from argparse import Namespace
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 from pkm_post import pipeline
 from pkm_post.machine_file import machine_named
-from pkm_post.model import Diagnostic, Place, Program
-from pkm_post.options import FIXTURE_OF_THE_JOB, READING
+from pkm_post.model import Diagnostic, Place, Program, Refused
+from pkm_post.options import (
+    FIXTURE_OF_THE_JOB,
+    READING,
+    Given,
+    Override,
+    flag_of,
+    given_in,
+    layered,
+    options_from,
+    part_program_from,
+    shown,
+    tool_lengths_from,
+    typed,
+)
 from pkm_post.sources import AS_WRITTEN, Reading, read_part_program
 
 _ASKED_FOR = "L411"
 """The warning that 0 was taken for a gauge length: here each tool needs one, and J113 asks for it."""
+_NO_LENGTHS: Mapping[int, float] = {}
 
 
 def post_file(
     file: str | Path,
-    machine: str | Path,
-    out: str | Path,
+    machine: str | Path | None = None,
+    out: str | Path = ".",
     options: pipeline.Options | None = None,
-    tool_lengths: Mapping[int, float] | None = None,
+    tool_lengths: Mapping[int, float] = _NO_LENGTHS,
     reading: Reading = AS_WRITTEN,
     log: pipeline.Log = pipeline.quiet,
     progress: pipeline.Progress = pipeline.unwatched,
+    arguments: str | Given = "",
 ) -> pipeline.Posted:
     """Post a part program.
 
@@ -42,36 +58,81 @@ def post_file(
         reading: what the file does not say itself.
         log: takes a line for each step.
         progress: is told of each step when it begins; what it raises ends the work, and nothing is written.
+        arguments: options as they are typed, or parsed.
 
     Raises:
         Refused: something in the file, the machine file or the folder does not allow it; nothing was written.
-        ValueError: the suffix of the file is not known.
+        ValueError: the suffix of the file is not known, or there are both options and arguments.
     """
     progress(READING, 0.0)
-    model, machine_faults = machine_named(machine)
-    program, program_faults, options = read_to_post(file, options, tool_lengths, reading)
-    target = Path(out) / f"{Path(file).stem}{pipeline.SUFFIX}"
-    return pipeline.post(program, model, target, options, log, (*machine_faults, *program_faults), progress)
+    prepared = prepared_file(file, machine, options, tool_lengths, reading, arguments)
+    return prepared.post(Path(out) / f"{Path(file).stem}{pipeline.SUFFIX}", log, progress)
 
 
-def read_to_post(
+def prepared_file(
     file: str | Path,
+    machine: str | Path | None = None,
     options: pipeline.Options | None = None,
-    tool_lengths: Mapping[int, float] | None = None,
+    tool_lengths: Mapping[int, float] = _NO_LENGTHS,
     reading: Reading = AS_WRITTEN,
-) -> tuple[Program | None, tuple[Diagnostic, ...], pipeline.Options]:
-    """A part program with all that posting needs, what was found in it, and the options for it; as ``post_file``."""
-    program, told = read_part_program(Path(file), reading)
+    arguments: str | Given = "",
+) -> pipeline.Prepared:
+    """A part program with its machine and all that posting needs, and what was found in them; as ``post_file``."""
+    if options is not None and arguments:
+        raise ValueError("expected options or arguments, got both")
+    chosen = layered(typed(""), _given(arguments, Path(file)))
+    lengths = tool_lengths_from(chosen) | dict(tool_lengths)
+    model, found = machine_named(chosen.machine if machine is None else machine)
+    program, told = read_part_program(Path(file), replace(_said(reading, chosen), lengths=lengths))
     faults = [fault for fault in told if fault.code != _ASKED_FOR]
     if program is not None:
-        program = _with_lengths(program, tool_lengths or {})
+        faults += [*_replaced(program, lengths), *_unknown(program, lengths)]
+        program = _with_lengths(program, lengths)
         faults += _missing_lengths(program)
-    return program, tuple(faults), _at_first_fixture(options)
+    return pipeline.Prepared(program, model, _at_first_fixture(options or options_from(chosen)), (*found, *faults))
+
+
+def _given(arguments: str | Given, file: Path) -> Given:
+    """Options that are typed.
+
+    Raises:
+        Refused: they are not understood, J117.
+    """
+    try:
+        return given_in(typed(arguments)) if isinstance(arguments, str) else arguments
+    except ValueError as fault:
+        raise Refused([Diagnostic("J117", Place(str(file)), str(fault))]) from fault
+
+
+def _said(reading: Reading, chosen: Namespace) -> Reading:
+    """How a file is to be read, by what was typed where it was."""
+    typed_ones = part_program_from(chosen, reading.axis_words)
+    return replace(reading, **{name: getattr(typed_ones, name) for name in given_in(chosen) if hasattr(reading, name)})
 
 
 def _with_lengths(program: Program, lengths: Mapping[int, float]) -> Program:
     tools = {number: replace(tool, length=lengths.get(number, tool.length)) for number, tool in program.tools.items()}
     return replace(program, tools=tools)
+
+
+def _replaced(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
+    """J125 for each gauge length of the file that another one goes before."""
+    for number, tool in program.tools.items():
+        if tool.length > 0 and lengths.get(number, tool.length) != tool.length:
+            told = Override(flag_of("tool_length"), f"{tool.length:.12g} of T{number}", _shown(number, lengths))
+            yield Diagnostic("J125", Place(program.source), str(told))
+
+
+def _unknown(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
+    """J126 for each gauge length whose number the program neither calls nor takes an offset of."""
+    for number in sorted(set(lengths) - {*program.tools, *program.length_offsets}):
+        called = ", ".join(f"T{each}" for each in sorted(program.tools))
+        told = f"{flag_of('tool_length')} {_shown(number, lengths)}, the program has {called}"
+        yield Diagnostic("J126", Place(program.source), told)
+
+
+def _shown(number: int, lengths: Mapping[int, float]) -> str:
+    return shown("tool_length", (number, lengths[number]))
 
 
 def _missing_lengths(program: Program) -> Iterator[Diagnostic]:
@@ -80,9 +141,8 @@ def _missing_lengths(program: Program) -> Iterator[Diagnostic]:
             yield Diagnostic("J113", Place(program.source), f"T{number}")
 
 
-def _at_first_fixture(options: pipeline.Options | None) -> pipeline.Options:
+def _at_first_fixture(options: pipeline.Options) -> pipeline.Options:
     """The options; a part program has no job whose fixture could be meant."""
-    options = options or pipeline.Options()
     if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
         return replace(options, work_offset="G54")
     return options

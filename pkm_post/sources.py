@@ -40,6 +40,7 @@ class Reading:
         cycle_values: what the numbers of CYCLE statements are where they have no words, out of
             ``cldata.CYCLE_VALUES``.
         dwell_unit: of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``.
+        lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
     """
 
     axis_words: str = "none"
@@ -50,6 +51,7 @@ class Reading:
     cl_dialect: str | None = None
     cycle_values: tuple[str, ...] = ()
     dwell_unit: str = "s"
+    lengths: Mapping[int, float] = field(default_factory=dict)
 
 
 AS_WRITTEN = Reading()
@@ -89,10 +91,15 @@ def _storable(file: Path) -> str:
 
 
 def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
-    # A diameter that is no number shows where it was used.
-    unknown = Tool(0, "", math.nan, 0.0, 0.0, corner_known=False)
+    # A diameter or a length that is no number shows where it was used.
+    unknown = Tool(0, "", math.nan, 0.0, math.nan, corner_known=False)
+    numbers = {*reading.tools, *reading.lengths}
+    tools = {
+        number: replace(reading.tools.get(number, unknown), number=number, length=reading.lengths.get(number, math.nan))
+        for number in numbers
+    }
     options = gcode.ReadOptions(
-        tools=reading.tools,
+        tools=tools,
         default_tool=unknown,
         axis_words=reading.axis_words,
         unit=reading.unit or "mm",
@@ -108,11 +115,12 @@ def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
     if len(missing):
         place = program.place(int(missing[0]))
         return None, (*diagnostics, Diagnostic("G411", place, "cutter compensation with a tool of unknown diameter"))
-    tools = {
-        number: replace(tool, diameter=0.0) if math.isnan(tool.diameter) else tool
-        for number, tool in program.tools.items()
-    }
-    return replace(program, tools=tools), diagnostics
+    known = {number: _zero_where_unknown(tool) for number, tool in program.tools.items()}
+    return replace(program, tools=known), diagnostics
+
+
+def _zero_where_unknown(tool: Tool) -> Tool:
+    return replace(tool, diameter=float(np.nan_to_num(tool.diameter)), length=float(np.nan_to_num(tool.length)))
 
 
 def _read_cldata(content: bytes, file: str, reading: Reading) -> Result:

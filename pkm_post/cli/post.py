@@ -21,7 +21,7 @@ from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, reading_from
 from pkm_post.cli.result_names import lost_results
-from pkm_post.options import add_options, options_from, tool_lengths_from
+from pkm_post.options import add_options, given_in
 
 if TYPE_CHECKING:
     from pkm_post.pipeline import Posted
@@ -107,10 +107,8 @@ def _part_program(file: Path, namespace: argparse.Namespace, line: ProgressLine)
 
     posted = post_file(
         file,
-        namespace.machine,
-        namespace.out,
-        options=options_from(namespace),
-        tool_lengths=tool_lengths_from(namespace),
+        out=namespace.out,
+        arguments=given_in(namespace),
         reading=reading_from(namespace),
         log=line.print,
         progress=line.show,
@@ -123,10 +121,8 @@ def _document(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> 
 
     return post_document(
         file,
-        machine=namespace.machine,
         out=namespace.out,
-        options=options_from(namespace),
-        tool_lengths=tool_lengths_from(namespace),
+        arguments=given_in(namespace),
         job_name=namespace.job,
         log=line.print,
         progress=line.show,

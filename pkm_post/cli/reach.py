@@ -12,14 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.inside_freecad import needs_freecad, run_inside
 from pkm_post.cli.reading import add_reading, reading_from
-from pkm_post.options import add_options, options_from, tool_lengths_from
+from pkm_post.options import add_options, given_in
 
 if TYPE_CHECKING:
     from pkm_post.geometry.vectors import Array
-    from pkm_post.model import Diagnostic, Program
-    from pkm_post.pipeline import Options
-
-    Read = tuple[Program | None, tuple[Diagnostic, ...], Options, Array | None]
+    from pkm_post.model import Diagnostic
+    from pkm_post.pipeline import Prepared
 
 
 def add_commands(commands: Any) -> None:
@@ -51,24 +49,21 @@ def _freedoms(text: str) -> str:
 def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if needs_freecad(namespace.files):
         return run_inside(arguments)
-    from pkm_post.machine_file import machine_named
     from pkm_post.model import Refused
     from pkm_post.model.diagnostics import errors
     from pkm_post.reach_study import study
 
-    machine, faults = machine_named(namespace.machine)
-    _tell(faults)
-    failed = machine is None
-    found = []
+    failed, found = False, []
     for file in namespace.files:
         try:
             programs = list(_programs(file, namespace))
         except Refused as refused:
             programs, failed = [], True
             _tell(refused.diagnostics)
-        for program, told, options, part in programs:
-            if program is not None and machine is not None:
-                made, more = study(program, machine, options, namespace.place, part)
+        for prepared, part in programs:
+            told = prepared.found
+            if not errors(told):
+                made, more = study(*prepared.sound, prepared.options, namespace.place, part)
                 told += more
                 found += [made] if made else []
             _tell(told)
@@ -80,18 +75,18 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     return int(failed)
 
 
-def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Read]:
+def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[tuple[Prepared, Array | None]]:
     """The programs of a file: that of a part program, or those of the jobs of a document."""
-    from pkm_post.post_file import read_to_post
+    from pkm_post.post_file import prepared_file
     from pkm_post.sources import is_part_program
 
-    options, lengths = options_from(namespace), tool_lengths_from(namespace)
+    given = given_in(namespace)
     if is_part_program(file):
-        yield *read_to_post(file, options, lengths, reading_from(namespace)), None
+        yield prepared_file(file, reading=reading_from(namespace), arguments=given), None
     else:
         from pkm_post.freecad_app.post_job import read_document
 
-        yield from read_document(file, options, lengths, namespace.job)
+        yield from read_document(file, given, namespace.job)
 
 
 def _tell(diagnostics: Sequence[Diagnostic]) -> None:

@@ -10,14 +10,14 @@ from __future__ import annotations
 import argparse
 import shlex
 from collections.abc import Iterator, Mapping
-from typing import Any, NoReturn
+from typing import Any
 
 import Path.Preferences
 
 from pkm_post.freecad_app.job import document_name
 from pkm_post.gcode import Form
 from pkm_post.model import Diagnostic, Place, Refused
-from pkm_post.options import add_options
+from pkm_post.options import Given, TextParser, given_in, text_parser, typed
 
 PMAC, TRAJECTORY, LINUXCNC, GCODE = "hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"
 
@@ -44,6 +44,15 @@ _MORE: dict[str, dict[str, dict[str, Any]]] = {
     },
 }
 """What some of them have beside the arguments of all."""
+
+
+def given_by(arguments: str | Given) -> Given:
+    """The options that a text says, which has no defaults; those that are parsed already stay as they are.
+
+    Raises:
+        Refused: as ``job_arguments``.
+    """
+    return given_in(parsed(arguments, Place("arguments"))) if isinstance(arguments, str) else arguments
 
 
 def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.Namespace:
@@ -73,22 +82,27 @@ def parsed(text: str, place: Place, post_processor: str = PMAC) -> argparse.Name
         Refused: as ``job_arguments``.
     """
     try:
-        chosen = _parser(post_processor).parse_args(shlex.split(text))
+        chosen = typed(text, _parser(post_processor))
         if chosen.also and post_processor != PMAC:
-            raise ValueError(f"--also is for {PMAC} alone")
+            raise ValueError(f"--also is for {PMAC} alone in {text!r}")
     except ValueError as fault:
-        raise Refused([Diagnostic("J117", place, f"{fault} in {text!r}")]) from fault
+        raise Refused([Diagnostic("J117", place, str(fault))]) from fault
     return chosen
 
 
-def own_arguments(job: Any) -> argparse.Namespace:
+def own_arguments(job: Any, post_processor: str = "") -> argparse.Namespace:
     """The arguments that a job has for a post-processor of PKM Post; those for another one are left alone.
+
+    Args:
+        job: the job.
+        post_processor: one of ``POST_PROCESSORS``; that of the job if none is named.
 
     Raises:
         Refused: as ``job_arguments``.
     """
-    if job.PostProcessor in POST_PROCESSORS:
-        return job_arguments(job, job.PostProcessorArgs, job.PostProcessor)
+    named = post_processor or job.PostProcessor
+    if named in POST_PROCESSORS:
+        return job_arguments(job, job.PostProcessorArgs, named)
     return job_arguments(job, "")
 
 
@@ -146,23 +160,8 @@ def arguments_help(post_processor: str = PMAC) -> str:
     return _parser(post_processor).format_help()
 
 
-class _Parser(argparse.ArgumentParser):
-    """Raises a ``ValueError`` where a program of its own would print its usage and end."""
-
-    def error(self, message: str) -> NoReturn:
-        raise ValueError(message)
-
-
-def _parser(post_processor: str) -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog=post_processor,
-        description=POST_PROCESSORS[post_processor],
-        add_help=False,
-        allow_abbrev=False,
-        usage=argparse.SUPPRESS,
-    )
-    parser.color = False  # Python 3.14 would colour the help if there is a terminal
-    add_options(parser)
+def _parser(post_processor: str) -> TextParser:
+    parser = text_parser(post_processor, POST_PROCESSORS[post_processor])
     for flag, words in _MORE.get(post_processor, {}).items():
         parser.add_argument(flag, **words)
     return parser

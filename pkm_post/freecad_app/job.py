@@ -19,6 +19,7 @@ from Path.Base.Util import opProperty, toolControllerForOp
 
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.layers import is_ours, spoilers
+from pkm_post.freecad_app.selection import EVERYTHING, Selection
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
 from pkm_post.model import Diagnostic, Event, EventKind, Place, Program, Tool
 from pkm_post.model.diagnostics import errors
@@ -34,21 +35,22 @@ _SPINDLE_SENSE = {"Forward": 1.0, "Reverse": -1.0, "None": 0.0}
 _OFF = {EventKind.SPINDLE: 0.0, EventKind.COOLANT: 0.0}
 
 
-def read_job(job: Any, tool_lengths: Mapping[int, float] = NO_LENGTHS) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def read_job(
+    job: Any, tool_lengths: Mapping[int, float] = NO_LENGTHS, selection: Selection = EVERYTHING
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """The program of a CAM job.
 
     Args:
         job: the job, a document object, recomputed.
         tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
+        selection: what of the job is meant.
 
     Returns:
         The program, or None if there are errors; and all that was found.
     """
     way = _Way(job)
-    faults: list[Diagnostic] = []
-    if len(job.Fixtures) > 1:
-        faults.append(Diagnostic("J111", Place(way.source, job.Label), ", ".join(job.Fixtures)))
-    for operation in job.Operations.Group:
+    faults = _selection_faults(job, selection, Place(way.source, job.Label))
+    for operation in selection.operations_of(job):
         if opProperty(operation, "Active") is not False:
             faults += _state_faults(operation, way.source) or way.add(operation)
     way.switch(_OFF)
@@ -62,6 +64,13 @@ def read_job(job: Any, tool_lengths: Mapping[int, float] = NO_LENGTHS) -> tuple[
 def document_name(document: Any) -> str:
     """The file name of a document, or its label before it has one."""
     return FilePath(document.FileName).name or document.Label
+
+
+def _selection_faults(job: Any, selection: Selection, place: Place) -> list[Diagnostic]:
+    """What is meant and cannot be posted together, or is not there."""
+    fixtures, strangers = selection.fixtures_of(job), selection.strangers(job)
+    faults = [Diagnostic("J111", place, ", ".join(fixtures))] if len(fixtures) > 1 else []
+    return faults + [Diagnostic("J127", place, each.Label) for each in strangers]
 
 
 def _state_faults(operation: Any, source: str) -> list[Diagnostic]:

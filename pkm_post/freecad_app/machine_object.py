@@ -19,9 +19,8 @@ import FreeCAD as App
 import numpy as np
 
 from pkm_post import pipeline
-from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.frames import matrix_of, placement_of
-from pkm_post.freecad_app.job_to_post import at_fixture
+from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.object_properties import EDITABLE, READ_ONLY, Row
 from pkm_post.freecad_app.property_proxy import PropertyProxy
 from pkm_post.freecad_app.refusals import briefly_refused
@@ -30,7 +29,6 @@ from pkm_post.kinematics import Way, reach_findings, reach_margins, strut_length
 from pkm_post.kinematics.way import Pose
 from pkm_post.machine_file import machine_named
 from pkm_post.model import Machine, Refused
-from pkm_post.options import options_from
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
@@ -106,7 +104,7 @@ def create_machine(document: Any, machine: str = "", job: Any = None, label: str
     Raises:
         Refused: there is no such machine, or its file has faults; nothing was added.
     """
-    name = machine or (_EXAMPLE if job is None else own_arguments(job).machine)
+    name = machine or (_EXAMPLE if job is None else settings_of(job).machine)
     model = _machine_named(name)
     obj = document.addObject("App::FeaturePython", "Machine")
     MachineObject(obj)
@@ -158,8 +156,7 @@ def _take_work_offset(obj: Any, machine: Machine) -> None:
     obj.setEditorMode("WorkOffset", EDITABLE if obj.Job is None else READ_ONLY)
     if obj.Job is None:
         return
-    options = at_fixture(options_from(own_arguments(obj.Job)), obj.Job)
-    offset, faults = pipeline.work_offset(machine, options)
+    offset, faults = pipeline.work_offset(machine, settings_of(obj.Job).options)
     if offset is None:
         raise Refused(faults)
     obj.WorkOffset = placement_of(offset)

@@ -9,11 +9,12 @@ the check of a whole path, which comes later and is the one that counts.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from pkm_post import pipeline
+from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.tools import read_tools
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import reach_margins
@@ -22,7 +23,6 @@ from pkm_post.model import Diagnostic, Machine, Place
 
 _TILTS = np.radians(np.arange(0.0, 80.5, 0.5))
 _DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
-_NO_LENGTHS: Mapping[int, float] = {}
 
 
 def machine_tilt(
@@ -32,25 +32,28 @@ def machine_tilt(
 
     Args:
         name: name of a machine that comes with PKM Post, or path of a machine file.
-        job: the CAM job; its first fixture is the work offset.
+        job: the CAM job, with its work offset and its gauge lengths.
         controller: the tool controller, with a gauge length.
         box: lowest and highest corner of where the tip comes, (3,) each, mm.
         place: what diagnostics name.
 
     Returns:
         The angle in rad, or None; and what is wrong: M1xx of the machine file, J113, K108, N310.
+
+    Raises:
+        Refused: the arguments of the job are not understood, J117.
     """
+    settings = settings_of(job)
     machine, machine_faults = machine_named(name)
-    tools, tool_faults = read_tools([controller], _NO_LENGTHS, place.file)
+    tools, tool_faults = read_tools([controller], settings.tool_lengths, place.file)
     if machine is None or not tools:
         return None, (*machine_faults, *tool_faults)
-    fixture = job.Fixtures[0] if job.Fixtures else "G54"
-    if fixture not in machine.work_offsets:
-        return None, (Diagnostic("K108", place, fixture),)
-    length = tools[int(controller.ToolNumber)].length
-    tilt = _largest(machine, machine.work_offsets[fixture], length, *box)
+    offset, faults = pipeline.work_offset(machine, settings.options)
+    if offset is None:
+        return None, faults
+    tilt = _largest(machine, offset, tools[int(controller.ToolNumber)].length, *box)
     if tilt is None:
-        return None, (Diagnostic("N310", place, f"{machine.name} at {fixture}"),)
+        return None, (Diagnostic("N310", place, f"{machine.name} at {settings.arguments.work_offset}"),)
     return tilt, ()
 
 

@@ -9,68 +9,84 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any
 
 import FreeCAD as App
 
 from pkm_post import pipeline
-from pkm_post.freecad_app.arguments import own_arguments
-from pkm_post.freecad_app.job import NO_LENGTHS, document_name, read_job
-from pkm_post.freecad_app.job_to_post import at_fixture, read_for_post
+from pkm_post.freecad_app.arguments import given_by
+from pkm_post.freecad_app.job import NO_LENGTHS, document_name
+from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.kinds import is_job
 from pkm_post.freecad_app.part_mesh import part_mesh
+from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Diagnostic, Place, Program, Refused
-from pkm_post.options import READING, options_from, tool_lengths_from
+from pkm_post.model import Diagnostic, Place, Refused
+from pkm_post.options import READING, Given
 
 
 def post_job(
     job: Any,
-    machine: str | FilePath,
-    out: str | FilePath,
+    machine: str | FilePath | None = None,
+    out: str | FilePath = ".",
     options: pipeline.Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     log: pipeline.Log = pipeline.quiet,
     progress: pipeline.Progress = pipeline.unwatched,
+    arguments: str | Given = "",
+    beside: Sequence[Any] = (),
 ) -> pipeline.Posted:
-    """Post a CAM job.
+    """Post a CAM job. What is not said here is as the job says it; what replaces it is told by J125.
 
     Args:
         job: the job, a document object; its document is recomputed.
         machine: name of a machine that comes with PKM Post, or path of a machine file.
         out: folder for the results; their stem is the name of the document.
-        options: what the user chose; if nothing, the work offset is the fixture of the job.
+        options: stand in for all that ``pipeline.Options`` holds; a work offset ``"job"`` is the fixture of the job.
         tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
         log: takes a line for each step.
         progress: is told of each step when it begins; what it raises ends the work, and nothing is written.
+        arguments: options that go before those of the job one by one, as they are typed, or parsed.
+        beside: other jobs that the gauge lengths are for as well.
 
     Raises:
         Refused: something in the job, the machine file or the folder does not allow it; nothing was written.
+        ValueError: there are both options and arguments.
     """
-    return post_to(FilePath(out) / file_name(job), job, machine, options, tool_lengths, log, progress)
+    if options is not None and arguments:
+        raise ValueError("expected options or arguments, got both")
+    given = {**given_by(arguments), **_said(machine, tool_lengths)}
+    settings = settings_of(job, given, options, beside=beside)
+    return post_to(FilePath(out) / file_name(job), job, settings, log, progress)
+
+
+def _said(machine: str | FilePath | None, tool_lengths: Mapping[int, float]) -> Given:
+    """Machine and gauge lengths of a call, as if they had been typed."""
+    lengths = {"tool_length": list(tool_lengths.items())} if tool_lengths else {}
+    return lengths | ({} if machine is None else {"machine": str(machine)})
 
 
 def post_as_the_job_says(job: Any, out: str | FilePath, log: pipeline.Log = pipeline.quiet) -> pipeline.Posted:
-    """Post a CAM job with the arguments it has for a post-processor of PKM Post; those for another are left alone.
+    """Post a CAM job with the arguments it has for a post-processor of PKM Post, and no others.
 
     Raises:
         Refused: as ``post_job``, and J117 for the arguments.
     """
-    chosen = own_arguments(job)
-    return post_job(job, chosen.machine, out, options_from(chosen), tool_lengths_from(chosen), log)
+    return post_job(job, out=out, log=log)
 
 
 def post_document(
     file: str | FilePath,
-    machine: str | FilePath,
-    out: str | FilePath,
+    machine: str | FilePath | None = None,
+    out: str | FilePath = ".",
     options: pipeline.Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     job_name: str | None = None,
     log: pipeline.Log = pipeline.quiet,
     progress: pipeline.Progress = pipeline.unwatched,
+    arguments: str | Given = "",
 ) -> tuple[pipeline.Posted, ...]:
     """Post one job of a saved document, or all of them.
 
@@ -83,30 +99,37 @@ def post_document(
         job_name: name or label of the job; all jobs if there is none.
         log: takes a line for each step.
         progress: as in ``post_job``; the share is that of the job that is being posted.
+        arguments: options that go before those of each job one by one.
 
     Raises:
         Refused: as ``post_job``, and J101 and J102 for the document. Jobs posted before stay posted.
     """
     with _opened(FilePath(file)) as document:
-        jobs = [find_job(document, job_name)] if job_name else find_jobs(document)
-        return tuple(post_job(job, machine, out, options, tool_lengths, log, progress) for job in jobs)
+        jobs = _jobs_named(document, job_name)
+        return tuple(post_job(job, machine, out, options, tool_lengths, log, progress, arguments, jobs) for job in jobs)
 
 
 def read_document(
-    file: str | FilePath,
-    options: pipeline.Options,
-    tool_lengths: Mapping[int, float] = NO_LENGTHS,
-    job_name: str | None = None,
-) -> tuple[tuple[Program | None, tuple[Diagnostic, ...], pipeline.Options, Array], ...]:
-    """The programs of the jobs of a saved document, what was found in each, the options for it, and its part.
+    file: str | FilePath, given: Given, job_name: str | None = None
+) -> tuple[tuple[pipeline.Prepared, Array], ...]:
+    """The jobs of a saved document, each with its part.
+
+    Args:
+        file: path of the document; it is not changed.
+        given: options that go before those of each job one by one.
+        job_name: name or label of the job; all jobs if there is none.
 
     Raises:
         Refused: as ``post_document``.
     """
     with _opened(FilePath(file)) as document:
-        jobs = [find_job(document, job_name)] if job_name else find_jobs(document)
+        jobs = _jobs_named(document, job_name)
         document.recompute()
-        return tuple((*read_job(job, tool_lengths), at_fixture(options, job), part_mesh(job)) for job in jobs)
+        return tuple((prepared_job(job, settings_of(job, given, beside=jobs)), part_mesh(job)) for job in jobs)
+
+
+def _jobs_named(document: Any, name: str | None) -> list[Any]:
+    return [find_job(document, name)] if name else find_jobs(document)
 
 
 def find_jobs(document: Any) -> list[Any]:
@@ -139,10 +162,8 @@ def find_job(document: Any, name: str | None = None) -> Any:
 def post_to(
     program_path: FilePath,
     job: Any,
-    machine: str | FilePath,
-    options: pipeline.Options | None,
-    tool_lengths: Mapping[int, float],
-    log: pipeline.Log,
+    settings: JobSettings,
+    log: pipeline.Log = pipeline.quiet,
     progress: pipeline.Progress = pipeline.unwatched,
 ) -> pipeline.Posted:
     """Post a CAM job to a motion program of this name; the other files take its stem.
@@ -151,7 +172,8 @@ def post_to(
         Refused: as ``post_job``.
     """
     progress(READING, 0.0)
-    return read_for_post(job, machine, options, tool_lengths).post(program_path, log, progress)
+    job.Document.recompute()
+    return prepared_job(job, settings).post(program_path, log, progress)
 
 
 def file_name(job: Any) -> str:

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post outputs: what the post-processors write for a CAM job.
 
-A job, its parsed arguments and the place where CAM is going to write enter; the text for that place leaves, and the
+A job, its settings and the place where CAM is going to write enter; the text for that place leaves, and the
 diagnostics. Files that are no text lie beside that place then. Whatever is wrong is told together and nothing is
 written.
 """
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path as FilePath
@@ -20,13 +19,13 @@ from pkm_post import outputs, pipeline, trajectory_file
 from pkm_post.files import staged
 from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
 from pkm_post.freecad_app.job import read_job
-from pkm_post.freecad_app.job_on_machine import job_and_machine
+from pkm_post.freecad_app.job_settings import JobSettings
 from pkm_post.freecad_app.post_job import post_to
+from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.gcode import Form, write
 from pkm_post.model import Diagnostic, Place, Refused, Trajectory
 from pkm_post.model.diagnostics import errors
-from pkm_post.options import options_from, tool_lengths_from
 from pkm_post.reach import reach
 
 T = TypeVar("T")
@@ -37,35 +36,35 @@ _MORE_STEPS = 2
 """Reading comes before the steps of the pipeline, and its end is told as well."""
 
 
-def _motion_program(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
+def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """The motion program, or the first of its parts; all else is written beside it.
 
     CAM takes several texts, but puts a number of its own into the name of each behind the first: a part would lie there
     under a name that no reader of the program looks for. So the other parts are not given to CAM.
     """
-    options, lengths = options_from(chosen), tool_lengths_from(chosen)
-    with Progress(App.Qt.translate("Progress", "Post"), len(pipeline.step_names(options)) + _MORE_STEPS) as bar:
-        posted = post_to(path, job, chosen.machine, options, lengths, print, lambda step, share: bar.step())
+    steps = len(pipeline.step_names(settings.options)) + _MORE_STEPS
+    with Progress(App.Qt.translate("Progress", "Post"), steps) as bar:
+        posted = post_to(path, job, settings, print, lambda step, share: bar.step())
     if len(posted.parts) > 1:
         names = ", ".join(part.name for part in posted.parts)
         App.Console.PrintMessage(f"the program has {len(posted.parts)} parts, to be run in this order: {names}\n")
     return posted.program.read_text(encoding="ascii"), posted.diagnostics
 
 
-def _trajectory(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
+def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """A few lines about the trajectory, which is written beside them: CAM can write no bytes."""
-    trajectory, found = _reachable(job, chosen)
-    target, options = path.with_suffix(".pkmt"), options_from(chosen)
+    trajectory, found = _reachable(job, settings)
+    target = path.with_suffix(".pkmt")
     try:
         with staged(target.parent) as folder:
             stored = folder / target.name
-            trajectory_file.write(replace(trajectory, tolerances=options.tolerances), stored)
+            trajectory_file.write(replace(trajectory, tolerances=settings.options.tolerances), stored)
             _value(trajectory_file.read(stored), found)
     except OSError as fault:
         raise Refused([*found, Diagnostic("F101", Place(str(target)), str(fault))]) from fault
     lines = (
         f"trajectory: {target.name}",
-        f"machine: {chosen.machine}",
+        f"machine: {settings.arguments.machine}",
         f"segments: {len(trajectory)}",
         "reach checked, motion not planned, not certified",
     )
@@ -76,34 +75,35 @@ _NO_PARENTHESES = str.maketrans("()", "[]")
 """A comment of G-code cannot hold a comment."""
 
 
-def _linuxcnc(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
+def _linuxcnc(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """G-code for LinuxCNC's hexapod."""
-    trajectory, found = _reachable(job, chosen)
-    return _value(outputs.linuxcnc_text(trajectory, options_from(chosen).tip_tolerance), found)
+    trajectory, found = _reachable(job, settings)
+    return _value(outputs.linuxcnc_text(trajectory, settings.options.tip_tolerance), found)
 
 
-def _gcode(job: Any, chosen: argparse.Namespace, path: FilePath) -> Written:
+def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """The program of the job as G-code."""
     job.Document.recompute()
-    program, found = _value(read_job(job, tool_lengths_from(chosen)))
-    return _value(write(program, Form(chosen.form), inch=chosen.inch), found)
+    program, told = read_job(job, settings.tool_lengths, settings.selection)
+    program, found = _value((program, (*settings.found, *told)))
+    return _value(write(program, Form(settings.arguments.form), inch=settings.arguments.inch), found)
 
 
-OUTPUTS: dict[str, Callable[[Any, argparse.Namespace, FilePath], Written]] = {
+OUTPUTS: dict[str, Callable[[Any, JobSettings, FilePath], Written]] = {
     PMAC: _motion_program,
     TRAJECTORY: _trajectory,
     LINUXCNC: _linuxcnc,
     GCODE: _gcode,
 }
-"""By post-processor what it writes: from the job, its arguments and the place of the text."""
+"""By post-processor what it writes: from the job, its settings and the place of the text."""
 
 
-def _reachable(job: Any, chosen: argparse.Namespace) -> tuple[Trajectory, Findings]:
+def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     """The trajectory of a job, which its machine can follow, and the warnings."""
     job.Document.recompute()
-    read = job_and_machine(job, chosen)
-    trajectory, found = _value(pipeline.trajectory_of(read.program, read.machine, read.options), read.diagnostics)
-    return _value((trajectory, reach(trajectory, read.machine).faults()), found)
+    read = prepared_job(job, settings)
+    trajectory, found = _value(read.placed())
+    return _value((trajectory, reach(trajectory, read.sound[1]).faults()), found)
 
 
 def _value(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:

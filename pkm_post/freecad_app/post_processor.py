@@ -7,11 +7,15 @@ happens before ``export``. CAM writes the text that ``export`` gives back; the o
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any, ClassVar
 
 import FreeCAD as App
 from Path.Post.Processor import PostProcessor
+
+from pkm_post.freecad_app.selection import EVERYTHING, Selection
 
 TOOLTIPS: dict[str, str] = {
     "hexapod_pmac": "Certified motion programs for hexapod machine tools with six telescopic struts and a Turbo PMAC"
@@ -31,6 +35,7 @@ class HexapodPost(PostProcessor):
     name: ClassVar[str]
 
     def __init__(self, job: Any) -> None:
+        job, self._chosen = _unpacked(job)
         super().__init__(job, tooltip=self.tooltip, tooltipargs="", units="G21")
 
     @property
@@ -51,14 +56,14 @@ class HexapodPost(PostProcessor):
         Raises:
             Refused: the job cannot be posted; CAM writes nothing then.
         """
-        from pkm_post.freecad_app.arguments import job_arguments
+        from pkm_post.freecad_app.job_settings import settings_of
         from pkm_post.freecad_app.post_outputs import OUTPUTS
         from pkm_post.freecad_app.progress import Stopped
         from pkm_post.model import Refused
 
         try:
-            chosen = job_arguments(self._job, self._job.PostProcessorArgs, self.name)
-            text, diagnostics = OUTPUTS[self.name](self._job, chosen, program_path(self._job))
+            settings = settings_of(self._job, post_processor=self.name, selection=self._chosen)
+            text, diagnostics = OUTPUTS[self.name](self._job, settings, program_path(self._job))
         except Refused as refused:
             _tell(refused)
             raise
@@ -68,6 +73,32 @@ class HexapodPost(PostProcessor):
         for diagnostic in diagnostics:
             App.Console.PrintWarning(f"{diagnostic}\n")
         return [("allitems", text)]
+
+    def export2(self) -> list[tuple[str, str]]:
+        """The same for a job that has a machine of FreeCAD: our machine is the one of our arguments."""
+        return self.export()
+
+    def get_file_extension(self) -> str:
+        """How the name of the text ends, which newer versions ask for when the job has a machine of FreeCAD."""
+        return program_path(self._job).suffix.lstrip(".")
+
+    def apply_configuration_bundle(self, overrides: Mapping[str, Any] | None = None) -> None:
+        """Take the fixtures that were chosen in the dialog of FreeCAD newer than 1.1; the rest of it is for its own.
+
+        Args:
+            overrides: what the dialog says, by name.
+        """
+        fixtures = (overrides or {}).get("selected_fixtures")
+        self._chosen = replace(self._chosen, fixtures=fixtures or None)
+
+
+def _unpacked(job: Any) -> tuple[Any, Selection]:
+    """The job, and what of it is meant: newer versions give both in a dictionary, or the job in a list."""
+    if isinstance(job, dict):
+        return job["job"], Selection(job.get("operations"))
+    if isinstance(job, list):
+        (job,) = job
+    return job, EVERYTHING
 
 
 def program_path(job: Any) -> FilePath:

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from pkm_post.freecad_app.arguments import POST_PROCESSORS, own_arguments, rewritten
-from pkm_post.freecad_app.job_on_machine import job_and_machine
+from pkm_post.freecad_app.arguments import POST_PROCESSORS, rewritten
+from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.part_mesh import part_mesh
+from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.model import Refused
 from pkm_post.reach_study import Study, study, told_offset
 
@@ -27,10 +28,10 @@ def study_job(job: Any, free: str = "") -> Study:
         Refused: the job cannot be read or placed. That it cannot be followed is told by the study.
     """
     job.Document.recompute()
-    read = job_and_machine(job, own_arguments(job))
-    found, told = study(read.program, read.machine, read.options, free, part_mesh(job))
+    read = prepared_job(job, settings_of(job))
+    found, told = study(*read.sound, read.options, free, part_mesh(job))
     if found is None:
-        raise Refused((*read.diagnostics, *told))
+        raise Refused((*read.found, *told))
     return found
 
 

@@ -14,7 +14,8 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.job_to_post import ReadJob, read_for_post
+from pkm_post.freecad_app.job_settings import settings_of
+from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.deletion_watch import DeletionWatch
 from pkm_post.freecad_gui.job_choices import JobChoices
@@ -24,7 +25,8 @@ from pkm_post.freecad_gui.post_steps import step_text
 from pkm_post.freecad_gui.task import Task
 from pkm_post.freecad_gui.workbench import ICONS
 from pkm_post.model import Refused
-from pkm_post.options import READING, options_from, tool_lengths_from
+from pkm_post.options import READING
+from pkm_post.pipeline import Prepared
 
 translate = FreeCAD.Qt.translate
 
@@ -93,10 +95,12 @@ class PostPanel:
         task.finished.connect(self._end)
         task.start()
 
-    def _read(self) -> ReadJob:
+    def _read(self) -> Prepared:
         """The job and its machine, when the job has kept what is chosen."""
-        chosen, self._target = self.choices.keep(), self.choices.program()
-        return read_for_post(self.job, chosen.machine, options_from(chosen), tool_lengths_from(chosen))
+        self.choices.keep()
+        self._target = self.choices.program()
+        self.job.Document.recompute()
+        return prepared_job(self.job, settings_of(self.job))
 
     def _keep_or_tell(self) -> bool:
         """Let the document keep what is chosen, without posting; if that makes no sense, show why."""

@@ -20,6 +20,7 @@ from pkm_post.gcode.magazine import tool_in_use
 from pkm_post.gcode.modal import Modal
 from pkm_post.gcode.options import ReadOptions
 from pkm_post.gcode.positions import Coordinates
+from pkm_post.model import Tool
 from pkm_post.model.program import Array
 
 SETS_OFFSETS = (100, 520, 920, 921, 922, 923)
@@ -32,6 +33,11 @@ IN_ORDER = (Group.LENGTH, Group.SYSTEM, Group.ROTATION, Group.MIRROR)
 """Groups whose codes all change the frame, as they are carried out."""
 
 
+def _length_of(tool: Tool | None) -> float:
+    """The gauge length of a tool, mm; 0 of one that has none or whose length is not known."""
+    return 0.0 if tool is None or math.isnan(tool.length) else tool.length
+
+
 class FrameCodes:
     """The offsets of a program, and the blocks that change them."""
 
@@ -41,7 +47,8 @@ class FrameCodes:
         self._blocks, self._modal, self._words = blocks, modal, words
         self._tools, self._options, self._faults = tools, options, faults
         self.offsets = Offsets.of(options)
-        self.offsets.own_length = options.default_tool.length if options.default_tool else 0.0
+        self.offsets.own_length = _length_of(tool_in_use(NONE, options))
+        self.length_offsets: set[int] = set()
 
     def change(self, row: int) -> bool:
         """Whether a block changes the frame otherwise than by another tool."""
@@ -51,7 +58,7 @@ class FrameCodes:
     def take_tool(self, row: int) -> None:
         """M6: another gauge length."""
         tool = tool_in_use(int(self._tools[row]), self._options)
-        self.offsets.own_length = tool.length if tool else 0.0
+        self.offsets.own_length = _length_of(tool)
 
     def carry_out(self, row: int, group: Group, position: Array, known: Array, moved: bool) -> None:
         """The code of a group in a block, if it has one.
@@ -101,7 +108,18 @@ class FrameCodes:
         if number == NONE and self._options.default_tool is None:
             offsets.own_length = tool.length
         before = offsets.length if code == 432 and offsets.length is not None else np.zeros(3)
-        offsets.length = before + np.array([0.0, 0.0, tool.length])
+        offsets.length = before + np.array([0.0, 0.0, self._value_of_offset(row, tool, word)])
+
+    def _value_of_offset(self, row: int, tool: Tool, word: float) -> float:
+        """The value of H, mm; the length of the tool in the spindle where one of the two is not known."""
+        in_spindle = tool_in_use(int(self._tools[row]), self._options)
+        if not math.isnan(word):
+            self.length_offsets.add(int(word))
+        if in_spindle is None or not math.isnan(in_spindle.length + tool.length):
+            return tool.length
+        if not math.isnan(in_spindle.length):
+            self._faults.tell("J128", row, f"H{word:g} with T{self._tools[row]}")
+        return self.offsets.own_length
 
     def _system(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
         offsets = self.offsets

@@ -116,7 +116,8 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
     settings = _settings(blocks, modal, options, faults)
     modes = path_modes(blocks, modal, options.axis_words, faults)
     dwells = dwell_words(blocks, options)
-    motions = Walk(blocks, modal, settings.tools, settings.spindle, dwells, options, faults).motions()
+    walk = Walk(blocks, modal, settings.tools, settings.spindle, dwells, options, faults)
+    motions = walk.motions()
     centre, axis = arcs_of(blocks, modal, motions, faults)
     if faults.stop():
         return None
@@ -147,6 +148,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
         source=blocks.source,
         source_fingerprint="",
         reading=(),
+        length_offsets=frozenset(walk.codes.length_offsets),
     )
 
 

@@ -66,6 +66,7 @@ class Program:
         events: what happens between rows, in order.
         operations: names of the operations the rows come from.
         tools: the tools used, by number.
+        length_offsets: numbers of the tool length offsets (H) it takes, those of its tools as well.
         source: name of the file the program comes from.
         source_fingerprint: SHA-256 of the bytes of that file, hexadecimal; empty where it is not known.
         reading: how the file was taken where it can be taken in two ways, and by which evidence; in words, by subject.
@@ -98,6 +99,7 @@ class Program:
     source: str
     source_fingerprint: str = ""
     reading: tuple[str, ...] = ()
+    length_offsets: frozenset[int] = frozenset()
     exact_stop: Array = None  # type: ignore[assignment] # filled in below
     exact_path: Array = None  # type: ignore[assignment] # filled in below
     tip_tolerance: Array = None  # type: ignore[assignment] # filled in below

@@ -80,6 +80,18 @@ RULES: dict[str, Rule] = {
     "J124": _warning(
         "a dwell lasts longer than a minute", "dwells of CAM commands are in seconds: correct it if not meant"
     ),
+    "J125": _warning(
+        "an option stands in for what the job or the program says",
+        "leave the option out where that is not meant",
+    ),
+    "J126": _error(
+        "an option gives a length to a tool that is not there", "correct the number of the tool, or leave it out"
+    ),
+    "J127": _error("CAM asks for an operation that is not in the job", "choose among the operations of the job"),
+    "J128": _error(
+        "a length offset (H) of another number than the tool's is in force, and its value is not known",
+        "pass it with --tool-length NUMBER=MM; if it holds the length of the tool, that length",
+    ),
     # G1: the letters of G-code
     "G101": _error("a character has no meaning here", "remove it, or put the text into a comment"),
     "G102": _error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),

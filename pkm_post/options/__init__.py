@@ -19,19 +19,43 @@ from pkm_post.options.arguments import (
     tool_lengths_from,
     tools_from,
 )
+from pkm_post.options.layers import (
+    NOTHING_GIVEN,
+    Given,
+    Override,
+    flag_of,
+    given_in,
+    layered,
+    overrides,
+    shown,
+)
+from pkm_post.options.said import said_by
+from pkm_post.options.typed import TextParser, text_parser, typed
 
 __all__ = [
     "ALSO",
     "FIXTURE_OF_THE_JOB",
     "HEADED",
+    "NOTHING_GIVEN",
     "READING",
     "SPIN_WORDS",
+    "Given",
+    "Override",
+    "TextParser",
     "add_machine",
     "add_options",
     "add_part_program",
+    "flag_of",
+    "given_in",
+    "layered",
     "options_from",
+    "overrides",
     "part_program_from",
+    "said_by",
+    "shown",
+    "text_parser",
     "tolerances_from",
     "tool_lengths_from",
     "tools_from",
+    "typed",
 ]

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.argument_types import above_zero, between, number, numbered, offset, tool_length
+from pkm_post.options.layers import NOTHING, add_noted
 
 if TYPE_CHECKING:
     from pkm_post.model import Tool
@@ -79,8 +80,8 @@ ALSO = ("csv", "halstreamer", "linuxcnc")
 
 
 def _also(text: str) -> tuple[str, ...]:
-    """Names, each once."""
-    chosen = text.split(",")
+    """Names, each once; the word for nothing takes back what a job says."""
+    chosen = text.split(",") if text != NOTHING else []
     if not set(chosen) <= set(ALSO):
         raise argparse.ArgumentTypeError(f"expected names out of {', '.join(ALSO)}, got {text!r}")
     return tuple(name for name in ALSO if name in chosen)
@@ -98,6 +99,10 @@ def _cycle_values(text: str) -> tuple[str, ...]:
     if not set(chosen) <= set(CYCLE_VALUES) or len(set(chosen)) < len(chosen):
         raise argparse.ArgumentTypeError(f"expected different names out of {', '.join(CYCLE_VALUES)}, got {text!r}")
     return chosen
+
+
+def _surface_speed_or_none(text: str) -> float | None:
+    return None if text == NOTHING else above_zero(100_000)(text)
 
 
 def _spin_words() -> str:
@@ -199,12 +204,14 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--surface-speed": {
         "metavar": "M/MIN",
-        "type": above_zero(100_000),
-        "help": "speed of the cutting edge over the work: each cut gets its own spindle speed (default: as programmed)",
+        "type": _surface_speed_or_none,
+        "default": None,
+        "help": "speed of the cutting edge over the work: each cut gets its own spindle speed; none leaves the spindle"
+        " as programmed, the default",
     },
     "--keep-chip-load": {
         "action": "store_true",
-        "help": "change feeds as the spindle speed changes with --surface-speed",
+        "help": "change feeds as the spindle speed changes with --surface-speed; --no-keep-chip-load takes it back",
     },
     "--spin": {
         "metavar": "RULE",
@@ -218,7 +225,7 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "metavar": "NAMES",
         "type": _also,
         "default": (),
-        "help": f"what to write beside the program, joined by commas: {', '.join(ALSO)} (default: nothing)",
+        "help": f"what to write beside the program, joined by commas: {', '.join(ALSO)}; or {NOTHING}, the default",
     },
 }
 
@@ -240,7 +247,7 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
 
 def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
     for flag in flags:
-        parser.add_argument(flag, **_ARGUMENTS[flag])
+        add_noted(parser, flag, **_ARGUMENTS[flag])
 
 
 def tolerances_from(namespace: argparse.Namespace) -> Tolerances:

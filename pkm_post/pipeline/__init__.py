@@ -7,6 +7,7 @@
 from pkm_post.pipeline.frame import Posted
 from pkm_post.pipeline.options import LINUXCNC, Options
 from pkm_post.pipeline.placed import trajectory_of, work_offset
+from pkm_post.pipeline.prepared import Prepared
 from pkm_post.pipeline.run import Log, Progress, quiet, unwatched
 from pkm_post.pipeline.steps import SUFFIX, post, step_names
 
@@ -16,6 +17,7 @@ __all__ = [
     "Log",
     "Options",
     "Posted",
+    "Prepared",
     "Progress",
     "post",
     "quiet",

@@ -12,7 +12,7 @@ from pkm_post.cli import main
 from pkm_post.cli.reading import add_reading, reading_from
 from pkm_post.compensation import Cutter, compensate
 from pkm_post.options import add_options, options_from
-from pkm_post.post_file import read_to_post
+from pkm_post.post_file import prepared_file
 
 ROUNDING = 1e-7
 """mm; the programs below have nine decimals."""
@@ -83,9 +83,9 @@ def compensated(file, *arguments):
     add_options(parser)
     add_reading(parser)
     chosen = parser.parse_args(["--axis-words", "vector", "--tool-length", "1=80", *arguments])
-    program, told, options = read_to_post(file, options_from(chosen), {1: 80.0}, reading_from(chosen))
-    assert not told
-    return compensate(program, options.contours, options.actual_tools)
+    read = prepared_file(file, options=options_from(chosen), tool_lengths={1: 80.0}, reading=reading_from(chosen))
+    assert not read.found
+    return compensate(read.program, read.options.contours, read.options.actual_tools)
 
 
 @pytest.mark.parametrize("upright", [True, False], ids=["upright", "leaning"])
@@ -161,7 +161,7 @@ def test_a_program_that_calls_no_tool_has_number_0(tmp_path):
     file.write_text(LN.replace("T1 M6\n", ""))
     out = tmp_path / "out"
     cutters = ("--tool-length=0=80", "--tool=0=10,5", "--actual-tool=0=9.6,4.8")
-    assert main(["post", str(file), *POST, *cutters, "--out", str(out)]) == 0
+    assert main(["post", str(file), *POST[:2], *cutters, "--out", str(out)]) == 0
     assert trajectory_file.read(out / "part.pkmt")[0].tip[1] == pytest.approx([0.0, -0.12, 270.04], abs=ROUNDING)
 
 
@@ -181,5 +181,5 @@ def test_a_cutter_of_cl_data_keeps_its_name_and_length(tmp_path):
     add_options(parser)
     add_reading(parser)
     reading = reading_from(parser.parse_args(["--tool=1=9.6,4.8"]))
-    tool = read_to_post(file, None, None, reading)[0].tools[1]
+    tool = prepared_file(file, reading=reading).program.tools[1]
     assert (tool.diameter, tool.corner_radius, tool.length, tool.corner_known) == (9.6, 4.8, 80.0, True)

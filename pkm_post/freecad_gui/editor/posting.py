@@ -21,7 +21,7 @@ from pkm_post.freecad_gui.post_steps import step_text
 from pkm_post.freecad_gui.preferences import GROUP, default_arguments
 from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Place, Refused
-from pkm_post.options import options_from, part_program_from, tool_lengths_from
+from pkm_post.options import given_in, part_program_from
 from pkm_post.post_file import post_file
 
 translate = FreeCAD.Qt.translate
@@ -65,10 +65,9 @@ class Posting(QtCore.QObject):
             QtWidgets.QMessageBox.warning(self._window, self._title, str(refused))
             self.ended.emit()
             return
-        options, lengths = options_from(chosen), tool_lengths_from(chosen)
-        out = folder or file.parent
+        out, given = folder or file.parent, given_in(chosen)
         reading = replace(part_program_from(chosen, axis_words), dwell_unit=dwell_unit)
-        call = partial(post_file, file, chosen.machine, out, options, lengths, reading)
+        call = partial(post_file, file, out=out, reading=reading, arguments=given)
         task = Task(lambda: call(progress=task.tell), self)
         self._task, self._progress = task, self._bar(task)
         task.finished.connect(self._end)

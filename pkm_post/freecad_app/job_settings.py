@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Job settings: machine, work offset, tolerances, spin and gauge lengths of a CAM job, at every door.
+
+A job enters, and what a door says over it: options of a command line, of a macro. What the job says itself holds
+unless it is replaced, one option at a time, and every option that is replaced is told. Nothing is read of the paths,
+so document objects can ask while they are computed.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path as FilePath
+from typing import Any
+
+from pkm_post import pipeline
+from pkm_post.freecad_app.arguments import own_arguments
+from pkm_post.freecad_app.job import document_name
+from pkm_post.freecad_app.selection import EVERYTHING, Selection
+from pkm_post.freecad_app.tools import gauge_length
+from pkm_post.model import Diagnostic, Place
+from pkm_post.options import (
+    FIXTURE_OF_THE_JOB,
+    NOTHING_GIVEN,
+    Given,
+    Override,
+    flag_of,
+    given_in,
+    layered,
+    options_from,
+    overrides,
+    said_by,
+    shown,
+    tool_lengths_from,
+)
+
+Findings = tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True)
+class JobSettings:
+    """What a job is posted, checked and simulated with.
+
+    Attributes:
+        machine: name of a machine that comes with PKM Post, or path of a machine file.
+        options: with the fixture of the job for the work offset if no other was chosen.
+        tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
+        arguments: all that was chosen, as it was typed.
+        selection: what of the job is meant.
+        found: what was replaced, and what makes no sense.
+    """
+
+    machine: str
+    options: pipeline.Options
+    tool_lengths: Mapping[int, float]
+    arguments: argparse.Namespace
+    selection: Selection
+    found: Findings
+
+
+def settings_of(
+    job: Any,
+    given: Given = NOTHING_GIVEN,
+    options: pipeline.Options | None = None,
+    post_processor: str = "",
+    selection: Selection = EVERYTHING,
+    beside: Sequence[Any] = (),
+) -> JobSettings:
+    """What a job is to be posted with.
+
+    Args:
+        job: the CAM job.
+        given: options that go before those of the job, one by one.
+        options: stand in for all that ``pipeline.Options`` holds.
+        post_processor: whose arguments those of the job are, if its own property does not say it.
+        selection: what of the job is meant.
+        beside: other jobs that the given options are for as well.
+
+    Raises:
+        Refused: the arguments of the job are not understood, J117.
+    """
+    own = own_arguments(job, post_processor)
+    chosen = layered(own, given)
+    lengths = tool_lengths_from(chosen)
+    found = (
+        *_replaced(job, given_in(own), given, options, selection),
+        *_replaced_lengths(job, lengths),
+        *_unknown_tools(job, given_in(own), ()),
+        *_unknown_tools(job, given, beside),
+    )
+    return JobSettings(
+        _where_it_lies(job, chosen.machine) if "machine" not in given else chosen.machine,
+        _at_fixture(options or options_from(chosen), job, selection),
+        lengths,
+        chosen,
+        selection,
+        found,
+    )
+
+
+def _at_fixture(options: pipeline.Options, job: Any, selection: Selection) -> pipeline.Options:
+    """The options, with the fixture of the job for the work offset if none was chosen."""
+    if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
+        return replace(options, work_offset=_fixture(job, selection))
+    return options
+
+
+def _fixture(job: Any, selection: Selection) -> str:
+    return next(iter(selection.fixtures_of(job)), "G54")
+
+
+def _where_it_lies(job: Any, machine: str) -> str:
+    """The machine file that a job means: one beside its document, wherever FreeCAD was started."""
+    beside = FilePath(job.Document.FileName).parent / machine if job.Document.FileName else None
+    is_path = machine.endswith(".toml")
+    return str(beside) if is_path and beside is not None and beside.is_file() else machine
+
+
+def _replaced(
+    job: Any, own: Given, given: Given, options: pipeline.Options | None, selection: Selection
+) -> Iterator[Diagnostic]:
+    """J125 for each option that changes what the job says; of its work offset a job always says something."""
+    place, fixture = Place(document_name(job.Document), job.Label), _fixture(job, selection)
+    said = _with_fixture({"work_offset": FIXTURE_OF_THE_JOB} | dict(own), fixture)
+    whole = {} if options is None else said_by(options)
+    for each in (
+        *overrides(said, _with_fixture(given, fixture)),
+        *overrides(said, _with_fixture(whole, fixture), whole=True),
+    ):
+        yield Diagnostic("J125", place, str(each))
+
+
+def _with_fixture(layer: Given, fixture: str) -> Given:
+    at_fixture = str(layer.get("work_offset")) == FIXTURE_OF_THE_JOB
+    return {**layer, "work_offset": fixture} if at_fixture else layer
+
+
+def _replaced_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
+    """J125 for each tool controller whose gauge length an option replaces."""
+    source = document_name(job.Document)
+    for controller in job.Tools.Group:
+        kept, number = gauge_length(controller), int(controller.ToolNumber)
+        if kept > 0.0 and lengths.get(number, kept) != kept:
+            told = Override(
+                flag_of("tool_length"), f"GaugeLength {kept:.12g}", shown("tool_length", (number, lengths[number]))
+            )
+            yield Diagnostic("J125", Place(source, controller.Label), str(told))
+
+
+def _unknown_tools(job: Any, given: Given, beside: Sequence[Any]) -> Iterator[Diagnostic]:
+    """J126 for each gauge length whose number no tool controller has."""
+    here = {int(controller.ToolNumber) for controller in job.Tools.Group}
+    known = here.union(int(controller.ToolNumber) for other in beside for controller in other.Tools.Group)
+    for number, mm in given.get("tool_length", ()):
+        if number not in known:
+            told = f"{flag_of('tool_length')} {shown('tool_length', (number, mm))}, {_tools(here)}"
+            yield Diagnostic("J126", Place(document_name(job.Document), job.Label), told)
+
+
+def _tools(numbers: set[int]) -> str:
+    listed = ", ".join(f"T{number}" for number in sorted(numbers))
+    return f"the job has {listed or 'no tools'}"

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Prepared: all that a run of the pipeline starts from, whatever door it came by.
+
+A program, its machine and the options enter, with what was found in reading them. No document and no file of the user
+is needed any more, so a run can go on in any thread.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pkm_post.model import Machine, Program, Refused, Trajectory
+from pkm_post.model.diagnostics import errors
+from pkm_post.pipeline.frame import Posted
+from pkm_post.pipeline.options import Options
+from pkm_post.pipeline.placed import trajectory_of
+from pkm_post.pipeline.run import Findings, Log, Progress, quiet, unwatched
+from pkm_post.pipeline.steps import post
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A program on its machine, before it is placed.
+
+    Attributes:
+        program: cutter locations in {C}; None if it has errors.
+        machine: that it runs on; None if its file has errors.
+        options: what was chosen.
+        found: in reading them.
+    """
+
+    program: Program | None
+    machine: Machine | None
+    options: Options
+    found: Findings
+
+    @property
+    def sound(self) -> tuple[Program, Machine]:
+        """Program and machine.
+
+        Raises:
+            Refused: there is an error in one of them or in the options.
+        """
+        if self.program is None or self.machine is None or errors(self.found):
+            raise Refused(self.found)
+        return self.program, self.machine
+
+    def placed(self) -> tuple[Trajectory, Findings]:
+        """The trajectory in {M}, and all that was found.
+
+        Raises:
+            Refused: it cannot be read or placed.
+        """
+        trajectory, told = trajectory_of(*self.sound, self.options)
+        if trajectory is None:
+            raise Refused((*self.found, *told))
+        return trajectory, (*self.found, *told)
+
+    def post(self, program_path: Path, log: Log = quiet, progress: Progress = unwatched) -> Posted:
+        """Post it to a motion program of this name; the other files take its stem.
+
+        Raises:
+            Refused: something does not allow it; nothing was written.
+        """
+        return post(self.program, self.machine, program_path, self.options, log, self.found, progress)

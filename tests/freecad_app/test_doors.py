@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One job posted through every door: what the job says holds everywhere, what is typed goes before it, and it is told.
+
+The other opinion is the pipeline itself, called with options that were put together here.
+"""
+
+import random
+import re
+import shlex
+
+import pytest
+from cam_jobs import add_operation
+from option_examples import FLAGS, words
+from Path.Post.Processor import PostProcessorFactory
+
+import pkm_post
+from pkm_post import pipeline
+from pkm_post.cli import main
+from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.job_on_machine import job_on_machine
+from pkm_post.freecad_app.job_settings import settings_of
+from pkm_post.freecad_app.post_job import post_as_the_job_says
+from pkm_post.freecad_app.prepared_job import prepared_job
+from pkm_post.freecad_app.reach_job import study_job
+from pkm_post.machine_file import find_machine, machine_named
+from pkm_post.options import given_in, options_from, tool_lengths_from, typed
+
+CUT = ["G0 X0 Y0 Z30 I0 J0 K1", "G1 X0 Y0 Z25 I0 J0.28 K0.96 F20", "G1 X4 Y2 Z25 I0.28 J0 K0.96 F25", "G0 Z30 I0 J0 K1"]
+ALWAYS = {"--work-offset": "--work-offset=0,0,250", "--surface-speed": "--surface-speed=100"}
+"""Where the machine reaches, and what --keep-chip-load needs; in every job but where the option itself is tried."""
+NO_EFFECT_HERE = {"--corners", "--leads", "--swallowed"}
+"""They are for contours with the tool beside them, which this job has not."""
+FOR_PART_PROGRAMS = {"--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values"}
+"""What G-code and CL data do not say; a job has nothing to be read so."""
+NORMALS = "--actual-tool"
+"""Only a path with surface normals can be posted with it."""
+
+
+@pytest.fixture
+def job(job, tmp_path, monkeypatch):
+    """A job of a saved document, with two slow machines beside it."""
+    monkeypatch.chdir(tmp_path)
+    text = find_machine("example_6tps").read_text(encoding="utf-8")
+    for name, speed in (("slow", 18), ("slower", 12)):
+        changed = re.sub(r"(?m)^(rapid|feed)_speed = .*$", rf"\1_speed = {speed}.0", text)
+        (tmp_path / f"{name}.toml").write_text(changed, encoding="utf-8")
+    add_operation(job, CUT)
+    job.PostProcessor = "hexapod_pmac"
+    job.Document.saveAs(str(tmp_path / "part.FCStd"))
+    return job
+
+
+def says(job, arguments):
+    """Keep arguments in the job and in the file."""
+    job.PostProcessorArgs = arguments
+    job.Document.save()
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+
+
+def by_pipeline(job, arguments, folder):
+    """What these arguments and no others make of a job."""
+    chosen = typed(arguments)
+    program, _ = read_job(job, tool_lengths_from(chosen))
+    machine, _ = machine_named(chosen.machine)
+    pipeline.post(program, machine, folder / "part.pmc", options_from(chosen))
+    return contents(folder)
+
+
+def by_cam(job, typed, folder):
+    job.PostProcessorOutputFile = str(folder / "part.pmc")
+    ((_, text),) = PostProcessorFactory.get_post_processor(job, "hexapod_pmac").export()
+    assert (folder / "part.pmc").read_text(encoding="ascii") == text
+
+
+def by_command_line(job, typed, folder):
+    assert main(["post", job.Document.FileName, "--out", str(folder), *typed]) == 0
+
+
+def by_panel(job, typed, folder):
+    prepared_job(job, settings_of(job)).post(folder / "part.pmc")
+
+
+def by_macro(job, typed, folder):
+    pkm_post.post(job, out=folder, arguments=shlex.join(typed))
+
+
+def by_macro_with_the_file(job, typed, folder):
+    pkm_post.post(job.Document.FileName, out=folder, arguments=shlex.join(typed))
+
+
+def as_the_job_says(job, typed, folder):
+    post_as_the_job_says(job, folder)
+
+
+OF_THE_JOB = [by_cam, by_panel, as_the_job_says]
+"""They have nothing but the job."""
+DOORS = [*OF_THE_JOB, by_command_line, by_macro, by_macro_with_the_file]
+WHERE = ["job", "command line", "both"]
+
+
+@pytest.mark.parametrize("where", WHERE)
+@pytest.mark.parametrize("flag", [flag for flag in FLAGS if flag not in {NORMALS, *FOR_PART_PROGRAMS}])
+def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
+    others = [text for name, text in ALWAYS.items() if name != flag]
+    of_job = others + (words(flag, 0) if where != "command line" else [])
+    over_it = words(flag, 1) if where != "job" else []
+    says(job, shlex.join(of_job))
+    wanted = by_pipeline(job, shlex.join([*of_job, *over_it]), made(tmp_path / "wanted"))
+    if where == "both" and flag not in NO_EFFECT_HERE:
+        assert wanted != by_pipeline(job, shlex.join(of_job), made(tmp_path / "of the job alone"))
+    for door in DOORS if where == "job" else set(DOORS) - set(OF_THE_JOB):
+        folder = made(tmp_path / door.__name__)
+        door(job, over_it, folder)
+        assert contents(folder) == wanted, door.__name__
+    told = capsys.readouterr().err
+    replaced = {"both": True, "job": flag == "--tool-length", "command line": flag in SAID_BY_EVERY_JOB}[where]
+    assert (f"warning J125: an option stands in for what the job or the program says: {flag} " in told) == replaced
+
+
+SAID_BY_EVERY_JOB = {"--work-offset", "--tool-length"}
+"""By its fixture and by its tool controllers."""
+
+
+@pytest.mark.parametrize("where", WHERE)
+def test_the_actual_tool_is_that_of_the_job_or_the_one_typed(job, where):
+    says(job, shlex.join(words(NORMALS, 0)) if where != "command line" else "")
+    given = given_in(typed(shlex.join(words(NORMALS, 1)))) if where != "job" else {}
+    (tool,) = settings_of(job, given).options.actual_tools.values()
+    assert tool.diameter == (9.5 if where == "job" else 9.0)
+
+
+def made(folder):
+    folder.mkdir()
+    return folder
+
+
+def test_a_batch_in_processes_gives_the_same_bytes(job, tmp_path):
+    says(job, "--work-offset=2,1,255 --tip-tolerance 0.003 --tool-length 1=118 --machine slow.toml")
+    wanted = by_pipeline(job, job.PostProcessorArgs + " --tip-tolerance 0.006", made(tmp_path / "wanted"))
+    other = tmp_path / "other.FCStd"
+    other.write_bytes((tmp_path / "part.FCStd").read_bytes())
+    files, out = [job.Document.FileName, str(other)], tmp_path / "out"
+    assert main(["post", *files, "--jobs", "2", "--out", str(out), "--tip-tolerance", "0.006"]) == 0
+    made_of_both = contents(out)
+    assert made_of_both["part.pmc"] == wanted["part.pmc"]
+    assert made_of_both["part.pkmt"] == wanted["part.pkmt"]
+    assert {"other.pmc", "other.pkmt"} < set(made_of_both)
+
+
+def test_reach_and_simulation_see_the_job_where_it_is_posted(job):
+    says(job, "--work-offset=2,1,255,10 --tool-length 1=118 --machine slow.toml --spin x-in-plane=15")
+    posted, _ = prepared_job(job, settings_of(job)).placed()
+    simulated = job_on_machine(job)
+    assert simulated.machine.fingerprint == posted.machine_fingerprint
+    for trajectory in (simulated.trajectory, study_job(job).reach.trajectory):
+        for column in ("tip", "axis", "spin", "feed"):
+            assert (getattr(trajectory, column) == getattr(posted, column)).all()
+        assert trajectory.tools == posted.tools
+
+
+def test_a_machine_file_lies_beside_the_document_wherever_freecad_was_started(job, tmp_path, monkeypatch):
+    says(job, "--work-offset=0,0,250 --machine slow.toml")
+    wanted = by_pipeline(job, job.PostProcessorArgs, made(tmp_path / "wanted"))
+    monkeypatch.chdir("/")
+    for door in (by_cam, by_command_line):
+        folder = made(tmp_path / door.__name__)
+        door(job, [], folder)
+        assert contents(folder) == wanted
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_arguments_by_chance(job, tmp_path, seed):
+    """Some options in the job, some typed, some in both, in any order."""
+    chance = random.Random(seed)
+    tried = [flag for flag in FLAGS if flag not in {*ALWAYS, *NO_EFFECT_HERE, *FOR_PART_PROGRAMS, NORMALS}]
+    of_job = [
+        *ALWAYS.values(),
+        *(word for flag in chance.sample(tried, 4) for word in words(flag, chance.randrange(2))),
+    ]
+    over_it = [word for flag in chance.sample(tried, 3) for word in words(flag, chance.randrange(2))]
+    chance.shuffle(of_job)
+    says(job, shlex.join(of_job))
+    wanted = by_pipeline(job, shlex.join([*of_job, *over_it]), made(tmp_path / "wanted"))
+    for door in (by_command_line, by_macro):
+        folder = made(tmp_path / door.__name__)
+        door(job, over_it, folder)
+        assert contents(folder) == wanted

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Two values for every option, for tests that go through all of them at every door."""
+
+from pkm_post.options.arguments import _ARGUMENTS
+
+EXAMPLES = {
+    "--machine": ("slow.toml", "slower.toml"),
+    "--work-offset": ("5,0,250", "-3,4,260,30"),
+    "--tip-tolerance": ("0.004", "0.02"),
+    "--axis-tolerance": ("0.004", "0.02"),
+    "--tool-length": ("1=110", "1=130"),
+    "--corners": ("arc", "chord"),
+    "--leads": ("B", "A"),
+    "--swallowed": ("remove", "refuse"),
+    "--tool": ("1=10,5", "1=12"),
+    "--unit": ("inch", "mm"),
+    "--contour-data": ("centre", "contour"),
+    "--wear": ("1=0.02", "1=-0.01"),
+    "--cl-dialect": ("nx", "catia"),
+    "--cycle-values": ("depth,feed", "depth"),
+    "--actual-tool": ("1=9.5,4.75", "1=9"),
+    "--surface-speed": ("120", "150.5"),
+    "--spin": ("x-in-plane=20", "optimise=joints"),
+    "--also": ("csv", "halstreamer,linuxcnc"),
+}
+"""Each with an effect of its own, so that one is not mistaken for the other."""
+SWITCHES = {"--keep-chip-load": ("--keep-chip-load", "--no-keep-chip-load")}
+"""On and off."""
+
+
+def words(flag: str, which: int) -> list[str]:
+    """The first (0) or second (1) value of an option, as it is typed."""
+    return [SWITCHES[flag][which]] if flag in SWITCHES else [f"{flag}={EXAMPLES[flag][which]}"]
+
+
+FLAGS = [*EXAMPLES, *SWITCHES]
+assert set(FLAGS) == set(_ARGUMENTS), "every option has a row"
