@@ -8,26 +8,21 @@ diagnostic for everything that does not hold.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-from functools import partial
-
 import numpy as np
 
 from pkm_post.certificate.coverage import coverage
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.instants import Looked, when_worst
-from pkm_post.certificate.joints import Passed, pass_joints
+from pkm_post.certificate.fault_causes import fault_causes
+from pkm_post.certificate.findings import figures, findings
+from pkm_post.certificate.joints import pass_joints
 from pkm_post.certificate.knots import Knots
-from pkm_post.certificate.playback import Played, play
+from pkm_post.certificate.playback import play
 from pkm_post.certificate.structure import structure_faults
-from pkm_post.certificate.struts import acceleration_steps, off_plan, strut_jerk
 from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
-from pkm_post.certificate.tool_limits import tip_jerk, tool_limits
 from pkm_post.geometry.vectors import Array, norm
 from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Figure, Finding, Tolerances
+from pkm_post.model.certificate import Certificate, Tolerances
 
 _FEED_SHARE = 1.01
 """How far the cubic may swing about the planned speed where the acceleration changes."""
@@ -61,13 +56,23 @@ def certify(
         return None, faults
     ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
     knots = Knots.of(machine, motion)
-    course = ToolCourse.of(machine, struts, motion, knots)
-    task = Task(struts, machine, ruler, motion, knots, course, ceiling)
+
+    def measured(struts: StrutMotion) -> Certificate:
+        course = ToolCourse.of(machine, struts, motion, knots)
+        task = Task(struts, machine, ruler, motion, knots, course, ceiling)
+        return _certificate(task, trajectory, tolerances)
+
+    certificate = measured(struts)
+    return certificate, fault_causes(certificate, struts, machine, knots, measured)
+
+
+def _certificate(task: Task, trajectory: Trajectory, tolerances: Tolerances) -> Certificate:
+    """Play a program and measure it."""
+    struts = task.struts
     passed = pass_joints(task, trajectory)
     played = play(task, passed)
-    findings = _findings(task, played, passed, trajectory, tolerances)
-    certificate = Certificate(
-        findings=findings,
+    return Certificate(
+        findings=findings(task, played, passed, trajectory, tolerances),
         duration=float(struts.time_ms[-1]) / 1000,
         intervals=len(struts) - 1,
         instants=played.instants + len(trajectory),
@@ -75,105 +80,9 @@ def certify(
         tip_deviation=played.tip,
         tip_tolerance=played.tip_tolerance,
         axis_deviation=played.axis,
-        coverage=coverage(machine, trajectory),
-        figures=_figures(task, trajectory),
+        coverage=coverage(task.machine, trajectory),
+        figures=figures(task, trajectory),
     )
-    return certificate, tuple(finding.diagnostic() for finding in findings if not finding.holds)
-
-
-def _findings(
-    task: Task, played: Played, passed: Passed, trajectory: Trajectory, tolerances: Tolerances
-) -> tuple[Finding, ...]:
-    """One row for each quantity: code, name, unit, values, limit, and when and where they were taken."""
-    struts, machine, motion = task.struts, task.machine, task.motion
-    starts = partial(_start, motion)
-    knots = _at_knots(task)
-    joints = partial(_of_columns, motion.joint_time, np.arange(len(trajectory)))
-    at_ends = trajectory.tip_tolerances(tolerances.tip)
-    axis_limit = math.degrees(tolerances.axis)
-    told = partial(_where_most_was_found, task, passed, played)
-    axis_speed, tip_acceleration = tool_limits(task)
-    rows: tuple[_Row, ...] = (
-        ("V107", "interval without a pose", "", 1.0 - played.found, 0.0, starts),
-        ("V101", "deviation of the tool tip", "mm", *told(Looked.TIP, played.tip, played.tip_tolerance)),
-        ("V102", "deviation of the tool axis", "degrees", *told(Looked.AXIS, np.degrees(played.axis), axis_limit)),
-        ("V110", "tool tip off a programmed point", "mm", passed.tip, at_ends, joints),
-        ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed.axis), axis_limit, joints),
-        ("V111", "strut off its plan", "mm", off_plan(struts, task.knots), tolerances.tip, knots),
-        ("V108", "tip speed", "mm/s", *told(Looked.SPEED, played.tip_speed, task.ceiling)),
-        ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, starts),
-        ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
-        (
-            "V113",
-            "turning rate of the tool axis",
-            "degrees/s",
-            np.degrees(axis_speed),
-            math.degrees(machine.axis_speed),
-            starts,
-        ),
-        ("V114", "tip acceleration", "mm/s^2", tip_acceleration, machine.tip_acceleration, starts),
-        ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, starts),
-        ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, starts),
-    )
-    if math.isfinite(machine.strut_jerk):
-        rows = (*rows, ("V112", "strut jerk", "mm/s^3", strut_jerk(struts), machine.strut_jerk, knots))
-    if math.isfinite(machine.tip_jerk):
-        rows = (*rows, ("V115", "tip jerk", "mm/s^3", tip_jerk(task), machine.tip_jerk, knots))
-    return tuple(_worst(trajectory, *row) for row in rows)
-
-
-def _figures(task: Task, trajectory: Trajectory) -> tuple[Figure, ...]:
-    """What is measured and has no limit."""
-    steps = acceleration_steps(task.struts)
-    return (_figure(trajectory, "step of strut acceleration at a knot", "mm/s^2", steps, _at_knots(task)),)
-
-
-def _figure(trajectory: Trajectory, name: str, unit: str, values: Array, when: _When) -> Figure:
-    row = int(np.argmax(values))
-    time, segment = when(row)
-    return Figure(name, unit, float(values[row]), time, trajectory.place(segment))
-
-
-_When = Callable[[int], tuple[float, int]]
-"""When a row of a quantity was taken, s, and the trajectory segment executed then. Asked of the worst row only."""
-_Row = tuple[str, str, str, Array, Array | float, _When]
-
-
-def _where_most_was_found(
-    task: Task, passed: Passed, played: Played, looked: Looked, values: Array, limit: Array | float
-) -> tuple[Array, float, _When]:
-    """The largest figure by its limit, as that of the interval in which most was found; the limit; and when it was.
-
-    The figure may be another interval's, by what can hide there; nobody can tell when that would be.
-    """
-    interval = int(played.most_found[looked])
-    there = float(np.broadcast_to(limit, values.shape)[interval])
-    figure = np.max(values / limit, keepdims=True) * there
-    return figure, there, lambda _: when_worst(task, passed, looked, interval)
-
-
-def _start(motion: Motion, interval: int) -> tuple[float, int]:
-    """When an interval starts, and what is executed just after that."""
-    time = float(motion.time_ms[interval]) / 1000
-    return time, int(np.searchsorted(motion.joint_time, time, side="right"))
-
-
-def _at_knots(task: Task) -> _When:
-    return partial(_of_columns, task.struts.time_ms / 1000, task.motion.segment)
-
-
-def _of_columns(time: Array, segment: Array, row: int) -> tuple[float, int]:
-    return float(time[row]), int(segment[row])
-
-
-def _worst(
-    trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: Array | float, when: _When
-) -> Finding:
-    """The finding at the largest value, by its limit if limits differ; no number counts as beyond every limit."""
-    values, limits = np.where(np.isnan(values), np.inf, values), np.broadcast_to(limit, values.shape)
-    row = int(np.argmax(values if np.ndim(limit) == 0 else values / limits))
-    value, most, (time, segment) = float(values[row]), float(limits[row]), when(row)
-    return Finding(code, name, unit, value, most, value <= most, time, trajectory.place(segment))
 
 
 def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:

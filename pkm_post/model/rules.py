@@ -439,6 +439,11 @@ RULES: dict[str, Rule] = {
     "V113": _error("the tool axis turns faster than the machine allows", "report this as a fault of the feed planner"),
     "V114": _error("the tip accelerates more than the machine allows", "report this as a fault of the feed planner"),
     "V115": _error("the acceleration of the tip changes too fast", "report this as a fault of the feed planner"),
+    "V118": _error(
+        "the program has too few decimals",
+        "state more in controller.length_decimals and controller.speed_decimals, and controller.line_limit for longer"
+        " lines if the controller takes them",
+    ),
     # F1: files
     "F101": _error("the output cannot be written", "check the folder, its permissions and the free space"),
     "F102": _warning("the picture was not made: matplotlib is missing", "install python3-matplotlib"),

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fault causes: why a limit is not kept: by the plan, or by the decimals that the program was printed with.
+
+Enters: a certificate, and the program it is about. Leaves: a diagnostic for each finding that does not hold. A program
+that is its plan as printed is played once more with the lengths and speeds of the plan itself; what holds then is the
+fault of the decimals, and more of them are tried until it holds. Units: mm, mm/s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.certificate.knots import Knots
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Diagnostic, Machine, StrutMotion
+from pkm_post.model.certificate import Certificate, Finding
+
+Decimals = tuple[int, int]
+"""Of lengths and of speeds."""
+Measured = Callable[[StrutMotion], Certificate]
+
+_DECIMALS = ("length_decimals", "speed_decimals")
+_MOST_DECIMALS = 9
+"""That a machine file may state."""
+_MORE = (1, 2, 3, 4, 5)
+_HALF_DIGIT = 0.51
+"""Of the last decimal: how far a program is from its plan by rounding."""
+_LITTLE = 0.01
+"""Part of a value that makes no difference worth a word."""
+
+
+def fault_causes(
+    certificate: Certificate, struts: StrutMotion, machine: Machine, knots: Knots, measured: Measured
+) -> tuple[Diagnostic, ...]:
+    """A diagnostic for each finding that does not hold.
+
+    Args:
+        certificate: of the program.
+        struts: the program, read back.
+        machine: states the decimals.
+        knots: lengths and speeds as planned.
+        measured: plays another program with the same knots.
+    """
+    if certificate.holds:
+        return ()
+    exact = StrutMotion(struts.time_ms, knots.length, knots.speed, struts.events)
+    decimals = _as_printed(struts, exact, machine)
+    if decimals is None:
+        return tuple(row.diagnostic() for row in certificate.findings if not row.holds)
+    pairs = tuple(zip(certificate.findings, measured(exact).findings, strict=True))
+    rounded = [number for number, (row, plan) in enumerate(pairs) if plan.holds and not row.holds]
+    enough = _enough(exact, decimals, rounded, measured) if rounded else None
+    return tuple(_diagnostic(row, plan, decimals, enough) for row, plan in pairs if not row.holds)
+
+
+def _as_printed(struts: StrutMotion, exact: StrutMotion, machine: Machine) -> Decimals | None:
+    """The decimals of the program; None where it is not what its plan is when it is printed."""
+    if not all(name in machine.controller for name in _DECIMALS):
+        return None
+    length, speed = (int(machine.controller[name]) for name in _DECIMALS)
+    off = np.abs(struts.length - exact.length).max(), np.abs(struts.speed - exact.speed).max()
+    near = (most <= _HALF_DIGIT * 10.0**-digits + 1e-9 for most, digits in zip(off, (length, speed), strict=True))
+    return (length, speed) if all(near) else None
+
+
+def _enough(exact: StrutMotion, decimals: Decimals, rounded: list[int], measured: Measured) -> Decimals | None:
+    """The fewest decimals tried with which these findings hold."""
+    for more in _further(decimals):
+        length, speed = (np.round(one, digits) for one, digits in zip((exact.length, exact.speed), more, strict=True))
+        found = measured(replace(exact, length=_without_sign(length), speed=_without_sign(speed))).findings
+        if all(found[number].holds for number in rounded):
+            return more
+    return None
+
+
+def _further(decimals: Decimals) -> Iterator[Decimals]:
+    """More of lengths, of speeds, of both; then still more."""
+    length, speed = decimals
+    for more in _MORE:
+        tried = (length + more, speed), (length, speed + more), (length + more, speed + more)
+        yield from (one for one in tried if max(one) <= _MOST_DECIMALS)
+
+
+def _without_sign(values: Array) -> Array:
+    return np.asarray(values + 0.0)
+
+
+def _diagnostic(row: Finding, plan: Finding, decimals: Decimals, enough: Decimals | None) -> Diagnostic:
+    """The fault, with what it would be without rounding where that differs, and what decimals would do."""
+    fault = row.diagnostic()
+    if plan.holds or abs(row.value - plan.value) > _LITTLE * abs(row.value):
+        fault = replace(fault, found=f"{fault.found}; {plan.value:.6g} {row.unit} without rounding".rstrip())
+    if not plan.holds:
+        return fault
+    return replace(fault, code="V118", found=f"{fault.found}; {_advice(decimals, enough)}")
+
+
+def _advice(decimals: Decimals, enough: Decimals | None) -> str:
+    if enough is None:
+        return f"{decimals[0]} and {decimals[1]} decimals are too few, and {_MORE[-1]} more of both as well"
+    pairs = zip(_DECIMALS, decimals, enough, strict=True)
+    changed = (f"controller.{name} = {there}" for name, here, there in pairs if here != there)
+    return f"it holds with {' and '.join(changed)}"
