@@ -11,12 +11,16 @@ import numpy as np
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.crossing import LEAST_COSINE
 from pkm_post.cldata.cycle_moves import Hole, Stand, hole
+from pkm_post.cldata.fit import Fitted
 from pkm_post.cldata.points import Points, in_force
 from pkm_post.model.program import Array
 
 
-def drilled_holes(course: Course, points: Points) -> dict[int, Hole]:
-    """The points at which a cycle is in force, with its moves; tells axes that are too far from each other."""
+def drilled_holes(course: Course, points: Points, arcs: Fitted) -> dict[int, Hole]:
+    """The points at which a cycle is in force, with its moves.
+
+    Tells axes that are too far from each other, and arcs that begin or end at a hole, where the tool is not.
+    """
     cycles = [None, *(cycle for _, cycle in course.cycles)]
     active = in_force(points.row, [row for row, _ in course.cycles]) + 1
     on = np.array([cycle is not None for cycle in cycles], dtype=np.bool_)
@@ -30,6 +34,9 @@ def drilled_holes(course: Course, points: Points) -> dict[int, Hole]:
             initial = before.position if before else None
         if cycle is not None and _within_reach(course, points, before, point):
             holes[point] = hole(cycle, before, initial, points.position[point], points.axis[point])
+    for end in arcs.point.tolist():
+        if end in holes or end - 1 in holes:
+            course.tell("L422", int(points.row[end]), "an arc")
     return holes
 
 

@@ -52,7 +52,7 @@ def program_of(
         offsets: of the contours.
         reading: how the file was taken, in words.
     """
-    holes = drilled_holes(course, points)
+    holes = drilled_holes(course, points, arcs)
     rows = _rows(course, points, arcs, holes)
     _inverse_time(course, points, rows)
     point = rows.point

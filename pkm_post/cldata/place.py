@@ -30,9 +30,19 @@ def place(course: Course, row: int, asker: str) -> Array | None:
     if max(goto_row, special_row) < 0:
         course.tell("L417", row, asker)
         return None
+    if _drilled(course, max(goto_row, special_row)) and not (asker == "GODLTA" and _drilled(course, row)):
+        course.tell("L422", row, asker)
+        return None
     if goto_row > special_row:
         return _carried(course, goto_row, _written(course, goto_row))
     return _carried(course, special_row, np.array(course.points[-1][1].position))
+
+
+def _drilled(course: Course, row: int) -> bool:
+    """Whether a cycle is in force at a row, and is carried out there: FROM says where the tool is."""
+    change = bisect_left(course.cycles, row, key=lambda one: one[0]) - 1
+    starts = any(at == row and point.start for at, point in course.points[-1:])
+    return change >= 0 and course.cycles[change][1] is not None and not starts
 
 
 def _written(course: Course, row: int) -> Array:

@@ -241,6 +241,9 @@ RULES: dict[str, Rule] = {
     "L421": _error(
         "the tool axis turns by more than 60 degrees on the way to a hole", "let the CAM system write the moves between"
     ),
+    "L422": _error(
+        "a motion begins or ends at a hole of a cycle, where the tool is not", "write CYCLE/OFF and a GOTO before it"
+    ),
     "L429": _error(
         "CUTCOM has two readings: its points may be the contour of the part or the centre of the tool",
         "say which by --contour-data contour or --contour-data centre",

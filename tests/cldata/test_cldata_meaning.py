@@ -351,3 +351,10 @@ def test_words_that_would_change_the_motion_are_refused(statement, code):
     found, told = read(f"{HEAD}{statement}\nRAPID\nGOTO/7,0,1\n", "part.cl")
     assert [fault.code for fault in errors(told)] == ([code] if code else [])
     assert (found is None) == bool(code)
+
+
+def test_increments_between_holes_count_from_point_to_point():
+    drilled = "RAPID\nGOTO/0,0,9\nCYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/10,0,0\nGODLTA/0,7,1\nCYCLE/OFF\n"
+    found = program(f"{HEAD}{drilled}FROM/1,1,1\nGODLTA/1,0,0\n").position
+    assert found[found[:, 2] < 0].tolist() == [[10, 0, -5], [10, 7, -4]]
+    assert found[-1].tolist() == [2, 1, 1]
