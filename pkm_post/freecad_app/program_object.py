@@ -18,6 +18,7 @@ import numpy as np
 import Path
 import Path.Op.Custom
 
+from pkm_post.cldata import CONTOUR_DATA, UNITS
 from pkm_post.compensation import OffsetOptions, compensate
 from pkm_post.freecad_app.commands import commands_of
 from pkm_post.freecad_app.object_properties import Row
@@ -34,6 +35,9 @@ Findings = tuple[Diagnostic, ...]
 _VIEW = "pkm_post.freecad_gui.program_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
 
+AS_THE_FILE_SAYS = "file"
+"""The choice that leaves it to the file."""
+
 _G = "Program"
 _PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyFile", "File", _G, QT_TRANSLATE_NOOP("App::Property", "The part program, G-code or CL data"), ""),
@@ -41,6 +45,11 @@ _PROPERTIES: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "How G-code says the tool axis"), list(AXIS_WORDS)),
     ("App::PropertyEnumeration", "DwellUnit", _G,
      QT_TRANSLATE_NOOP("App::Property", "The unit of dwells of G-code"), list(DWELL_UNITS)),
+    ("App::PropertyEnumeration", "Unit", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Unit of length of the part program"), [AS_THE_FILE_SAYS, *UNITS]),
+    ("App::PropertyEnumeration", "ContourData", _G,
+     QT_TRANSLATE_NOOP("App::Property", "What the points of CL data under CUTCOM are: tool centre or part contour"),
+     [AS_THE_FILE_SAYS, *CONTOUR_DATA]),
 )  # fmt: skip
 _RESULTS: tuple[Row, ...] = (
     ("App::PropertyStringList", "Found", _G,
@@ -64,7 +73,14 @@ class PartProgram(PropertyProxy):
             obj.Path = Path.Path(commands_of(program))
 
 
-def create_program(document: Any, file: str | FilePath, axis_words: str = "none", dwell_unit: str = "s") -> Any:
+def create_program(
+    document: Any,
+    file: str | FilePath,
+    axis_words: str = "none",
+    dwell_unit: str = "s",
+    unit: str | None = None,
+    contour_data: str | None = None,
+) -> Any:
     """Add a part program to a document.
 
     Args:
@@ -72,15 +88,38 @@ def create_program(document: Any, file: str | FilePath, axis_words: str = "none"
         file: G-code or CL data.
         axis_words: how G-code says the tool axis, a key of ``AXIS_WORDS``.
         dwell_unit: of G-code, a key of ``DWELL_UNITS``.
+        unit: of length, a key of ``cldata.UNITS``; as the file says if None.
+        contour_data: what the points of CL data under CUTCOM are, one of ``cldata.CONTOUR_DATA``; as the file says if
+            None.
     """
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
     PartProgram(obj)
-    obj.File, obj.AxisWords, obj.DwellUnit, obj.Label = str(path), axis_words, dwell_unit, path.name
+    obj.File, obj.Label = str(path), path.name
+    set_reading(obj, Reading(axis_words, dwell_unit=dwell_unit, unit=unit, contour_data=contour_data))
     if App.GuiUp:
         importlib.import_module(_VIEW).ProgramView(obj.ViewObject)
     document.recompute()
     return obj
+
+
+def reading_of(obj: Any) -> Reading:
+    """What the properties of a program object say of its file."""
+    unit, contour_data = (None if one == AS_THE_FILE_SAYS else one for one in (obj.Unit, obj.ContourData))
+    return Reading(obj.AxisWords, dwell_unit=obj.DwellUnit, unit=unit, contour_data=contour_data)
+
+
+def set_reading(obj: Any, reading: Reading) -> None:
+    """Let the properties of a program object say this of its file; a wear and the cutters have none."""
+    choices = {
+        "AxisWords": reading.axis_words,
+        "DwellUnit": reading.dwell_unit,
+        "Unit": reading.unit or AS_THE_FILE_SAYS,
+        "ContourData": reading.contour_data or AS_THE_FILE_SAYS,
+    }
+    for name, choice in choices.items():
+        if getattr(obj, name) != choice:
+            setattr(obj, name, choice)
 
 
 def read_program(obj: Any) -> tuple[Program | None, Findings]:
@@ -88,7 +127,7 @@ def read_program(obj: Any) -> tuple[Program | None, Findings]:
     file = FilePath(obj.File)
     if not is_part_program(file):
         return None, (Diagnostic("F103", Place(str(file)), f"its name ends with none of {', '.join(SUFFIXES)}"),)
-    program, found = read_part_program(file, Reading(obj.AxisWords, dwell_unit=obj.DwellUnit))
+    program, found = read_part_program(file, reading_of(obj))
     if program is None:
         return None, found
     compensated, told = compensate(program, OffsetOptions(), {})

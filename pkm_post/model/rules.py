@@ -246,13 +246,15 @@ RULES: dict[str, Rule] = {
     ),
     "L429": _error(
         "CUTCOM has two readings: its points may be the contour of the part or the centre of the tool",
-        "say which by --contour-data contour or --contour-data centre",
+        "say which by --contour-data contour or --contour-data centre, or by ContourData of the program object",
     ),
     "L430": _warning(
         "the points under CUTCOM were taken for the centre of the tool, by their arcs",
         "check the size of the part, and say it by --contour-data centre or contour",
     ),
-    "L431": _error("the unit of length is not known", "say it by --unit mm or --unit inch"),
+    "L431": _error(
+        "the unit of length is not known", "say it by --unit mm or --unit inch, or by Unit of the program object"
+    ),
     "L432": _error(
         "the wear of a tool changes nothing", "give --wear for a tool that the CL data compensates by CUTCOM"
     ),

@@ -124,6 +124,14 @@
         <translation>G 代码中暂停时间的单位</translation>
     </message>
     <message>
+        <source>Unit of length of the part program</source>
+        <translation>零件程序的长度单位</translation>
+    </message>
+    <message>
+        <source>What the points of CL data under CUTCOM are: tool centre or part contour</source>
+        <translation>刀位文件中 CUTCOM 下的点是刀具中心还是零件轮廓</translation>
+    </message>
+    <message>
         <source>What was found in reading the file</source>
         <translation>读取文件时发现的问题</translation>
     </message>
@@ -1128,12 +1136,36 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>编辑 G 代码或刀位文件，输入时即提示其中的错误</translation>
     </message>
     <message>
+        <source>CUTCOM as the file says</source>
+        <translation>CUTCOM：按文件说明</translation>
+    </message>
+    <message>
+        <source>CUTCOM on the tool centre</source>
+        <translation>CUTCOM：刀具中心</translation>
+    </message>
+    <message>
+        <source>CUTCOM on the contour</source>
+        <translation>CUTCOM：零件轮廓</translation>
+    </message>
+    <message>
+        <source>Unit as the file says</source>
+        <translation>单位：按文件说明</translation>
+    </message>
+    <message>
         <source>How the G-code says the tool axis</source>
         <translation>G 代码中刀轴的表示方式</translation>
     </message>
     <message>
         <source>The unit of dwells of the G-code</source>
         <translation>G 代码中暂停时间的单位</translation>
+    </message>
+    <message>
+        <source>The unit of length of the part program</source>
+        <translation>零件程序的长度单位</translation>
+    </message>
+    <message>
+        <source>What the points of CL data under CUTCOM are: tool centre or part contour</source>
+        <translation>刀位文件中 CUTCOM 下的点是刀具中心还是零件轮廓</translation>
     </message>
     <message>
         <source>{} replaced</source>

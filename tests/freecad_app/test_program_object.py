@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Part programs as document objects: opened, faulty, saved, decoded into a job, posted from there."""
 
+import re
+
 import FreeCAD as App
 import numpy as np
 import pytest
@@ -109,6 +111,49 @@ def test_object_has_a_unit_of_dwells(document, tmp_path):
     assert [words for name, words in moves(obj) if name == "G4"] == [{"P": 2}]
     in_ms = create_program(document, file, dwell_unit="ms")
     assert moves(in_ms) == moves(obj)
+
+
+CONTOUR = """TOOL PATH/P,TOOL,M
+TLDATA/MILL,10,0,75,0,0
+MSYS/0,0,0,1,0,0,0,1,0
+LOAD/TOOL,1
+GOTO/-40,-10,0,0,0,1
+FEDRAT/PERMIN,300
+CUTCOM/LEFT
+GOTO/0,-10,0
+GOTO/0,50,0
+CUTCOM/OFF
+GOTO/-40,50,0
+"""
+
+
+def code_of(told):
+    return re.search(r"(?:error|warning) (\w+):", told)[1]
+
+
+def test_what_cl_data_leaves_open_is_said_by_properties(document, tmp_path):
+    obj = create_program(document, written(tmp_path, "part.cls", CONTOUR))
+    assert [code_of(text) for text in obj.Found] == ["L411", "L431", "L429"]
+    assert obj.Path.Commands == []
+    obj.Unit = "mm"
+    document.recompute()
+    assert [code_of(text) for text in obj.Found] == ["L411", "L429"]
+    reached = {}
+    for choice in ("centre", "contour"):
+        obj.ContourData = choice
+        document.recompute()
+        reached[choice] = max(words["X"] for name, words in moves(obj) if name == "G1" and "X" in words)
+        assert not [text for text in obj.Found if "error" in text]
+    assert reached == {"centre": 0, "contour": -5}
+    obj.Unit = "inch"
+    document.recompute()
+    assert min(words["X"] for name, words in moves(obj) if "X" in words) == -40 * 25.4
+
+
+def test_a_program_is_made_with_what_its_file_leaves_open(document, tmp_path):
+    obj = create_program(document, written(tmp_path, "part.cls", CONTOUR), unit="mm", contour_data="centre")
+    assert (obj.Unit, obj.ContourData) == ("mm", "centre")
+    assert not [text for text in obj.Found if "error" in text]
 
 
 def test_saved_document_keeps_the_path_without_the_file(document, file, tmp_path):

@@ -2,6 +2,8 @@
 """The program editor: opened for a program object, errors planted, text replaced, saved, decoded and posted."""
 
 import itertools
+import json
+import re
 import time
 from pathlib import Path
 
@@ -183,6 +185,53 @@ def editor_leaves_the_window_its_turns_in_100000_lines():
     }
 
 
+CONTOUR = """TOOL PATH/P,TOOL,M
+TLDATA/MILL,10,0,75,0,0
+MSYS/0,0,0,1,0,0,0,1,0
+LOAD/TOOL,1
+GOTO/-40,-10,0,0,0,1
+FEDRAT/PERMIN,300
+CUTCOM/LEFT
+GOTO/0,-10,0
+GOTO/0,50,0
+CUTCOM/OFF
+GOTO/-40,50,0
+"""
+
+
+@step
+def editor_asks_what_cl_data_leaves_open():
+    editor = _editor()
+    reading, before, file = editor.body.reading, editor.body.file, editor.body.file.with_name("contour.cls")
+    file.write_text(CONTOUR, encoding="ascii")
+    offered = [[reading.axis_words.isHidden(), reading.contour_data.isHidden()]]
+    editor.open_file(file)
+    offered.append([reading.axis_words.isHidden(), reading.contour_data.isHidden()])
+    told = [_codes(editor)]
+    reading.unit.setCurrentIndex(reading.unit.findData("mm"))
+    told.append(_codes(editor))
+    reading.contour_data.setCurrentIndex(reading.contour_data.findData("contour"))
+    told.append(_codes(editor))
+    ended, messages = [], []
+    editor.posting.ended.connect(lambda: ended.append(True))
+    answer(messages)
+    editor.posting.post(file, reading.chosen(), "--work-offset=0,0,250 --tool-length 1=120")
+    until(lambda: ended, 60)
+    report = json.loads(file.with_name("contour-report.json").read_text(encoding="utf-8"))
+    editor.open_file(before)
+    after = reading.chosen()
+    return {
+        "offered": offered,
+        "codes": told,
+        "reading": report["program"]["reading"],
+        "after": [after.unit, after.contour_data],
+    }
+
+
+def _codes(editor):
+    return [re.search(r"\b[A-Z]\d{3}\b", text)[0] for text in _findings(editor)]
+
+
 @step
 def editor_opens_what_is_dropped():
     editor = _editor()
@@ -216,7 +265,7 @@ def editor_decodes_and_posts():
     messages, ended = [], []
     editor.posting.ended.connect(lambda: ended.append(True))
     answer(messages)
-    editor.posting.post(editor.body.file, "none", "s", "--work-offset=0,0,250 --tool-length 1=120")
+    editor.posting.post(editor.body.file, editor.body.reading.chosen(), "--work-offset=0,0,250 --tool-length 1=120")
     until(lambda: ended, 60)
     files = sorted(file.name for file in FOLDER.glob("program*"))
     FreeCAD.closeDocument(program.Name)

@@ -52,6 +52,17 @@ def test_100000_lines_are_loaded_and_changed_in_slices_and_undone_in_one_step(se
     assert found["saved"] == [100001, "G1 X1"]
 
 
+def test_editor_asks_what_cl_data_leaves_open(session):
+    found = session["editor_asks_what_cl_data_leaves_open"]
+    assert found["offered"] == [[False, True], [True, False]]
+    assert found["codes"] == [["L411", "L431", "L429"], ["L411", "L429"], ["L411"]]
+    assert found["reading"] == [
+        "lengths are in mm, as the option says",
+        "CUTCOM in line 7: points are the contour of the part, as the option says",
+    ]
+    assert found["after"] == [None, None]
+
+
 def test_editor_opens_a_part_program_that_is_dropped_among_other_files(session):
     found = session["editor_opens_what_is_dropped"]
     assert found["text"] == "G0 X1 Y2 Z3\n"

@@ -1,27 +1,30 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Body: the text of a part program with all that is told of it while it is typed.
 
-A text, the name of its file and the axis words enter; the faults, what the program holds, and the block under the
+A text, the name of its file and what is said of it enter; the faults, what the program holds, and the block under the
 cursor on the path of its program object are shown.
 """
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import FreeCAD
 from PySide import QtWidgets
 
+from pkm_post.freecad_app.program_object import reading_of
 from pkm_post.freecad_gui.editor import linked
 from pkm_post.freecad_gui.editor.checker import Checker
 from pkm_post.freecad_gui.editor.find_bar import FindBar
 from pkm_post.freecad_gui.editor.findings import Findings, marks_of
+from pkm_post.freecad_gui.editor.reading_fields import ReadingFields
 from pkm_post.freecad_gui.editor.shown_block import ShownBlock
 from pkm_post.freecad_gui.editor.text_view import TextView
 from pkm_post.model import Program
 from pkm_post.program_text import CheckedText, Language, language_of, renumbered, ways_of_line
-from pkm_post.sources import AXIS_WORDS, DWELL_UNITS, Reading
+from pkm_post.sources import Reading
 
 translate = FreeCAD.Qt.translate
 
@@ -46,11 +49,7 @@ class Body(QtWidgets.QWidget):
         self._shown = ShownBlock()
         self.text, self.findings, self.size = TextView(self), Findings(self), QtWidgets.QLabel(self)
         self.find_bar = FindBar(self.text, self)
-        self.axis_words, self.dwell_unit = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
-        self.axis_words.addItems(list(AXIS_WORDS))
-        self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
-        self.dwell_unit.addItems(list(DWELL_UNITS))
-        self.dwell_unit.setToolTip(translate("PKM_Editor", "The unit of dwells of the G-code"))
+        self.reading = ReadingFields(self)
         self._progress = QtWidgets.QProgressBar(self)
         self._progress.hide()
         layout = QtWidgets.QVBoxLayout(self)
@@ -65,8 +64,7 @@ class Body(QtWidgets.QWidget):
         self.text.edits.progressed.connect(self._tell_progress)
         self.text.textChanged.connect(self._changed)
         self.text.cursorPositionChanged.connect(self._show_block)
-        for choice in (self.axis_words, self.dwell_unit):
-            choice.currentTextChanged.connect(self._read_otherwise)
+        self.reading.changed.connect(self._read_otherwise)
 
     def name(self) -> str:
         """The name of the file, or the one that stands in for it."""
@@ -80,23 +78,18 @@ class Body(QtWidgets.QWidget):
         """The text is that of this file from now on."""
         self.file = file
         obj = linked.object_of(file)
-        if obj is not None:
-            # Each change is told to the object at once: both are taken before.
-            axis_words, dwell_unit = obj.AxisWords, obj.DwellUnit
-            self.axis_words.setCurrentText(axis_words)
-            self.dwell_unit.setCurrentText(dwell_unit)
+        # What was said of other CL data is not said of this file; of G-code most files have the same.
+        kept = replace(self.reading.chosen(), unit=None, contour_data=None)
+        self.reading.show_reading(kept if obj is None else reading_of(obj))
         self.text.set_language(self.language())
+        self.reading.offer_for(self.language())
         self.checker.request()
 
     def follow(self) -> None:
         """The file was written: let its object read it again."""
         obj = linked.object_of(self.file)
         if obj is not None:
-            linked.bring_up_to_date(obj, *self.choices())
-
-    def choices(self) -> tuple[str, str]:
-        """How the G-code says the tool axis, and its unit of dwells."""
-        return self.axis_words.currentText(), self.dwell_unit.currentText()
+            linked.bring_up_to_date(obj, self.reading.chosen())
 
     def renumber(self) -> None:
         """Give each block a line number; CL data has none."""
@@ -117,8 +110,7 @@ class Body(QtWidgets.QWidget):
         return self.text.edits.busy() or self.checker.busy()
 
     def _text_to_check(self) -> tuple[str, str, Reading]:
-        axis_words, dwell_unit = self.choices()
-        return self.text.toPlainText(), self.name(), Reading(axis_words, dwell_unit=dwell_unit)
+        return self.text.toPlainText(), self.name(), self.reading.chosen()
 
     def _changed(self) -> None:
         self.program = None
@@ -128,8 +120,8 @@ class Body(QtWidgets.QWidget):
     def _read_otherwise(self) -> None:
         self.checker.request()
         obj = linked.object_of(self.file)
-        if obj is not None and (obj.AxisWords, obj.DwellUnit) != self.choices():
-            linked.bring_up_to_date(obj, *self.choices())
+        if obj is not None and reading_of(obj) != self.reading.chosen():
+            linked.bring_up_to_date(obj, self.reading.chosen())
 
     def _tell_progress(self, share: float) -> None:
         self._progress.setVisible(share < 1)

@@ -116,7 +116,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
             )
         elif self._saved():
             try:
-                return linked.decode_file(self.body.file, *self.body.choices(), job)
+                return linked.decode_file(self.body.file, self.body.reading.chosen(), job)
             except Refused as refused:
                 QtWidgets.QMessageBox.warning(self, title, str(refused))
         return None
@@ -124,7 +124,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
     def post(self) -> None:
         """Write a certified motion program beside the file."""
         if self._saved():
-            self.posting.ask_and_post(self.body.file, *self.body.choices())
+            self.posting.ask_and_post(self.body.file, self.body.reading.chosen())
 
     def eventFilter(self, watched: QtCore.QObject, event: QtCore.QEvent) -> bool:
         """Called by Qt: FreeCAD does not end while changes would be lost."""

@@ -13,8 +13,9 @@ import FreeCAD
 from PySide import QtWidgets
 
 from pkm_post.freecad_app.kinds import is_job, is_program
-from pkm_post.freecad_app.program_object import create_program, decode
+from pkm_post.freecad_app.program_object import create_program, decode, set_reading
 from pkm_post.freecad_app.transaction import transaction
+from pkm_post.sources import Reading
 
 translate = FreeCAD.Qt.translate
 
@@ -29,11 +30,9 @@ def object_of(file: Path | None) -> Any:
     return next((item for item in items if is_program(item) and Path(item.File) == file), None)
 
 
-def bring_up_to_date(obj: Any, axis_words: str, dwell_unit: str) -> None:
-    """Let the object read its file again."""
-    for name, chosen in (("AxisWords", axis_words), ("DwellUnit", dwell_unit)):
-        if getattr(obj, name) != chosen:
-            setattr(obj, name, chosen)
+def bring_up_to_date(obj: Any, reading: Reading) -> None:
+    """Let the object read its file again, as the editor does."""
+    set_reading(obj, reading)
     obj.touch()
     obj.Document.recompute()
 
@@ -59,7 +58,7 @@ def chosen_job(parent: QtWidgets.QWidget, title: str) -> Any:
     return known[label] if chosen else None
 
 
-def decode_file(file: Path, axis_words: str, dwell_unit: str, job: Any) -> Any:
+def decode_file(file: Path, reading: Reading, job: Any) -> Any:
     """Make a file an operation of a job, in one step to undo; it gets a program object if it has none.
 
     Raises:
@@ -67,4 +66,8 @@ def decode_file(file: Path, axis_words: str, dwell_unit: str, job: Any) -> Any:
     """
     document = job.Document
     with transaction(document, translate("PKM_Editor", "Decode into a job")):
-        return decode(object_of(file) or create_program(document, file, axis_words, dwell_unit), job)
+        obj = object_of(file)
+        if obj is None:
+            obj = create_program(document, file)
+            bring_up_to_date(obj, reading)
+        return decode(obj, job)

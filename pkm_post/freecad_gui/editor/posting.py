@@ -6,6 +6,7 @@ What can be chosen is asked for in the fields of the post panel, and kept in the
 
 from __future__ import annotations
 
+from argparse import Namespace
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -23,6 +24,7 @@ from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Place, Refused
 from pkm_post.options import given_in, part_program_from
 from pkm_post.post_file import post_file
+from pkm_post.sources import Reading
 
 translate = FreeCAD.Qt.translate
 
@@ -42,18 +44,18 @@ class Posting(QtCore.QObject):
         self._task: Task | None = None
         self._progress: Any = None
 
-    def ask_and_post(self, file: Path, axis_words: str, dwell_unit: str) -> None:
+    def ask_and_post(self, file: Path, reading: Reading) -> None:
         """Ask for what can be chosen, in the fields of the post panel, and post a file into its folder."""
         kept = FreeCAD.ParamGet(GROUP).GetString(_ENTRY, default_arguments() or _AT_FIRST)
         dialog = _Dialog(PostChoices(kept, str(file.parent)), self._title, self._window)
         if dialog.is_accepted():
             text, folder = dialog.fields.text(), dialog.fields.folder.text().strip()
             FreeCAD.ParamGet(GROUP).SetString(_ENTRY, text)
-            self.post(file, axis_words, dwell_unit, text, Path(folder or file.parent))
+            self.post(file, reading, text, Path(folder or file.parent))
         dialog.deleteLater()
 
-    def post(self, file: Path, axis_words: str, dwell_unit: str, arguments: str, folder: Path | None = None) -> None:
-        """Post a file, beside it if no folder is given.
+    def post(self, file: Path, reading: Reading, arguments: str, folder: Path | None = None) -> None:
+        """Post a file, beside it if no folder is given; what arguments say of it goes before ``reading``.
 
         ``ended`` tells when its files are there, or why they are not was told.
         """
@@ -66,8 +68,7 @@ class Posting(QtCore.QObject):
             self.ended.emit()
             return
         out, given = folder or file.parent, given_in(chosen)
-        reading = replace(part_program_from(chosen, axis_words), dwell_unit=dwell_unit)
-        call = partial(post_file, file, out=out, reading=reading, arguments=given)
+        call = partial(post_file, file, out=out, reading=_with_typed(reading, chosen), arguments=given)
         task = Task(lambda: call(progress=task.tell), self)
         self._task, self._progress = task, self._bar(task)
         task.finished.connect(self._end)
@@ -107,6 +108,17 @@ class Posting(QtCore.QObject):
         finally:
             task.deleteLater()
             self.ended.emit()
+
+
+def _with_typed(reading: Reading, chosen: Namespace) -> Reading:
+    """What is chosen beside the text, and what is typed as arguments, which goes before it."""
+    typed = part_program_from(chosen, reading.axis_words)
+    return replace(
+        typed,
+        dwell_unit=reading.dwell_unit,
+        unit=typed.unit or reading.unit,
+        contour_data=typed.contour_data or reading.contour_data,
+    )
 
 
 class _Dialog(QtWidgets.QDialog):

@@ -62,8 +62,7 @@ def tool_bar(editor: ProgramEditor, parent: QtWidgets.QWidget) -> QtWidgets.QToo
         action.setToolTip(f"{said} ({shortcut})" if shortcut else said)
     for key, call in _SHORTCUTS:
         _add(editor, QtGui.QAction(editor), key, call)
-    bar.addWidget(editor.body.axis_words)
-    bar.addWidget(editor.body.dwell_unit)
+    bar.addWidget(editor.body.reading)
     return bar
 
 

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reading fields: what a part program does not say itself, chosen beside its text.
+
+A reading enters and is shown; the one that is chosen leaves. G-code and CL data leave different things open, and only
+the fields of the language are offered.
+"""
+
+from __future__ import annotations
+
+import FreeCAD
+from PySide import QtCore, QtWidgets
+
+from pkm_post.cldata import UNITS
+from pkm_post.program_text import Language
+from pkm_post.sources import AXIS_WORDS, DWELL_UNITS, Reading
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_CONTOUR_DATA: dict[str | None, str] = {
+    None: QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM as the file says"),
+    "centre": QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM on the tool centre"),
+    "contour": QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM on the contour"),
+}
+
+
+class ReadingFields(QtWidgets.QWidget):
+    """The fields, side by side."""
+
+    changed = QtCore.Signal()
+
+    def __init__(self, parent: QtWidgets.QWidget) -> None:
+        super().__init__(parent)
+        self.axis_words, self.dwell_unit = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
+        self.unit, self.contour_data = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
+        self.axis_words.addItems(list(AXIS_WORDS))
+        self.dwell_unit.addItems(list(DWELL_UNITS))
+        self.unit.addItem(translate("PKM_Editor", "Unit as the file says"), None)
+        for name in UNITS:
+            self.unit.addItem(name, name)
+        for choice, text in _CONTOUR_DATA.items():
+            self.contour_data.addItem(translate("PKM_Editor", text), choice)
+        self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
+        self.dwell_unit.setToolTip(translate("PKM_Editor", "The unit of dwells of the G-code"))
+        self.unit.setToolTip(translate("PKM_Editor", "The unit of length of the part program"))
+        self.contour_data.setToolTip(
+            translate("PKM_Editor", "What the points of CL data under CUTCOM are: tool centre or part contour")
+        )
+        layout = QtWidgets.QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for field in (self.axis_words, self.dwell_unit, self.unit, self.contour_data):
+            layout.addWidget(field)
+            field.currentIndexChanged.connect(lambda index: self.changed.emit())
+        self.offer_for(Language.GCODE)
+
+    def offer_for(self, language: Language) -> None:
+        """Show the fields that a language has a use for."""
+        for field in (self.axis_words, self.dwell_unit):
+            field.setVisible(language is Language.GCODE)
+        self.contour_data.setVisible(language is not Language.GCODE)
+
+    def chosen(self) -> Reading:
+        """What is chosen."""
+        return Reading(
+            self.axis_words.currentText(),
+            dwell_unit=self.dwell_unit.currentText(),
+            unit=self.unit.currentData(),
+            contour_data=self.contour_data.currentData(),
+        )
+
+    def show_reading(self, reading: Reading) -> None:
+        """Choose what a reading says, which is no change."""
+        blocker = QtCore.QSignalBlocker(self)
+        self.axis_words.setCurrentText(reading.axis_words)
+        self.dwell_unit.setCurrentText(reading.dwell_unit)
+        self.unit.setCurrentIndex(self.unit.findData(reading.unit))
+        self.contour_data.setCurrentIndex(self.contour_data.findData(reading.contour_data))
+        blocker.unblock()
