@@ -150,6 +150,7 @@ IN_STEP_WITH_SPINDLE = ("G33", "G33.1", "G74", "G84")
 """Threads: cut, tapped in step, and tapped left-handed and right-handed."""
 
 CYCLES = (730, 810, 820, 830, 850, 860, 890)
+END_OF_CYCLES = 800
 ARCS = (20, 30)
 ANY_BLOCK = "FNSTO"
 

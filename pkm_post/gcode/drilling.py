@@ -9,6 +9,7 @@ K as Fanuc has it, repeats the hole, with G91 at the same distance each time [Li
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -32,11 +33,18 @@ class Drilling:
     def __init__(
         self, blocks: Blocks, modal: Modal, words: Coordinates, spindle: Array, dwells: Array, faults: Findings
     ) -> None:
-        self._blocks, self._modal, self._words = blocks, modal, words
+        self._modal, self._words = modal, words
+        self._said = {letter: blocks.word(letter) for letter in "RQ" + _REPEATS}
         self._spindle, self._dwells, self._faults = spindle, dwells, faults
         self._series: Series | None = None
         self._row, self._level = 0, np.zeros(3)
-        self._plane = self._written_under = ""
+        self._plane = self._distance = 0
+        self._scale = 1.0
+
+    @cached_property
+    def _interruption(self) -> Array:
+        """Number of the last block up to each one that is in no cycle, (N,): it stays the same in a series."""
+        return np.cumsum(~is_cycle(self._modal.in_force[Group.MOTION]))
 
     def strokes(self, row: int, position: Array, known: Array, frame: Frame) -> Strokes | None:
         """The strokes of one block, None where it has a fault.
@@ -73,41 +81,35 @@ class Drilling:
         """The series with the cycle of this block."""
         normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
         scale = float(self._modal.scale[row])
-        retract, peck = (scale * float(self._blocks.word(letter)[row]) for letter in "RQ")
+        retract, peck = (scale * float(self._said[letter][row]) for letter in "RQ")
         words = (retract, float(self._words.columns[normal][row]), peck, float(self._dwells[row]))
-        goes_on = bool(is_cycle(self._modal.in_force[Group.MOTION][self._row : row]).all())
-        before = self._series if goes_on else None
+        before = self._series if self._interruption[row] == self._interruption[self._row] else None
         self._series = Series.after(before, code, float(position[normal]), words)
         self._row = row
         if before is None:
-            self._level, self._plane = frame.out(position), self._name(Group.PLANE, row)
-        if before is None or not np.isnan(words[:2]).any():
-            self._written_under = self._modes(row)
+            self._level, self._plane = frame.out(position), int(self._modal.in_force[Group.PLANE][row])
+        if before is None or not (math.isnan(words[0]) or math.isnan(words[1])):
+            self._distance, self._scale = int(self._modal.in_force[Group.DISTANCE][row]), scale
         return self._series
-
-    def _modes(self, row: int) -> str:
-        """What gives R and the depth their meaning."""
-        return f"{self._name(Group.DISTANCE, row)} in {'mm' if self._modal.scale[row] == 1 else 'inches'}"
-
-    def _name(self, group: Group, row: int) -> str:
-        return name_of(int(self._modal.in_force[group][row]))
 
     def _lost_meaning(self, row: int, series: Series, needs_level: bool, frame: Frame) -> str:
         """What has changed since the words in force were written, so that they may mean something else."""
-        normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
-        name, plane, modes = name_of(series.cycle.code), self._name(Group.PLANE, row), self._modes(row)
+        name, plane = name_of(series.cycle.code), int(self._modal.in_force[Group.PLANE][row])
+        distance, scale = int(self._modal.in_force[Group.DISTANCE][row]), float(self._modal.scale[row])
         if plane != self._plane:
-            return f"{name} goes on in {plane}, begun in {self._plane}"
-        if modes != self._written_under:
-            return f"{name} goes on in {modes}, its R and depth are those of {self._written_under}"
-        level = float(frame.into(self._level)[normal])
+            return f"{name} goes on in {name_of(plane)}, begun in {name_of(self._plane)}"
+        if distance != self._distance:
+            return f"{name} goes on in {name_of(distance)}, its R and depth are those of {name_of(self._distance)}"
+        if scale != self._scale:
+            return f"{name} goes on in a unit of {scale:g} mm, its R and depth are in one of {self._scale:g} mm"
+        level = float(frame.into(self._level)[PLANES[plane][2]])
         if needs_level and abs(level - series.initial) > _SAME_HEIGHT:
             return f"{name}: the initial level {series.initial:g} is {level:g} where the origin lies now"
         return ""
 
     def _repeats(self, row: int) -> float:
         """How often the hole is drilled; NaN where two words say it."""
-        said = [float(self._blocks.word(letter)[row]) for letter in _REPEATS]
+        said = [float(self._said[letter][row]) for letter in _REPEATS]
         said = [times for times in said if not math.isnan(times)]
         return 1.0 if not said else said[0] if len(said) == 1 else math.nan
 

@@ -16,7 +16,7 @@ from pkm_post.gcode.arc_motions import arcs_of, known_ones, lengths, single_turn
 from pkm_post.gcode.axes import spins, surface_normals, tool_axes
 from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.checks import check
-from pkm_post.gcode.codes import NONE, Group
+from pkm_post.gcode.codes import ARCS, END_OF_CYCLES, NONE, Group
 from pkm_post.gcode.dwells import check_dwells, dwell_words
 from pkm_post.gcode.feeds import INVERSE_TIME, feeds
 from pkm_post.gcode.findings import Findings
@@ -56,7 +56,7 @@ def resolve(
     """
     if blocks.special:
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
-    blocks = _read(blocks, options)
+    blocks = _without_spent_ends(_read(blocks, options))
     faults = Findings(blocks)
     modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words))
     check(blocks, modal, options, faults)
@@ -77,6 +77,15 @@ def _read(blocks: Blocks, options: ReadOptions) -> Blocks:
     if options.block_delete and blocks.deleted.any():
         blocks = blocks.chosen(np.flatnonzero(~blocks.deleted))
     return blocks
+
+
+def _without_spent_ends(blocks: Blocks) -> Blocks:
+    """The blocks without G80 beside G0, G1, G2 or G3, which end a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
+    ends = np.flatnonzero(blocks.g == END_OF_CYCLES)
+    if not len(ends):
+        return blocks
+    spent = ends[np.isin(blocks.g_row[ends], blocks.g_row[np.isin(blocks.g, (0, 10, *ARCS))])]
+    return replace(blocks, g=np.delete(blocks.g, spent), g_row=np.delete(blocks.g_row, spent))
 
 
 @dataclass(frozen=True)

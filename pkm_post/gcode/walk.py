@@ -58,9 +58,8 @@ class Walk:
     def motions(self) -> Motions:
         """Follow all blocks."""
         moves = np.flatnonzero(self.modal.moves).astype(np.int32)
-        done = 0
-        for row in np.flatnonzero(self._breaks()).tolist():
-            until = int(np.searchsorted(moves, row))
+        breaks, done = np.flatnonzero(self._breaks()), 0
+        for row, until in zip(breaks.tolist(), np.searchsorted(moves, breaks).tolist(), strict=True):
             self._follow(moves[done:until])
             done = until
             self._change_frame(row)

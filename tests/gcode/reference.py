@@ -41,7 +41,7 @@ class Machine:
         self.speed = self.sense = self.f = 0.0
         self.axis = np.array([0.0, 0.0, 1.0])
         self.exact, self.tolerance = 640, 0.0
-        self.cycle = {}
+        self.cycle, self.level = {}, None
         self.rows, self.events = [], []
 
     def matrix(self):
@@ -84,7 +84,7 @@ class Machine:
         for code in g:
             if code in (0, 10, 20, 30, 810, 800):
                 if code != self.mode["motion"]:
-                    self.cycle = {}
+                    self.cycle, self.level = {}, None
                 self.mode["motion"] = code
             elif code in PLANE_AXES:
                 self.mode["plane"] = code
@@ -192,10 +192,11 @@ class Machine:
         if xyz[normal] is not None:
             self.cycle["bottom"] = xyz[normal]
         height = self.here[normal]
-        top = self.cycle["R"] + (height if self.mode["relative"] else 0)
+        self.level = height if self.level is None else self.level
+        top = self.cycle["R"] + (self.level if self.mode["relative"] else 0)
         bottom = self.cycle["bottom"] + (top if self.mode["relative"] else 0)
-        clear = max(height, top) if self.mode["retract"] == 980 else top
-        stops = [(0, normal, max(height, top))]
+        clear = max(self.level, top) if self.mode["retract"] == 980 else top
+        stops = [(0, normal, height if height > top else clear)]
         for _ in range(int(words.get("L", 1))):
             stops += [(0, (first, second), xyz), (0, normal, top), (1, normal, bottom), (0, normal, clear)]
         for kind, coordinate, value in stops:

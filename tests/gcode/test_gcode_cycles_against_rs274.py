@@ -95,6 +95,21 @@ def test_k_repeats_as_l_does():
     assert [fault.code for fault in ours(f"{head}G1 X5 K3\nM2")[1]] == ["G404"]
 
 
+@pytest.mark.parametrize("block", ["G0 G80 X5", "G80 G0 X5", "G0 G17 G40 G49 G80 G90\nX5", "G80\nG0 X5"])
+def test_g80_beside_another_motion_leaves_it(block):
+    """rs274 takes them all, and so do controls that have G80 in a group of its own."""
+    rows, faults = ours(f"G21 F100\nG90 G0 X0 Y0 Z50\nG99 G81 X1 Z-5 R2\n{block}\nM2")
+    assert rows is not None, faults
+    assert rows[-1] == [0, 5, 0, 2]
+
+
+@pytest.mark.parametrize("block", ["G80 G81 X5", "G81 G80 X5", "G80 G83 X5 Z-5 R2 Q1"])
+def test_g80_beside_a_cycle_is_refused(block):
+    """rs274 goes on with the cycle; where the last code of a group counts, G80 would end it."""
+    rows, faults = ours(f"G21 F100\nG90 G0 X0 Y0 Z50\nG99 G81 X1 Z-5 R2\n{block}\nM2")
+    assert rows is None and "G403" in {fault.code for fault in faults}
+
+
 @pytest.mark.parametrize(
     "lines",
     [

@@ -47,7 +47,9 @@ def drilling(draw):
     retract = draw(st.sampled_from(["G98", "G99"]))
     hole = f"{plane} {retract} G81 {draw(words(across))} {normal}-9.5 R{draw(st.sampled_from([-3, 4]))}"
     relative = f"G91 {hole.replace('R-3', 'R-1').replace('R4', 'R-1')} L3"
-    return draw(st.sampled_from([[hole, draw(words(across)), "G80 G17"], [relative, "G80 G90 G17"]]))
+    other = draw(st.sampled_from([[], [f"G98 {across[0]}2"], [f"G99 {across[0]}2", f"G98 R-2 {across[1]}1 L2"]]))
+    more = [draw(words(across)), *other, draw(words(across)), "G80 G90 G17"]
+    return draw(st.sampled_from([[hole, *more], [relative, *more]]))
 
 
 lines = st.one_of(

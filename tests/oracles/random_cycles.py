@@ -5,9 +5,10 @@ Enters a seed. Leaves the text; the same for the same seed, whatever Python runs
 depths, R planes, cycles, repeats and ways to retract, under G90 and G91, and is broken off by other motion. Some
 programs have a fault in one of their cycles.
 
-Left out is what rs274 does not do as its own manual has it: it goes down over a hole that is done where R falls in a
-series begun below R, and it takes the numbers in force for others after G20, G21 or another plane. Where its manual and
-Fanuc's do not agree, after a change between G90 and G91, R and the depth are written again.
+Left out is what rs274 does not do as its own manual has it: in a series begun below R it goes down to R over the hole
+that is done, from a higher R or from the reference point; and it takes the numbers in force for others after G20, G21
+or another plane. Where its manual leaves open what a program means, after a change between G90 and G91, R and the depth
+are written again.
 """
 
 import random
@@ -33,7 +34,7 @@ class _Maker:
     def __init__(self, chance, in_cam=False):
         self.chance, self.in_cam = chance, in_cam
         self.inch = not in_cam and chance.random() < 0.15
-        self.low = chance.random() < 0.1
+        self.low, self.turned = chance.random() < 0.1, False
         self.plane, axes = PLANES[0] if in_cam else chance.choice(PLANES)
         self.first, self.second, self.normal = axes
         self.relative, self.returns = False, True
@@ -51,6 +52,7 @@ class _Maker:
             return [self.start()]
         modes = f"{'G20' if self.inch else 'G21'} G90 G94 {self.plane} G40 G49 G54 G98"
         frame = self.chance.choice(("", "", f"G92 {self.place(-9, 9)}", f"G10 L2 P1 {self.place(-9, 9)} R30"))
+        self.turned = frame.endswith("R30")
         return [modes, "F300 S1000 M3", *filter(None, [frame]), self.start()]
 
     def start(self):
@@ -156,8 +158,10 @@ class _Maker:
         return f"{self.distances().strip()} {self.code}{self.across()}{self.heights()}"
 
     def beside(self):
-        """What is no motion, and leaves the heights as they are."""
-        return self.chance.choice(("M8", "S900", "G4 P0.5", f"G92 {self.first}{self.number(0, 9)}", "G61", "F250"))
+        """What leaves words and levels as they are, the way to the reference point among it."""
+        home = f"G28 {self.said(9)}\n{self.hole()}"
+        local = f"G92 {self.first}{self.number(0, 9)}"
+        return self.chance.choice(("M8", "S900", "G4 P0.5", "G61", local, "F250" if self.low or self.turned else home))
 
     def faulty(self):
         """A cycle that rs274 refuses."""
@@ -172,7 +176,7 @@ class _Maker:
 
     def end(self):
         """Other motion, at some other height."""
-        lines = [self.chance.choice(("G80", ""))]
+        lines = [self.chance.choice(("G80", "") if self.in_cam else ("G80", "", "G0 G80", "G80 G1"))]
         lines += [] if self.in_cam else ["G90"]
         self.relative = False
         self.height = max(self.level, self.top) if self.returns else self.top
