@@ -142,7 +142,7 @@ def test_files_of_one_name_do_not_overwrite_each_others_results(tmp_path, capsys
         (tmp_path / f"part.{suffix}").write_text(CL_DATA)
     files = [str(tmp_path / "part.ngc"), str(tmp_path / "part.cls")]
     assert main(["post", *files, "--out", str(tmp_path / "out")]) == 2
-    assert "several files would be posted as part" in capsys.readouterr().err
+    assert "would both be posted as part.pmc: post to different folders" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 
@@ -161,3 +161,78 @@ def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
     )
     assert told.returncode == 0, told.stderr
     assert (tmp_path / "made" / "a.pmc").exists()
+
+
+# Gauge lengths
+
+OF_ANOTHER_NUMBER = G_CODE.replace("G43 H1\n", "G43 H11\n").replace("G43.5 I0 J0 K1\n", "").replace("I0.1 J0 K1 ", "")
+OF_ANOTHER_NUMBER = OF_ANOTHER_NUMBER.replace(" I0.1 J0.1 K1", "")
+WITH_A_LENGTH = CL_DATA.replace("LOADTL/1", "LOADTL/1,LENGTH,60")
+
+
+def refusal_of(*arguments, **choices):
+    with pytest.raises(Refused) as refused:
+        posted(*arguments, **choices)
+    return [fault.code for fault in refused.value.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("a.ngc", G_CODE), ("a.cls", CL_DATA), ("a.cls", WITH_A_LENGTH)], ids=["G-code", "CL", "LENGTH"]
+)
+def test_a_length_for_a_tool_that_is_not_there_is_refused(tmp_path, name, text):
+    codes = refusal_of(tmp_path, name, text, tool_lengths={1: 60.0, 11: 75.0}, reading=Reading("vector"))
+    assert codes[-1] == "J126"
+    assert not list((tmp_path / "out").glob("*"))
+
+
+def test_the_length_of_the_file_is_replaced_and_that_is_told(tmp_path):
+    own = posted(tmp_path, "a.cls", WITH_A_LENGTH, tool_lengths={})
+    assert own.diagnostics == ()
+    same = posted(tmp_path, "a.cls", WITH_A_LENGTH, tool_lengths={1: 60.0})
+    assert same.diagnostics == ()
+    other = posted(tmp_path, "a.cls", WITH_A_LENGTH, tool_lengths={1: 75.0})
+    (told,) = other.diagnostics
+    assert (told.code, told.found) == ("J125", "--tool-length 1=75 instead of 60 of T1")
+    assert trajectory_file.read(other.program.with_suffix(".pkmt"))[0].tools[1].length == 75.0
+
+
+def tips(made):
+    return trajectory_file.read(made.program.with_suffix(".pkmt"))[0].tip
+
+
+def test_an_offset_of_another_number_lifts_the_tip_by_what_it_is_longer(tmp_path):
+    # rs274 of LinuxCNC 2.9 with T1 Z60 and T11 Z75 in its tool table: T1 M6 G43 H11 prints USE_TOOL_LENGTH_OFFSET 75
+    # and with H1 60: H alone counts, whatever is in the spindle, so the spindle and the tip of T1 are 15 mm higher.
+    own = posted(tmp_path, "a.ngc", OF_ANOTHER_NUMBER.replace("H11", "H1"))
+    other = posted(tmp_path, "b.ngc", OF_ANOTHER_NUMBER, tool_lengths={1: 60.0, 11: 75.0})
+    np.testing.assert_allclose(tips(other) - tips(own), np.tile([0, 0, 15.0], (len(tips(own)), 1)), atol=1e-12)
+    equal = posted(tmp_path, "c.ngc", OF_ANOTHER_NUMBER, tool_lengths={1: 60.0, 11: 60.0})
+    np.testing.assert_allclose(tips(equal), tips(own), atol=1e-12)
+
+
+def test_an_offset_whose_value_is_not_known_is_refused(tmp_path):
+    assert refusal_of(tmp_path, "a.ngc", OF_ANOTHER_NUMBER) == ["J128"]
+    assert refusal_of(tmp_path, "a.ngc", OF_ANOTHER_NUMBER, tool_lengths={11: 75.0}) == ["J113"]
+
+
+def test_the_next_tool_keeps_the_offset_that_is_in_force(tmp_path):
+    """T2 is 10 mm shorter than T1, whose H1 is in force still: its tip is 10 mm higher, until its own G43."""
+    text = "T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nT2 M6\nG0 X10 Z30\nG43 H2\nG0 X20 Z30\nM30\n"
+    made = posted(tmp_path, "a.ngc", text, tool_lengths={1: 60.0, 2: 50.0})
+    at = {round(float(x)): float(z) - 250.0 for x, _, z in tips(made)}
+    assert (at[0], at[10], at[20]) == (30.0, 40.0, 30.0)
+
+
+def test_arguments_are_typed_as_on_the_command_line(tmp_path, capsys):
+    (tmp_path / "a.ngc").write_text(G_CODE)
+    typed = "--tool-length 1=60 --work-offset=0,0,250 --tip-tolerance 0.003 --spin x-in-plane=10 --also csv"
+    made = post_file(tmp_path / "a.ngc", out=tmp_path / "macro", arguments=typed, reading=Reading("vector"))
+    line = ["post", str(tmp_path / "a.ngc"), "--axis-words", "vector", "--out", str(tmp_path / "line"), *typed.split()]
+    assert main(line) == 0
+    assert [path.name for path in made.files] == sorted(path.name for path in (tmp_path / "line").iterdir())
+    for path in made.files:
+        assert path.read_bytes() == (tmp_path / "line" / path.name).read_bytes()
+    with pytest.raises(Refused, match="J117"):
+        post_file(tmp_path / "a.ngc", out=tmp_path, arguments="--no-such-thing")
+    with pytest.raises(ValueError, match="got both"):
+        post_file(tmp_path / "a.ngc", out=tmp_path, arguments=typed, options=Options())

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """No result takes the place of another one or of a source; the names are those that posting writes."""
 
+import random
+import zipfile
 from pathlib import Path
 
 import pytest
 
 from pkm_post.cli import main, post
-from pkm_post.cli.result_names import _ALSO, _ALWAYS, _IN_PARTS, lost_results, result_names
+from pkm_post.cli.document_jobs import jobs_in
 from pkm_post.controllers import TABLES, pmac, power_pmac
 from pkm_post.options import ALSO
 from pkm_post.pipeline import SUFFIX
+from pkm_post.result_names import _ALSO, _ALWAYS, _IN_PARTS, Item, job_stem, lost_results, lost_sources, result_names
 
 PART = "G21 G90 G17\nT1 M6\nS5000 M3\nG0 X0 Y0 Z300\nG1 X10 F600\nM5\nM30\n"
 OUT = Path("out")
@@ -26,8 +29,9 @@ def test_everything_that_is_written_is_named(part, tmp_path):
     out = tmp_path / "out"
     assert main(["post", str(part), "--out", str(out), "--tool-length", "1=120", "--also", ",".join(ALSO)]) == 0
     written = {path.name for path in out.iterdir()}
-    assert set(result_names(part, ALSO)) - written == {"part" + power_pmac.SETUP_SUFFIX}
-    assert written <= set(result_names(part, ALSO))
+    named = set(result_names(Item("part.ngc", "part")))
+    assert named - written == {"part" + power_pmac.SETUP_SUFFIX}
+    assert written <= named
 
 
 def test_endings_are_those_of_controllers_and_tables():
@@ -37,7 +41,15 @@ def test_endings_are_those_of_controllers_and_tables():
     assert set(_IN_PARTS) <= {SUFFIX, *_ALSO.values()}
 
 
+def lost(files, out=OUT, also=ALSO):
+    """What posting these would lose, as the command line asks for it."""
+    files = list(map(Path, files))
+    items = [item for file in files for item in post._items(file, None, also)]
+    return [*lost_results(items), *lost_sources(files, items, out)]
+
+
 LOST = {
+    "case": (["x/Part.ngc", "y/part.cls"], "x/Part.ngc and y/part.cls would both be posted as part.pmc"),
     "set-up": (["job.ngc", "job-setup.ngc"], "job.ngc and job-setup.ngc would both be posted as job-setup.pmc"),
     "document": (["my part.FCStd", "my_part.cls"], "my part.FCStd and my_part.cls would both be posted as my_part.pmc"),
     "part": (["j-part12.ngc", "j.ngc"], "j-part12.ngc would be posted as j-part12.pmc, as would a part of j.ngc"),
@@ -47,7 +59,7 @@ LOST = {
 
 @pytest.mark.parametrize(("files", "told"), LOST.values(), ids=LOST)
 def test_what_would_be_lost_is_told(files, told):
-    assert lost_results(list(map(Path, files)), OUT, ALSO) == [told]
+    assert lost(files) == [told]
 
 
 @pytest.mark.parametrize(
@@ -60,13 +72,13 @@ def test_what_would_be_lost_is_told(files, told):
     ],
 )
 def test_what_lies_beside_each_other_can_be_posted_together(files):
-    assert lost_results(list(map(Path, files)), OUT, ALSO) == []
+    assert lost(files) == []
 
 
 def test_a_source_is_replaced_by_what_is_asked_for_alone():
-    files = [OUT / "a.ngc", OUT / "a-linuxcnc.ngc"]
-    assert lost_results(files, OUT, ["csv"]) == []
-    assert lost_results(files, Path("elsewhere"), ALSO) == []
+    files = ["out/a.ngc", "out/a-linuxcnc.ngc"]
+    assert lost(files, also=["csv"]) == []
+    assert lost(files, out=Path("elsewhere")) == []
 
 
 def test_nothing_is_posted_when_something_would_be_lost(part, tmp_path, capsys):
@@ -93,3 +105,54 @@ def test_a_process_of_its_own_has_one_file_also_after_two_dashes(part, monkeypat
     with pytest.raises(SystemExit) as ended:
         main(["post", "--only=-1", str(part)])
     assert ended.value.code == 2
+
+
+JOBS = [("Job", "Op 1"), ("Job001", "Op_1"), ("Job002", "Other")]
+
+
+def document(path, jobs):
+    """A FreeCAD document as far as its jobs are concerned, laid out as FreeCAD 1.0 writes them."""
+    objects = "".join(
+        f'<Object name="{name}"><Properties Count="2"><Property name="Label" type="App::PropertyString">'
+        f'<String value="{label}"/></Property><Property name="Proxy" type="App::PropertyPythonObject">'
+        '<Python value="bnVsbA==" encoded="yes" module="Path.Main.Job" class="ObjectJob"/>'
+        "</Property></Properties></Object>"
+        for name, label in jobs
+    )
+    with zipfile.ZipFile(path, "w") as container:
+        container.writestr("Document.xml", f"<Document><ObjectData>{objects}</ObjectData></Document>")
+    return path
+
+
+def test_jobs_of_documents_are_counted_in_a_batch(tmp_path, capsys):
+    several = document(tmp_path / "a.FCStd", JOBS[1:])
+    (tmp_path / "A-other.ngc").write_text(PART, encoding="ascii")
+    assert main(["post", str(several), str(tmp_path / "A-other.ngc"), "--out", str(tmp_path / "out")]) == 2
+    assert "would both be posted as A-other.pmc: post to different folders" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_two_jobs_of_a_document_with_one_name_are_told(tmp_path, capsys):
+    file = document(tmp_path / "a.FCStd", JOBS)
+    assert main(["post", str(file), "--out", str(tmp_path / "out")]) == 2
+    assert f"Op 1 of {file} and Op_1 of {file} would both be posted as a-Op_1.pmc" in capsys.readouterr().err
+
+
+def test_a_file_that_is_no_document_is_left_to_freecad(tmp_path):
+    (tmp_path / "a.FCStd").write_text("no archive")
+    assert jobs_in(tmp_path / "a.FCStd") == jobs_in(tmp_path / "missing.FCStd") == []
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_whatever_is_not_refused_has_names_of_its_own(seed):
+    """Second opinion: all names that can be written, parts as well, as a file system that knows no case sees them."""
+    chance = random.Random(seed)
+    labels = ["".join(chance.choices(["a", "A", "_", " ", "-part2", "-setup", "-report", "1"], k=3)) for _ in range(4)]
+    items = [Item(label, job_stem("d", label, 4)) for label in labels]
+    written = []
+    for item in items:
+        names = {f"{item.stem}{ending}" for ending in (*_ALWAYS, *_ALSO.values())}
+        names |= {f"{item.stem}-part{n}{e}" for n in (2, 3) for e in (".pmc",)}
+        names |= {f"{item.stem}-halstreamer-part{n}.txt" for n in (2, 3)}
+        written += [name.lower() for name in names]
+    assert bool(lost_results(items)) == (len(set(written)) < len(written))

@@ -10,22 +10,23 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.argument_types import count, whole_from
+from pkm_post.cli.document_jobs import jobs_in
 from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside
 from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, reading_from
-from pkm_post.cli.result_names import lost_results
 from pkm_post.options import add_options, given_in
+from pkm_post.result_names import Item, job_stem, lost_results, lost_sources
 
 if TYPE_CHECKING:
     from pkm_post.pipeline import Posted
 
+_DOCUMENT = ".fcstd"
 _ONLY = "--only"
 """The number of the one file that a process posts, from 0."""
 
@@ -69,10 +70,20 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
     files = namespace.files
     if namespace.only is not None and namespace.only >= len(files):
         return [f"argument {_ONLY}: expected a number below {len(files)}, got {namespace.only}"]
-    twice = [stem for stem, times in Counter(file.stem for file in files).items() if times > 1]
-    if twice:
-        return [f"several files would be posted as {', '.join(twice)}: post them to different folders"]
-    return [f"{lost}: post to different folders" for lost in lost_results(files, namespace.out, namespace.also)]
+    items = [item for file in files for item in _items(file, namespace.job, namespace.also)]
+    lost = [*lost_results(items), *lost_sources(files, items, namespace.out)]
+    return [f"{each}: post to different folders" for each in lost]
+
+
+def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[Item]:
+    """What is posted of a file: a part program, or the jobs of a document, which say for themselves what to write."""
+    if file.suffix.lower() != _DOCUMENT:
+        return [Item(str(file), file.stem, also)]
+    jobs = jobs_in(file)
+    if len(jobs) < 2:
+        return [Item(str(file), job_stem(file.stem, "", 1))]
+    named = [label for name, label in jobs if wanted in (None, name, label)]
+    return [Item(f"{label} of {file}", job_stem(file.stem, label, len(jobs))) for label in named]
 
 
 def _post_in_processes(files: Sequence[Path], arguments: Sequence[str], at_a_time: int) -> int:

@@ -8,7 +8,6 @@ machine file are collected before anything is refused.
 from __future__ import annotations
 
 import contextlib
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any
@@ -25,6 +24,7 @@ from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import READING, Given
+from pkm_post.result_names import Item, job_stem, lost_results
 
 
 def post_job(
@@ -177,12 +177,18 @@ def post_to(
 
 
 def file_name(job: Any) -> str:
-    """The name of the motion program: the document's name, and the job's where there are several."""
-    document = job.Document
+    """The name of the motion program: the document's name, and the job's where there are several.
+
+    Raises:
+        Refused: another job of the document would have results of the same name, F105.
+    """
+    document, jobs = job.Document, find_jobs(job.Document)
     stem = FilePath(document.FileName).stem or document.Label
-    if len(find_jobs(document)) > 1:
-        stem += f"-{job.Label}"
-    return re.sub(r"[^\w.-]+", "_", stem) + pipeline.SUFFIX
+    items = {each.Name: Item(each.Label, job_stem(stem, each.Label, len(jobs))) for each in jobs}
+    lost = lost_results(list(items.values()))
+    if lost:
+        raise Refused([Diagnostic("F105", Place(document_name(document)), each) for each in lost])
+    return items[job.Name].stem + pipeline.SUFFIX
 
 
 @contextlib.contextmanager

@@ -457,4 +457,8 @@ RULES: dict[str, Rule] = {
         "files of an earlier result are beside this one and do not belong to it",
         "remove them, so that nobody runs them with this program",
     ),
+    "F105": _error(
+        "results of two jobs would have one name",
+        "give the jobs labels that differ in letters or digits, not in their case and not in an ending such as -setup",
+    ),
 }

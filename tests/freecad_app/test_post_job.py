@@ -12,6 +12,8 @@ from Path.Post.Processor import PostProcessorFactory
 from Path.Post.Utils import FilenameGenerator
 
 import pkm_post
+from pkm_post.cli import main
+from pkm_post.cli.document_jobs import jobs_in
 from pkm_post.freecad_app.arguments import job_arguments
 from pkm_post.freecad_app.post_job import find_job, post_as_the_job_says, post_document, post_job
 from pkm_post.freecad_app.progress import Progress, Stopped
@@ -131,6 +133,33 @@ def test_all_jobs_of_a_document_or_one_of_them(ready, tmp_path):
     assert posted.program.name == "part-Job.pmc"
     assert refusal(post_document, path, MACHINE, tmp_path, AT_FIXTURE, job_name="Other side") == ["J103"]
     assert refusal(post_document, path, MACHINE, tmp_path, AT_FIXTURE, job_name="Third") == ["J102"]
+
+
+@pytest.mark.parametrize(
+    ("label", "other"), [("Op 1", "Op_1"), ("Side", "SIDE"), ("Side", "Side-setup"), ("A", "A-part2")]
+)
+def test_jobs_whose_results_would_have_one_name_are_refused_at_every_door(ready, tmp_path, label, other, capsys):
+    second = new_job(ready.Document)
+    add_operation(second)
+    ready.Label, second.Label = label, other
+    assert refusal(post_job, ready, MACHINE, tmp_path / "out", AT_FIXTURE) == ["F105"]
+    assert refusal(post_as_the_job_says, second, tmp_path / "out") == ["F105"]
+    path = saved(ready.Document, tmp_path)
+    assert jobs_in(path) == [("Job", label), ("Job001", other)]
+    assert refusal(post_document, path, MACHINE, tmp_path / "out", AT_FIXTURE) == ["F105"]
+    assert main(["post", str(path), "--out", str(tmp_path / "out")]) == 2
+    assert main(["post", str(path), "--job", label, "--out", str(tmp_path / "out")]) == 1
+    assert "F105" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_jobs_with_names_of_their_own_are_posted_side_by_side(ready, tmp_path):
+    second = new_job(ready.Document)
+    add_operation(second, [*FIVE_AXIS, "G0 Z40"])
+    ready.Label, second.Label = "Op 1", "Op 2"
+    path = saved(ready.Document, tmp_path)
+    assert main(["post", str(path), "--out", str(tmp_path / "out")]) == 0
+    assert {"part-Op_1.pmc", "part-Op_2.pmc"} < {each.name for each in (tmp_path / "out").iterdir()}
 
 
 def test_file_that_is_no_document(tmp_path):
