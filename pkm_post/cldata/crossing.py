@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Crossing: the way of the tool from where it is to above the next hole, in rapid moves.
 
-Two places with their tool axes enter, mm and the work frame; two places leave between which the tool moves sideways.
-It rises first, crosses, and goes down last: a hole is left along the axis it has, and entered along that of the next.
+Places with their tool axes enter, two and two, mm and the work frame; the places leave between which the tool moves
+sideways. It rises first, crosses, and goes down last: a hole is left along the axis it has, and entered along that of
+the next.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
+from pkm_post.geometry.vectors import dot
 from pkm_post.model.program import Array
 
 LEAST_COSINE = 0.5
@@ -23,17 +27,17 @@ def crossing(here: Array, here_axis: Array, top: Array, top_axis: Array) -> tupl
     the line between them: no move sideways passes below what the hole behind or the hole ahead needs.
 
     Args:
-        here: (3,) where the tool is, high enough for the hole behind.
-        here_axis: (3,) its unit axis there, k0.
-        top: (3,) the lowest place above the next hole in which the tool may arrive.
-        top_axis: (3,) its unit axis there, k1; k0.k1 is at least ``LEAST_COSINE``.
+        here: (N, 3) where the tool is, high enough for the hole behind.
+        here_axis: (N, 3) its unit axes there, k0.
+        top: (N, 3) the lowest places above the next holes in which the tool may arrive.
+        top_axis: (N, 3) its unit axes there, k1; k0.k1 is at least ``LEAST_COSINE``.
 
     Raises:
-        ValueError: the axes are too far from each other.
+        ValueError: some axes are too far from each other.
     """
-    cosine = float(here_axis @ top_axis)
-    if cosine < LEAST_COSINE:
-        raise ValueError(f"axes with a cosine of at least {LEAST_COSINE} expected, got {cosine}")
-    rise = max(0.0, float((top - here) @ top_axis) / cosine)
-    drop = max(0.0, float((here - top) @ here_axis) / cosine)
-    return here + rise * here_axis, top + drop * top_axis
+    cosine = dot(here_axis, top_axis)
+    if (cosine < LEAST_COSINE).any():
+        raise ValueError(f"axes with cosines of at least {LEAST_COSINE} expected, got {cosine.min()}")
+    rise = np.maximum(0.0, dot(top - here, top_axis) / cosine)
+    drop = np.maximum(0.0, dot(here - top, here_axis) / cosine)
+    return here + rise[:, None] * here_axis, top + drop[:, None] * top_axis

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilled: the points at which a cycle is in force, each with its moves.
+"""Drilled: the points at which a cycle is in force, with their moves.
 
-The notes of the course and the resolved points enter; holes leave, by the index of their point.
+The notes of the course and the resolved points enter; holes leave. Where the tool is before a hole follows from the
+hole before it: its point, its axis and its return height.
 """
 
 from __future__ import annotations
@@ -10,48 +11,81 @@ import numpy as np
 
 from pkm_post.cldata.course import Course
 from pkm_post.cldata.crossing import LEAST_COSINE
-from pkm_post.cldata.cycle_moves import Hole, Stand, hole
+from pkm_post.cldata.cycle_moves import moves_of
+from pkm_post.cldata.cycles import Cycle
 from pkm_post.cldata.fit import Fitted
+from pkm_post.cldata.hole_moves import Holes, Sites, hole_moves
 from pkm_post.cldata.points import Points, in_force
+from pkm_post.geometry.vectors import dot
 from pkm_post.model.program import Array
 
 
-def drilled_holes(course: Course, points: Points, arcs: Fitted) -> dict[int, Hole]:
-    """The points at which a cycle is in force, with its moves.
+def drilled_holes(course: Course, points: Points, arcs: Fitted) -> Holes:
+    """The points at which a cycle is in force, with their moves.
 
     Tells axes that are too far from each other, and arcs that begin or end at a hole, where the tool is not.
     """
-    cycles = [None, *(cycle for _, cycle in course.cycles)]
-    active = in_force(points.row, [row for row, _ in course.cycles]) + 1
-    on = np.array([cycle is not None for cycle in cycles], dtype=np.bool_)
-    drilling, series = on[active], np.cumsum(~on)[active]
-    holes: dict[int, Hole] = {}
-    initial: Array | None = None
-    for point in np.flatnonzero(drilling & ~points.start).tolist():
-        cycle = cycles[active[point]]
-        before = _stand(points, holes, point)
-        if point - 1 not in holes or series[point] != series[point - 1]:
-            initial = before.position if before else None
-        if cycle is not None and _within_reach(course, points, before, point):
-            holes[point] = hole(cycle, before, initial, points.position[point], points.axis[point])
-    for end in arcs.point.tolist():
-        if end in holes or end - 1 in holes:
-            course.tell("L422", int(points.row[end]), "an arc")
-    return holes
+    active = in_force(points.row, [row for row, _ in course.cycles])
+    on = np.array([*(cycle is not None for _, cycle in course.cycles), False], dtype=np.bool_)
+    drilling = on[active] & ~points.start
+    for end in arcs.point[drilling[arcs.point] | drilling[np.maximum(arcs.point - 1, 0)]].tolist():
+        course.tell("L422", int(points.row[end]), "an arc")
+    drilling[arcs.point] = False
+    # A cycle that was off begins a new series: each change of the cycle has the number of those to off before it.
+    series = np.cumsum(~on)[active]
+    cycles = [cycle for _, cycle in course.cycles if cycle is not None]
+    sites = _sites(points, np.flatnonzero(drilling), (np.cumsum(on) - 1)[active], series, cycles)
+    return hole_moves(sites.only(_near_enough(course, points, sites)), [moves_of(cycle) for cycle in cycles])
 
 
-def _stand(points: Points, holes: dict[int, Hole], point: int) -> Stand | None:
-    """Where the tool is before a point, None at the start of the program."""
-    if not point:
-        return None
-    position = holes[point - 1].position[-1] if point - 1 in holes else points.position[point - 1]
-    return Stand(position, points.axis[point - 1])
+def _sites(points: Points, point: Array, cycle: Array, series: Array, cycles: list[Cycle]) -> Sites:
+    """The holes in their order, and where the tool is before each."""
+    before = np.maximum(point - 1, 0)
+    behind = np.concatenate([[False], np.diff(point) == 1])[: len(point)]
+    goes_on = behind & (series[point] == series[before])
+    sites = Sites(
+        point=point,
+        cycle=cycle[point],
+        place=points.position[point],
+        axis=points.axis[point],
+        top=np.empty((len(point), 3)),
+        known=point > 0,
+        here=points.position[before].copy(),
+        here_axis=points.axis[before],
+    )
+    sites.top[:] = sites.place + _return_heights(sites, behind, goes_on, cycles)[:, None] * sites.axis
+    sites.here[behind] = sites.top[np.flatnonzero(behind) - 1]
+    return sites
 
 
-def _within_reach(course: Course, points: Points, before: Stand | None, point: int) -> bool:
-    """Whether the tool can cross to a hole; tells if not."""
-    cosine = float(before.axis @ points.axis[point]) if before else 1.0
-    if cosine < LEAST_COSINE:
-        angle = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
-        course.tell("L421", int(points.row[point]), f"{angle:.6g} degrees")
-    return cosine >= LEAST_COSINE
+def _return_heights(sites: Sites, behind: Array, goes_on: Array, cycles: list[Cycle]) -> Array:
+    """How high above each hole the tool returns to, and comes from at least, (H,).
+
+    Args:
+        sites: the holes; ``here`` where no hole is directly before.
+        behind: (H,) whether there is one.
+        goes_on: (H,) whether it belongs to the same series, which has one height before its first hole.
+        cycles: by ``sites.cycle``.
+    """
+    back = np.array([cycle.height for cycle in cycles])[sites.cycle]
+    clearance = np.array([cycle.clearance for cycle in cycles])[sites.cycle]
+    to_initial = np.array([cycle.to_initial for cycle in cycles], dtype=np.bool_)[sites.cycle]
+    firsts = np.flatnonzero(~goes_on)
+    for first, end in zip(firsts.tolist(), [*firsts[1:].tolist(), len(back)], strict=False):
+        mine = slice(first, end)
+        if to_initial[mine].any():
+            last = first - 1
+            initial = sites.place[last] + back[last] * sites.axis[last] if behind[first] else sites.here[first]
+            level = np.maximum(clearance[mine], dot(initial - sites.place[mine], sites.axis[mine]))
+            back[mine] = np.where(to_initial[mine], level, back[mine])
+    return back
+
+
+def _near_enough(course: Course, points: Points, sites: Sites) -> Array:
+    """Which holes the tool can cross to, (H,); tells the others."""
+    cosine = np.where(sites.known, dot(sites.here_axis, sites.axis), 1.0)
+    near: Array = cosine >= LEAST_COSINE
+    for hole in np.flatnonzero(~near).tolist():
+        angle = np.degrees(np.arccos(max(cosine[hole], -1.0)))
+        course.tell("L421", int(points.row[sites.point[hole]]), f"{angle:.6g} degrees")
+    return near

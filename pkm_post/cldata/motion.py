@@ -14,9 +14,9 @@ import numpy as np
 
 from pkm_post.cldata.contour_data import Offset
 from pkm_post.cldata.course import Course
-from pkm_post.cldata.cycle_moves import Hole
 from pkm_post.cldata.drilled import drilled_holes
 from pkm_post.cldata.fit import Fitted
+from pkm_post.cldata.hole_moves import Holes
 from pkm_post.cldata.points import Points, in_force
 from pkm_post.geometry.arcs import arc_length, arc_sweep
 from pkm_post.geometry.vectors import dot, norm
@@ -85,11 +85,11 @@ def _column(changes: Sequence[tuple[float, ...]], row: Array, item: int, first: 
     return column
 
 
-def _rows(course: Course, points: Points, arcs: Fitted, holes: dict[int, Hole]) -> Rows:
+def _rows(course: Course, points: Points, arcs: Fitted, holes: Holes) -> Rows:
     """The rows: of one point one, but for holes and arcs of several turns."""
     count = np.ones(len(points.row), dtype=np.int64)
     count[arcs.point] += arcs.turns
-    count[list(holes)] = [len(moves.feed) for moves in holes.values()]
+    count[holes.point] = np.diff(holes.start)
     point = np.repeat(np.arange(len(count)), count)
     start = np.concatenate([[0], np.cumsum(count)])
     arc_of = np.full(len(count), -1)
@@ -106,8 +106,7 @@ def _rows(course: Course, points: Points, arcs: Fitted, holes: dict[int, Hole]) 
     position, tool_axis = points.position[point], points.axis[point]
     rows = Rows(start, point, kind, position, tool_axis, feeds[feed][point], inverse[feed][point], centre, axis)
     _fill_turns(points, arcs, rows)
-    for index, moves in holes.items():
-        _fill_hole(rows, start[index], moves)
+    _fill_holes(rows, holes)
     rows.feed[rows.kind == Kind.RAPID] = np.nan
     return rows
 
@@ -134,13 +133,20 @@ def _fill_turns(points: Points, arcs: Fitted, rows: Rows) -> None:
         )
 
 
-def _fill_hole(rows: Rows, first: int, moves: Hole) -> None:
-    """Write the moves of a hole."""
-    mine = slice(first, first + len(moves.feed))
-    rows.position[mine], rows.tool_axis[mine] = moves.position, moves.axis
-    rows.feed[mine], rows.inverse[mine] = moves.feed, False
-    rows.kind[mine] = np.where(np.isnan(moves.feed), Kind.RAPID, Kind.LINE)
+def _fill_holes(rows: Rows, holes: Holes) -> None:
+    """Write the moves of the holes."""
+    mine = _rows_of(rows.start, holes, np.arange(len(holes.feed)))
+    rows.position[mine], rows.tool_axis[mine] = holes.position, holes.axis
+    rows.feed[mine], rows.inverse[mine] = holes.feed, False
+    rows.kind[mine] = np.where(np.isnan(holes.feed), Kind.RAPID, Kind.LINE)
     rows.centre[mine] = rows.axis[mine] = np.nan
+
+
+def _rows_of(start: Array, holes: Holes, move: Array) -> Array:
+    """The rows of moves of holes; ``start`` is where the rows of each point begin."""
+    hole = np.searchsorted(holes.start, move, "right") - 1
+    row: Array = start[holes.point[hole]] + move - holes.start[hole]
+    return row
 
 
 def _inverse_time(course: Course, points: Points, rows: Rows) -> None:
@@ -161,16 +167,17 @@ def _inverse_time(course: Course, points: Points, rows: Rows) -> None:
         course.tell("L407", int(points.row[rows.point[bare[0]]]), f"the move{more}")
 
 
-def _events(course: Course, points: Points, start: Array, holes: dict[int, Hole]) -> tuple[Event, ...]:
+def _events(course: Course, points: Points, start: Array, holes: Holes) -> tuple[Event, ...]:
     """What happens, by row."""
     at = np.searchsorted(points.row, np.array([row for row, _, _ in course.events], dtype=np.int64), "left")
     found = [
         Event(int(start[point]), kind, value)
         for point, (_, kind, value) in zip(at.tolist(), course.events, strict=True)
     ]
-    active = in_force(points.row, [row for row, _ in course.cycles])
-    for point, moves in holes.items():
-        cycle = course.cycles[int(active[point])][1]
-        if cycle is not None and cycle.dwell > 0:
-            found.append(Event(int(start[point]) + moves.dwell_at, EventKind.DWELL, cycle.dwell))
+    dwells = np.flatnonzero(holes.dwell > 0)
+    rows = _rows_of(start, holes, holes.dwell_at[dwells])
+    found += [
+        Event(row, EventKind.DWELL, dwell)
+        for row, dwell in zip(rows.tolist(), holes.dwell[dwells].tolist(), strict=True)
+    ]
     return tuple(sorted(found, key=lambda event: event.row))
