@@ -189,8 +189,14 @@ def test_what_a_machine_file_may_not_say_of_it(tmp_path, old, new, code, found):
     assert found in str(faults[0])
 
 
-def test_a_pose_out_of_reach_is_told(tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("nose = [90.0,", "nose = [690.0,"), ("axis = [0.1, 0.06, 1.0]", "axis = [1.5, 0.0, 1.0]"), ("7.0", "75.0")],
+)
+def test_a_pose_out_of_reach_is_told(tmp_path, capsys, old, new):
     made = tool_change_file(tmp_path)
-    made.write_text(made.read_text().replace("nose = [90.0,", "nose = [690.0,"))
+    table = made.read_text().partition("[tool_change]")
+    made.write_text(table[0] + table[1] + table[2].replace(old, new, 1))
     assert main(["machine", "check", str(made)]) == 0
-    assert "M115" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "M115" in told and "M108" not in told

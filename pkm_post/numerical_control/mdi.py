@@ -76,8 +76,8 @@ def line_trajectory(
     told += faults
     if program is None or errors(told):
         return None, told
-    # A trajectory begins at the home of its machine: here that is where the tool is.
-    standing = replace(machine, home_tip=here.tip, home_axis=here.axis, home_spin=here.spin)
+    # A trajectory begins at the home of its machine: here that is where the tool is. A line goes straight from there.
+    standing = replace(machine, home_tip=here.tip, home_axis=here.axis, home_spin=here.spin, tool_change=None)
     trajectory, faults = trajectory_of(program, standing, options)
     told += tuple(replace(fault, code="C201") if fault.code == _NO_MOVE else fault for fault in faults)
     if trajectory is None or reading.axis_words == _SAYS_THE_SPIN:

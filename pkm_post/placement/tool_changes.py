@@ -5,8 +5,9 @@ A program in {M} enters; the same leaves with the moves that its tool changes ta
 their own, "tool change T2", with the line after the change. The platform stands at the change, so the way goes with
 the length of the tool before to the spindle nose of the pose, and from there with that of the tool after. It leads on
 to the end of the next row if that is a rapid move, else back to where the next row begins: that row is as programmed.
+A program that begins without a tool change crosses to its first point above the safe height as well: "approach".
 
-Where the machine file states no tool-change pose, tools change where they are.
+Where the machine file states no tool-change pose, tools change where they are, and nothing is added.
 """
 
 from __future__ import annotations
@@ -17,28 +18,35 @@ from itertools import groupby
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Program, Tool, ToolChange
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Tool, ToolChange
 from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS, Array
 from pkm_post.placement.safe_way import FLATTEST, ToolPose, columns, safe_way
 
 Findings = tuple[Diagnostic, ...]
+_Tools = tuple[int, Tool, Tool]
+"""A row before which tools change, the tool before and the tool after."""
 
 
 @dataclass(frozen=True)
-class _Change:
-    """One stop at the tool-change pose, before a row.
+class _Detour:
+    """Moves before a row of the program.
 
     Attributes:
-        row: the next row of the program.
-        tool: the tool after it.
-        there: moves that end at the pose.
+        row: the row.
+        name: of the operation they belong to.
+        there: moves that end at the tool-change pose; none of an approach.
         back: moves from there to where the program goes on.
     """
 
     row: int
-    tool: Tool
+    name: str
     there: tuple[ToolPose, ...]
     back: tuple[ToolPose, ...]
+
+    @property
+    def moves(self) -> tuple[ToolPose, ...]:
+        """Their ends, in order."""
+        return (*self.there, *self.back)
 
 
 def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Findings]:
@@ -51,17 +59,18 @@ def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Find
     pose = machine.tool_change
     if pose is None:
         return program, ()
-    faults: list[Diagnostic] = []
-    changes = []
-    for row, before, after in _tools_at_changes(program):
-        wrong = tuple(_faults(program, machine, pose, row, (before, after)))
-        faults += wrong
-        if not wrong:
-            changes.append(_change(program, machine, pose, row, before, after))
-    return (program, tuple(faults)) if faults or not changes else (_inserted(program, changes), ())
+    changes = tuple(_tools_at_changes(program))
+    rows = [row for row, _, _ in changes]
+    begins = [0] if program.kind[0] == Kind.RAPID and 0 not in rows else []
+    faults = [*_low_tips(program, pose, changes), *_flat_axes(program, machine, pose, [*begins, *rows])]
+    if faults:
+        return program, tuple(faults)
+    detours = [_approach(program, machine, pose) for _ in begins]
+    detours += [_change(program, machine, pose, *change) for change in changes]
+    return (_inserted(program, detours) if any(detour.moves for detour in detours) else program), ()
 
 
-def _tools_at_changes(program: Program) -> Iterator[tuple[int, Tool, Tool]]:
+def _tools_at_changes(program: Program) -> Iterator[_Tools]:
     """Each row before which tools change, with the tool before and the tool after; the first one is taken as loaded."""
     changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
     loaded = program.tools[int(changes[0].value)] if changes else None
@@ -89,51 +98,63 @@ def _goes_on(program: Program, machine: Machine, row: int) -> ToolPose | None:
     return _end_of(program, row) if program.kind[row] == Kind.RAPID else _pose_before(program, machine, row)
 
 
-def _change(program: Program, machine: Machine, pose: ToolChange, row: int, before: Tool, after: Tool) -> _Change:
+def _approach(program: Program, machine: Machine, pose: ToolChange) -> _Detour:
+    """The way from home to the first point; the first row is its last move."""
+    return _Detour(
+        0, "approach", (), safe_way(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
+    )
+
+
+def _change(program: Program, machine: Machine, pose: ToolChange, row: int, before: Tool, after: Tool) -> _Detour:
     there, back = (ToolPose(pose.tip(tool.length), pose.axis, pose.spin) for tool in (before, after))
     target = _goes_on(program, machine, row)
     way_back = () if target is None else safe_way(back, target, pose.safe_height)
     if target is not None and program.kind[row] == Kind.RAPID:
         way_back = way_back[:-1]  # the row itself goes there
-    return _Change(row, after, safe_way(_pose_before(program, machine, row), there, pose.safe_height), way_back)
+    way_there = safe_way(_pose_before(program, machine, row), there, pose.safe_height)
+    return _Detour(row, f"tool change T{after.number}", way_there, way_back)
 
 
-def _faults(
-    program: Program, machine: Machine, pose: ToolChange, row: int, tools: tuple[Tool, Tool]
-) -> Iterator[Diagnostic]:
-    place = program.place(min(row, len(program) - 1))
-    for tool in dict.fromkeys(tools):
-        tip = float(pose.tip(tool.length)[2])
-        if tip < pose.safe_height:
-            yield Diagnostic("K141", place, f"T{tool.number} at z {tip:.3f} mm, safe are {pose.safe_height:g} mm")
-    for end in (_pose_before(program, machine, row), _goes_on(program, machine, row)):
-        if end is not None and not end.rises_to(pose.safe_height):
-            tilt = np.degrees(np.arccos(end.axis[2]))
-            most = np.degrees(np.arccos(FLATTEST))
-            yield Diagnostic("K142", place, f"{tilt:.3f} degrees from upright, at most {most:.1f}")
+def _low_tips(program: Program, pose: ToolChange, changes: tuple[_Tools, ...]) -> Iterator[Diagnostic]:
+    for row, *tools in changes:
+        for tool in dict.fromkeys(tools):
+            tip = float(pose.tip(tool.length)[2])
+            if tip < pose.safe_height:
+                found = f"T{tool.number} at z {tip:.3f} mm, safe are {pose.safe_height:g} mm"
+                yield Diagnostic("K141", _place(program, row), found)
 
 
-def _inserted(program: Program, changes: list[_Change]) -> Program:
-    """The program with the rows of all changes; events from a change on take place at its pose."""
-    names = list(dict.fromkeys(_name(change) for change in changes))
-    ways = [(change, pose) for change in changes for pose in (*change.there, *change.back)]
-    at = np.array([change.row for change, _ in ways])
+def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[int]) -> Iterator[Diagnostic]:
+    """Ends of ways before these rows from which no height is gained."""
+    for row in rows:
+        for end in (_pose_before(program, machine, row), _goes_on(program, machine, row)):
+            if end is not None and not end.rises_to(pose.safe_height):
+                tilt, most = (float(np.degrees(np.arccos(rise))) for rise in (end.axis[2], FLATTEST))
+                found = f"{tilt:.3f} degrees from upright, at most {most:.1f}"
+                yield Diagnostic("K142", _place(program, row), found)
+
+
+def _place(program: Program, row: int) -> Place:
+    return program.place(min(row, len(program) - 1))
+
+
+def _inserted(program: Program, detours: list[_Detour]) -> Program:
+    """The program with the rows of all detours; events from a tool change on take place at its pose."""
+    names = list(dict.fromkeys(detour.name for detour in detours))
+    ways = [(detour, pose) for detour in detours for pose in detour.moves]
+    at = np.array([detour.row for detour, _ in ways])
     tip, axis, spin = columns([pose for _, pose in ways])
     added = _blank(len(ways)) | {
         "kind": np.full(len(ways), Kind.RAPID),
         "position": tip,
         "tool_axis": axis,
         "spin": spin,
-        "operation": np.array([len(program.operations) + names.index(_name(change)) for change, _ in ways]),
+        "operation": np.array([len(program.operations) + names.index(detour.name) for detour, _ in ways]),
         "line": program.line[np.minimum(at, len(program) - 1)],
     }
     grown = {name: np.insert(getattr(program, name), at, rows, axis=0) for name, rows in added.items()}
     operations = (*program.operations, *names)
-    return replace(program, **grown, operations=operations, events=tuple(_moved(program.events, changes)))
-
-
-def _name(change: _Change) -> str:
-    return f"tool change T{change.tool.number}"
+    return replace(program, **grown, operations=operations, events=tuple(_moved(program.events, detours)))
 
 
 def _blank(count: int) -> dict[str, Array]:
@@ -145,12 +166,12 @@ def _blank(count: int) -> dict[str, Array]:
     return nothing | unsaid
 
 
-def _moved(events: tuple[Event, ...], changes: list[_Change]) -> Iterator[Event]:
+def _moved(events: tuple[Event, ...], detours: list[_Detour]) -> Iterator[Event]:
     """The events at the rows they have between the new ones."""
-    added, ahead, changed = 0, list(changes), False
+    added, ahead, changed = 0, list(detours), False
     for event in events:
         while ahead and (ahead[0].row < event.row):
-            added += len(ahead[0].there) + len(ahead[0].back)
+            added += len(ahead[0].moves)
             changed = False
             ahead.pop(0)
         changed |= event.kind is EventKind.TOOL_CHANGE

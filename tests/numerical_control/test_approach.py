@@ -172,3 +172,17 @@ def test_how_far_away_is_a_matter_of_poses():
     assert start_faults(MACHINE, lengths_at([0, 0, 300], spin=np.radians(0.01)), first, 0.05) == ()
     assert start_faults(MACHINE, lengths_at([0, 0, 300], spin=np.radians(0.02)), first, 0.05)
     assert "no pose" in start_faults(MACHINE, np.full(6, np.nan), first, 0.05)[0]
+
+
+def test_a_line_by_hand_goes_straight_whatever_the_safe_height(station):
+    """What a program does on its way from home is not what a typed line asks for."""
+    from pkm_post.numerical_control.mdi import line_trajectory
+
+    pose = ToolChange(np.array([0.0, 0.0, 500.0]), UP, 0.0, 290.0)
+    machine = dataclasses.replace(MACHINE, tool_change=pose, spin_up_time=2.0)
+    here = Pose(np.array([0.0, 0.0, 200.0]), UP, 0.0)
+    trajectory, told = line_trajectory("G0 X10", machine, here, TOOL)
+    assert told == () and len(trajectory) == 1 and trajectory.operations == ("",)
+    np.testing.assert_allclose(trajectory.tip, [[10.0, 0.0, 200.0]], atol=1e-6)
+    started, _ = line_trajectory("S12000 M3 G0 X10", machine, here, TOOL)
+    assert [event.value for event in started.events] == [12000.0, 1.0]

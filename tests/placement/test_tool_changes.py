@@ -117,6 +117,20 @@ def test_events_before_the_change_stay_at_the_part_and_those_after_it_are_at_the
     np.testing.assert_allclose(trajectory.tip[5], POSE.nose - 120.0 * POSE.axis)
 
 
+def test_a_program_without_a_tool_change_comes_to_its_first_point_from_above():
+    happens = (Event(0, EventKind.SPINDLE, 900), Event(1, EventKind.COOLANT, 1))
+    made = program([[30, 20, 60], [10, 0, 60]], events=happens)
+    trajectory = placed(made)
+    names = [trajectory.operations[number] for number in trajectory.operation]
+    assert names == ["approach", "Finish", "Finish"]
+    np.testing.assert_allclose(trajectory.tip[:2], [[30, 20, POSE.safe_height], [30, 20, 210]])
+    assert [(event.row, event.kind) for event in trajectory.events] == [(0, EventKind.SPINDLE), (2, EventKind.COOLANT)]
+    low = dataclasses.replace(MACHINE, home_tip=np.array([5.0, 0.0, 200.0]))
+    np.testing.assert_allclose(placed(made, low).tip[0], [5, 0, POSE.safe_height])
+    high = dataclasses.replace(made, position=made.position + [0, 0, 80])
+    assert placed(high).operations == ("Finish",)
+
+
 def test_a_change_at_the_end_stays_at_the_pose():
     events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.TOOL_CHANGE, 3))
     trajectory = placed(program([[0, 0, 60], [10, 0, 60]], events=events, tools=TOOLS))
@@ -164,6 +178,7 @@ def test_the_spin_at_a_change_is_that_of_the_machine_file(rule):
     ("code", "changed", "machine"),
     [
         ("K141", {}, with_tool_change(example(), safe_height=330.0)),
+        ("K142", {"tool_axis": np.tile([np.sqrt(1 - 0.0081), 0.0, 0.09], (3, 1)), "events": ()}, MACHINE),
         ("K142", {"tool_axis": np.tile([np.sqrt(1 - 0.0081), 0.0, 0.09], (3, 1))}, MACHINE),
         ("K140", {}, dataclasses.replace(example(), largest_tool_diameter=11.9)),
         ("K140", {}, dataclasses.replace(example(), longest_tool=149.9)),
