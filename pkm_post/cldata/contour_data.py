@@ -32,11 +32,19 @@ _TIGHTER = 0.01
 
 @dataclass(frozen=True)
 class Offset:
-    """How rows behind a statement are compensated: mm to the left in a plane, 0 for not at all."""
+    """How rows behind a statement are compensated.
+
+    Attributes:
+        row: the statement.
+        offset: mm to the left, 0 for not at all.
+        plane: the coordinate that the plane is normal to.
+        smaller: the points are the centre of a tool that was larger.
+    """
 
     row: int
     offset: float
     plane: int
+    smaller: bool
 
 
 @dataclass(frozen=True)
@@ -73,8 +81,9 @@ def contour_offsets(course: Course, points: Points, frames: Array, arcs: Fitted)
     offsets = []
     for cutcom, how, axis in zip(course.cutcoms, taken, normal, strict=True):
         plane = int(np.argmax(np.abs(axis)))
-        left = _distance(course, cutcom, how) * cutcom.side * np.sign(axis[plane])
-        offsets.append(Offset(cutcom.row, float(left) + 0.0, plane))
+        distance = _distance(course, cutcom, how)
+        left = distance * cutcom.side * np.sign(axis[plane])
+        offsets.append(Offset(cutcom.row, float(left) + 0.0, plane, how.points == CENTRE and distance < 0))
     return offsets, _told(course, taken)
 
 

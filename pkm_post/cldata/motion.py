@@ -56,7 +56,7 @@ def program_of(
     rows = _rows(course, points, arcs, holes)
     _inverse_time(course, points, rows)
     point = rows.point
-    sides = [(change.row, change.offset, change.plane) for change in offsets]
+    sides = [(change.row, change.offset, change.plane, change.smaller) for change in offsets]
     lines = course.statements.lines.number[course.statements.index[points.row]]
     return Program(
         kind=rows.kind,
@@ -72,6 +72,7 @@ def program_of(
         tools=dict(sorted(course.tools.items())),
         source=source,
         side_offset=_column(sides, points.row, 1, 0.0)[point],
+        smaller_tool=_column(sides, points.row, 3, 0)[point].astype(np.bool_),
         plane=_column(sides, points.row, 2, 2)[point].astype(np.uint8),
         normal=points.normal[point],
         reading=tuple(reading),

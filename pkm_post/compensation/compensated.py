@@ -55,6 +55,7 @@ def compensated(program: Program, elements: Elements, offsets: Offsets) -> tuple
         arc_axis=axis,
         exact_stop=program.exact_stop[source] & ~extra,
         side_offset=np.zeros(len(source)),
+        smaller_tool=np.zeros(len(source), dtype=np.bool_),
         events=tuple(Event(int(begin[event.row]), event.kind, event.value) for event in program.events),
     )
     return moved, source, extra

@@ -3,7 +3,8 @@
 
 The program, the compensated one and where its rows come from enter; diagnostics leave. Every row of a contour is
 measured against every cutting row of the same contour, not its neighbours alone. What lies lower than the tip is not
-touched. Where the path closes, what comes before and after the closed part leads to and from it, and is no wall. mm.
+touched, and the way of a larger tool bounds no part. Where the path closes, what comes before and after the closed part
+leads to and from it, and is no wall. mm.
 """
 
 from __future__ import annotations
@@ -64,6 +65,7 @@ def gouges(
     # What bounds the part is asked where something is too near, which is seldom.
     owner = np.searchsorted(elements.row, wall_row)
     bounds = walls_of(elements, walls, owner, np.unique(walls.first[wall]))[owner[wall]]
+    bounds &= ~program.smaller_tool[wall_row[wall]]
     path, wall, lacking = path_row[path[bounds]], wall_row[wall[bounds]], lacking[bounds]
     found = []
     for code, chosen in (("N204", ~leads[path]), ("N205", leads[path])):

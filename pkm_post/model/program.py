@@ -43,6 +43,7 @@ OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
     "exact_path": (np.bool_, (), False),
     "tip_tolerance": (np.float64, (), 0.0),
     "side_offset": (np.float64, (), 0.0),
+    "smaller_tool": (np.bool_, (), False),
     "plane": (np.uint8, (), 2),
     "normal": (np.float64, (3,), np.nan),
     "spin": (np.float64, (), np.nan),
@@ -77,6 +78,8 @@ class Program:
             default, leaves it to whoever posts the program.
         side_offset: (N,) radius of the 2D cutter compensation that the row is programmed with and that is not applied
             yet, mm: positive to the left of the path (G41), negative to the right (G42), 0 for none, the default.
+        smaller_tool: (N,) whether the row is the way of a tool that is larger than the one it is compensated for, which
+            it leads towards the part; False by default. Such a way bounds no part: nearer to it less is cut.
         plane: (N,) the coordinate the compensation's plane is normal to: 2 for XY (G17), the default, 1 for ZX (G18),
             0 for YZ (G19).
         normal: (N, 3) unit surface normal at the contact point, towards the tool, in {C}; NaN, the default, where the
@@ -104,6 +107,7 @@ class Program:
     exact_path: Array = None  # type: ignore[assignment] # filled in below
     tip_tolerance: Array = None  # type: ignore[assignment] # filled in below
     side_offset: Array = None  # type: ignore[assignment] # filled in below
+    smaller_tool: Array = None  # type: ignore[assignment] # filled in below
     plane: Array = None  # type: ignore[assignment] # filled in below
     normal: Array = None  # type: ignore[assignment] # filled in below
     spin: Array = None  # type: ignore[assignment] # filled in below

@@ -29,7 +29,7 @@ from pkm_post.placement.links import Link, closed, links, same_pose
 from pkm_post.placement.passes import passes, without_plunges
 from pkm_post.placement.reversed_events import misplaced, moved_events
 
-_POINT_COLUMNS = ("position", "tool_axis", "normal", "spin", "exact_stop", "side_offset")
+_POINT_COLUMNS = ("position", "tool_axis", "normal", "spin", "exact_stop", "side_offset", "smaller_tool")
 """What is said of the end of a row: on the row where compensation begins, only its end has the offset yet. All other
 columns are of the way there."""
 

@@ -255,6 +255,43 @@ def test_left_and_right_are_seen_from_the_tool_whichever_way_it_points(points, t
         assert codes(led(12.0, turn, frame=matrix)) == ["L429"]
 
 
+@pytest.mark.parametrize("wear", [0.25, -0.25])
+@pytest.mark.parametrize("side", ["LEFT", "RIGHT"])
+def test_wear_round_sharp_corners(side, wear):
+    corners = np.array([[-30.0, -20.0], [30.0, -20.0], [0.0, 35.0]])
+    text = written("apt", corners, side)
+    program, moved, _ = found(text, contour_data="centre", wear={1: wear})
+    if wear > 0:
+        assert_corners(moved, moved_inwards(corners, wear))
+    else:  # outer corners of more than a right angle are cut off: S3 and S4 of the joint go on by the wear
+        assert len(moved) > len(program)
+        for corner in corners:
+            near = np.hypot(*(moved.position[:, :2] - corner).T)
+            assert np.sort(near)[:4] == pytest.approx(0.25 * np.sqrt([1, 1, 2, 2]), abs=MICRON)
+
+
+def lapped(side, gap):
+    """A cut along a slot and back, so far beside itself, the tool between both cuts; it ends on its own beginning."""
+    way = -1.0 if side == "LEFT" else 1.0
+    y = -way * gap
+    points = [(0, 0), (60, 0), (60, y), (-5, y), (-5, 0), (3, 0)]
+    goto = "".join(f"GOTO/{x},{place:.4f},-1\n" for x, place in points)
+    head = "UNITS/MM\nCUTTER/10\nLOADTL/1\nFEDRAT/300,MMPM\n"
+    return f"{head}GOTO/0,{-2 * way},-1\nCUTCOM/{side}\n{goto}CUTCOM/OFF\nGOTO/3,{-2 * way},-1\n"
+
+
+@pytest.mark.parametrize("side", ["LEFT", "RIGHT"])
+def test_a_larger_tool_may_cut_the_other_side_and_a_smaller_one_may_not(side):
+    text = lapped(side, 8.0)
+    for wear, faulty in ((0.1, False), (-0.1, False), (3.9, False), (4.1, True), (-4.1, False)):
+        program, _ = read(text, "part.cl", ReadOptions(contour_data="centre", wear={1: wear}))
+        moved, told = compensate(program, OffsetOptions(), {})
+        assert (moved is None) == faulty, (wear, [str(fault) for fault in told])
+        assert program.smaller_tool.any() == (wear < 0)
+    program, _ = read(text, "part.cl", ReadOptions(contour_data="contour", wear={1: -0.1}))
+    assert not program.smaller_tool.any()
+
+
 @pytest.mark.parametrize(
     "items", ["LEFT,OSETNO,5", "LEFT,XYPLAN,OSETNO,5", "LEFT,PLANE,XYPLAN", "LEFT,ADJUST,5", "LEFT,5"]
 )

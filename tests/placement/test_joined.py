@@ -40,7 +40,7 @@ def test_every_column_of_each_program_is_there():
     rows = np.arange(3)
     first = program([[0, 0, 30], [1, 2, 0], [3, 4, 0]])
     told = {"exact_stop": rows == 1, "exact_path": rows == 2, "tip_tolerance": 0.01 * rows, "side_offset": 1.0 * rows}
-    told |= {"plane": [0, 1, 2], "normal": np.eye(3), "spin": 0.1 * rows}
+    told |= {"plane": [0, 1, 2], "normal": np.eye(3), "spin": 0.1 * rows, "smaller_tool": rows == 0}
     assert set(told) == set(OPTIONAL_COLUMNS)
     second = dataclasses.replace(first, **told)
     both = joined([first, second, first])
