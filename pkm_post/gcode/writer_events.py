@@ -77,7 +77,7 @@ def _spindle(speed: float) -> str:
 _EVENTS: dict[EventKind, Callable[[float], str]] = {
     EventKind.SPINDLE: _spindle,
     EventKind.COOLANT: lambda value: _COOLANT[int(value)] + "\n",
-    EventKind.DWELL: lambda seconds: f"G4 P{_short(seconds)}\n",
+    EventKind.DWELL: lambda seconds: f"G4 P{seconds:.4f}\n",  # without a point some controls take it for ms
     EventKind.STOP: lambda value: _STOP[int(value)] + "\n",
 }
 
