@@ -18,7 +18,7 @@ import numpy as np
 import Path
 import Path.Op.Custom
 
-from pkm_post.cldata import CONTOUR_DATA, UNITS
+from pkm_post.cldata import CONTOUR_DATA, DIALECTS, UNITS
 from pkm_post.compensation import OffsetOptions, compensate
 from pkm_post.freecad_app.commands import commands_of
 from pkm_post.freecad_app.object_properties import Row
@@ -37,6 +37,8 @@ _VIEW = "pkm_post.freecad_gui.program_view"
 
 AS_THE_FILE_SAYS = "file"
 """The choice that leaves it to the file."""
+CYCLE_ORDERS = ("depth,feed,clearance", "depth,feed,clearance,step", "depth,feed")
+"""What the numbers of cycles usually are; the command line takes others."""
 
 _G = "Program"
 _PROPERTIES: tuple[Row, ...] = (
@@ -50,6 +52,11 @@ _PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyEnumeration", "ContourData", _G,
      QT_TRANSLATE_NOOP("App::Property", "What the points of CL data under CUTCOM are: tool centre or part contour"),
      [AS_THE_FILE_SAYS, *CONTOUR_DATA]),
+    ("App::PropertyEnumeration", "ClDialect", _G,
+     QT_TRANSLATE_NOOP("App::Property", "The CAM system that wrote the CL data"), [AS_THE_FILE_SAYS, *DIALECTS]),
+    ("App::PropertyEnumeration", "CycleValues", _G,
+     QT_TRANSLATE_NOOP("App::Property", "What the numbers of a CYCLE statement are where they have no words"),
+     [AS_THE_FILE_SAYS, *CYCLE_ORDERS]),
 )  # fmt: skip
 _RESULTS: tuple[Row, ...] = (
     ("App::PropertyStringList", "Found", _G,
@@ -80,6 +87,7 @@ def create_program(
     dwell_unit: str = "s",
     unit: str | None = None,
     contour_data: str | None = None,
+    cl_dialect: str | None = None,
 ) -> Any:
     """Add a part program to a document.
 
@@ -91,12 +99,15 @@ def create_program(
         unit: of length, a key of ``cldata.UNITS``; as the file says if None.
         contour_data: what the points of CL data under CUTCOM are, one of ``cldata.CONTOUR_DATA``; as the file says if
             None.
+        cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; by its words if None.
     """
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
     PartProgram(obj)
     obj.File, obj.Label = str(path), path.name
-    set_reading(obj, Reading(axis_words, dwell_unit=dwell_unit, unit=unit, contour_data=contour_data))
+    set_reading(
+        obj, Reading(axis_words, dwell_unit=dwell_unit, unit=unit, contour_data=contour_data, cl_dialect=cl_dialect)
+    )
     if App.GuiUp:
         importlib.import_module(_VIEW).ProgramView(obj.ViewObject)
     document.recompute()
@@ -105,8 +116,16 @@ def create_program(
 
 def reading_of(obj: Any) -> Reading:
     """What the properties of a program object say of its file."""
-    unit, contour_data = (None if one == AS_THE_FILE_SAYS else one for one in (obj.Unit, obj.ContourData))
-    return Reading(obj.AxisWords, dwell_unit=obj.DwellUnit, unit=unit, contour_data=contour_data)
+    said = (obj.Unit, obj.ContourData, obj.ClDialect, obj.CycleValues)
+    unit, contour_data, dialect, values = (None if one == AS_THE_FILE_SAYS else one for one in said)
+    return Reading(
+        obj.AxisWords,
+        dwell_unit=obj.DwellUnit,
+        unit=unit,
+        contour_data=contour_data,
+        cl_dialect=dialect,
+        cycle_values=tuple(values.split(",")) if values else (),
+    )
 
 
 def set_reading(obj: Any, reading: Reading) -> None:
@@ -116,6 +135,8 @@ def set_reading(obj: Any, reading: Reading) -> None:
         "DwellUnit": reading.dwell_unit,
         "Unit": reading.unit or AS_THE_FILE_SAYS,
         "ContourData": reading.contour_data or AS_THE_FILE_SAYS,
+        "ClDialect": reading.cl_dialect or AS_THE_FILE_SAYS,
+        "CycleValues": ",".join(reading.cycle_values) or AS_THE_FILE_SAYS,
     }
     for name, choice in choices.items():
         if getattr(obj, name) != choice:

@@ -132,6 +132,14 @@
         <translation>刀位文件中 CUTCOM 下的点是刀具中心还是零件轮廓</translation>
     </message>
     <message>
+        <source>The CAM system that wrote the CL data</source>
+        <translation>生成刀位文件的 CAM 系统</translation>
+    </message>
+    <message>
+        <source>What the numbers of a CYCLE statement are where they have no words</source>
+        <translation>CYCLE 语句中没有关键字的数值的含义</translation>
+    </message>
+    <message>
         <source>What was found in reading the file</source>
         <translation>读取文件时发现的问题</translation>
     </message>
@@ -1152,6 +1160,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>单位：按文件说明</translation>
     </message>
     <message>
+        <source>CAM system as the file says</source>
+        <translation>CAM 系统：按文件说明</translation>
+    </message>
+    <message>
         <source>How the G-code says the tool axis</source>
         <translation>G 代码中刀轴的表示方式</translation>
     </message>
@@ -1166,6 +1178,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>What the points of CL data under CUTCOM are: tool centre or part contour</source>
         <translation>刀位文件中 CUTCOM 下的点是刀具中心还是零件轮廓</translation>
+    </message>
+    <message>
+        <source>The CAM system that wrote the CL data</source>
+        <translation>生成刀位文件的 CAM 系统</translation>
     </message>
     <message>
         <source>{} replaced</source>

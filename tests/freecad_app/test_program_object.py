@@ -156,6 +156,34 @@ def test_a_program_is_made_with_what_its_file_leaves_open(document, tmp_path):
     assert not [text for text in obj.Found if "error" in text]
 
 
+CYCLES = """UNITS/MM
+LOADTL/1
+FEDRAT/100,MMPM
+RAPID
+GOTO/0,0,50
+CYCLE/DRILL,{}
+GOTO/10,0,0
+CYCLE/OFF
+"""
+
+
+@pytest.mark.parametrize(
+    "items, name, choices, code",
+    [
+        ("FEDTO,-7,RAPTO,2", "ClDialect", {"nx": -7, "creo": None}, "L419"),
+        ("7.,85.,2.,MMPM", "CycleValues", {"depth,feed,clearance": -7, "depth,feed": None}, "L420"),
+    ],
+)
+def test_what_cycles_leave_open_is_said_by_properties(document, tmp_path, items, name, choices, code):
+    obj = create_program(document, written(tmp_path, "part.apt", CYCLES.format(items)))
+    assert code in [code_of(text) for text in obj.Found]
+    for choice, depth in choices.items():
+        setattr(obj, name, choice)
+        document.recompute()
+        reached = [words["Z"] for kind, words in moves(obj) if kind == "G1" and "Z" in words]
+        assert reached == ([depth] if depth else [])
+
+
 def test_saved_document_keeps_the_path_without_the_file(document, file, tmp_path):
     obj = create_program(document, file)
     before, name = moves(obj), obj.Name

@@ -228,6 +228,39 @@ def editor_asks_what_cl_data_leaves_open():
     }
 
 
+CYCLE = """UNITS/MM
+LOADTL/1
+FEDRAT/100,MMPM
+RAPID
+GOTO/0,0,50
+CYCLE/DRILL,FEDTO,-7,RAPTO,2
+GOTO/10,0,0
+CYCLE/OFF
+"""
+
+
+@step
+def editor_asks_who_wrote_cl_data():
+    editor = _editor()
+    reading, before, file = editor.body.reading, editor.body.file, editor.body.file.with_name("cycle.apt")
+    file.write_text(CYCLE, encoding="ascii")
+    editor.open_file(file)
+    told = [_codes(editor)]
+    reading.cl_dialect.setCurrentIndex(reading.cl_dialect.findData("nx"))
+    told.append(_codes(editor))
+    ended, messages = [], []
+    editor.posting.ended.connect(lambda: ended.append(True))
+    answer(messages)
+    editor.posting.post(file, reading.chosen(), "--work-offset=0,0,250 --tool-length 1=120")
+    until(lambda: ended, 60)
+    editor.open_file(before)
+    return {
+        "codes": told,
+        "posted": file.with_name("cycle-report.json").exists(),
+        "after": reading.chosen().cl_dialect,
+    }
+
+
 def _codes(editor):
     return [re.search(r"\b[A-Z]\d{3}\b", text)[0] for text in _findings(editor)]
 

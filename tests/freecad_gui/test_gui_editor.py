@@ -63,6 +63,13 @@ def test_editor_asks_what_cl_data_leaves_open(session):
     assert found["after"] == [None, None]
 
 
+def test_editor_asks_who_wrote_cl_data(session):
+    found = session["editor_asks_who_wrote_cl_data"]
+    assert found["codes"] == [["L419"], ["L411"]]
+    assert found["posted"]
+    assert found["after"] is None
+
+
 def test_editor_opens_a_part_program_that_is_dropped_among_other_files(session):
     found = session["editor_opens_what_is_dropped"]
     assert found["text"] == "G0 X1 Y2 Z3\n"

@@ -118,6 +118,8 @@ def _with_typed(reading: Reading, chosen: Namespace) -> Reading:
         dwell_unit=reading.dwell_unit,
         unit=typed.unit or reading.unit,
         contour_data=typed.contour_data or reading.contour_data,
+        cl_dialect=typed.cl_dialect or reading.cl_dialect,
+        cycle_values=typed.cycle_values or reading.cycle_values,
     )
 
 

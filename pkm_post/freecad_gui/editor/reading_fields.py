@@ -10,7 +10,7 @@ from __future__ import annotations
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.cldata import UNITS
+from pkm_post.cldata import DIALECTS, UNITS
 from pkm_post.program_text import Language
 from pkm_post.sources import AXIS_WORDS, DWELL_UNITS, Reading
 
@@ -33,6 +33,9 @@ class ReadingFields(QtWidgets.QWidget):
         super().__init__(parent)
         self.axis_words, self.dwell_unit = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.unit, self.contour_data = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
+        self.cl_dialect = QtWidgets.QComboBox(self)
+        # Seldom needed, and chosen in the properties of the program object: here it is kept alone.
+        self._cycle_values: tuple[str, ...] = ()
         self.axis_words.addItems(list(AXIS_WORDS))
         self.dwell_unit.addItems(list(DWELL_UNITS))
         self.unit.addItem(translate("PKM_Editor", "Unit as the file says"), None)
@@ -40,15 +43,19 @@ class ReadingFields(QtWidgets.QWidget):
             self.unit.addItem(name, name)
         for choice, text in _CONTOUR_DATA.items():
             self.contour_data.addItem(translate("PKM_Editor", text), choice)
+        self.cl_dialect.addItem(translate("PKM_Editor", "CAM system as the file says"), None)
+        for name, dialect in DIALECTS.items():
+            self.cl_dialect.addItem(dialect.title, name)
         self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
         self.dwell_unit.setToolTip(translate("PKM_Editor", "The unit of dwells of the G-code"))
         self.unit.setToolTip(translate("PKM_Editor", "The unit of length of the part program"))
         self.contour_data.setToolTip(
             translate("PKM_Editor", "What the points of CL data under CUTCOM are: tool centre or part contour")
         )
+        self.cl_dialect.setToolTip(translate("PKM_Editor", "The CAM system that wrote the CL data"))
         layout = QtWidgets.QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for field in (self.axis_words, self.dwell_unit, self.unit, self.contour_data):
+        for field in (self.axis_words, self.dwell_unit, self.unit, self.contour_data, self.cl_dialect):
             layout.addWidget(field)
             field.currentIndexChanged.connect(lambda index: self.changed.emit())
         self.offer_for(Language.GCODE)
@@ -57,7 +64,8 @@ class ReadingFields(QtWidgets.QWidget):
         """Show the fields that a language has a use for."""
         for field in (self.axis_words, self.dwell_unit):
             field.setVisible(language is Language.GCODE)
-        self.contour_data.setVisible(language is not Language.GCODE)
+        for field in (self.contour_data, self.cl_dialect):
+            field.setVisible(language is not Language.GCODE)
 
     def chosen(self) -> Reading:
         """What is chosen."""
@@ -66,6 +74,8 @@ class ReadingFields(QtWidgets.QWidget):
             dwell_unit=self.dwell_unit.currentText(),
             unit=self.unit.currentData(),
             contour_data=self.contour_data.currentData(),
+            cl_dialect=self.cl_dialect.currentData(),
+            cycle_values=self._cycle_values,
         )
 
     def show_reading(self, reading: Reading) -> None:
@@ -75,4 +85,6 @@ class ReadingFields(QtWidgets.QWidget):
         self.dwell_unit.setCurrentText(reading.dwell_unit)
         self.unit.setCurrentIndex(self.unit.findData(reading.unit))
         self.contour_data.setCurrentIndex(self.contour_data.findData(reading.contour_data))
+        self.cl_dialect.setCurrentIndex(self.cl_dialect.findData(reading.cl_dialect))
+        self._cycle_values = reading.cycle_values
         blocker.unblock()
