@@ -70,7 +70,8 @@ def study(
         return None, told
     stages = [("as it is, zero torsion", least_shares(placed, machine))]
     if free:
-        offset = best_position(placed, machine, free).machine_from_work
+        of_machine = placed.operation >= len(program.operations)  # the ways to tool changes and back
+        offset = best_position(placed, machine, free, fixed=of_machine).machine_from_work
         untwisted, options = replace(untwisted, work_offset=offset), replace(options, work_offset=offset)
         placed, told = pipeline.trajectory_of(program, machine, untwisted)
         if placed is None:

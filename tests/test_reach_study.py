@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from programs import ON_PALLET, cone
+from machines import with_tool_change
+from programs import BALL, ON_PALLET, cone
 
 from pkm_post.cli import main
 from pkm_post.machine_file import machine_named
+from pkm_post.model import Event, EventKind
 from pkm_post.pipeline import Options, trajectory_of
 from pkm_post.reach import reach
 from pkm_post.reach_study import study, told_offset
@@ -95,3 +97,16 @@ def test_what_cannot_be_read_is_told(tmp_path, capsys):
     told = capsys.readouterr().err
     assert "M101" in told
     assert "G4" in told
+
+
+def test_the_pose_of_tool_changes_does_not_move_with_the_part(machine):
+    """The best place is that of a machine that changes tools where they are: all cuts count, and nothing else."""
+    change = Event(60, EventKind.TOOL_CHANGE, 2)
+    job = cone(120)
+    job = replace(job, events=(*job.events, change), tools={1: BALL, 2: replace(BALL, number=2)})
+    low = with_tool_change(machine, nose=np.array([60.0, -40.0, 430.0]), safe_height=240.0)
+    start = Options(work_offset=off_centre())
+    plain, _ = study(job, machine, start, "xyz")
+    found, _ = study(job, low, start, "xyz")
+    assert found.machine_from_work == pytest.approx(plain.machine_from_work)
+    assert np.abs(plain.machine_from_work - off_centre()).max() > 10.0

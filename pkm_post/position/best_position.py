@@ -72,7 +72,11 @@ class _Job:
 
 
 def best_position(
-    trajectory: Trajectory, machine: Machine, free: str = "xyzc", weights: dict[int, float] | None = None
+    trajectory: Trajectory,
+    machine: Machine,
+    free: str = "xyzc",
+    weights: dict[int, float] | None = None,
+    fixed: Array | None = None,
 ) -> Position:
     """Search for the work offset.
 
@@ -81,13 +85,15 @@ def best_position(
         machine: geometry and limits.
         free: letters of ``FREEDOMS`` that may change.
         weights: which shares count, by column; the stroke if nothing is said.
+        fixed: (N,) whether a segment stays on the machine when the part moves: those of tool changes; none if nothing
+            is said.
 
     Raises:
         ValueError: a letter is not known, or there is none.
     """
     if not free or set(free) - set(FREEDOMS):
         raise ValueError(f"free: expected letters of {FREEDOMS!r}, got {free!r}")
-    job = _job(trajectory, machine)
+    job = _job(trajectory, machine, np.zeros(len(trajectory), dtype=bool) if fixed is None else fixed)
     every, weights = np.arange(len(job.tip)), weights or {STROKE: 1.0}
     chosen = np.array([letter in free for letter in FREEDOMS])
     move, active = np.zeros(6), _first_poses(job)
@@ -111,9 +117,11 @@ def best_position(
     )
 
 
-def _job(trajectory: Trajectory, machine: Machine) -> _Job:
+def _job(trajectory: Trajectory, machine: Machine, fixed: Array) -> _Job:
+    """The poses that move with the part; of a segment from home or a tool change, its end."""
     samples = Samples.of(trajectory)
-    rows = samples.s >= samples.row_s[0]
+    from_elsewhere, at_end = np.append(True, fixed[:-1]), np.append(np.diff(samples.segment) > 0, True)
+    rows = ~fixed[samples.segment] & (~from_elsewhere[samples.segment] | at_end)
     tip = samples.tip[rows]
     middle = (tip.min(axis=0) + tip.max(axis=0)) / 2
     return _Job(machine, middle, tip, samples.axis[rows], samples.spin[rows], samples.tool_length[rows])

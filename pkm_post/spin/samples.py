@@ -28,6 +28,7 @@ class Samples:
         axis: (S, 3) unit tool axis in {M}.
         tool_length: (S,) gauge length of the tool in use.
         spin: (S,) that of the trajectory, rad.
+        segment: (S,) that each sample lies on.
         row_s: (N,) path length at the end of each segment.
     """
 
@@ -36,6 +37,7 @@ class Samples:
     axis: Array
     tool_length: Array
     spin: Array
+    segment: Array
     row_s: Array
 
     @classmethod
@@ -53,5 +55,6 @@ class Samples:
             axis=segments.axis_at(segment, u)[0],
             tool_length=trajectory.tool_length()[segment],
             spin=segments.spin[segment] + u * segments.spin_rate[segment],
+            segment=segment,
             row_s=row_s,
         )
