@@ -5,7 +5,9 @@ import json
 
 import pytest
 
+import pkm_post
 from pkm_post.cli import main
+from pkm_post.sources import Reading
 
 RECTANGLE = """\
 TOOL PATH/PROFILE,TOOL,MILL_10
@@ -36,10 +38,11 @@ def corner(capsys, folder, header, *arguments):
     file = folder / "part.cls"
     file.write_text(RECTANGLE.format(header=header))
     code = main(["post", str(file), "--out", str(folder), "--tool-length", "1=100", *arguments])
-    told = capsys.readouterr().err
+    printed = capsys.readouterr()
     if code:
-        return code, told
+        return code, printed.err
     program = json.loads((folder / "part-report.json").read_text())["program"]
+    assert set(program["reading"]) <= set((printed.out + printed.err).splitlines())
     return program["box_mm"][1][:2], program["reading"]
 
 
@@ -60,6 +63,15 @@ def test_what_is_posted_is_where_the_reading_has_it(capsys, tmp_path, header, ar
     box, reading = corner(capsys, tmp_path, header, *arguments)
     assert box == [place, place]
     assert reading == [f"CUTCOM in line 11: {words}"]
+
+
+@pytest.mark.parametrize("points", ["centre", "contour"])
+def test_a_macro_and_the_command_line_write_the_same_bytes(capsys, tmp_path, points):
+    corner(capsys, tmp_path, NEITHER, f"--contour-data={points}", "--wear=1=-0.05", "--unit=mm")
+    reading = Reading(unit="mm", contour_data=points, wear={1: -0.05})
+    pkm_post.post(tmp_path / "part.cls", out=tmp_path / "macro", tool_lengths={1: 100.0}, reading=reading)
+    for name in ("part.pmc", "part.pkmt", "part-report.json"):
+        assert (tmp_path / name).read_bytes() == (tmp_path / "macro" / name).read_bytes()
 
 
 def test_two_readings_are_refused_and_nothing_is_written(capsys, tmp_path):

@@ -126,7 +126,7 @@ def _taken(course: Course, cutcom: Cutcom, tight: dict[int, _Tight]) -> _Taken:
         return _Taken(cutcom.said.points, f"as {cutcom.said.words} says")
     arcs = tight.get(cutcom.tool, _Tight())
     if course.dialect.tight_arcs_are_centre and arcs.towards and not arcs.away:
-        shown = _shown(course, arcs.towards, "bend towards the tool", cutcom.radius)
+        shown = _shown(course, arcs.towards, "bend towards it", cutcom.radius)
         return _Taken(CENTRE, shown, by_arcs=True)
     return _Taken()
 
@@ -148,7 +148,10 @@ def _told(course: Course, taken: list[_Taken]) -> list[str]:
     for how, mine in rows.items():
         if how.by_arcs:
             course.tell("L430", mine[0], how.evidence)
-    return [f"{_lines(course, mine)}: points are {_IN_WORDS[how.points]}, {how.evidence}" for how, mine in rows.items()]
+    return [
+        f"{_lines(course, mine)}: points are {_IN_WORDS[how.points]}, {'since ' * how.by_arcs}{how.evidence}"
+        for how, mine in rows.items()
+    ]
 
 
 def _lines(course: Course, rows: list[int]) -> str:
@@ -167,16 +170,17 @@ def _tell_undecided(course: Course, taken: list[_Taken], tight: dict[int, _Tight
         arcs, radius = tight.get(tool, _Tight()), mine[0].radius
         hints = [f"{_lines(course, [cutcom.row for cutcom in mine])} with T{tool}"]
         if arcs.towards:
-            hints.append(f"{_shown(course, arcs.towards, 'bend towards the tool', radius)}, as the centre may")
+            hints.append(f"{_shown(course, arcs.towards, 'bend towards it', radius)}, as the centre may")
         if arcs.away:
-            hints.append(f"{_shown(course, arcs.away, 'bend away from the tool', radius)}, as a contour may")
+            hints.append(f"{_shown(course, arcs.away, 'bend away from it', radius)}, as a contour may")
         course.tell("L429", mine[0].row, "; ".join(hints))
 
 
 def _shown(course: Course, arcs: list[tuple[int, float]], how: str, radius: float) -> str:
     row, tightest = min(arcs, key=lambda arc: arc[1])
     line = course.statements.place(row)[0]
-    return f"{len(arcs)} arcs {how} and are tighter than its radius of {radius:g} mm, line {line} by {tightest:.6g} mm"
+    shown = f"{len(arcs)} arcs {how} and are tighter than its radius of {radius:g} mm"
+    return f"{shown}, down to {tightest:.4g} mm in line {line}"
 
 
 def _tell_unused_wear(course: Course) -> None:

@@ -181,7 +181,7 @@ def _report(
         picture = frame.beside("-report.png")
         run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))
         told.extend(summary.verdict(certificate))
-    run.print(report["certificate"]["meaning"])
+    run.print([*reading, *report["certificate"]["meaning"]])
     return report
 
 

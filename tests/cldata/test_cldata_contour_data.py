@@ -208,7 +208,7 @@ def test_arcs_that_no_such_tool_can_follow_show_the_centre(turn):
             program, moved, told = found(text)
             assert told == ["L430"]
             assert moved.position == pytest.approx(as_they_stand(text), abs=1e-8)
-            assert "2 arcs bend towards the tool" in program.reading[0]
+            assert "points are the centre of the tool, since 2 arcs bend towards it" in program.reading[0]
         else:
             assert codes(text) == ["L429"], size
 
@@ -218,13 +218,13 @@ def test_elsewhere_such_arcs_may_be_a_tool_that_is_too_large(dialect):
     _, diagnostics = read(led(1.0, dialect=dialect), "part.cl", ReadOptions(hand="right"))
     (fault,) = errors(diagnostics)
     assert fault.code == "L429"
-    assert "2 arcs bend towards the tool and are tighter than its radius of 5 mm, line" in fault.found
-    assert fault.found.endswith("by 1 mm, as the centre may")
+    shown = "2 arcs bend towards it and are tighter than its radius of 5 mm, down to 1 mm in line"
+    assert re.search(rf"; {shown} \d+, as the centre may$", fault.found)
 
 
 def test_arcs_that_no_centre_goes_by_speak_against_it():
     (fault,) = errors(read(led(1.0, away=True), "part.cl")[1])
-    assert fault.found.endswith("by 1 mm, as a contour may")
+    assert re.search(r"2 arcs bend away .* down to 1 mm in line \d+, as a contour may$", fault.found)
     both = led(1.0) + "\n".join(led(1.0, away=True).splitlines()[6:])
     (fault,) = errors(read(both, "part.cl")[1])
     assert "as the centre may; 2 arcs bend away" in fault.found
@@ -253,6 +253,56 @@ def test_left_and_right_are_seen_from_the_tool_whichever_way_it_points(points, t
         assert moved.position == pytest.approx(straight.position @ matrix.T, abs=1e-5)
         assert codes(led(1.0, turn, frame=matrix)) == ["L430"]
         assert codes(led(12.0, turn, frame=matrix)) == ["L429"]
+
+
+def rounded(corners, radius):
+    """Centres of the fillets of a pocket, and where each begins and ends, (N, 2) each."""
+    centres = moved_inwards(corners, radius)
+    ahead = np.roll(corners, -1, axis=0) - corners
+    outwards = np.stack([ahead[:, 1], -ahead[:, 0]], axis=1) / np.hypot(*ahead.T)[:, None]
+    return centres, centres + radius * np.roll(outwards, 1, axis=0), centres + radius * outwards
+
+
+def written_rounded(dialect, corners, radius, said=""):
+    """A file: a pocket with fillets, counterclockwise, with the axis that the dialect gives to such arcs."""
+    centres, begins, ends = rounded(corners, radius)
+    sense = {"nx": -1, "makino": -1}.get(dialect, 1)
+    first = (ends[0] + begins[1]) / 2
+    body = [f"GOTO/{first[0]:.6f},{first[1]:.6f},-1"]
+    for centre, begin, end in zip(*(np.roll(each, -1, axis=0) for each in (centres, begins, ends)), strict=True):
+        size = "" if dialect == "solidworks" else f",{radius}"
+        body += [
+            f"GOTO/{begin[0]:.6f},{begin[1]:.6f},-1",
+            f"CIRCLE/{centre[0]:.6f},{centre[1]:.6f},-1,0,0,{sense}{size}",
+        ]
+        body += [f"GOTO/{end[0]:.6f},{end[1]:.6f},-1"]
+    head = ("" if dialect == "solidworks" else "UNITS/MM\n") + HEADS[dialect] + said
+    body = "\n".join([*body, body[0]])
+    return f"{head}FEDRAT/300.,MMPM\nGOTO/0,0,-1\nCUTCOM/LEFT\n{body}\nCUTCOM/OFF\nGOTO/0,0,-1\n"
+
+
+@pytest.mark.parametrize("dialect, points, way", WAYS)
+def test_fillets_are_those_of_the_reading(dialect, points, way):
+    options = {"contour_data": points} if way == "option" else {}
+    said = SAID[dialect, points] if way == "said" else ""
+    for seed in SEEDS:
+        corners, radius = pocket(seed), random.Random(seed).choice([6.0, 7.5, 9.0])
+        _, moved, _ = found(written_rounded(dialect, corners, radius, said), **options)
+        left = radius - RADIUS if points == "contour" else radius
+        centres, begins, ends = (np.roll(each, -1, axis=0) for each in rounded(corners, radius))
+        arcs = np.flatnonzero(moved.kind == Kind.ARC)
+        assert moved.arc_centre[arcs, :2] == pytest.approx(centres, abs=1e-5)
+        assert moved.position[arcs - 1, :2] == pytest.approx(centres + (begins - centres) * left / radius, abs=1e-5)
+        assert moved.position[arcs, :2] == pytest.approx(centres + (ends - centres) * left / radius, abs=1e-5)
+        assert moved.arc_axis[arcs, 2] == pytest.approx(1)
+
+
+def test_fillets_tighter_than_the_tool_show_the_centre_in_camworks_alone():
+    for seed in SEEDS:
+        corners = pocket(seed)
+        assert codes(written_rounded("solidworks", corners, 3.0)) == ["L430"]
+        assert codes(written_rounded("solidworks", corners, 6.0)) == ["L429"]
+        assert codes(written_rounded("apt", corners, 3.0)) == ["L429"]
 
 
 @pytest.mark.parametrize("wear", [0.25, -0.25])
