@@ -11,6 +11,7 @@ import argparse
 import logging
 import sys
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from pkm_post.pmac_link.session import Session
 
 Value = TypeVar("Value")
+
+_STOPS = ("hold", "abort")
+"""They connect by themselves, again and again if need be."""
 
 
 def add_commands(commands: Any) -> None:
@@ -101,7 +105,9 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         return 1
     session, connected = _session(namespace), False
     try:
-        with session:
+        with closing(session):
+            if namespace.name not in _STOPS:
+                session.open()
             connected = True
             for note in session.notes:
                 print(note, file=sys.stderr)
@@ -113,6 +119,8 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         return 1
     except KeyboardInterrupt:
         print("interrupted; the controller goes on with what it does", file=sys.stderr)
+        if namespace.name in _STOPS:
+            pmac_control.tell_emergency(namespace.name, connected)
         return 1
 
 

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.cli.pmac_stop import abort, held_at_the_end, hold
 from pkm_post.cli.pmac_stream import stream
 
 if TYPE_CHECKING:
@@ -95,14 +96,8 @@ def start(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
-    return _tell(operate.run(session, target.settings, job.program, job.first, namespace.near, target.machine))
-
-
-def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Slow the program down to rest."""
-    from pkm_post.pmac_link import operate
-
-    return _tell(operate.hold(session, target.settings))
+    with held_at_the_end(session, target.settings):
+        return _tell(operate.run(session, target.settings, job.program, job.first, namespace.near, target.machine))
 
 
 def resume(session: Session, target: Target, namespace: argparse.Namespace) -> int:
@@ -110,13 +105,6 @@ def resume(session: Session, target: Target, namespace: argparse.Namespace) -> i
     from pkm_post.pmac_link import operate
 
     return _tell(operate.resume(session, target.settings))
-
-
-def abort(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """End the program."""
-    from pkm_post.pmac_link import operate
-
-    return _tell(operate.abort(session, target.settings, namespace.at_once))
 
 
 def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:

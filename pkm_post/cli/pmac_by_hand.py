@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """By hand: what the actions that move the machine by hand have in common.
 
-A plan is told, carried out and waited for, and where it has led is told; Ctrl-C while the machine moves holds it.
+A plan is told, carried out and waited for, and where it has led is told; What ends the command while the machine
+moves holds it.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from pkm_post.cli.pmac_stop import held_at_the_end
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_actions import Target
@@ -60,7 +61,7 @@ def carry_out(
     print(f"to {pose_text(plan.end)}; {plan.seconds:.1f} s")
     if namespace.check:
         return 0
-    with held_on_interrupt(control):
+    with held_at_the_end(session, target.settings):
         control.execute(plan)
         status = wait_for_end(session, target, plan.seconds)
     if ended_elsewhere(status, plan.lengths):
@@ -86,15 +87,3 @@ def ended_elsewhere(status: Status, lengths: Array) -> bool:
         words = [f"it ended {off_target(status, lengths):.3f} mm of a strut from where it leads to"]
     print(*words, sep="\n", end="\n" if words else "", file=sys.stderr)
     return bool(words)
-
-
-@contextmanager
-def held_on_interrupt(control: NumericalControl) -> Iterator[None]:
-    """Ctrl-C while the machine moves by hand means: stop."""
-    from pkm_post.pmac_link.faults import CancelledError
-
-    try:
-        yield
-    except KeyboardInterrupt:
-        control.hold()
-        raise CancelledError("interrupted and held: resume or abort it") from None

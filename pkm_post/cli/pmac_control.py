@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The actions of the command ``pmac`` that operate the machine by hand: home, jog, mdi, step, continue, override.
 
-Each plans what it does first and tells it; what the checks refuse is not sent. Ctrl-C while something moves holds it.
+Each plans what it does first and tells it; what the checks refuse is not sent. What ends the command while something
+moves holds it.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.pmac_by_hand import carry_out, control_of, ended_elsewhere, held_on_interrupt, wait_for_end
+from pkm_post.cli.pmac_by_hand import carry_out, control_of, ended_elsewhere, wait_for_end
+from pkm_post.cli.pmac_stop import held_at_the_end
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_actions import JobTarget, Target
@@ -37,12 +39,13 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
         missing = missing_homes(read_status(session, target.settings))
         print(f"not homed: strut {', '.join(map(str, missing))}" if missing else "all struts are homed")
         return int(bool(missing))
-    watch = start_homing(session, target.settings, namespace.trigger)
-    while True:
-        seen = watch.see(read_status(session, target.settings), session.now())
-        if seen.phase is not Phase.SEARCHING:
-            break
-        time.sleep(_WATCH_S)
+    with held_at_the_end(session, target.settings):
+        watch = start_homing(session, target.settings, namespace.trigger)
+        while True:
+            seen = watch.see(read_status(session, target.settings), session.now())
+            if seen.phase is not Phase.SEARCHING:
+                break
+            time.sleep(_WATCH_S)
     print(seen)
     return int(seen.phase is not Phase.DONE)
 
@@ -100,7 +103,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
         print(f"block {number} of {count}: Enter starts it, the end of the input ends here", flush=True)
         if not sys.stdin.readline():
             return 0
-        with held_on_interrupt(control):
+        with held_at_the_end(session, target.settings):
             # Only what comes first is begun by hand; the others begin where the one before them ended.
             last = control.step(namespace.near if number == namespace.block else NEAR_MM)
             status = wait_for_end(session, target, target.job.motion.time_ms[-1] / 1000)
@@ -115,7 +118,9 @@ def go_on(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
     from pkm_post.numerical_control.stops import go_on
     from pkm_post.pmac_link.readout import state_text
 
-    print(state_text(go_on(session, target.machine, target.settings, target.job, namespace.stop, namespace.near)))
+    with held_at_the_end(session, target.settings):
+        status = go_on(session, target.machine, target.settings, target.job, namespace.stop, namespace.near)
+        print(state_text(status))
     return 0
 
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The action ``pmac stream``: a program run from the rotary buffer while it is sent.
 
-Ctrl-C lets the machine go on to the next place where it rests; Ctrl-C again holds it on its path and ends the program.
+Ctrl-C lets the machine go on to the next place where it rests; Ctrl-C again, the end of the terminal or of this process
+by a signal hold it on its path and end the program.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING
+
+from pkm_post.cli.pmac_stop import signals_interrupt
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_actions import JobTarget
@@ -30,7 +33,7 @@ def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
     progress = _show_progress if sys.stderr.isatty() else _no_progress
-    with _interrupted_once() as is_cancelled:
+    with signals_interrupt(), _interrupted_once() as is_cancelled:
         done = stream(
             session,
             target.settings,

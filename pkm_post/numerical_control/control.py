@@ -23,7 +23,7 @@ from pkm_post.numerical_control.emergency import emergency_text
 from pkm_post.numerical_control.homing import Homing, HomingWatch, Phase, missing_homes, start_homing
 from pkm_post.numerical_control.plan import Plan, planned
 from pkm_post.numerical_control.single_block import Blocks, blocks_of
-from pkm_post.pmac_link import operate
+from pkm_post.pmac_link import operate, stopping
 from pkm_post.pmac_link.download import Loaded, Progress, download
 from pkm_post.pmac_link.faults import CancelledError, LinkLostError, NotReadyError, PmacError
 from pkm_post.pmac_link.job import Job
@@ -209,7 +209,7 @@ class NumericalControl:
 
     def hold(self) -> Status:
         """Slow down to rest on the path."""
-        return operate.hold(self._session, self._settings)
+        return stopping.hold(self._session, self._settings)
 
     def resume(self) -> Status:
         """Go on after a hold."""
@@ -218,7 +218,7 @@ class NumericalControl:
     def abort(self, at_once: bool = False) -> Status:
         """End the program: held first unless at once; a homing is no longer watched."""
         self._watch, self._last = None, replace(self._last, homing=None)
-        return operate.abort(self._session, self._settings, at_once)
+        return stopping.abort(self._session, self._settings, at_once)
 
     def override(self, percent: float) -> Status:
         """Set the override, above 0 and up to 100 %."""

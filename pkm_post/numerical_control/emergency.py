@@ -21,6 +21,15 @@ STEPS = (
 """In this order: people first, then the machine, then the link, then the part."""
 
 
+ADVICE_S = 2.0
+"""Seconds after a stop in which the machine has to be seen at rest, or people are called."""
+NOT_AT_REST = (
+    "THE MACHINE IS NOT SEEN AT REST. This computer goes on trying to stop it; do not wait for that.",
+    *STEPS[1:],
+)
+"""The same where a stop was sent and rest was not confirmed in time."""
+
+
 def emergency_text(last: Status | None) -> tuple[str, ...]:
     """What to do, or nothing when the state that was seen last shows a machine at rest without program.
 

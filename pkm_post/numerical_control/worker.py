@@ -8,14 +8,17 @@ state is read, ten times a second. Whoever looks on takes the newest state; it i
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from pkm_post.numerical_control.control import NumericalControl, State
+from pkm_post.numerical_control.emergency import ADVICE_S, NOT_AT_REST
 
 Done = TypeVar("Done")
 Order = tuple[Future[Any], Callable[[NumericalControl], Any]]
@@ -29,7 +32,6 @@ class Worker:
     """Carries out orders one after the other.
 
     Attributes:
-        state: the newest; nothing before the first reading.
         failure: why the thread has ended by itself, a fault of this program; None while it has not.
     """
 
@@ -44,12 +46,19 @@ class Worker:
         self._stops: deque[Order] = deque()
         self._orders: deque[Order] = deque()
         self._change, self._ended = threading.Condition(), False
-        self.state = State(None, None)
+        self._state, self._stop_since = State(None, None), math.inf
         self.failure: BaseException | None = None
         self._stopping = False
         control.give_way_when(self._is_waited_for)
         self._thread = threading.Thread(target=self._run, name="numerical control", daemon=True)
         self._thread.start()
+
+    @property
+    def state(self) -> State:
+        """The newest; nothing before the first reading. A stop that is not confirmed in time is an emergency."""
+        if self._is_stop_overdue() and not self._state.emergency:
+            return replace(self._state, emergency=NOT_AT_REST)
+        return self._state
 
     def submit(self, order: Callable[[NumericalControl], Done], urgent: bool = False) -> Future[Done]:
         """Have something done; returns at once.
@@ -71,6 +80,7 @@ class Worker:
                 raise RuntimeError("the worker has ended") from self.failure
             if urgent:
                 _cancel(self._orders)
+                self._stop_since = min(self._stop_since, time.monotonic())
             (self._stops if urgent else self._orders).append((future, order))
             self._change.notify()
         return future
@@ -91,15 +101,18 @@ class Worker:
             raise RuntimeError("the worker ended by a fault") from self.failure
 
     def _is_waited_for(self) -> bool:
-        """Whether a stop waits, or the end; the end waits for a stop that is being done."""
-        return bool(self._stops) or (self._ended and not self._stopping)
+        """Whether a stop waits, or the end; the end waits for a stop that is being done, but not for ever."""
+        return bool(self._stops) or (self._ended and (not self._stopping or self._is_stop_overdue()))
+
+    def _is_stop_overdue(self) -> bool:
+        return time.monotonic() - self._stop_since > ADVICE_S
 
     def _run(self) -> None:
         due = time.monotonic()
         try:
             while not self._ended:
                 if time.monotonic() >= due:
-                    self.state = self._control.poll()
+                    self._state = self._control.poll()
                     due = time.monotonic() + self._period
                 self._carry_out_next(due)
         except BaseException as failure:  # told by ``submit`` and ``close``: a thread has nobody to tell it to
@@ -121,7 +134,10 @@ class Worker:
         if not future.set_running_or_notify_cancel():
             return
         try:
-            future.set_result(order(self._control))
+            done = order(self._control)
+            if self._stopping and not self._stops:
+                self._stop_since = math.inf
+            future.set_result(done)
         except BaseException as fault:
             future.set_exception(fault)
             if not isinstance(fault, Exception):

@@ -23,6 +23,7 @@ class Dialogue:
 
     Attributes:
         messages: what programs in the controller sent of their own accord.
+        patience: seconds without a byte until an answer is given up.
         gives_way: asked while a query takes long: whether something more urgent waits for it.
     """
 
@@ -34,9 +35,10 @@ class Dialogue:
             patience: seconds without a byte until an answer is given up.
             clock: seconds of a clock that only grows.
         """
-        self._port, self._patience, self._clock = port, patience, clock
+        self._port, self._clock = port, clock
         self._link, self._conversation = port.link(), port.conversation()
         self.messages: list[str] = []
+        self.patience = patience
         self.gives_way: Callable[[], bool] = lambda: False
 
     @property
@@ -48,15 +50,18 @@ class Dialogue:
         """As ``exchange.Conversation``."""
         return self._conversation.lines_at_once(lines)
 
-    def restart(self) -> None:
-        """Connect anew; controller and conversation forget what was outstanding.
+    def restart(self, control: int | None = None) -> None:
+        """Connect again; controller and conversation forget what was outstanding.
+
+        Args:
+            control: code of a control character that goes out before anything else.
 
         Raises:
-            LinkLostError: nobody answers.
+            LinkLostError: the controller does not answer.
         """
         self._conversation = self._port.conversation()
         self._link.restart()
-        ended = self.run(None)
+        ended = self.run(None, control)
         if isinstance(ended, Lost):
             raise LinkLostError(ended.why)
 
@@ -71,7 +76,7 @@ class Dialogue:
             RefusedError: the controller does not answer it.
             LinkLostError: it makes no sense.
         """
-        ended = self.run(Command(text, Kind.QUERY, self._patience))
+        ended = self.run(Command(text, Kind.QUERY, self.patience))
         if isinstance(ended, Answer):
             return ended.lines
         if isinstance(ended, Refusal):
@@ -89,8 +94,8 @@ class Dialogue:
             raise LinkLostError(ended.why)
         return "\n".join(ended.lines) if isinstance(ended, Answer) else ""
 
-    def run(self, command: Command | None) -> Ending:
-        """One exchange, or a reset; the event that ended it.
+    def run(self, command: Command | None, control: int | None = None) -> Ending:
+        """One exchange, or a reset with the control character that goes before it; the event that ended it.
 
         Raises:
             LinkLostError: the link is cut.
@@ -98,7 +103,7 @@ class Dialogue:
         """
         conversation, began = self._conversation, self._clock()
         if command is None:
-            conversation.reset(began)
+            conversation.reset(began, control)
         else:
             conversation.begin(command, began)
         may_give_way = command is not None and command.kind is Kind.QUERY

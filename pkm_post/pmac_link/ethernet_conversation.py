@@ -84,9 +84,11 @@ class EthernetConversation(BytewiseConversation):
         self._reader, self._in_packet = ResponseReader(text, False), 0
         self._wait_patiently(self._answer, now)
 
-    def reset(self, now: float) -> None:
+    def reset(self, now: float, control: int | None = None) -> None:
         """As ``exchange.Conversation``."""
         self._forget()
+        if control is not None:
+            self._out += packet(CTRL_RESPONSE, value=control, length=MOST_ANSWER)
         self._out += packet(FLUSH)
         self._wait_for_silence(now)
 

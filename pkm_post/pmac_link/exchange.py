@@ -116,8 +116,13 @@ class Conversation(Protocol):
             ValueError: another one is outstanding, or it is longer than the link takes.
         """
 
-    def reset(self, now: float) -> None:
-        """Forget what is outstanding and make the controller forget it; ends with an ``Answer``, or with ``Lost``."""
+    def reset(self, now: float, control: int | None = None) -> None:
+        """Forget what is outstanding and make the controller forget it; ends with an ``Answer``, or with ``Lost``.
+
+        Args:
+            now: the time.
+            control: code of a control character that is sent first; the controller obeys it whatever it is doing.
+        """
 
     def receive(self, data: bytes, now: float) -> None:
         """Take bytes of the controller."""

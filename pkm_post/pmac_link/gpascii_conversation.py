@@ -73,8 +73,14 @@ class GpasciiConversation(BytewiseConversation):
         self._take_up(command, LONGEST_LINE)
         self._send(now)
 
-    def reset(self, now: float) -> None:
-        """Start gpascii in a shell that is new."""
+    def reset(self, now: float, control: int | None = None) -> None:
+        """Start gpascii in a shell that is new.
+
+        Raises:
+            ValueError: a control character was given; gpascii takes none.
+        """
+        if control is not None:
+            raise ValueError(f"control: expected none over gpascii, got {control}")
         self._begin_with(Command(START, Kind.SET, START_S))
         self._out += f"{START}\n".encode("ascii")
         self._wait_patiently(self._greeted, now)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Operate: run, hold, resume and abort a program, and its override. Each is sent once; then the state is asked for.
+"""Operate: run and resume a program, and its override. Each is sent once; then the state is asked for.
 
-``Q`` is not offered: it would end a program at a knot where the struts run. A stop is ``H`` first, which slows the
-time base down along the path, then ``A``, which stops each strut by itself.
+To hold and to abort is in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts run.
 
 The controller shows a command in its state a little after it has taken it, so each is watched for until it shows.
 
@@ -11,31 +10,25 @@ Enters: a session, settings, a program. Leaves: the state that was reached.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 
 from pkm_post.controllers.pmac import Settings
 from pkm_post.model import Machine
 from pkm_post.pmac_link.download import listing_of
-from pkm_post.pmac_link.faults import LinkLostError, NotReadyError, OutcomeUnknownError, PmacError
+from pkm_post.pmac_link.faults import NotReadyError, OutcomeUnknownError, PmacError
 from pkm_post.pmac_link.listing import Program
 from pkm_post.pmac_link.near import NEAR_MM
 from pkm_post.pmac_link.ready import check_start
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
 
-REPEATS = 3
-"""How often a stop is sent while the controller shows that it does not stop."""
-HOLD_S = 5.0
-"""Seconds in which a hold has to bring the struts to rest."""
 OVERRIDE_S = 5.0
 """Seconds in which the time base has to get to an override."""
 SHOWN_S = 0.5
-"""Seconds in which the state has to show that a start, a hold or an abort was taken."""
+"""Seconds in which the state has to show that a start was taken."""
 _OVERRIDE_REACHED = 0.1
 """%"""
 _POLL_S = 0.02
-_log = logging.getLogger(__name__)
 
 
 def run(
@@ -66,11 +59,6 @@ def run(
         raise NotReadyError([f"program {program.number} in the controller is another one: {there.difference}"])
     check_start(read_status(session, settings), first, near, machine)
     return _go(session, settings, f"B{program.number}R", lambda status: status.running)
-
-
-def hold(session: Session, settings: Settings) -> Status:
-    """Slow the program down to rest, on its path."""
-    return _stop(session, settings, "H", lambda status: status.held or not status.running)
 
 
 def resume(session: Session, settings: Settings) -> Status:
@@ -123,25 +111,6 @@ def override(session: Session, settings: Settings, percent: float) -> Status:
     )
 
 
-def abort(session: Session, settings: Settings, at_once: bool = False) -> Status:
-    """End a program: held first, so that the struts stay on the path, then aborted.
-
-    Whatever becomes of the hold, ``A`` is sent: at once when another stop waits, for it is meant to be faster.
-
-    Args:
-        session: an open session.
-        settings: of the machine's controller.
-        at_once: without the hold: each strut stops on its own ramp, off the path.
-    """
-    if not at_once:
-        try:
-            hold(session, settings)
-            _watched(session, settings, lambda status: status.standing, HOLD_S, session.is_waited_for)
-        except PmacError as fault:
-            _log.warning("aborted without coming to rest before: %s", fault)
-    return _stop(session, settings, "A", lambda status: not status.running)
-
-
 def _go(session: Session, settings: Settings, order: str, goes: Callable[[Status], bool]) -> Status:
     """Send what sets the machine in motion, once, unless a stop waits; when its answer is lost, the state tells."""
     session.give_way()
@@ -153,22 +122,6 @@ def _go(session: Session, settings: Settings, order: str, goes: Callable[[Status
             raise
         return status
     return _watched(session, settings, goes, SHOWN_S)
-
-
-def _stop(session: Session, settings: Settings, order: str, stopped: Callable[[Status], bool]) -> Status:
-    """Send a stop until the controller shows it: sending one twice does no harm, for it does not stop less."""
-    lost: LinkLostError | None = None
-    for _ in range(REPEATS):
-        try:
-            session.order(f"&{settings.coordinate_system}{order}")
-        except LinkLostError as fault:
-            lost = fault
-        status = _watched(session, settings, stopped, SHOWN_S)
-        if stopped(status):
-            return status
-    raise PmacError(
-        f"the controller does not stop after {order}, sent {REPEATS} times: USE THE EMERGENCY STOP"
-    ) from lost
 
 
 def _watched(

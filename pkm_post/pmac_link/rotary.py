@@ -14,7 +14,7 @@ from collections.abc import Callable
 from itertools import accumulate
 
 from pkm_post.controllers.pmac import Settings
-from pkm_post.pmac_link import operate
+from pkm_post.pmac_link import stopping
 from pkm_post.pmac_link.faults import CancelledError, LinkLostError, PmacError, RefusedError
 from pkm_post.pmac_link.gates import Segment
 from pkm_post.pmac_link.ready import check_start
@@ -95,7 +95,7 @@ class RotaryStream:
                 return
         except KeyboardInterrupt:
             pass  # this is how the user says that it has to be now
-        operate.abort(self._session, self._settings)
+        stopping.abort(self._session, self._settings)
         self._wait(lambda: None)
 
     def _sent(self) -> int:

@@ -4,7 +4,9 @@
 No line is carried out before the controller has told its checksum: the line goes out without CR, then ^N; the
 controller returns one byte, the sum of what it holds. If it is right, CR goes out; if not, ^X makes the controller
 forget the line, and it is sent again. So sending again is safe: what was not confirmed was not carried out.
-After CR nothing is sent twice here.  [TurboPMAC, <CTRL-N>, <CTRL-X>]
+After CR a line is sent again in one case only: where the controller refuses it with ERR004. That is noise, for lines
+hold printable characters alone; a byte above 127 or a framing error does not count in the checksum, but the controller
+does not carry out a line that has one.  [TurboPMAC, <CTRL-N>, <CTRL-X>, I6]
 
 Enters: commands, bytes and times. Leaves: bytes and events.
 """
@@ -12,12 +14,14 @@ Enters: commands, bytes and times. Leaves: bytes and events.
 from __future__ import annotations
 
 from pkm_post.pmac_link.bytewise import BytewiseConversation
-from pkm_post.pmac_link.exchange import Command, Kind, Lost
+from pkm_post.pmac_link.exchange import Command, Kind, Lost, Refusal
 from pkm_post.pmac_link.responses import ResponseReader, checksum
 
 FORGET, SUM, END = b"\x18", b"\x0e", b"\r"
 GUARD_ATTEMPTS = 4
 LONGEST_LINE = 255
+ILLEGAL_CHARACTER = 4
+"""Number of the refusal that noise on the line leads to."""
 
 
 class SerialConversation(BytewiseConversation):
@@ -44,10 +48,10 @@ class SerialConversation(BytewiseConversation):
         self._attempts = 0
         self._send_line(now)
 
-    def reset(self, now: float) -> None:
-        """As ``exchange.Conversation``."""
+    def reset(self, now: float, control: int | None = None) -> None:
+        """As ``exchange.Conversation``; a control character acts at once, also inside a line."""
         self._forget()
-        self._out += FORGET
+        self._out += FORGET if control is None else bytes([control]) + FORGET
         self._wait_for_silence(now)
 
     def _send_line(self, now: float) -> None:
@@ -88,7 +92,9 @@ class SerialConversation(BytewiseConversation):
     def _answer(self, byte: int, now: float) -> None:
         event = self._reader.take(byte)
         self._events += self._reader.taken_messages()
-        if event is not None:
+        if isinstance(event, Refusal) and event.number == ILLEGAL_CHARACTER:
+            self._flush("the controller refused the line for an illegal character", now)
+        elif event is not None:
             self._end(event)
-            return
-        self._wait_patiently(self._answer, now)
+        else:
+            self._wait_patiently(self._answer, now)

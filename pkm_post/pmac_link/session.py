@@ -9,7 +9,8 @@ number, ``OutcomeUnknownError`` for a set that may or may not have been carried 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Self
 
@@ -25,6 +26,8 @@ ATTEMPTS = 5
 """How often a query is asked."""
 CALLS = 3
 """How often a lost link is called back at once."""
+HURRY_S = 0.4
+"""Longest silence while a stop is sent: it tries again by itself, and soon."""
 
 
 class Session:
@@ -58,6 +61,7 @@ class Session:
         self._clock, self._sleep = clock, sleep
         self._dialogue = Dialogue(port, patience, clock)
         self._in_step = False
+        self._attempts, self._calls = ATTEMPTS, CALLS
         self.notes: list[str] = []
         self.connections = 0
 
@@ -125,7 +129,7 @@ class Session:
             CancelledError: it takes long, and something more urgent waits.
         """
         command = Command(text, Kind.QUERY, self._patience, most)
-        for _ in range(ATTEMPTS - 1):
+        for _ in range(self._attempts - 1):
             try:
                 return self._exchange(command)
             except LinkLostError:
@@ -141,6 +145,36 @@ class Session:
             LinkLostError: it surely was not.
         """
         return self._exchange(Command(text, Kind.SET, self._patience))
+
+    @contextmanager
+    def in_a_hurry(self) -> Iterator[None]:
+        """Ask once, call once and wait ``HURRY_S`` at most, for a stop that tries again by itself."""
+        before = self._patience, self._attempts, self._calls
+        self._patience, self._attempts, self._calls = min(self._patience, HURRY_S), 1, 1
+        self._dialogue.patience = self._patience
+        try:
+            yield
+        finally:
+            self._patience, self._attempts, self._calls = before
+            self._dialogue.patience = self._patience
+
+    def interrupt(self, control: int) -> None:
+        """Send a control character, which the controller obeys whatever it is doing; no answer says that it has.
+
+        Args:
+            control: its code.
+
+        Raises:
+            LinkLostError: it could not be sent, or the controller is not understood after it.
+        """
+        if not self._in_step:
+            self._dialogue.restart(control)
+            return
+        self._in_step = False
+        ended = self._dialogue.run(None, control)
+        if isinstance(ended, Lost):
+            raise LinkLostError(ended.why)
+        self._in_step = True
 
     def load(self, lines: Sequence[str]) -> int:
         """Put some lines into the open program buffer: as many as one exchange takes; their number.
@@ -165,7 +199,7 @@ class Session:
 
     def _exchange(self, command: Command) -> tuple[str, ...]:
         if not self._in_step:
-            self._call(self._leftover.on_the_way)
+            self._call(self._leftover.on_the_way if self.connections else self._leftover)
         self._in_step = False  # until the end is known: an interrupt may come at any time
         try:
             ended = self._dialogue.run(command)
@@ -182,14 +216,14 @@ class Session:
 
     def _call(self, leftover: Leftover) -> None:
         """Connect, several times if need be."""
-        for attempt in range(CALLS):
+        for attempt in range(self._calls):
             if attempt:
                 self.give_way()
                 self._sleep(self._pause * attempt)
             try:
                 self.notes += greet(self._dialogue, leftover)
             except (LinkLostError, RefusedError) as fault:
-                if attempt == CALLS - 1:
+                if attempt == self._calls - 1:
                     raise LinkLostError(f"no controller that can be understood: {fault}") from fault
             else:
                 self._in_step = True

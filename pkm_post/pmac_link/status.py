@@ -128,6 +128,11 @@ class Status:
         """Whether no strut is commanded to move."""
         return all(motor.has("standing") for motor in self.motors)
 
+    @property
+    def powered(self) -> bool:
+        """Whether any motor has its amplifier on."""
+        return any(motor.has("amplifier_enabled") for motor in self.motors)
+
     def words(self) -> tuple[str, ...]:
         """What is wrong, in words, strut by strut."""
         own = [

@@ -180,8 +180,3 @@ def test_arguments_without_sense_by_hand(arguments):
 def test_when_people_are_told_what_to_do(name, connected, told, capsys):
     tell_emergency(name, connected)
     assert ("EMERGENCY STOP" in capsys.readouterr().err) == told
-
-
-def test_a_hold_that_reaches_nobody(capsys):
-    assert pmac("hold", "tcp:127.0.0.1:1") == 1
-    assert "press the EMERGENCY STOP" in capsys.readouterr().err

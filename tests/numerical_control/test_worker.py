@@ -8,6 +8,7 @@ from concurrent.futures import CancelledError
 import pytest
 
 from pkm_post.numerical_control.control import State
+from pkm_post.numerical_control.emergency import NOT_AT_REST
 from pkm_post.numerical_control.moves import Cartesian
 from pkm_post.numerical_control.worker import Worker
 from pkm_post.pmac_link.faults import NotReadyError
@@ -181,3 +182,29 @@ def test_a_machine_is_operated(station):
         until(lambda: worker.state.pose is not None and worker.state.pose.tip[0] == pytest.approx(2.0, abs=1e-3))
     finally:
         worker.close()
+
+
+def test_a_stop_that_does_not_show_is_an_emergency_until_it_does(worker, stub):
+    go_on = threading.Event()
+    stop = worker.submit(lambda control: go_on.wait(LONGEST_S), urgent=True)
+    until(lambda: worker.state.emergency)
+    assert worker.state.emergency == NOT_AT_REST
+    go_on.set()
+    assert stop.result(LONGEST_S)
+    assert worker.state.emergency == ()
+
+
+def test_the_end_waits_for_a_stop_but_not_for_ever(worker, stub):
+    begun = threading.Event()
+
+    def stop(control):
+        begun.set()
+        while not control.gives_way():
+            time.sleep(0.005)
+        raise NotReadyError(["given up"])
+
+    trying = worker.submit(stop, urgent=True)
+    assert begun.wait(LONGEST_S)
+    worker.close()
+    with pytest.raises(NotReadyError, match="given up"):
+        trying.result(0)

@@ -8,7 +8,7 @@ from rig import SETTINGS, STROKE, Wire, controller
 
 from pkm_post.controllers.pmac import program_text
 from pkm_post.model import StrutMotion
-from pkm_post.pmac_link import operate
+from pkm_post.pmac_link import operate, stopping
 from pkm_post.pmac_link.download import download
 from pkm_post.pmac_link.faults import CancelledError, NotReadyError, OutcomeUnknownError, PmacError
 from pkm_post.pmac_link.job import read_job
@@ -66,14 +66,14 @@ def test_a_program_runs_is_held_goes_on_and_is_aborted(wire, loaded):
     status = operate.run(loaded, SETTINGS, SLOW, FIRST)
     assert status.running and not status.held
     wire.sleep(0.3)
-    operate.hold(loaded, SETTINGS)
+    stopping.hold(loaded, SETTINGS)
     wire.sleep(3.0)
     held = read_status(loaded, SETTINGS)
     assert held.running and held.held and held.standing
     wire.sleep(1.0)
     assert np.allclose(read_status(loaded, SETTINGS).length, held.length, atol=MICRON)
     assert operate.resume(loaded, SETTINGS).running
-    status = operate.abort(loaded, SETTINGS)
+    status = stopping.abort(loaded, SETTINGS)
     assert not status.running
     wire.sleep(1.0)
     assert read_status(loaded, SETTINGS).standing
@@ -145,17 +145,6 @@ def test_an_override_beyond_the_plan_is_refused(wire, loaded):
         operate.run(loaded, SETTINGS, SLOW, FIRST)
 
 
-def test_an_abort_is_sent_though_the_hold_shows_nothing(wire, loaded):
-    """Where the time base comes from elsewhere, H does nothing."""
-    operate.run(loaded, SETTINGS, SLOW, FIRST)
-    wire.controller.systems[0].hold = lambda: None
-    with pytest.raises(PmacError, match="does not stop after H, sent 3 times: USE THE EMERGENCY STOP"):
-        operate.hold(loaded, SETTINGS)
-    assert not operate.abort(loaded, SETTINGS).running
-    wire.sleep(10.0)
-    assert read_status(loaded, SETTINGS).standing
-
-
 def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):
     """A start that is not seen at once is no start that failed, and a stop is not sent again for that."""
     system, owed = wire.controller.systems[0], []
@@ -174,22 +163,12 @@ def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):
 
     wire.sleep = loaded._sleep = sleep_and_do
     assert operate.run(loaded, SETTINGS, SLOW, FIRST).running
-    assert operate.hold(loaded, SETTINGS).held
+    assert stopping.hold(loaded, SETTINGS).held
     wire.sleep(2.0)
     status = operate.resume(loaded, SETTINGS)
     assert status.running and not status.held
-    assert not operate.abort(loaded, SETTINGS, at_once=True).running
+    assert not stopping.abort(loaded, SETTINGS, at_once=True).running
     assert [bytes(wire.sent).count(b"&1" + order) for order in (b"B10R", b"H", b"R", b"A")] == [1, 1, 1, 1]
-
-
-def test_a_stop_that_waits_ends_the_waiting_of_an_abort(wire, loaded):
-    """It may be the one that is to stop at once."""
-    operate.run(loaded, SETTINGS, SLOW, FIRST)
-    wire.sleep(0.5)
-    loaded.give_way_when(lambda: True)
-    began = wire.now
-    assert not operate.abort(loaded, SETTINGS).running
-    assert wire.now - began < 0.5, "a hold alone takes longer"
 
 
 def test_nothing_is_started_while_a_stop_waits(wire, loaded):
@@ -198,7 +177,7 @@ def test_nothing_is_started_while_a_stop_waits(wire, loaded):
         operate.run(loaded, SETTINGS, SLOW, FIRST)
     loaded.give_way_when(lambda: False)
     operate.run(loaded, SETTINGS, SLOW, FIRST)
-    operate.hold(loaded, SETTINGS)
+    stopping.hold(loaded, SETTINGS)
     loaded.give_way_when(lambda: True)
     with pytest.raises(CancelledError, match="a stop came first"):
         operate.resume(loaded, SETTINGS)
@@ -235,15 +214,6 @@ def test_a_start_that_got_lost_is_not_repeated(wire, loaded):
     assert bytes(wire.sent).count(b"B10R\r") <= 1
     if wire.kind == "tcp":
         assert isinstance(lost.value, OutcomeUnknownError)
-
-
-def test_a_stop_whose_answer_got_lost_is_made_sure_of(wire, loaded):
-    operate.run(loaded, SETTINGS, SLOW, FIRST)
-    gone = silent_after(wire, b"&1H")
-    operate.hold(loaded, SETTINGS)
-    assert gone[0]
-    wire.sleep(3.0)
-    assert read_status(loaded, SETTINGS).standing
 
 
 def test_the_struts_move_as_the_program_says(wire):

@@ -9,7 +9,7 @@ from link_faults import refuse, reset_after
 from rig import SETTINGS, Noise, Wire
 from streams import JOB, MICRON, REACH, RESTS, WORDS, by_chance, lengths, path, streamed, tried, wired
 
-from pkm_post.pmac_link import operate
+from pkm_post.pmac_link import operate, stopping
 from pkm_post.pmac_link.faults import CancelledError, NotReadyError, StreamError
 from pkm_post.pmac_link.session import Leftover
 
@@ -230,7 +230,7 @@ def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, lefto
         if not other.sent and wire.controller.runs_program() and wire.controller.memory.rotaries[1].lines:
             with other.session(leftover=leftover) as session:
                 assert "rotary buffer" in session.notes[0]
-                assert operate.hold(session, SETTINGS).held
+                assert stopping.hold(session, SETTINGS).held
                 other.sleep(1.0)
                 operate.resume(session, SETTINGS)
 

@@ -8,7 +8,7 @@ import pytest
 from controller_settings import settings_for
 from gpascii import CLOSED_LOOP, READY, Shell, ShellLink
 
-from pkm_post.pmac_link import operate
+from pkm_post.pmac_link import stopping
 from pkm_post.pmac_link.faults import LinkLostError, OutcomeUnknownError, RefusedError
 from pkm_post.pmac_link.gpascii_conversation import GpasciiConversation
 from pkm_post.pmac_link.readout import state_text
@@ -89,8 +89,8 @@ def test_bits_of_the_coordinate_system_in_words(shell, session, bit, said):
 def test_a_program_is_held_and_aborted(shell, session):
     shell.elements["coord[1].progrunning"] = 1
     assert read_status(session, SETTINGS).running
-    assert operate.hold(session, SETTINGS).held
-    assert not operate.abort(session, SETTINGS).running
+    assert stopping.hold(session, SETTINGS).held
+    assert not stopping.abort(session, SETTINGS).running
     assert [line for line in shell.said if line[0] == "&"] == ["&1H", "&1H", "&1A"]
 
 

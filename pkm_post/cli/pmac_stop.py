@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stops from the command line: the actions hold and abort, and what stops a machine when a command that moves it ends.
+
+A stop goes on until the machine is seen at rest. After two seconds without that, people are told what to do, by a timer
+of its own: a link that blocks delays no advice. Ctrl-C ends the trying.
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pkm_post.cli.pmac_actions import Target
+    from pkm_post.controllers.pmac import Settings
+    from pkm_post.pmac_link.session import Session
+    from pkm_post.pmac_link.status import Status
+
+_SIGNALS = ("SIGTERM", "SIGHUP", "SIGBREAK")
+"""The end of the process, of its terminal, and of its console on Windows; a system has those that it knows."""
+
+
+def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:
+    """Slow the program down to rest on its path."""
+    from pkm_post.pmac_link import stopping
+
+    with advised():
+        status = stopping.hold(session, target.settings)
+    return _print(session, status)
+
+
+def abort(session: Session, target: Target, namespace: argparse.Namespace) -> int:
+    """End the program."""
+    from pkm_post.pmac_link import stopping
+
+    with advised():
+        status = stopping.abort(session, target.settings, namespace.at_once)
+    return _print(session, status)
+
+
+def _print(session: Session, status: Status) -> int:
+    from pkm_post.pmac_link.readout import state_text
+
+    print(*session.notes, sep="\n", end="\n" if session.notes else "", file=sys.stderr)
+    print(state_text(status))
+    return 0
+
+
+@contextmanager
+def advised() -> Iterator[None]:
+    """Print what people have to do when the stop inside has not ended in time."""
+    from pkm_post.numerical_control.emergency import ADVICE_S
+
+    timer = threading.Timer(ADVICE_S, _advise)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+def _advise() -> None:
+    from pkm_post.numerical_control.emergency import NOT_AT_REST
+
+    print(*NOT_AT_REST, sep="\n", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def held_at_the_end(session: Session, settings: Settings) -> Iterator[None]:
+    """Hold the machine when the command that moves it is ended: by Ctrl-C, a signal, a closed terminal, any fault.
+
+    A fault of the link or of the controller passes as it is: it has its own advice.
+
+    Raises:
+        CancelledError: it was interrupted; the machine is held.
+    """
+    from pkm_post.pmac_link.faults import CancelledError, PmacError
+
+    with signals_interrupt():
+        try:
+            yield
+        except PmacError:
+            raise
+        except BaseException as fault:
+            _hold(session, settings)
+            if isinstance(fault, KeyboardInterrupt):
+                raise CancelledError("interrupted and held: resume or abort it") from None
+            raise
+
+
+def _hold(session: Session, settings: Settings) -> None:
+    from pkm_post.pmac_link import stopping
+
+    with advised():
+        stopping.hold(session, settings)
+
+
+@contextmanager
+def signals_interrupt() -> Iterator[None]:
+    """What ends the process otherwise is a KeyboardInterrupt inside, once; a second one does not end the hold."""
+    ended: list[int] = []
+
+    def end(number: int, frame: FrameType | None) -> None:
+        if not ended:
+            ended.append(number)
+            raise KeyboardInterrupt
+
+    known = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]
+    before = {number: signal.signal(number, end) for number in known}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

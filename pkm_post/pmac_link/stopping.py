@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stopping: a hold or an abort, sent again until the machine is seen at rest.
+
+A stop never gives up. It is a ladder: a hold slows the program down along its path, an abort stops each strut on its
+own ramp, a control character aborts all that the controller does, and needs no line that arrives whole; the last one
+takes the power off the motors. Each rung has a time. A link that fails does not stop the climb, but for the last rung:
+struts without power may sink, so they lose it only while they are seen to move though all else was sent.
+
+Enters: a session, settings. Leaves: the state of a machine at rest. Only another stop that waits ends it before.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from pkm_post.controllers.pmac import Settings
+from pkm_post.controllers.power_pmac import Settings as PowerSettings
+from pkm_post.pmac_link.faults import CancelledError, NoAccessError, PmacError
+from pkm_post.pmac_link.session import Session
+from pkm_post.pmac_link.status import MOTORS, Status, read_status
+
+AnySettings = Settings | PowerSettings
+
+SHOWN_S = 0.5
+"""Seconds in which the state has to show that a stop was taken; then it is sent again."""
+POLL_S = 0.02
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One way to stop.
+
+    Attributes:
+        name: in words.
+        send: sends it.
+        is_taken: whether a state shows that the controller obeys it.
+        unseen_s: seconds for which it is sent again while no state shows that.
+        rest_s: seconds that the struts have to come to rest once a state has shown it.
+        blindly: whether it is sent though it is not known that the machine moves.
+    """
+
+    name: str
+    send: Callable[[Session, AnySettings], object]
+    is_taken: Callable[[Status], bool]
+    unseen_s: float
+    rest_s: float
+    blindly: bool = True
+
+
+def _order(text: str) -> Callable[[Session, AnySettings], object]:
+    return lambda session, settings: session.order(f"&{settings.coordinate_system}{text}")
+
+
+def _control(code: int) -> Callable[[Session, AnySettings], object]:
+    return lambda session, settings: session.interrupt(code)
+
+
+def _kill_each(session: Session, settings: AnySettings) -> None:
+    session.order(" ".join(f"#{motor}k" for motor in MOTORS))
+
+
+def _is_held(status: Status) -> bool:
+    return status.held
+
+
+def _is_ended(status: Status) -> bool:
+    return not status.running
+
+
+def _never(status: Status) -> bool:
+    return False
+
+
+HOLD = Rung("hold", _order("H"), _is_held, unseen_s=1.0, rest_s=5.0)
+ABORT = Rung("abort", _order("A"), _is_ended, unseen_s=1.0, rest_s=2.0)
+ABORT_ALL = Rung("abort of everything (^A)", _control(0x01), _is_ended, unseen_s=1.0, rest_s=2.0)
+KILL_ALL = Rung("power off all motors (^K)", _control(0x0B), _never, unseen_s=1.0, rest_s=0.0, blindly=False)
+KILL_EACH = Rung("power off all motors", _kill_each, _never, unseen_s=1.0, rest_s=0.0, blindly=False)
+"""^A and ^K are control characters of a Turbo PMAC [TurboPMAC, <CTRL-A>, <CTRL-K>]; gpascii takes none."""
+
+TURBO_LADDER = (HOLD, ABORT, ABORT_ALL, KILL_ALL)
+POWER_LADDER = (HOLD, ABORT, KILL_EACH)
+
+
+def hold(session: Session, settings: AnySettings) -> Status:
+    """Slow the program down to rest on its path; what does not obey is stopped by the rungs above.
+
+    Raises:
+        CancelledError: another stop waits.
+        NoAccessError: the controller's computer does not let this user in.
+    """
+    ladder = _ladder(settings)
+    return _climb(session, settings, ladder, lambda status: status.held or not status.running)
+
+
+def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Status:
+    """End a program: held first, so that the struts stay on the path, then aborted.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        at_once: without the hold: each strut stops on its own ramp, off the path.
+
+    Raises:
+        CancelledError: another stop waits; the abort was sent.
+        NoAccessError: the controller's computer does not let this user in.
+    """
+    _, *rungs = _ladder(settings)
+    if not at_once:
+        try:
+            with session.in_a_hurry():
+                _try(session, settings, HOLD, lambda status: status.held or not status.running)
+        except CancelledError:
+            _log.warning("aborted without coming to rest before: another stop waits")
+    return _climb(session, settings, tuple(rungs), _is_ended)
+
+
+def _ladder(settings: AnySettings) -> tuple[Rung, ...]:
+    return POWER_LADDER if isinstance(settings, PowerSettings) else TURBO_LADDER
+
+
+def _climb(
+    session: Session, settings: AnySettings, rungs: tuple[Rung, ...], is_stopped: Callable[[Status], bool]
+) -> Status:
+    """Climb until a state shows the machine at rest; from the top on, the upper two rungs again and again."""
+    seen: Status | None = None
+    with session.in_a_hurry():
+        for rung in _without_end(rungs):
+            if not rung.blindly and (seen is None or seen.standing):
+                continue
+            seen = _try(session, settings, rung, is_stopped)
+            if seen is not None and _rests(seen, is_stopped):
+                return seen
+            _log.warning("the machine is not seen at rest after: %s", rung.name)
+    raise AssertionError("the ladder has no end")
+
+
+def _without_end(rungs: tuple[Rung, ...]) -> Iterator[Rung]:
+    yield from rungs
+    while True:
+        yield from rungs[-2:]
+
+
+def _rests(status: Status, is_stopped: Callable[[Status], bool]) -> bool:
+    """Motors without power follow no program, whatever its state."""
+    return status.standing and (is_stopped(status) or not status.powered)
+
+
+def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callable[[Status], bool]) -> Status | None:
+    """Send one rung until it shows, and wait for rest; the state that was read last, None when none could be read."""
+    until, is_taken, seen = session.now() + rung.unseen_s, False, None
+    while session.now() < until:
+        _send(session, settings, rung)
+        again = session.now() + SHOWN_S
+        while session.now() < (until if is_taken else min(again, until)):
+            seen = _read(session, settings)
+            if seen is not None and _rests(seen, is_stopped):
+                return seen
+            if seen is not None and not is_taken and rung.is_taken(seen):
+                is_taken, until = True, session.now() + rung.rest_s
+            session.give_way()
+            session.sleep(POLL_S)
+    return seen
+
+
+def _send(session: Session, settings: AnySettings, rung: Rung) -> None:
+    """Send it; whether it arrived, the state shows."""
+    try:
+        rung.send(session, settings)
+    except (CancelledError, NoAccessError):
+        raise
+    except PmacError as fault:
+        _log.warning("%s: %s", rung.name, fault)
+
+
+def _read(session: Session, settings: AnySettings) -> Status | None:
+    try:
+        return read_status(session, settings)
+    except (CancelledError, NoAccessError):
+        raise
+    except PmacError:
+        return None
