@@ -69,7 +69,14 @@ def segment_to_box(start: Array, end: Array, lowest: Array, highest: Array) -> A
 def segment_to_cylinder(
     start: Array, end: Array, radius: Array | float, low: Array | float, high: Array | float
 ) -> Array:
-    """Distances of segments from cylinders about the z axis, (...).
+    """Distances of segments from cylinders about the z axis, (...); arguments as in ``nearest_to_cylinder``."""
+    return norm(_from_cylinder(nearest_to_cylinder(start, end, radius, low, high), radius, low, high))
+
+
+def nearest_to_cylinder(
+    start: Array, end: Array, radius: Array | float, low: Array | float, high: Array | float
+) -> Array:
+    """The points of segments that are nearest to cylinders about the z axis, (..., 3).
 
     Args:
         start: (..., 3) one end of the segment in the frame of the cylinder.
@@ -78,14 +85,15 @@ def segment_to_cylinder(
         low: z of its lower end.
         high: z of its upper end.
     """
+    return _nearest(start, end, lambda point: _from_cylinder(point, radius, low, high))
 
-    def away(point: Array) -> Array:
-        out = np.hypot(point[..., 0], point[..., 1])
-        share = np.maximum(_quotient(out - radius, out), 0.0)
-        z = point[..., 2]
-        return np.stack([share * point[..., 0], share * point[..., 1], z - np.clip(z, low, high)], axis=-1)
 
-    return norm(away(_nearest(start, end, away)))
+def _from_cylinder(point: Array, radius: Array | float, low: Array | float, high: Array | float) -> Array:
+    """From the nearest point of each cylinder to points, (..., 3)."""
+    out = np.hypot(point[..., 0], point[..., 1])
+    share = np.maximum(_quotient(out - radius, out), 0.0)
+    z = point[..., 2]
+    return np.stack([share * point[..., 0], share * point[..., 1], z - np.clip(z, low, high)], axis=-1)
 
 
 def _nearest(start: Array, end: Array, away: Callable[[Array], Array]) -> Array:

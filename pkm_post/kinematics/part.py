@@ -114,19 +114,26 @@ def _distance(cylinders: Cylinders, part: Part, far: float) -> Array:
         near = near[poses, np.argmin(bound.reshape(near.shape), axis=1)][:, None]
     least, plane = _measure(cylinders, part, poses, near[:, 0])
     least = np.minimum(least, far)
-    return _lowered(cylinders, part, least, plane, *_near_triangles(cylinders, part, least))
+    return _lowered(cylinders, part, least, plane, *pairs_within(cylinders, part, least))
 
 
-def _near_triangles(cylinders: Cylinders, part: Part, least: Array) -> tuple[Array, Array, Array]:
-    """Pairs of a pose and a triangle that may be nearer than the least distance so far, and how near at least, (K,)."""
+def pairs_within(cylinders: Cylinders, part: Part, within: Array, level: int = 0) -> tuple[Array, Array, Array]:
+    """Pairs of a cylinder and a ball of the part that may be nearer than allowed for, and how near at least, (K,).
+
+    Args:
+        cylinders: M cylinders.
+        part: whose balls are looked at, from the largest ones down.
+        within: (M,) mm; what is proven to be as far as this is left out.
+        level: of the balls that are told; those of level 0 are the triangles.
+    """
     top = len(part.balls[-1][1])
-    pose, ball = np.repeat(np.arange(len(least)), top), np.tile(np.arange(top), len(least))
-    for level in reversed(range(len(part.balls))):
-        bound = _from_balls(cylinders, part.balls[level], pose, ball)
-        near = bound < least[pose]
-        pose, ball, bound = pose[near], ball[near], bound[near]
-        if level > 0:
-            members = _members(ball, len(part.balls[level - 1][1]))
+    pose, ball = np.repeat(np.arange(len(within)), top), np.tile(np.arange(top), len(within))
+    for lower in reversed(range(level, len(part.balls))):
+        bound = _from_balls(cylinders, part.balls[lower], pose, ball)
+        kept = bound < within[pose]
+        pose, ball, bound = pose[kept], ball[kept], bound[kept]
+        if lower > level:
+            members = _members(ball, len(part.balls[lower - 1][1]))
             pose, ball = np.repeat(pose, members.shape[1]), members.ravel()
     return pose, ball, bound
 

@@ -315,6 +315,37 @@ RULES: dict[str, Rule] = {
     ),
     "K126": _error("an arc begins where a tool of another length was taken", "make a straight move before the arc"),
     "K127": _error("a move takes longer than a day", "give it a higher feed"),
+    "K130": _error(
+        "the shank of the tool goes into the part", "use a tool with longer cutting edges or a thinner shank, or tilt it"
+    ),
+    "K131": _error(
+        "a rapid move takes the cutter through the part", "raise the clearance and retract heights of the operation"
+    ),
+    "K132": _warning(
+        "the cutter goes deeper into the part than its surface", "check the depths, and what the flank of the cutter does"
+    ),
+    "K133": _error("something comes too near to a fixture", "move the fixture or the path, or use a longer tool"),
+    "K134": _error(
+        "something other than the cutter goes into stock that nothing has cut",
+        "rough the part before, use a longer tool, or give the stock as it is before the first operation",
+    ),
+    "K135": _warning(
+        "something other than the cutter goes into stock that may still be there",
+        "see that it is cut before, or give the stock as it is before the first operation",
+    ),
+    "K136": _error(
+        "a rapid move goes through stock that nothing has cut",
+        "raise the clearance and retract heights, or give the stock as it is before the first operation",
+    ),
+    "K137": _warning(
+        "a rapid move goes through stock that may still be there",
+        "see that it is cut before, or give the stock as it is before the first operation",
+    ),
+    "K138": _error(
+        "the mesh cannot be read", "write the solid as an STL file, ASCII or binary, in mm and in work coordinates"
+    ),
+    "K139": _warning(
+        "the mesh of the stock is not closed, and only its surface is looked at", "write a closed solid as STL"
     # K14: tools, tool changes and the spindle
     "K140": _error(
         "the tool is larger than the spindle takes",

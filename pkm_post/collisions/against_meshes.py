@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Against meshes: bodies of the machine and parts of tools against the part, the fixtures, and the stock as it is first.
+
+A trajectory on its way, a machine and a mesh enter; faults by operation leave, proven to be all there are. Units: mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.collisions.contacts import Contacts, contacts
+from pkm_post.collisions.movers import Mover
+from pkm_post.geometry.triangles import cut_small
+from pkm_post.geometry.vectors import Array, dot
+from pkm_post.kinematics.part import Part
+from pkm_post.kinematics.way import Way
+from pkm_post.model import Diagnostic, Trajectory
+from pkm_post.model.setup import Mesh
+
+_PIECES = 32
+"""Triangles are cut so small that this many lie along the mesh."""
+_LOOKED_AT = 24
+"""Contacts of an operation of which it is computed how deep they are."""
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A mesh where it stands on the machine.
+
+    Attributes:
+        name: what it is: part, stock, fixture.
+        source: where it comes from.
+        part: its triangles in {M}.
+        triangles: how many it was given with.
+    """
+
+    name: str
+    source: str
+    part: Part
+    triangles: int
+
+    @classmethod
+    def of(cls, name: str, mesh: Mesh, machine_from_work: Array) -> Obstacle:
+        """A mesh that lies in the work frame."""
+        placed = mesh.triangles @ machine_from_work[:3, :3].T + machine_from_work[:3, 3]
+        size = float(np.ptp(placed.reshape(-1, 3), axis=0).max())
+        return cls(name, mesh.source, Part.of(cut_small(placed, max(size, 1e-3) / _PIECES)), len(mesh.triangles))
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A trajectory as it is driven.
+
+    Attributes:
+        trajectory: names the places.
+        way: its poses, and what is between them.
+        segment: (N,) segment each cell of the way lies on.
+    """
+
+    trajectory: Trajectory
+    way: Way
+    segment: Array
+
+    @property
+    def operation(self) -> Array:
+        """Operation of each cell, (N,)."""
+        return self.trajectory.operation[self.segment]
+
+    def told(self, code: str, cell: int, found: str) -> Diagnostic:
+        """A fault in a cell."""
+        return Diagnostic(code, self.trajectory.place(int(self.segment[cell])), found)
+
+
+def faults(driven: Driven, code: str, mover: Mover, obstacle: Obstacle, clearance: float) -> Iterator[Diagnostic]:
+    """One fault for each operation in which a mover comes too near to an obstacle, where it is worst."""
+    met = contacts(driven.way, mover, obstacle.part, clearance, driven.operation)
+    yield from told(driven, code, mover, obstacle, met, clearance)
+
+
+def told(
+    driven: Driven, code: str, mover: Mover, obstacle: Obstacle, met: Contacts, clearance: float
+) -> Iterator[Diagnostic]:
+    """Contacts as one fault for each operation, at the worst of those that are looked at."""
+    operation = driven.operation[met.cell]
+    for number in np.unique(operation):
+        rows = np.flatnonzero(operation == number)
+        rows = rows[np.unique(np.linspace(0, len(rows) - 1, _LOOKED_AT).astype(np.int64))]
+        lacking = [clearance - _distance(driven, mover, obstacle, met, row) for row in rows]
+        worst = int(np.argmax(lacking))
+        found = f"{mover.name}, {obstacle.name} {obstacle.source}, by {max(lacking[worst], 0.0):.3f} mm"
+        yield driven.told(code, int(met.cell[rows[worst]]), found)
+
+
+def _distance(driven: Driven, mover: Mover, obstacle: Obstacle, met: Contacts, row: int) -> float:
+    """Distance at a contact; where the bodies overlap, less by how deep a corner of the mesh is inside of the mover."""
+    if met.distance[row] > 0:
+        return float(met.distance[row])
+    cylinders = mover.cylinders(driven.way.inside(met.cell[row : row + 1], met.share[row : row + 1]))
+    corners = obstacle.part.triangles.reshape(-1, 3)
+    deepest = 0.0
+    for number, rounding in enumerate(mover.rounding):
+        away = corners - cylinders.middle[number]
+        high = dot(away, cylinders.axis[number])
+        out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
+        depth = np.minimum(cylinders.half[number] - np.abs(high), cylinders.radius[number] - out) + rounding
+        deepest = max(deepest, float(depth.max()))
+    return -deepest

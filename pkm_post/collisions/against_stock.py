@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Against the stock: rapid moves, shanks and bodies of the machine in material that is there, or may be.
+
+A point of the stock that something meets before any cutter can have come there is certainly there: an error. One that
+no cutter has surely cut may be there: a warning. Units: mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.collisions.against_meshes import Driven
+from pkm_post.collisions.stock import Grid, Swept, first_met, when_cut
+from pkm_post.collisions.tool_shapes import Profile, cylinder
+from pkm_post.collisions.tools_in_use import InUse
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Diagnostic, Machine
+from pkm_post.model.machine import Body
+from pkm_post.model.setup import Mesh
+
+_SCALLOP = 0.1
+"""mm that may stand between two poses of a cutter that is taken to have cut all between them."""
+
+_MOST_MET = 4000
+"""Points that something meets of which it is looked up when they were cut."""
+
+
+@dataclass(frozen=True)
+class Intruder:
+    """What may not be in the stock.
+
+    Attributes:
+        name: how messages call it.
+        codes: of the diagnostic where it is certain, and where it is not.
+        shapes: what it is like about the tool axis, and the cells in which it is so.
+    """
+
+    name: str
+    codes: tuple[str, str]
+    shapes: tuple[tuple[Profile, Array], ...]
+
+
+def rapid_cutter(used: InUse) -> Intruder:
+    """The cutting part of a tool in rapid moves."""
+    return Intruder(f"{used.name} in a rapid move", ("K136", "K137"), ((used.profile(), used.rapid),))
+
+
+def shank_of(used: InUse) -> Intruder:
+    """The shank of a tool, where it has one."""
+    assert used.shank is not None
+    shape = cylinder(used.shank.start, used.tool.length, used.shank.diameter / 2)
+    return Intruder(f"shank of {used.name}", ("K134", "K135"), ((shape, used.cells()),))
+
+
+def body_of(machine: Machine, body: Body, used: Sequence[InUse]) -> Intruder:
+    """A body of the platform."""
+    return Intruder(
+        body.name,
+        ("K134", "K135"),
+        tuple(
+            (cylinder(nose + body.start, nose + body.end, body.radius), one.cells())
+            for one, nose in ((one, machine.spindle_nose + one.tool.length) for one in used)
+        ),
+    )
+
+
+def stock_faults(
+    driven: Driven, stock: Mesh, intruders: Sequence[Intruder], used: Sequence[InUse], tolerance: float
+) -> tuple[Grid, list[Diagnostic]]:
+    """What is in the stock that may not be, one fault for each operation; and the points it was looked at.
+
+    Args:
+        driven: the trajectory.
+        stock: a closed mesh.
+        intruders: what may not be in it.
+        used: all tools in use, since each of them cuts.
+        tolerance: by how much the tool may be off the trajectory, mm.
+    """
+    grid = Grid.of(stock.triangles)
+    work_from_machine = np.linalg.inv(driven.trajectory.machine_from_work)
+    cuts = [_cuts(driven, one, grid, work_from_machine) for one in used if one.has_size]
+    ridge = max((swept.moved**2 / (8 * float(profile.radius.max())) for swept, profile in cuts), default=0.0)
+    less = max(_SCALLOP, ridge) + tolerance
+    unknown = min((float(one.cutting.min(initial=np.inf)) - 1 for one in used if not one.has_size), default=np.inf)
+    found: list[Diagnostic] = []
+    for one in intruders:
+        first = _first_met(driven, one, grid, work_from_machine, less)
+        number = _some(np.flatnonzero(np.isfinite(first)))
+        points, met = grid.points(number), first[number]
+        may, sure = np.full(len(met), unknown), np.full(len(met), np.inf)
+        for swept, profile in cuts:
+            times = when_cut(points, met, swept, profile, tolerance)
+            may, sure = np.minimum(may, times[0]), np.minimum(sure, times[1])
+        certain = ~(may < met)
+        hits = [(one.codes[0], certain)] if certain.any() else [(one.codes[1], ~(sure <= met))]
+        for code, hit in hits:
+            found += _told(driven, one.name, code, stock, points[hit], met[hit])
+    return grid, found
+
+
+def _some(number: Array) -> Array:
+    """At most so many of them, evenly chosen."""
+    return number[np.unique(np.linspace(0, max(len(number) - 1, 0), _MOST_MET).astype(np.int64))[: len(number)]]
+
+
+def _cuts(driven: Driven, used: InUse, grid: Grid, work_from_machine: Array) -> tuple[Swept, Profile]:
+    """Where a tool cuts, in steps that leave ridges of no more than is allowed for."""
+    profile = used.profile()
+    step = float(np.sqrt(8 * profile.radius.max() * _SCALLOP))
+    return _swept(driven, used.cutting, profile, grid, work_from_machine, step), profile
+
+
+def _first_met(driven: Driven, intruder: Intruder, grid: Grid, work_from_machine: Array, less: float) -> Array:
+    """When points of the stock are first inside of an intruder, (points,), by more than a little."""
+    first = np.full(grid.filled.size, np.inf)
+    for profile, cells in intruder.shapes:
+        swept = _swept(driven, cells, profile, grid, work_from_machine, grid.step)
+        first = np.minimum(first, first_met(grid, swept, profile, -less))
+    return first
+
+
+def _swept(driven: Driven, cells: Array, profile: Profile, grid: Grid, work_from_machine: Array, step: float) -> Swept:
+    box = [len(axis) * grid.step for axis in grid.axes]
+    wide = 2 * float(profile.radius.max())
+    length = float(profile.height[-1] - profile.height[0])
+    pairs = min(wide, box[0]) * min(wide, box[1]) * min(length, max(box)) / grid.step**3
+    return Swept.of(driven.way, cells, work_from_machine, profile.farthest, step, pairs)
+
+
+def _told(
+    driven: Driven, name: str, code: str, stock: Mesh, points: Array, met: Array
+) -> Iterator[Diagnostic]:
+    """One fault for each operation, where it begins; by the points that are met, and when."""
+    cells = np.maximum(np.ceil(met).astype(np.int64), 1)
+    operation = driven.operation[cells]
+    for number in np.unique(operation):
+        mine = np.flatnonzero(operation == number)
+        begin = mine[np.argmin(met[mine])]
+        x, y, z = points[begin]
+        found = f"{name}, stock {stock.source}, at X{x:.1f} Y{y:.1f} Z{z:.1f}"
+        yield driven.told(code, int(cells[begin]), found)

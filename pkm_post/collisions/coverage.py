@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Coverage: what was looked at for collisions with the set-up, and how, as rows of the certificate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from pkm_post.collisions.against_meshes import Obstacle
+from pkm_post.model.certificate import Coverage, Extent, Topic
+
+_WHOLE = "along the whole path"
+
+
+def not_known() -> tuple[Coverage, ...]:
+    """The rows of a program that comes without a set-up."""
+    extents = Extents()
+    extents.part_not_known()
+    extents.fixtures_not_known()
+    extents.stock_not_known()
+    return extents.rows()
+
+
+@dataclass
+class Extents:
+    """The rows in the making.
+
+    Attributes:
+        unknown_cutters: names of tools whose size is not known.
+    """
+
+    unknown_cutters: list[str] = field(default_factory=list)
+    _rows: list[Coverage] = field(default_factory=list)
+
+    def rows(self) -> tuple[Coverage, ...]:
+        """All of them."""
+        return tuple(self._rows)
+
+    def _add(self, subject: str, extent: Extent, detail: str) -> None:
+        self._rows.append(Coverage(Topic.COLLISIONS, subject, extent, detail))
+
+    def part_not_known(self) -> None:
+        """No part was given."""
+        self._add("machine and tool against the part", Extent.NOT_COVERED, "part: not known")
+
+    def fixtures_not_known(self) -> None:
+        """No fixture beside those of the machine file was given."""
+        detail = "none beside those of the machine file is known"
+        self._add("machine and tool against clamps and fixtures", Extent.NOT_COVERED, detail)
+
+    def stock_not_known(self) -> None:
+        """No stock was given."""
+        self._add("machine and rapid moves against the stock", Extent.NOT_COVERED, "stock: not known")
+
+    def machine(self, obstacle: Obstacle, bodies: bool, struts: bool) -> None:
+        """Bodies and struts were checked, where the machine file states them."""
+        pairs = (("spindle and holder", bodies, "bodies of the platform"), ("struts", struts, "tubes or rods of the struts"))
+        for subject, stated, needed in pairs:
+            extent = Extent.PROVEN if stated else Extent.NOT_COVERED
+            detail = _told(obstacle, _WHOLE) if stated else f"the machine file does not state {needed}"
+            self._add(_against(subject, obstacle), extent, detail)
+
+    def shanks(self, obstacle: Obstacle, unknown: Sequence[str]) -> None:
+        """Shanks were checked, where they are known."""
+        if unknown:
+            detail = f"{', '.join(unknown)}: it is not known where the cutting edges end"
+            self._add(_against("shanks", obstacle), Extent.NOT_COVERED, detail)
+        else:
+            self._add(_against("shanks", obstacle), Extent.PROVEN, _told(obstacle, _WHOLE))
+
+    def cutters(self, obstacle: Obstacle, allowance: float) -> None:
+        """Cutters were checked, where their size is known."""
+        deeper = f", what is deeper than {allowance:g} mm and was not cut before" if allowance else ""
+        kinds = (("cutters in rapid moves", Extent.PROVEN, _WHOLE + deeper),)
+        if allowance:
+            sampled = f"at ends of moves, 2000 at most for each tool, what is deeper than {allowance:g} mm"
+            kinds = (*kinds, ("cutters in cutting moves", Extent.SAMPLED, sampled))
+        else:
+            kinds = (("cutters", Extent.PROVEN, _WHOLE),)
+        for subject, extent, detail in kinds:
+            if self.unknown_cutters:
+                detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
+                self._add(_against(subject, obstacle), Extent.NOT_COVERED, detail)
+            else:
+                self._add(_against(subject, obstacle), extent, _told(obstacle, detail))
+
+    def stock(self, obstacle: Obstacle, step: float, points: int) -> None:
+        """The stock was looked at in points."""
+        detail = f"as it is left by the cuts before, in {points:,} points {step:.2g} mm apart"
+        self._add("machine and rapid moves against the stock", Extent.SAMPLED, _told(obstacle, detail))
+
+    def stock_open(self, obstacle: Obstacle) -> None:
+        """The stock is no solid."""
+        detail = _told(obstacle, "its mesh is not closed: rapid moves were not looked at")
+        self._add("machine and rapid moves against the stock", Extent.NOT_COVERED, detail)
+
+
+def _against(subject: str, obstacle: Obstacle) -> str:
+    source = f" {obstacle.source}" if obstacle.name == "fixture" else ""
+    return f"{subject} against the {obstacle.name}{source}"
+
+
+def _told(obstacle: Obstacle, how: str) -> str:
+    return f"{obstacle.source}, {obstacle.triangles:,} triangles, {how}"

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Movers: what moves and may run into something: bodies of the platform, struts, shank and cutter of a tool.
+
+Each is a few cylinders at any pose, and a bound of how far any point of it can come in each cell of the way. What lies
+about the tool axis does not care for the spin. Units: mm, rad.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from pkm_post.geometry.separation import Cylinders
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics.bodies import lever_of_rod, strut_cylinders
+from pkm_post.kinematics.checks import arms_from_tip, shortest_distance
+from pkm_post.kinematics.placed import Placed
+from pkm_post.kinematics.way import Pose, Way
+from pkm_post.model import Machine
+from pkm_post.model.machine import Body
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A cylinder about the tool axis, grown by a ball all round.
+
+    Attributes:
+        start: height of its lower end above the tip, before it is grown.
+        end: of its upper end.
+        radius: before it is grown; 0 makes it a line.
+        rounding: radius of the ball.
+    """
+
+    start: float
+    end: float
+    radius: float
+    rounding: float = 0.0
+
+
+@dataclass(frozen=True)
+class Mover:
+    """Something that moves.
+
+    Attributes:
+        name: how messages call it.
+        cells: (K,) the cells of the way that it is looked at in, rising.
+        change: (N,) how far any point of it moves in each cell of the way, or more.
+        rounding: (P,) radius of the ball that each of its P cylinders is grown by.
+        cylinders: P cylinders for each of M poses, pose by pose.
+    """
+
+    name: str
+    cells: Array
+    change: Array
+    rounding: Array
+    cylinders: Callable[[Pose], Cylinders]
+
+
+def of_body(machine: Machine, way: Way, body: Body) -> Mover:
+    """A body of the platform, along the whole way."""
+    offset = machine.spindle_nose + body.start, machine.spindle_nose + body.end
+    return Mover(
+        body.name,
+        np.arange(1, len(way)),
+        _about_the_axis(way, max(abs(end + length) for end in offset for length in _lengths(way)), body.radius),
+        np.zeros(1),
+        partial(_platform_cylinder, *offset, body.radius),
+    )
+
+
+def of_tool(name: str, way: Way, cells: Array, pieces: Iterable[Piece]) -> Mover:
+    """A part of a tool, in the cells in which it is in use."""
+    start, end, radius, rounding = np.array([[p.start, p.end, p.radius, p.rounding] for p in pieces]).T
+    farthest = np.maximum(np.abs(start), np.abs(end)).max()
+    change = _about_the_axis(way, float(farthest), float(radius.max())) + way.angle * rounding.max()
+    return Mover(name, cells, change, rounding, partial(_tool_cylinders, start, end, radius))
+
+
+def of_struts(machine: Machine, way: Way) -> Mover | None:
+    """The six struts; None where their joints come together somewhere, which is refused for another reason."""
+    shortest = shortest_distance(machine, way)
+    if not shortest > 0:
+        return None
+    lever, arm = lever_of_rod(machine, shortest), float(arms_from_tip(machine, way.tool_length).max())
+    pieces = len(list(strut_cylinders(Placed.of(machine, way.rows(slice(0, 1))))))
+    change = lever * (way.travel + arm * way.turn())
+    return Mover("strut", np.arange(1, len(way)), change, np.zeros(6 * pieces), partial(_struts, machine))
+
+
+def _lengths(way: Way) -> tuple[float, float]:
+    return float(way.tool_length.min()), float(way.tool_length.max())
+
+
+def _about_the_axis(way: Way, farthest: float, radius: float) -> Array:
+    """A point moves with the tip and turns about it; the spin moves nothing that is round about the axis."""
+    return way.travel + way.angle * np.hypot(farthest, radius)
+
+
+def _platform_cylinder(start: float, end: float, radius: float, pose: Pose) -> Cylinders:
+    tip, axis, _, tool_length = pose
+    middle = tip + ((start + end) / 2 + tool_length)[:, None] * axis
+    return Cylinders(middle, axis, np.full(len(tip), (end - start) / 2), np.full(len(tip), radius))
+
+
+def _tool_cylinders(start: Array, end: Array, radius: Array, pose: Pose) -> Cylinders:
+    tip, axis, _, _ = pose
+    middle = tip[:, None] + ((start + end) / 2)[:, None] * axis[:, None]
+    repeated = np.repeat(axis, len(start), axis=0)
+    return Cylinders(middle.reshape(-1, 3), repeated, *(np.tile(one, len(tip)) for one in ((end - start) / 2, radius)))
+
+
+def _struts(machine: Machine, pose: Pose) -> Cylinders:
+    """All pieces of all struts, pose by pose."""
+    pieces = list(strut_cylinders(Placed.of(machine, pose)))
+    count = len(pose[0])
+
+    def by_pose(columns: list[Array]) -> Array:
+        shape = columns[0].shape[1:]
+        stacked = np.concatenate([column.reshape(count, 6, *shape) for column in columns], axis=1)
+        return stacked.reshape(-1, *shape)
+
+    return Cylinders(*(by_pose([getattr(one, name) for one in pieces]) for name in ("middle", "axis", "half", "radius")))

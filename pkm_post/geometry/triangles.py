@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Triangles: meshes (T, 3, 3) cut into small pieces, whether they enclose a solid, and which points are inside.
+
+Units: mm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry.gather import numbered
+from pkm_post.geometry.vectors import Array, cross, dot, norm
+
+_CORNER = 1e-5
+"""mm: corners this near to each other are one."""
+_POINTS_AT_ONCE = 4_000_000
+
+
+def cut_small(triangles: Array, longest: float) -> Array:
+    """The same surface in triangles none of whose edges is longer than ``longest``."""
+    done = []
+    while len(triangles):
+        edges = norm(np.roll(triangles, -1, axis=1) - triangles)
+        long = edges.max(axis=1) > longest
+        done.append(triangles[~long])
+        triangles, edges = triangles[long], edges[long]
+        first = np.argmax(edges, axis=1)[:, None] + np.arange(3)
+        a, b, c = np.take_along_axis(triangles, (first % 3)[..., None], axis=1).transpose(1, 0, 2)
+        middle = (a + b) / 2
+        triangles = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate(done) if done else triangles
+
+
+def is_closed(triangles: Array) -> bool:
+    """Whether the triangles enclose a solid: each edge is run once in either direction, as often as the other."""
+    corners = np.round(triangles.reshape(-1, 3) / _CORNER).astype(np.int64)
+    _, number = np.unique(corners, axis=0, return_inverse=True)
+    start = number.reshape(-1, 3)
+    end = np.roll(start, -1, axis=1)
+    runs = np.stack([start.ravel(), end.ravel()], axis=1)
+    runs = runs[runs[:, 0] != runs[:, 1]]
+    ahead, back = (one[np.lexsort(one.T)] for one in (runs, runs[:, ::-1]))
+    return len(runs) > 0 and bool(np.array_equal(ahead, back))
+
+
+def volume(triangles: Array) -> float:
+    """What a closed mesh encloses, mm^3; negative where its triangles turn inwards."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    return float(dot(a, cross(b, c)).sum() / 6)
+
+
+def inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
+    """Which points of a grid a closed mesh encloses, (X, Y, Z); solids that overlap count as one.
+
+    From each place in the plane a ray goes up: the triangles it meets below a point, those turned up counted against
+    those turned down, are as many when the point is outside.
+
+    Args:
+        triangles: (T, 3, 3) of a closed mesh.
+        x: (X,) coordinates of the grid, evenly spaced and rising. No ray should meet an edge: odd numbers do not.
+        y: (Y,) likewise.
+        z: (Z,) likewise.
+    """
+    column, height, up = _crossings(triangles, x, y)
+    first_above = np.searchsorted(z, height)
+    winding = np.zeros((len(x) * len(y), len(z) + 1), dtype=np.int32)
+    np.add.at(winding, (column, first_above), up)
+    return (np.cumsum(winding[:, :-1], axis=1) != 0).reshape(len(x), len(y), len(z))
+
+
+def _crossings(triangles: Array, x: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Where vertical rays meet triangles: number of the ray, height, and 1 or -1 as the triangle turns, (K,) each."""
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    begin = np.stack([np.searchsorted(one, low[:, axis]) for axis, one in enumerate((x, y))], axis=1)
+    count = np.stack([np.searchsorted(one, high[:, axis]) for axis, one in enumerate((x, y))], axis=1) - begin
+    found = [(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0, dtype=np.int32))]
+    for rows in _batches(count.prod(axis=1)):
+        row, number = numbered(count[rows].prod(axis=1))
+        row = rows[row]
+        at_x, at_y = begin[row, 0] + number // count[row, 1], begin[row, 1] + number % count[row, 1]
+        point = np.column_stack([x[at_x], y[at_y]])
+        a, b, c = triangles[row].transpose(1, 0, 2)
+        sides = np.stack([_side(p, q, point) for p, q in ((b, c), (c, a), (a, b))])
+        met = (sides > 0).all(axis=0) | (sides < 0).all(axis=0)
+        weight = sides[:, met] / sides[:, met].sum(axis=0)
+        height = weight[0] * a[met, 2] + weight[1] * b[met, 2] + weight[2] * c[met, 2]
+        found.append((at_x[met] * len(y) + at_y[met], height, np.sign(sides[0, met]).astype(np.int32)))
+    column, height, up = (np.concatenate(columns) for columns in zip(*found, strict=True))
+    return column, height, up
+
+
+def _side(p: Array, q: Array, point: Array) -> Array:
+    """Twice the area of the triangles p, q, point in the plane, by sign of the turn."""
+    return (q[:, 0] - p[:, 0]) * (point[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (point[:, 0] - p[:, 0])
+
+
+def _batches(work: Array) -> list[Array]:
+    """Rows with work to do, in batches that fit the memory."""
+    rows = np.flatnonzero(work)
+    number = np.cumsum(work[rows]) // _POINTS_AT_ONCE
+    return np.split(rows, np.flatnonzero(np.diff(number)) + 1) if len(rows) else []
