@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.certificate.coverage import coverage
+from pkm_post.certificate.coverage import NO_SETUP, coverage
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.fault_causes import fault_causes
 from pkm_post.certificate.findings import figures, findings
@@ -22,7 +22,7 @@ from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry.vectors import Array, norm
 from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Tolerances
+from pkm_post.model.certificate import Certificate, Coverage, Tolerances
 
 _FEED_SHARE = 1.01
 """How far the cubic may swing about the planned speed where the acceleration changes."""
@@ -40,6 +40,7 @@ def certify(
     machine: Machine,
     motion: Motion,
     tolerances: Tolerances,
+    collisions: tuple[Coverage, ...] = NO_SETUP,
 ) -> tuple[Certificate | None, tuple[Diagnostic, ...]]:
     """Play a program and compare it with the trajectory it was made from.
 
@@ -50,6 +51,7 @@ def certify(
         machine: geometry and limits.
         motion: the plan; program and plan must have the same knots.
         tolerances: what was asked for.
+        collisions: what was checked against part, stock and fixtures.
     """
     faults = structure_faults(struts, program_name, trajectory, machine, motion)
     if faults:
@@ -60,13 +62,15 @@ def certify(
     def measured(struts: StrutMotion) -> Certificate:
         course = ToolCourse.of(machine, struts, motion, knots)
         task = Task(struts, machine, ruler, motion, knots, course, ceiling)
-        return _certificate(task, trajectory, tolerances)
+        return _certificate(task, trajectory, tolerances, collisions)
 
     certificate = measured(struts)
     return certificate, fault_causes(certificate, struts, machine, knots, measured)
 
 
-def _certificate(task: Task, trajectory: Trajectory, tolerances: Tolerances) -> Certificate:
+def _certificate(
+    task: Task, trajectory: Trajectory, tolerances: Tolerances, collisions: tuple[Coverage, ...]
+) -> Certificate:
     """Play a program and measure it."""
     struts = task.struts
     passed = pass_joints(task, trajectory)
@@ -80,7 +84,7 @@ def _certificate(task: Task, trajectory: Trajectory, tolerances: Tolerances) -> 
         tip_deviation=played.tip,
         tip_tolerance=played.tip_tolerance,
         axis_deviation=played.axis,
-        coverage=coverage(task.machine, trajectory),
+        coverage=coverage(task.machine, trajectory, collisions),
         figures=figures(task, trajectory),
     )
 

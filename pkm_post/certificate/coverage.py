@@ -35,15 +35,26 @@ _SETUP = (
 _JERK = "the mean acceleration from one interval to the next"
 _NO_JERK = "the machine file states no {}"
 _STEPS = "none is stated; the report has the largest"
+NO_SETUP = (Coverage(Topic.COLLISIONS, "part, stock and clamps", Extent.NOT_COVERED, "not known here"),)
+"""What is said of collisions with the set-up where it is not looked at, as when a program is verified."""
 
 
-def coverage(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
-    """The hazards in the order of their topics."""
+def coverage(
+    machine: Machine, trajectory: Trajectory, collisions: tuple[Coverage, ...] = NO_SETUP
+) -> tuple[Coverage, ...]:
+    """The hazards in the order of their topics.
+
+    Args:
+        machine: what its file states decides what was checked.
+        trajectory: what is beside its path is known from it.
+        collisions: rows of what was checked against part, stock and fixtures that the machine file does not have.
+    """
     return (
         *_rows(Topic.PATH, Extent.PROVEN, _PATH),
         *_rows(Topic.LIMITS, Extent.PROVEN, _LIMITS),
         *_jerks(machine),
         *_collisions(machine),
+        *collisions,
         *beside_the_path(machine, trajectory),
         *_rows(Topic.SETUP, Extent.NOT_COVERED, _SETUP),
     )
@@ -69,7 +80,7 @@ def _jerks(machine: Machine) -> tuple[Coverage, ...]:
 
 
 def _collisions(machine: Machine) -> tuple[Coverage, ...]:
-    """The bodies that the machine file states are checked on the planned path; a part is not known here."""
+    """The bodies that the machine file states are checked on the planned path."""
     struts, bodies, fixtures = has_strut_bodies(machine), bool(machine.bodies), bool(machine.fixtures)
     pairs = (
         ("strut and strut", struts, "tubes or rods of the struts"),
@@ -77,10 +88,9 @@ def _collisions(machine: Machine) -> tuple[Coverage, ...]:
         ("strut and fixture", struts and fixtures, "tubes or rods of the struts and fixtures"),
         ("spindle and fixture", bodies and fixtures, "bodies of the platform and fixtures"),
     )
-    known = tuple(
+    return tuple(
         Coverage(Topic.COLLISIONS, subject, Extent.PROVEN, "the planned path, between its points as well")
         if stated
         else Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, f"the machine file does not state {needed}")
         for subject, stated, needed in pairs
     )
-    return (*known, *_rows(Topic.COLLISIONS, Extent.NOT_COVERED, (("part and stock", "neither is known"),)))

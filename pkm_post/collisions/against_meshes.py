@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Against meshes: bodies of the machine and parts of tools against the part, the fixtures, and the stock as it is first.
+"""Against meshes: bodies of the machine and parts of tools against part, fixtures, and the stock as it is first.
 
 A trajectory on its way, a machine and a mesh enter; faults by operation leave, proven to be all there are. Units: mm.
 """
@@ -88,7 +88,7 @@ def told(
     for number in np.unique(operation):
         rows = np.flatnonzero(operation == number)
         rows = rows[np.unique(np.linspace(0, len(rows) - 1, _LOOKED_AT).astype(np.int64))]
-        lacking = [clearance - _distance(driven, mover, obstacle, met, row) for row in rows]
+        lacking = [clearance - _distance(driven, mover, obstacle, met, row) for row in rows.tolist()]
         worst = int(np.argmax(lacking))
         found = f"{mover.name}, {obstacle.name} {obstacle.source}, by {max(lacking[worst], 0.0):.3f} mm"
         yield driven.told(code, int(met.cell[rows[worst]]), found)

@@ -81,8 +81,8 @@ def stock_faults(
     """
     grid = Grid.of(stock.triangles)
     work_from_machine = np.linalg.inv(driven.trajectory.machine_from_work)
-    cuts = [_cuts(driven, one, grid, work_from_machine) for one in used if one.has_size]
-    ridge = max((swept.moved**2 / (8 * float(profile.radius.max())) for swept, profile in cuts), default=0.0)
+    cuts = [(one, _cuts(driven, one, grid, work_from_machine)) for one in used if one.has_size]
+    ridge = max((swept.moved**2 / (4 * one.tool.diameter) for one, swept in cuts), default=0.0)
     less = max(_SCALLOP, ridge) + tolerance
     unknown = min((float(one.cutting.min(initial=np.inf)) - 1 for one in used if not one.has_size), default=np.inf)
     found: list[Diagnostic] = []
@@ -91,8 +91,8 @@ def stock_faults(
         number = _some(np.flatnonzero(np.isfinite(first)))
         points, met = grid.points(number), first[number]
         may, sure = np.full(len(met), unknown), np.full(len(met), np.inf)
-        for swept, profile in cuts:
-            times = when_cut(points, met, swept, profile, tolerance)
+        for cutter, swept in cuts:
+            times = when_cut(points, met, swept, cutter.profile(), cutter.largest_profile(), tolerance)
             may, sure = np.minimum(may, times[0]), np.minimum(sure, times[1])
         certain = ~(may < met)
         hits = [(one.codes[0], certain)] if certain.any() else [(one.codes[1], ~(sure <= met))]
@@ -106,11 +106,10 @@ def _some(number: Array) -> Array:
     return number[np.unique(np.linspace(0, max(len(number) - 1, 0), _MOST_MET).astype(np.int64))[: len(number)]]
 
 
-def _cuts(driven: Driven, used: InUse, grid: Grid, work_from_machine: Array) -> tuple[Swept, Profile]:
+def _cuts(driven: Driven, used: InUse, grid: Grid, work_from_machine: Array) -> Swept:
     """Where a tool cuts, in steps that leave ridges of no more than is allowed for."""
-    profile = used.profile()
-    step = float(np.sqrt(8 * profile.radius.max() * _SCALLOP))
-    return _swept(driven, used.cutting, profile, grid, work_from_machine, step), profile
+    step = float(np.sqrt(4 * used.tool.diameter * _SCALLOP))
+    return _swept(driven, used.cutting, used.largest_profile(), grid, work_from_machine, step)
 
 
 def _first_met(driven: Driven, intruder: Intruder, grid: Grid, work_from_machine: Array, less: float) -> Array:
@@ -130,9 +129,7 @@ def _swept(driven: Driven, cells: Array, profile: Profile, grid: Grid, work_from
     return Swept.of(driven.way, cells, work_from_machine, profile.farthest, step, pairs)
 
 
-def _told(
-    driven: Driven, name: str, code: str, stock: Mesh, points: Array, met: Array
-) -> Iterator[Diagnostic]:
+def _told(driven: Driven, name: str, code: str, stock: Mesh, points: Array, met: Array) -> Iterator[Diagnostic]:
     """One fault for each operation, where it begins; by the points that are met, and when."""
     cells = np.maximum(np.ceil(met).astype(np.int64), 1)
     operation = driven.operation[cells]

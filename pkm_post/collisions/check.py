@@ -20,6 +20,7 @@ from pkm_post.collisions.movers import Mover, of_body, of_struts, of_tool
 from pkm_post.collisions.tool_shapes import cutter_pieces, shank_pieces
 from pkm_post.collisions.tools_in_use import InUse, not_cut_before, tools_in_use
 from pkm_post.geometry.triangles import is_closed
+from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics.bodies import has_strut_bodies
 from pkm_post.model import Diagnostic, Machine, Place, Trajectory
 from pkm_post.model.certificate import Coverage, Tolerances
@@ -68,6 +69,12 @@ def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tole
     return Collisions(tuple(found), search.extents.rows())
 
 
+def names_of(setup: Setup) -> list[str]:
+    """What is known, for people."""
+    named = [("part", setup.part), ("stock", setup.stock), *(("fixture", mesh) for mesh in setup.fixtures)]
+    return [f"{name} {mesh.source}" for name, mesh in named if mesh is not None]
+
+
 @dataclass
 class _Search:
     """The checks one after the other, with what they found."""
@@ -97,9 +104,7 @@ class _Search:
         for used in self._with_size(part):
             pieces = cutter_pieces(used.tool, used.edge_length, ALLOWANCE + self.off_tip)
             self._rapid(part, used, of_tool(f"{used.name} in a rapid move", self.driven.way, used.rapid, pieces))
-            sampled = used.cutting[np.unique(np.linspace(0, max(len(used.cutting) - 1, 0), _SAMPLES).astype(np.int64))] \
-                if len(used.cutting) else used.cutting
-            mover = of_tool(used.name, self.driven.way, sampled, pieces)
+            mover = of_tool(used.name, self.driven.way, _sampled(used.cutting), pieces)
             met = contacts_at_ends(self.driven.way, mover, part.part, _TOUCH)
             self.found += told(self.driven, "K132", mover, part, met, ALLOWANCE)
         self.extents.cutters(part, ALLOWANCE)
@@ -118,10 +123,10 @@ class _Search:
             self._machine(fixture, "K133", "K133")
             self._shanks(fixture, "K133", 0.0)
             for used in self._with_size(fixture):
-                pieces = cutter_pieces(used.tool, used.edge_length, 0.0)
+                pieces = cutter_pieces(used.largest, used.edge_length, 0.0)
                 mover = of_tool(used.name, self.driven.way, used.cells(), pieces)
                 self.found += faults(self.driven, "K133", mover, fixture, _TOUCH + self.off_tip)
-            self.extents.cutters(fixture, 0.0)
+            self.extents.cutters_in_all_moves(fixture)
 
     def stock(self) -> None:
         """What may not be in the stock: bodies, struts and shanks at all times, cutters in rapid moves."""
@@ -154,7 +159,7 @@ class _Search:
             in_points = closed and intruder is not None
             operation, enough = self.driven.operation, 1 if in_points else ENOUGH
             met = contacts(self.driven.way, mover, stock.part, _TOUCH + self.off_tip, operation, enough)
-            if len(met) and in_points:
+            if len(met) and closed and intruder is not None:
                 yield intruder
             elif len(met):
                 self.found += told(self.driven, "K135", mover, stock, met, 0.0)
@@ -167,8 +172,7 @@ class _Search:
         movers: Sequence[tuple[str, Mover]] = [(of_bodies, mover) for mover in self.bodies]
         movers = [*movers, (of_struts, self.struts)] if self.struts else movers
         for code, mover in movers:
-            farthest = self.machine.spindle_nose + self.driven.way.tool_length.max() + 1e3
-            clearance = self.machine.clearance + self.off_tip + self.tolerances.axis * farthest
+            clearance = self.machine.clearance + self.off_tip + self.tolerances.axis * mover.reach
             self.found += faults(self.driven, code, mover, obstacle, max(clearance, _TOUCH))
         self.extents.machine(obstacle, bool(self.bodies), self.struts is not None)
 
@@ -187,3 +191,10 @@ class _Search:
         """The tools whose cutters are known; the others are noted."""
         self.extents.unknown_cutters = [used.name for used in self.used if not used.has_size]
         return (used for used in self.used if used.has_size)
+
+
+def _sampled(cells: Array) -> Array:
+    """Some of many cells, evenly chosen, and the last one."""
+    if len(cells) <= _SAMPLES:
+        return cells
+    return cells[np.linspace(0, len(cells) - 1, _SAMPLES).astype(np.int64)]

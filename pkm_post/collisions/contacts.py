@@ -70,9 +70,7 @@ class _Stretches:
         return self.way.inside(cell, at - (cell - 1))
 
 
-def contacts(
-    way: Way, mover: Mover, part: Part, clearance: float, operation: Array, enough: int = ENOUGH
-) -> Contacts:
+def contacts(way: Way, mover: Mover, part: Part, clearance: float, operation: Array, enough: int = ENOUGH) -> Contacts:
     """Where a mover is nearer to a part than its clearance.
 
     Args:

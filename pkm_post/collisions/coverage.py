@@ -54,7 +54,10 @@ class Extents:
 
     def machine(self, obstacle: Obstacle, bodies: bool, struts: bool) -> None:
         """Bodies and struts were checked, where the machine file states them."""
-        pairs = (("spindle and holder", bodies, "bodies of the platform"), ("struts", struts, "tubes or rods of the struts"))
+        pairs = (
+            ("spindle and holder", bodies, "bodies of the platform"),
+            ("struts", struts, "tubes or rods of the struts"),
+        )
         for subject, stated, needed in pairs:
             extent = Extent.PROVEN if stated else Extent.NOT_COVERED
             detail = _told(obstacle, _WHOLE) if stated else f"the machine file does not state {needed}"
@@ -70,19 +73,26 @@ class Extents:
 
     def cutters(self, obstacle: Obstacle, allowance: float) -> None:
         """Cutters were checked, where their size is known."""
-        deeper = f", what is deeper than {allowance:g} mm and was not cut before" if allowance else ""
-        kinds = (("cutters in rapid moves", Extent.PROVEN, _WHOLE + deeper),)
-        if allowance:
-            sampled = f"at ends of moves, 2000 at most for each tool, what is deeper than {allowance:g} mm"
-            kinds = (*kinds, ("cutters in cutting moves", Extent.SAMPLED, sampled))
-        else:
-            kinds = (("cutters", Extent.PROVEN, _WHOLE),)
+        deeper = f", what is deeper than {allowance:g} mm and was not cut before"
+        sampled = f"at ends of moves, 2000 at most for each tool, what is deeper than {allowance:g} mm"
+        kinds = [
+            ("cutters in rapid moves", Extent.PROVEN, _WHOLE + deeper),
+            ("cutters in cutting moves", Extent.SAMPLED, sampled),
+        ]
         for subject, extent, detail in kinds:
             if self.unknown_cutters:
                 detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
                 self._add(_against(subject, obstacle), Extent.NOT_COVERED, detail)
             else:
                 self._add(_against(subject, obstacle), extent, _told(obstacle, detail))
+
+    def cutters_in_all_moves(self, obstacle: Obstacle) -> None:
+        """Cutters were kept away from a fixture, where their size is known."""
+        if self.unknown_cutters:
+            detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
+            self._add(_against("cutters", obstacle), Extent.NOT_COVERED, detail)
+        else:
+            self._add(_against("cutters", obstacle), Extent.PROVEN, _told(obstacle, _WHOLE))
 
     def stock(self, obstacle: Obstacle, step: float, points: int) -> None:
         """The stock was looked at in points."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry.separation import Cylinders
 from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics.bodies import lever_of_rod, strut_cylinders
+from pkm_post.kinematics.bodies import lever_of_rod, reach_of_body, strut_cylinders
 from pkm_post.kinematics.checks import arms_from_tip, shortest_distance
 from pkm_post.kinematics.placed import Placed
 from pkm_post.kinematics.way import Pose, Way
@@ -48,6 +48,7 @@ class Mover:
         name: how messages call it.
         cells: (K,) the cells of the way that it is looked at in, rising.
         change: (N,) how far any point of it moves in each cell of the way, or more.
+        reach: how far from the tip any point of it is that turns with the platform, mm, or more.
         rounding: (P,) radius of the ball that each of its P cylinders is grown by.
         cylinders: P cylinders for each of M poses, pose by pose.
     """
@@ -55,6 +56,7 @@ class Mover:
     name: str
     cells: Array
     change: Array
+    reach: float
     rounding: Array
     cylinders: Callable[[Pose], Cylinders]
 
@@ -62,10 +64,12 @@ class Mover:
 def of_body(machine: Machine, way: Way, body: Body) -> Mover:
     """A body of the platform, along the whole way."""
     offset = machine.spindle_nose + body.start, machine.spindle_nose + body.end
+    reach = reach_of_body(machine, way, body)
     return Mover(
         body.name,
         np.arange(1, len(way)),
-        _about_the_axis(way, max(abs(end + length) for end in offset for length in _lengths(way)), body.radius),
+        _about_the_axis(way, reach),
+        reach,
         np.zeros(1),
         partial(_platform_cylinder, *offset, body.radius),
     )
@@ -74,9 +78,10 @@ def of_body(machine: Machine, way: Way, body: Body) -> Mover:
 def of_tool(name: str, way: Way, cells: Array, pieces: Iterable[Piece]) -> Mover:
     """A part of a tool, in the cells in which it is in use."""
     start, end, radius, rounding = np.array([[p.start, p.end, p.radius, p.rounding] for p in pieces]).T
-    farthest = np.maximum(np.abs(start), np.abs(end)).max()
-    change = _about_the_axis(way, float(farthest), float(radius.max())) + way.angle * rounding.max()
-    return Mover(name, cells, change, rounding, partial(_tool_cylinders, start, end, radius))
+    reach = float((np.hypot(np.maximum(np.abs(start), np.abs(end)), radius) + rounding).max())
+    return Mover(
+        name, cells, _about_the_axis(way, reach), reach, rounding, partial(_tool_cylinders, start, end, radius)
+    )
 
 
 def of_struts(machine: Machine, way: Way) -> Mover | None:
@@ -87,16 +92,12 @@ def of_struts(machine: Machine, way: Way) -> Mover | None:
     lever, arm = lever_of_rod(machine, shortest), float(arms_from_tip(machine, way.tool_length).max())
     pieces = len(list(strut_cylinders(Placed.of(machine, way.rows(slice(0, 1))))))
     change = lever * (way.travel + arm * way.turn())
-    return Mover("strut", np.arange(1, len(way)), change, np.zeros(6 * pieces), partial(_struts, machine))
+    return Mover("strut", np.arange(1, len(way)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine))
 
 
-def _lengths(way: Way) -> tuple[float, float]:
-    return float(way.tool_length.min()), float(way.tool_length.max())
-
-
-def _about_the_axis(way: Way, farthest: float, radius: float) -> Array:
+def _about_the_axis(way: Way, reach: float) -> Array:
     """A point moves with the tip and turns about it; the spin moves nothing that is round about the axis."""
-    return way.travel + way.angle * np.hypot(farthest, radius)
+    return way.travel + way.angle * reach
 
 
 def _platform_cylinder(start: float, end: float, radius: float, pose: Pose) -> Cylinders:
@@ -122,4 +123,6 @@ def _struts(machine: Machine, pose: Pose) -> Cylinders:
         stacked = np.concatenate([column.reshape(count, 6, *shape) for column in columns], axis=1)
         return stacked.reshape(-1, *shape)
 
-    return Cylinders(*(by_pose([getattr(one, name) for one in pieces]) for name in ("middle", "axis", "half", "radius")))
+    return Cylinders(
+        *(by_pose([getattr(one, name) for one in pieces]) for name in ("middle", "axis", "half", "radius"))
+    )

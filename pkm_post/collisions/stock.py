@@ -25,6 +25,8 @@ _OFF_EDGES = 0.381966
 """Where the grid begins, in steps: no round number, so that rays along it meet no edges of meshes."""
 _PAIRS = 2_000_000
 """Poses and points in one pass."""
+_CHORDS = 0.05
+"""mm by which the profile of a cutter may be below its corner, which are chords."""
 _JUST_BEFORE = 32
 """Poses of a cutter."""
 _ROUNDING, _SQUARED_ROUNDING = 1e-6, 1e-3
@@ -115,7 +117,7 @@ class Swept:
 
 
 def first_met(grid: Grid, swept: Swept, profile: Profile, more: float) -> Array:
-    """The first position at which points of the stock are inside of what is swept, (points,); infinite if they never are.
+    """The first position at which points of the stock are inside of what is swept, (points,); infinite if never.
 
     Args:
         grid: the points.
@@ -133,44 +135,55 @@ def first_met(grid: Grid, swept: Swept, profile: Profile, more: float) -> Array:
     return first
 
 
-def when_cut(points: Array, met: Array, swept: Swept, profile: Profile, tolerance: float) -> tuple[Array, Array]:
+def when_cut(
+    points: Array, met: Array, swept: Swept, smallest: Profile, largest: Profile, tolerance: float
+) -> tuple[Array, Array]:
     """When points may have been cut and surely have been, (K,) each; infinite where that is not before they are met.
 
     Args:
         points: (K, 3) in {C}.
         met: (K,) positions at which something meets them.
         swept: poses of the cutter.
-        profile: the cutter.
+        smallest: the cutter, no larger than it is.
+        largest: the cutter, no smaller than it is but for the chords of its corner.
         tolerance: by how much it may be off these poses, mm.
     """
     may, sure = np.full(len(points), np.inf), np.full(len(points), np.inf)
     last = np.searchsorted(swept.at, met, side="right")
-    grown = swept.moved + tolerance
+    grown = swept.moved + tolerance + _CHORDS
     # What is met has mostly been cut just before; only what has not is looked for all the way back.
     just_before = last[:, None] - 1 - np.arange(min(_JUST_BEFORE, len(swept.at)))
     for rows in _chunks(len(points), _PAIRS // max(just_before.shape[1], 1)):
         point, number = np.nonzero(just_before[rows] >= 0)
-        _cut(may, sure, points, rows[point], just_before[rows[point], number], swept, profile, grown)
+        _cut(may, sure, points, rows[point], just_before[rows[point], number], swept, smallest, largest, grown)
     left = np.flatnonzero(~(sure <= met))
     for some in _chunks(len(left), _PAIRS // max(len(swept.at), 1)):
         rows = left[some]
         high = points[rows] @ swept.axis.T - dot(swept.tip, swept.axis)
         square = dot(points[rows], points[rows])[:, None] - 2 * points[rows] @ swept.tip.T + dot(swept.tip, swept.tip)
-        beside = square - high * high < (float(profile.radius.max()) + grown) ** 2 + _SQUARED_ROUNDING
-        level = (high > -grown - _ROUNDING) & (high < profile.height[-1] + grown + _ROUNDING)
+        beside = square - high * high < (float(largest.radius.max()) + grown) ** 2 + _SQUARED_ROUNDING
+        level = (high > -grown - _ROUNDING) & (high < largest.height[-1] + grown + _ROUNDING)
         point, number = np.nonzero(beside & level & (np.arange(len(swept.at)) < last[rows][:, None]))
-        _cut(may, sure, points, rows[point], number, swept, profile, grown)
+        _cut(may, sure, points, rows[point], number, swept, smallest, largest, grown)
     return may, sure
 
 
 def _cut(
-    may: Array, sure: Array, points: Array, point: Array, pose: Array, swept: Swept, profile: Profile, grown: float
+    may: Array,
+    sure: Array,
+    points: Array,
+    point: Array,
+    pose: Array,
+    swept: Swept,
+    smallest: Profile,
+    largest: Profile,
+    grown: float,
 ) -> None:
     """Note when points may have been cut and surely have been, by pairs of a point and a pose."""
     away = points[point] - swept.tip[pose]
     high = dot(away, swept.axis[pose])
     out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
-    close, inside_it = profile.contains(high, out, grown), profile.contains(high, out)
+    close, inside_it = largest.contains(high, out, grown), smallest.contains(high, out)
     np.minimum.at(may, point[close], swept.before[pose[close]])
     np.minimum.at(sure, point[inside_it], swept.at[pose[inside_it]])
 

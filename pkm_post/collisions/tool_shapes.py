@@ -18,7 +18,7 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import Tool
 from pkm_post.model.setup import Shank
 
-_ARC_CHORDS = 12
+_ARC_CHORDS = 24
 _STEPS = 6
 """Cylinders that stand for one slanted line of a profile."""
 
@@ -92,7 +92,9 @@ def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[Piece, .
     profile = cutter_profile(tool, length)
     edges = np.unique(np.concatenate([np.linspace(*ends, _STEPS + 1) for ends in _sections(profile)]))
     edges = edges[edges >= less]
-    wide = np.minimum(*(np.interp(one, profile.height, profile.radius) for one in (edges[:-1] - less, edges[1:]))) - less
+    wide = (
+        np.minimum(*(np.interp(one, profile.height, profile.radius) for one in (edges[:-1] - less, edges[1:]))) - less
+    )
     return tuple(
         Piece(low, high, radius)
         for low, high, radius in zip(edges[:-1].tolist(), edges[1:].tolist(), wide.tolist(), strict=True)
@@ -102,7 +104,12 @@ def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[Piece, .
 
 def _sections(profile: Profile) -> list[tuple[float, float]]:
     """Heights between which the radius changes along one line or the corner arc."""
-    corner = [profile.height[0], profile.height[min(1, len(profile.height) - 1)], profile.height[-2], profile.height[-1]]
+    corner = [
+        profile.height[0],
+        profile.height[min(1, len(profile.height) - 1)],
+        profile.height[-2],
+        profile.height[-1],
+    ]
     return [(float(low), float(high)) for low, high in zip(corner[:-1], corner[1:], strict=True) if high > low]
 
 

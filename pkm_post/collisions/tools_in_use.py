@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tools in use: where on a way each tool cuts and where it moves rapidly, and what may have been cut before. Units: mm."""
+"""Tools in use: where on a way each tool cuts and moves rapidly, and what may have been cut before. Units: mm."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from pkm_post.geometry.gather import numbered
 from pkm_post.geometry.vectors import Array, dot
 from pkm_post.model import Kind, Tool
 from pkm_post.model.setup import Setup, Shank
+from pkm_post.model.tool import largest_corner
 
 _STEP = 0.2
 """mm: within half of it a point of the part that a cutter came to counts as cut."""
@@ -25,13 +26,15 @@ class InUse:
     """A tool and where it is used.
 
     Attributes:
-        tool: the tool.
+        tool: the tool, the smallest that it can be: a ball nose where its corner is not known.
+        largest: the largest that it can be: a flat end mill there.
         shank: None where it is not known where its cutting edges end.
         cutting: (K,) cells of the way in which it moves at a feed.
         rapid: (K,) cells in which it moves rapidly.
     """
 
     tool: Tool
+    largest: Tool
     shank: Shank | None
     cutting: Array
     rapid: Array
@@ -56,8 +59,12 @@ class InUse:
         return np.sort(np.concatenate([self.cutting, self.rapid]))
 
     def profile(self) -> Profile:
-        """Of its cutting part."""
+        """Of its cutting part, no larger than it is."""
         return cutter_profile(self.tool, self.edge_length)
+
+    def largest_profile(self) -> Profile:
+        """Of its cutting part, no smaller than it is but for the chords of its corner."""
+        return cutter_profile(self.largest, self.edge_length)
 
 
 def tools_in_use(driven: Driven, setup: Setup) -> tuple[InUse, ...]:
@@ -65,9 +72,16 @@ def tools_in_use(driven: Driven, setup: Setup) -> tuple[InUse, ...]:
     trajectory, cells = driven.trajectory, np.arange(1, len(driven.way))
     number, rapid = trajectory.tool[driven.segment[1:]], trajectory.kind[driven.segment[1:]] == Kind.RAPID
     return tuple(
-        InUse(trajectory.tools[one], setup.shanks.get(one), cells[mine & ~rapid], cells[mine & rapid])
+        InUse(*_sizes(trajectory.tools[one], setup), setup.shanks.get(one), cells[mine & ~rapid], cells[mine & rapid])
         for one, mine in ((int(one), number == one) for one in np.unique(number))
     )
+
+
+def _sizes(tool: Tool, setup: Setup) -> tuple[Tool, Tool]:
+    """The smallest and the largest that a tool can be."""
+    if tool.corner_known and tool.number not in setup.unknown_corners:
+        return tool, tool
+    return replace(tool, corner_radius=largest_corner(tool.diameter, tool.bottom_angle, tool.side_angle)), tool
 
 
 def not_cut_before(driven: Driven, used: Sequence[InUse], met: Contacts) -> Contacts:
@@ -84,7 +98,7 @@ def not_cut_before(driven: Driven, used: Sequence[InUse], met: Contacts) -> Cont
 
 def _reaches(driven: Driven, used: InUse, cells: Array, point: Array) -> bool:
     """Whether a cutter comes to a point in some cells, or nearly so."""
-    profile, way = used.profile(), driven.way
+    profile, way = used.largest_profile(), driven.way
     change = way.travel[cells] + way.angle[cells] * profile.farthest
     wide = float(profile.radius.max())
     high, out = _in_tool(way.tip[cells], way.axis[cells], point)

@@ -28,9 +28,7 @@ def nearest_of_triangle(cylinders: Cylinders, triangles: Array) -> tuple[Array, 
     frame = _frames(cylinders.axis)
     corners = (triangles - cylinders.middle[:, None]) @ frame.transpose(0, 2, 1)
     radius, half = cylinders.radius, cylinders.half
-    points = nearest_to_cylinder(
-        corners, np.roll(corners, -1, axis=1), radius[:, None], -half[:, None], half[:, None]
-    )
+    points = nearest_to_cylinder(corners, np.roll(corners, -1, axis=1), radius[:, None], -half[:, None], half[:, None])
     points = np.concatenate([points, _nearest_in_plane(corners, radius, half)[:, None]], axis=1)
     distance = point_to_cylinder(points, radius[:, None], -half[:, None], half[:, None])
     distance[:, 3] = np.where(_inside(corners, points[:, 3]), distance[:, 3], np.inf)

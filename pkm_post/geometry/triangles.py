@@ -53,11 +53,12 @@ def inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
     """Which points of a grid a closed mesh encloses, (X, Y, Z); solids that overlap count as one.
 
     From each place in the plane a ray goes up: the triangles it meets below a point, those turned up counted against
-    those turned down, are as many when the point is outside.
+    those turned down, are as many when the point is outside. A ray that meets an edge or a corner counts as if it stood
+    a hair further along y, and much less before it along x; so of the triangles about it, it meets the right ones.
 
     Args:
         triangles: (T, 3, 3) of a closed mesh.
-        x: (X,) coordinates of the grid, evenly spaced and rising. No ray should meet an edge: odd numbers do not.
+        x: (X,) coordinates of the grid, evenly spaced and rising.
         y: (Y,) likewise.
         z: (Z,) likewise.
     """
@@ -71,8 +72,11 @@ def inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
 def _crossings(triangles: Array, x: Array, y: Array) -> tuple[Array, Array, Array]:
     """Where vertical rays meet triangles: number of the ray, height, and 1 or -1 as the triangle turns, (K,) each."""
     low, high = triangles.min(axis=1), triangles.max(axis=1)
-    begin = np.stack([np.searchsorted(one, low[:, axis]) for axis, one in enumerate((x, y))], axis=1)
-    count = np.stack([np.searchsorted(one, high[:, axis]) for axis, one in enumerate((x, y))], axis=1) - begin
+    begin, end = (
+        np.stack([np.searchsorted(x, one[:, 0], side="right"), np.searchsorted(y, one[:, 1])], axis=1)
+        for one in (low, high)
+    )
+    count = end - begin
     found = [(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0, dtype=np.int32))]
     for rows in _batches(count.prod(axis=1)):
         row, number = numbered(count[rows].prod(axis=1))
@@ -80,18 +84,23 @@ def _crossings(triangles: Array, x: Array, y: Array) -> tuple[Array, Array, Arra
         at_x, at_y = begin[row, 0] + number // count[row, 1], begin[row, 1] + number % count[row, 1]
         point = np.column_stack([x[at_x], y[at_y]])
         a, b, c = triangles[row].transpose(1, 0, 2)
-        sides = np.stack([_side(p, q, point) for p, q in ((b, c), (c, a), (a, b))])
-        met = (sides > 0).all(axis=0) | (sides < 0).all(axis=0)
-        weight = sides[:, met] / sides[:, met].sum(axis=0)
-        height = weight[0] * a[met, 2] + weight[1] * b[met, 2] + weight[2] * c[met, 2]
-        found.append((at_x[met] * len(y) + at_y[met], height, np.sign(sides[0, met]).astype(np.int32)))
+        left, side = zip(*(_left(p, q, point) for p, q in ((b, c), (c, a), (a, b))), strict=True)
+        area = np.sum(side, axis=0)
+        met = (np.all(left, axis=0) | ~np.any(left, axis=0)) & (area != 0)
+        height = sum(one[met] * p[met, 2] for one, p in zip(side, (a, b, c), strict=True)) / area[met]
+        height = np.clip(height, low[row[met], 2], high[row[met], 2])
+        found.append((at_x[met] * len(y) + at_y[met], height, np.where(left[0][met], 1, -1).astype(np.int32)))
     column, height, up = (np.concatenate(columns) for columns in zip(*found, strict=True))
     return column, height, up
 
 
-def _side(p: Array, q: Array, point: Array) -> Array:
-    """Twice the area of the triangles p, q, point in the plane, by sign of the turn."""
-    return (q[:, 0] - p[:, 0]) * (point[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (point[:, 0] - p[:, 0])
+def _left(p: Array, q: Array, point: Array) -> tuple[Array, Array]:
+    """Whether points are to the left of edges from p to q, and twice the area with its sign, the same in both runs."""
+    swapped = (p[:, 0] > q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] > q[:, 1]))
+    first, last = np.where(swapped[:, None], q, p), np.where(swapped[:, None], p, q)
+    along, across = last[:, :2] - first[:, :2], point - first[:, :2]
+    side = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
+    return (side >= 0) != swapped, np.where(swapped, -side, side)
 
 
 def _batches(work: Array) -> list[Array]:

@@ -316,13 +316,15 @@ RULES: dict[str, Rule] = {
     "K126": _error("an arc begins where a tool of another length was taken", "make a straight move before the arc"),
     "K127": _error("a move takes longer than a day", "give it a higher feed"),
     "K130": _error(
-        "the shank of the tool goes into the part", "use a tool with longer cutting edges or a thinner shank, or tilt it"
+        "the shank of the tool goes into the part",
+        "use a tool with longer cutting edges or a thinner shank, or tilt it",
     ),
     "K131": _error(
         "a rapid move takes the cutter through the part", "raise the clearance and retract heights of the operation"
     ),
     "K132": _warning(
-        "the cutter goes deeper into the part than its surface", "check the depths, and what the flank of the cutter does"
+        "the cutter goes deeper into the part than its surface",
+        "check the depths, and what the flank of the cutter does",
     ),
     "K133": _error("something comes too near to a fixture", "move the fixture or the path, or use a longer tool"),
     "K134": _error(
@@ -346,6 +348,7 @@ RULES: dict[str, Rule] = {
     ),
     "K139": _warning(
         "the mesh of the stock is not closed, and only its surface is looked at", "write a closed solid as STL"
+    ),
     # K14: tools, tool changes and the spindle
     "K140": _error(
         "the tool is larger than the spindle takes",

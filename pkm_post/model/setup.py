@@ -53,12 +53,14 @@ class Setup:
         stock: as it is before the first operation.
         fixtures: clamps, vice and whatever else stands still.
         shanks: by tool number, of the tools of which it is known.
+        unknown_corners: numbers of tools whose corner radius is not known.
     """
 
     part: Mesh | None = None
     stock: Mesh | None = None
     fixtures: tuple[Mesh, ...] = ()
     shanks: Mapping[int, Shank] = field(default_factory=dict)
+    unknown_corners: frozenset[int] = frozenset()
 
     @property
     def is_empty(self) -> bool:

@@ -213,6 +213,22 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "action": "store_true",
         "help": "change feeds as the spindle speed changes with --surface-speed; --no-keep-chip-load takes it back",
     },
+    "--part": {
+        "metavar": "FILE",
+        "help": "STL file of the finished part, mm in the work frame: holder, spindle, struts, shanks and rapid moves"
+        " are checked against it (default: the models of the CAM job)",
+    },
+    "--stock": {
+        "metavar": "FILE",
+        "help": "STL file of the stock as it is before the first operation, likewise (default: the stock of the CAM"
+        " job)",
+    },
+    "--fixture": {
+        "metavar": "FILE",
+        "action": "append",
+        "default": [],
+        "help": "STL file of a clamp or vice, mm in the work frame, which nothing may touch; may be repeated",
+    },
     "--spin": {
         "metavar": "RULE",
         "type": _spin,
@@ -260,7 +276,7 @@ def tolerances_from(namespace: argparse.Namespace) -> Tolerances:
 def options_from(namespace: argparse.Namespace) -> Options:
     """The options of a parsed command line, in mm and rad."""
     from pkm_post.compensation import OffsetOptions
-    from pkm_post.pipeline import Options
+    from pkm_post.pipeline import MeshFiles, Options
 
     offset, tolerances = namespace.work_offset, tolerances_from(namespace)
     return Options(
@@ -272,6 +288,7 @@ def options_from(namespace: argparse.Namespace) -> Options:
         surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
         also=namespace.also,
         actual_tools=_cutters(namespace.actual_tool),
+        mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(namespace.fixture)),
     )
 
 

@@ -5,7 +5,8 @@
 """
 
 from pkm_post.pipeline.frame import Posted
-from pkm_post.pipeline.options import LINUXCNC, Options
+from pkm_post.pipeline.known_setup import known_setup
+from pkm_post.pipeline.options import LINUXCNC, MeshFiles, Options
 from pkm_post.pipeline.placed import trajectory_of, work_offset
 from pkm_post.pipeline.prepared import Prepared
 from pkm_post.pipeline.run import Log, Progress, quiet, unwatched
@@ -15,10 +16,12 @@ __all__ = [
     "LINUXCNC",
     "SUFFIX",
     "Log",
+    "MeshFiles",
     "Options",
     "Posted",
     "Prepared",
     "Progress",
+    "known_setup",
     "post",
     "quiet",
     "step_names",

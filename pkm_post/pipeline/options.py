@@ -12,11 +12,27 @@ from pkm_post.controllers import TABLES
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Tool
 from pkm_post.model.certificate import Tolerances
+from pkm_post.model.setup import NOTHING_KNOWN, Setup
 from pkm_post.spin import ZERO_TORSION, Policy
 from pkm_post.surface_speed import SurfaceSpeed
 
 LINUXCNC = "linuxcnc"
 """The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is no table of the motion."""
+
+
+@dataclass(frozen=True)
+class MeshFiles:
+    """Files with meshes of the set-up; they stand in for what the job says.
+
+    Attributes:
+        part: of the finished part; None where none is named.
+        stock: of the stock before the first operation; None where none is named.
+        fixtures: of what holds it.
+    """
+
+    part: str | None = None
+    stock: str | None = None
+    fixtures: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -33,6 +49,8 @@ class Options:
             surface normals is compensated for them.
         surface_speed: how fast the cutting edge is to move over the work; None leaves the spindle as programmed.
         also: what is written beside the program: names of ``controllers.TABLES``, and ``LINUXCNC``.
+        mesh_files: files of what collisions are looked for with.
+        setup: what is known of that without files, as of a CAM job.
     """
 
     work_offset: str | Array = "G54"
@@ -43,6 +61,8 @@ class Options:
     actual_tools: Mapping[int, Tool] = field(default_factory=dict)
     surface_speed: SurfaceSpeed | None = None
     also: tuple[str, ...] = ()
+    mesh_files: MeshFiles = MeshFiles()
+    setup: Setup = NOTHING_KNOWN
 
     def __post_init__(self) -> None:
         known = (*TABLES, LINUXCNC)

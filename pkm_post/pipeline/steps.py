@@ -13,13 +13,16 @@ from typing import Any
 
 from pkm_post import outputs, planning, trajectory_file
 from pkm_post.certificate import certify
+from pkm_post.collisions import find_collisions, names_of
 from pkm_post.controllers import TABLES, controller_settings
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
 from pkm_post.model import Diagnostic, Machine, Motion, Place, Program, Refused, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate
+from pkm_post.model.certificate import Certificate, Coverage
 from pkm_post.model.diagnostics import errors
+from pkm_post.model.setup import Setup
 from pkm_post.pipeline.frame import Frame, Posted
+from pkm_post.pipeline.known_setup import known_setup
 from pkm_post.pipeline.options import LINUXCNC, Options
 from pkm_post.pipeline.placed import trajectory_of
 from pkm_post.pipeline.run import Findings, Log, Progress, Run, quiet, unwatched
@@ -28,8 +31,12 @@ from pkm_post.report import plots, summary
 SUFFIX = ".pmc"
 """How the name of a motion program ends."""
 _TRAJECTORY, _FEED_PLAN, _INTERPOLATION = "trajectory", "reach and feed plan", "interpolation"
+_COLLISIONS = "collisions"
 _PROGRAM, _CERTIFICATE, _REPORT = "motion program", "certificate", "report"
-_SHARES = {_TRAJECTORY: 0.1, _FEED_PLAN: 1.0, _INTERPOLATION: 1.5, _PROGRAM: 0.1, _CERTIFICATE: 1.0, _REPORT: 1.0}
+_SHARES = {
+    _TRAJECTORY: 0.1, _FEED_PLAN: 1.0, _COLLISIONS: 1.0, _INTERPOLATION: 1.5, _PROGRAM: 0.1, _CERTIFICATE: 1.0,
+    _REPORT: 1.0,
+}  # fmt: skip
 """The steps in their order, and roughly how long each takes beside the others."""
 _SHARE_OF_ANOTHER = 0.2
 """The same for a file beside the program."""
@@ -58,13 +65,15 @@ def post(
     Raises:
         Refused: something in the input, or the place to write to, does not allow it; nothing was written.
     """
+    options = options or Options()
+    setup, faults = known_setup(options, program)
+    found = (*found, *faults)
     if program is None or machine is None or errors(found):
         raise Refused(found)
-    options = options or Options()
     run = Run(log, progress, _shares(options), list(found))
     try:
         with staged(program_path.parent) as folder:
-            parts, report = _all_steps(run, program, machine, folder / program_path.name, options)
+            parts, report = _all_steps(run, program, machine, folder / program_path.name, options, setup)
             run.end()
             names = sorted(path.name for path in folder.iterdir())
     except OSError as fault:
@@ -90,15 +99,16 @@ def _another(name: str) -> str:
 
 
 def _all_steps(
-    run: Run, program: Program, machine: Machine, path: Path, options: Options
+    run: Run, program: Program, machine: Machine, path: Path, options: Options, setup: Setup
 ) -> tuple[list[str], dict[str, Any]]:
     """The steps in their order; the names of the parts of the program, and the content of the report."""
     frame = Frame(path, machine, *run.value(controller_settings(machine)), options)
     trajectory = _stored_trajectory(run, frame, program)
     tool_path, schedule = _feed_plan(run, frame, trajectory)
+    covered = _collisions(run, frame, trajectory, setup)
     motion, struts = _interpolation(run, frame, trajectory, tool_path, schedule)
     names = _motion_program(run, frame, trajectory, struts)
-    played, certificate = _certificate(run, frame, trajectory, motion, names)
+    played, certificate = _certificate(run, frame, trajectory, motion, names, covered)
     report = _report(run, frame, trajectory, motion, played, certificate, program.reading)
     for name in options.also:
         _write_another(run, frame, name, trajectory, played)
@@ -124,6 +134,15 @@ def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath
         run.accept(faults)
         told.append(f"{schedule.rests_ms[-1] / 1000:.1f} s of motion")
     return tool_path, schedule
+
+
+def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) -> tuple[Coverage, ...]:
+    """What runs into part, stock and fixtures; what was checked, for the certificate."""
+    with run.step(_COLLISIONS) as told:
+        collisions = find_collisions(trajectory, frame.machine, setup, frame.tolerances)
+        run.accept(collisions.faults)
+        told.extend(names_of(setup) or ["part and stock are not known"])
+    return collisions.coverage
 
 
 def _interpolation(
@@ -152,13 +171,13 @@ def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: Stru
 
 
 def _certificate(
-    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, names: list[str]
+    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, names: list[str], covered: tuple[Coverage, ...]
 ) -> tuple[StrutMotion, Certificate]:
     """The program read back from its text, and what it does."""
     with run.step(_CERTIFICATE) as told:
         texts = outputs.read_parts(frame.path, names)
         played = run.value(frame.controller.read_parts(texts, frame.settings))
-        measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances)
+        measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
         certificate = run.value(measured)
         told.append(f"{certificate.instants} instants")
     return played, certificate

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Known set-up: what is known of part, stock and fixtures: files that the user names go before what the job says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from pkm_post.mesh_file import read_mesh
+from pkm_post.model import Diagnostic, Program
+from pkm_post.model.setup import Mesh, Setup
+from pkm_post.pipeline.options import Options
+
+
+def known_setup(options: Options, program: Program | None) -> tuple[Setup, tuple[Diagnostic, ...]]:
+    """The set-up of a program, and what is wrong with the files of it.
+
+    Args:
+        options: the files, and what the job says.
+        program: knows of which tools the corner is not known, which a trajectory file does not keep; None if it has
+            errors.
+    """
+    files, found = options.mesh_files, list[Diagnostic]()
+
+    def read(file: str | None) -> Mesh | None:
+        if file is None:
+            return None
+        mesh, faults = read_mesh(file)
+        found.extend(faults)
+        return mesh
+
+    part, stock = read(files.part), read(files.stock)
+    fixtures = tuple(mesh for mesh in map(read, files.fixtures) if mesh is not None)
+    known = options.setup
+    tools = program.tools.values() if program is not None else ()
+    setup = replace(
+        known,
+        part=part or known.part,
+        stock=stock or known.stock,
+        fixtures=(*known.fixtures, *fixtures),
+        unknown_corners=frozenset(tool.number for tool in tools if not tool.corner_known),
+    )
+    return setup, tuple(found)

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What runs into part, stock or fixture is not posted by the command line, and nothing is written; what clears is."""
+
+import json
+
+import numpy as np
+import pytest
+from meshes import ascii_stl, binary_stl, box
+
+from pkm_post.cli import main
+
+SLOT = """\
+G21 G90 G54
+T1 M6
+S8000 M3
+G0 X-30 Y0 Z60
+G0 Z20.5
+G1 Z10 F600
+G1 X30
+G1 Y10
+G0 Z60
+M5
+M30
+"""
+"""Upright, gauge length 120: the holder of the example machine, of 25 mm radius, begins 70 mm above the tip."""
+PLATE, CLEARANCE = box([-40, -40, 0], [40, 40, 10]), 2.0
+
+
+def wall(gap):
+    """A wall that the holder passes at this distance, at Y10."""
+    return box([-40, 10 + 25 + gap, 10], [40, 60, 200])
+
+
+def posted(folder, capsys, *arguments, program=SLOT):
+    """Exit code, what was written, and what was told."""
+    (folder / "slot.ngc").write_text(program)
+    out = folder / "out"
+    flags = ["--machine", "example_6tps", "--out", str(out), "--tool-length", "1=120", "--tool", "1=10,0"]
+    code = main(["post", str(folder / "slot.ngc"), *flags, *arguments])
+    return code, sorted(path.name for path in out.glob("*")) if out.exists() else [], capsys.readouterr().err
+
+
+def stored(folder, name, mesh):
+    (folder / name).write_bytes(binary_stl(mesh) if name.startswith("b") else ascii_stl(mesh))
+    return str(folder / name)
+
+
+@pytest.mark.parametrize(("gap", "code"), [(CLEARANCE + 0.1, 0), (CLEARANCE - 0.1, 1), (-15.0, 1)])
+@pytest.mark.parametrize("name", ["binary.stl", "ascii.stl"])
+def test_a_holder_that_goes_into_the_part_is_refused_and_one_that_clears_is_posted(tmp_path, capsys, gap, code, name):
+    part = stored(tmp_path, name, np.concatenate([PLATE, wall(gap)]))
+    found, files, told = posted(tmp_path, capsys, "--part", part)
+    assert (found, bool(files)) == (code, code == 0), told
+    assert ("line 8: error K117" in told and "tool holder" in told) == bool(code)
+
+
+def test_what_was_checked_is_in_the_report(tmp_path, capsys):
+    part, stock = stored(tmp_path, "part.stl", PLATE), stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20]))
+    code, _, told = posted(tmp_path, capsys, "--part", part, "--stock", stock)
+    assert code == 0, told
+    certificate = json.loads((tmp_path / "out/slot-report.json").read_text())["certificate"]
+    rows = {row["what"]: row for row in certificate["coverage"] if row["topic"] == "collisions"}
+    held = rows["spindle and holder against the part"]
+    assert held["extent"] == "proven" and held["detail"] == "part.stl, 12 triangles, along the whole path"
+    assert rows["struts against the part"]["extent"] == "proven"
+    assert rows["shanks against the part"]["extent"] == "not covered"
+    assert rows["machine and rapid moves against the stock"]["extent"] == "sampled"
+    assert rows["machine and tool against clamps and fixtures"]["extent"] == "not covered"
+
+
+def test_nothing_known_is_said(tmp_path, capsys):
+    code, _, _ = posted(tmp_path, capsys)
+    assert code == 0
+    certificate = json.loads((tmp_path / "out/slot-report.json").read_text())["certificate"]
+    (row,) = [row for row in certificate["coverage"] if row["what"] == "machine and tool against the part"]
+    assert (row["extent"], row["detail"]) == ("not covered", "part: not known")
+
+
+@pytest.mark.parametrize(
+    ("flag", "mesh", "change", "told"),
+    [
+        # A rapid move through a post of the part, which is clear of the holder
+        ("--part", np.concatenate([PLATE, box([38, -5, 10], [42, 5, 30])]), ("G0 Z60", "G0 Z12\nG0 X60"), "line 9: error K131"),
+        # A rapid move down into the stock, and one sideways through it
+        ("--stock", box([-40, -40, 0], [40, 40, 22]), ("G0 Z20.5", "G0 Z15"), "line 5: error K136"),
+        ("--stock", box([-40, -40, 0], [40, 40, 20]), ("G0 Z60", "G0 X0 Y-20"), "line 9: error K136"),
+        # A clamp in the way of the cutter, and one in that of the holder
+        ("--fixture", box([20, -2, 0], [24, 2, 12]), ("", ""), "line 7: error K133"),
+        ("--fixture", box([20, -30, 0], [24, -20, 120]), ("", ""), "error K133"),
+    ],
+)  # fmt: skip
+def test_each_kind_of_collision_is_refused(tmp_path, capsys, flag, mesh, change, told):
+    mesh = stored(tmp_path, "mesh.stl", mesh)
+    code, files, errors = posted(tmp_path, capsys, flag, mesh, program=SLOT.replace(*change, 1) if change[0] else SLOT)
+    assert code == 1 and not files and told in errors, errors
+
+
+def test_a_cutter_that_gouges_is_posted_with_a_warning(tmp_path, capsys):
+    code, files, told = posted(tmp_path, capsys, "--part", stored(tmp_path, "p.stl", box([-40, -40, 0], [40, 40, 11])))
+    assert code == 0 and files and "warning K132" in told
+    code, _, told = posted(tmp_path, capsys, "--part", stored(tmp_path, "p.stl", PLATE))
+    assert code == 0 and "K132" not in told
+
+
+def test_a_rapid_move_back_through_what_was_cut_is_posted(tmp_path, capsys):
+    stock = stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20]))
+    back = SLOT.replace("G0 Z60\nM5", "G0 Y0\nG0 X-30\nG0 Z60\nM5")
+    code, _, told = posted(tmp_path, capsys, "--stock", stock, program=back)
+    assert code == 0 and not told, told
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "told"),
+    [
+        ("part.step", b"ISO-10303-21;", "K138"),
+        ("part.stl", b"solid x\nfacet normal 0 0 1\nouter lop", "part.stl: line 3: error K138"),
+        ("part.stl", None, "F103"),
+    ],
+)
+def test_files_that_cannot_be_read_are_refused_by_name(tmp_path, capsys, name, content, told):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    code, files, errors = posted(tmp_path, capsys, "--part", str(tmp_path / name))
+    assert code == 1 and not files and told in errors, errors
+
+
+def test_an_open_mesh_of_the_stock_is_told(tmp_path, capsys):
+    stock = stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20])[1:])
+    code, _, told = posted(tmp_path, capsys, "--stock", stock)
+    assert code == 0 and "stock.stl: warning K139" in told
