@@ -2,6 +2,7 @@
 """What runs into part, stock or fixture is not posted by the command line, and nothing is written; what clears is."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -25,10 +26,12 @@ M30
 """Upright, gauge length 120: the holder of the example machine, of 25 mm radius, begins 70 mm above the tip."""
 PLATE, CLEARANCE = box([-40, -40, 0], [40, 40, 10]), 2.0
 
+POST = np.concatenate([PLATE, box([38, -5, 10], [42, 12, 30])])
+
 
 def wall(gap):
     """A wall that the holder passes at this distance, at Y10."""
-    return box([-40, 10 + 25 + gap, 10], [40, 60, 200])
+    return box([-40, 10 + 25 + gap, 10], [40, 60, 115])
 
 
 def posted(folder, capsys, *arguments, program=SLOT):
@@ -51,7 +54,7 @@ def test_a_holder_that_goes_into_the_part_is_refused_and_one_that_clears_is_post
     part = stored(tmp_path, name, np.concatenate([PLATE, wall(gap)]))
     found, files, told = posted(tmp_path, capsys, "--part", part)
     assert (found, bool(files)) == (code, code == 0), told
-    assert ("line 8: error K117" in told and "tool holder" in told) == bool(code)
+    assert bool(re.search(r"line [89]: error K117.*tool holder", told)) == bool(code)
 
 
 def test_what_was_checked_is_in_the_report(tmp_path, capsys):
@@ -80,7 +83,7 @@ def test_nothing_known_is_said(tmp_path, capsys):
     ("flag", "mesh", "change", "told"),
     [
         # A rapid move through a post of the part, which is clear of the holder
-        ("--part", np.concatenate([PLATE, box([38, -5, 10], [42, 5, 30])]), ("G0 Z60", "G0 Z12\nG0 X60"), "line 9: error K131"),
+        ("--part", POST, ("G0 Z60", "G0 Z12\nG0 X60"), "line 10: error K131"),
         # A rapid move down into the stock, and one sideways through it
         ("--stock", box([-40, -40, 0], [40, 40, 22]), ("G0 Z20.5", "G0 Z15"), "line 5: error K136"),
         ("--stock", box([-40, -40, 0], [40, 40, 20]), ("G0 Z60", "G0 X0 Y-20"), "line 9: error K136"),

@@ -32,9 +32,11 @@ def test_everything_is_written_and_certified(machine, tmp_path):
     assert posted.report == json.loads((tmp_path / "cone-report.json").read_text())
     assert posted.report["certificate"]["holds"]
     assert (tmp_path / "cone-report.png").read_bytes().startswith(b"\x89PNG")
-    steps = ["trajectory", "reach and feed plan", "interpolation", "motion program", "certificate", "report"]
-    assert [line.split("  ")[0] for line in told[:6]] == steps
-    assert told[6:] == posted.report["certificate"]["meaning"] and len(told[6:]) == 5
+    steps = [
+        "trajectory", "reach and feed plan", "collisions", "interpolation", "motion program", "certificate", "report",
+    ]  # fmt: skip
+    assert [line.split("  ")[0] for line in told[:7]] == steps
+    assert told[7:] == posted.report["certificate"]["meaning"] and len(told[7:]) == 5
     settings = pmac.Settings.of(machine.controller)
     played, faults = pmac.read_program((tmp_path / "cone.pmc").read_text(), settings, "cone.pmc")
     assert not faults

@@ -35,8 +35,16 @@ _SETUP = (
 _JERK = "the mean acceleration from one interval to the next"
 _NO_JERK = "the machine file states no {}"
 _STEPS = "none is stated; the report has the largest"
-NO_SETUP = (Coverage(Topic.COLLISIONS, "part, stock and clamps", Extent.NOT_COVERED, "not known here"),)
-"""What is said of collisions with the set-up where it is not looked at, as when a program is verified."""
+PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN = (
+    Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, detail)
+    for subject, detail in (
+        ("machine and tool against the part", "part: not known"),
+        ("machine and tool against clamps and fixtures", "none beside those of the machine file is known"),
+        ("machine and rapid moves against the stock", "stock: not known"),
+    )
+)
+NO_SETUP = (PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN)
+"""Collisions with a set-up that is not known, as when a program is verified."""
 
 
 def coverage(

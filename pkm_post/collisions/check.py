@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pkm_post.certificate.coverage import FIXTURES_NOT_KNOWN, NO_SETUP, PART_NOT_KNOWN, STOCK_NOT_KNOWN
 from pkm_post.collisions.against_meshes import Driven, Obstacle, faults, told
 from pkm_post.collisions.against_stock import Intruder, body_of, rapid_cutter, shank_of, stock_faults
 from pkm_post.collisions.contacts import ENOUGH, contacts, contacts_at_ends
-from pkm_post.collisions.coverage import Extents, not_known
+from pkm_post.collisions.coverage import Extents
 from pkm_post.collisions.movers import Mover, of_body, of_struts, of_tool
 from pkm_post.collisions.tool_shapes import cutter_pieces, shank_pieces
 from pkm_post.collisions.tools_in_use import InUse, not_cut_before, tools_in_use
@@ -59,7 +60,7 @@ def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tole
         tolerances: how far the tool may be from the trajectory.
     """
     if setup.is_empty:
-        return Collisions((), not_known())
+        return Collisions((), NO_SETUP)
     way, segment, _ = way_of(trajectory)
     search = _Search(Driven(trajectory, way, segment), machine, setup, tolerances)
     search.part()
@@ -96,7 +97,7 @@ class _Search:
     def part(self) -> None:
         """All that moves against the finished part."""
         if self.setup.part is None:
-            self.extents.part_not_known()
+            self.extents.not_known(PART_NOT_KNOWN)
             return
         part = self._obstacle("part", self.setup.part)
         self._machine(part, "K117", "K121")
@@ -117,7 +118,7 @@ class _Search:
     def fixtures(self) -> None:
         """All that moves against what holds the part, in all moves."""
         if not self.setup.fixtures:
-            self.extents.fixtures_not_known()
+            self.extents.not_known(FIXTURES_NOT_KNOWN)
         for mesh in self.setup.fixtures:
             fixture = self._obstacle("fixture", mesh)
             self._machine(fixture, "K133", "K133")
@@ -132,7 +133,7 @@ class _Search:
         """What may not be in the stock: bodies, struts and shanks at all times, cutters in rapid moves."""
         mesh = self.setup.stock
         if mesh is None:
-            self.extents.stock_not_known()
+            self.extents.not_known(STOCK_NOT_KNOWN)
             return
         stock = self._obstacle("stock", mesh)
         closed = is_closed(mesh.triangles)

@@ -12,15 +12,6 @@ from pkm_post.model.certificate import Coverage, Extent, Topic
 _WHOLE = "along the whole path"
 
 
-def not_known() -> tuple[Coverage, ...]:
-    """The rows of a program that comes without a set-up."""
-    extents = Extents()
-    extents.part_not_known()
-    extents.fixtures_not_known()
-    extents.stock_not_known()
-    return extents.rows()
-
-
 @dataclass
 class Extents:
     """The rows in the making.
@@ -39,18 +30,9 @@ class Extents:
     def _add(self, subject: str, extent: Extent, detail: str) -> None:
         self._rows.append(Coverage(Topic.COLLISIONS, subject, extent, detail))
 
-    def part_not_known(self) -> None:
-        """No part was given."""
-        self._add("machine and tool against the part", Extent.NOT_COVERED, "part: not known")
-
-    def fixtures_not_known(self) -> None:
-        """No fixture beside those of the machine file was given."""
-        detail = "none beside those of the machine file is known"
-        self._add("machine and tool against clamps and fixtures", Extent.NOT_COVERED, detail)
-
-    def stock_not_known(self) -> None:
-        """No stock was given."""
-        self._add("machine and rapid moves against the stock", Extent.NOT_COVERED, "stock: not known")
+    def not_known(self, row: Coverage) -> None:
+        """Something of the set-up is not known, as this row says."""
+        self._rows.append(row)
 
     def machine(self, obstacle: Obstacle, bodies: bool, struts: bool) -> None:
         """Bodies and struts were checked, where the machine file states them."""

@@ -12,6 +12,7 @@ STEPS = {
     "reading": QT_TRANSLATE_NOOP("PostSteps", "Reading"),
     "trajectory": QT_TRANSLATE_NOOP("PostSteps", "Trajectory"),
     "reach and feed plan": QT_TRANSLATE_NOOP("PostSteps", "Reach and feed plan"),
+    "collisions": QT_TRANSLATE_NOOP("PostSteps", "Collisions"),
     "interpolation": QT_TRANSLATE_NOOP("PostSteps", "Interpolation"),
     "motion program": QT_TRANSLATE_NOOP("PostSteps", "Motion program"),
     "certificate": QT_TRANSLATE_NOOP("PostSteps", "Certificate"),

@@ -105,6 +105,11 @@ def _surface_speed_or_none(text: str) -> float | None:
     return None if text == NOTHING else above_zero(100_000)(text)
 
 
+def _fixture(file: str) -> tuple[str, str]:
+    """A file by its own name: of two layers of options that name it, it counts once."""
+    return file, file
+
+
 def _spin_words() -> str:
     return ", ".join(rule + (f"[={value}]" if value else "") for rule, value in _SPINS.items())
 
@@ -216,16 +221,16 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     "--part": {
         "metavar": "FILE",
         "help": "STL file of the finished part, mm in the work frame: holder, spindle, struts, shanks and rapid moves"
-        " are checked against it (default: the models of the CAM job)",
+        " are checked against it, or none (default: the models of the CAM job)",
     },
     "--stock": {
         "metavar": "FILE",
-        "help": "STL file of the stock as it is before the first operation, likewise (default: the stock of the CAM"
-        " job)",
+        "help": "STL file of the stock as it is before the first operation, likewise, or none (default: the stock of"
+        " the CAM job)",
     },
     "--fixture": {
         "metavar": "FILE",
-        "action": "append",
+        "type": _fixture,
         "default": [],
         "help": "STL file of a clamp or vice, mm in the work frame, which nothing may touch; may be repeated",
     },
@@ -288,7 +293,7 @@ def options_from(namespace: argparse.Namespace) -> Options:
         surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
         also=namespace.also,
         actual_tools=_cutters(namespace.actual_tool),
-        mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(namespace.fixture)),
+        mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(dict(namespace.fixture))),
     )
 
 

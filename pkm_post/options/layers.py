@@ -144,5 +144,6 @@ def _spin(value: tuple[str, float, str]) -> str:
 _SHOWN: dict[str, Callable[[Any], str]] = {
     "spin": _spin,
     **dict.fromkeys(("tool_length", "tools", "actual_tool", "wear"), _by_number),
+    "fixture": lambda entry: str(entry[0]),
 }
 """What is not shown as the value itself."""

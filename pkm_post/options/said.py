@@ -31,6 +31,9 @@ def said_by(options: Options) -> Given:
         "surface_speed": None if speed is None else speed.speed * 60 / 1000,
         "keep_chip_load": speed is not None and speed.keep_chip_load,
         "also": options.also,
+        "part": options.mesh_files.part,
+        "stock": options.mesh_files.stock,
+        "fixture": [(file, file) for file in options.mesh_files.fixtures],
     }
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pkm_post.mesh_file import read_mesh
 from pkm_post.model import Diagnostic, Program
 from pkm_post.model.setup import Mesh, Setup
-from pkm_post.pipeline.options import Options
+from pkm_post.pipeline.options import NO_MESH, Options
 
 
 def known_setup(options: Options, program: Program | None) -> tuple[Setup, tuple[Diagnostic, ...]]:
@@ -21,21 +21,20 @@ def known_setup(options: Options, program: Program | None) -> tuple[Setup, tuple
     """
     files, found = options.mesh_files, list[Diagnostic]()
 
-    def read(file: str | None) -> Mesh | None:
-        if file is None:
-            return None
+    def read(file: str | None, otherwise: Mesh | None = None) -> Mesh | None:
+        if file is None or file == NO_MESH:
+            return otherwise if file is None else None
         mesh, faults = read_mesh(file)
         found.extend(faults)
         return mesh
 
-    part, stock = read(files.part), read(files.stock)
     fixtures = tuple(mesh for mesh in map(read, files.fixtures) if mesh is not None)
-    known = options.setup
     tools = program.tools.values() if program is not None else ()
+    known = options.setup
     setup = replace(
         known,
-        part=part or known.part,
-        stock=stock or known.stock,
+        part=read(files.part, known.part),
+        stock=read(files.stock, known.stock),
         fixtures=(*known.fixtures, *fixtures),
         unknown_corners=frozenset(tool.number for tool in tools if not tool.corner_known),
     )

@@ -19,14 +19,17 @@ from pkm_post.surface_speed import SurfaceSpeed
 LINUXCNC = "linuxcnc"
 """The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is no table of the motion."""
 
+NO_MESH = "none"
+"""In place of a file: the mesh is not known, whatever the job says."""
+
 
 @dataclass(frozen=True)
 class MeshFiles:
-    """Files with meshes of the set-up; they stand in for what the job says.
+    """Files with meshes of the set-up; they stand in for what the job says, and so does ``NO_MESH``.
 
     Attributes:
-        part: of the finished part; None where none is named.
-        stock: of the stock before the first operation; None where none is named.
+        part: of the finished part; None where nothing is said.
+        stock: of the stock before the first operation; None where nothing is said.
         fixtures: of what holds it.
     """
 

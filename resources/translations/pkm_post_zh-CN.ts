@@ -1951,6 +1951,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>可达性和进给规划</translation>
     </message>
     <message>
+        <source>Collisions</source>
+        <translation>碰撞检查</translation>
+    </message>
+    <message>
         <source>Interpolation</source>
         <translation>插补</translation>
     </message>

@@ -94,9 +94,9 @@ def test_rounding_grows_a_piece_all_round():
     for height, hit in ((99.97, False), (100.03, True)):
         assert bool(len(found(way, mover, box([-50, -50, 0], [50, 50, height]), 0.001))) == hit
     # Across the corner a ball nose leaves what a flat end mill would touch.
-    corner = box([4.0, -50, 0], [50, 50, 101.0])
-    gap = np.hypot(3.0, 5.0) - 6.0
-    assert not len(found(way, mover, corner - [1.001 + HUNDREDTH, 0, 0], 0.001)) == (gap > 0)
+    corner, gap = box([5.0, -50, 0], [50, 50, 101.0]), np.hypot(4.0, 5.0) - 6.0
+    for hair, hit in ((2 * HUNDREDTH, False), (-2 * HUNDREDTH, True)):
+        assert bool(len(found(way, mover, corner, gap - hair))) == hit
 
 
 def points_of(mesh, apart):
