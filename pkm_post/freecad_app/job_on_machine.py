@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import FreeCAD as App
+
 from pkm_post.freecad_app.frames import apply
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.part_mesh import part_mesh
@@ -21,7 +23,7 @@ from pkm_post.model.certificate import Tolerances
 
 @dataclass(frozen=True)
 class JobOnMachine:
-    """A job where it is driven. Warnings are told when it is posted.
+    """A job where it is driven. Other warnings than of what was replaced are told when it is posted.
 
     Attributes:
         trajectory: of the job, in {M}, with its spin.
@@ -47,6 +49,9 @@ def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
         Refused: the job cannot be read or placed.
     """
     read = prepared_job(job, settings_of(job), machine_object)
+    for each in read.found:
+        if each.code == "J125":  # a job is seen otherwise than it says, or than it is posted
+            App.Console.PrintWarning(f"{each}\n")
     trajectory, _ = read.placed()
     triangles = part_mesh(job)
     corners = apply(trajectory.machine_from_work, triangles.reshape(-1, 3)).reshape(-1, 3, 3)

@@ -124,7 +124,7 @@ def _plain(value: Any) -> str:
         return "on" if value else "off"
     if isinstance(value, tuple):
         return ",".join(map(_plain, value))
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
+    return f"{value + 0.0:.12g}" if isinstance(value, float) else str(value)
 
 
 def _by_number(entry: tuple[int, Any]) -> str:

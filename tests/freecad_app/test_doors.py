@@ -8,6 +8,7 @@ import random
 import re
 import shlex
 
+import FreeCAD as App
 import pytest
 from cam_jobs import add_operation
 from option_examples import FLAGS, words
@@ -19,6 +20,7 @@ from pkm_post.cli import main
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_on_machine import job_on_machine
 from pkm_post.freecad_app.job_settings import settings_of
+from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.post_job import post_as_the_job_says
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.freecad_app.reach_job import study_job
@@ -159,6 +161,24 @@ def test_reach_and_simulation_see_the_job_where_it_is_posted(job):
         for column in ("tip", "axis", "spin", "feed"):
             assert (getattr(trajectory, column) == getattr(posted, column)).all()
         assert trajectory.tools == posted.tools
+
+
+def test_a_machine_object_of_another_machine_is_told(job, monkeypatch):
+    told = []
+    monkeypatch.setattr(App.Console, "PrintWarning", told.append)
+    says(job, "--work-offset=2,1,255,10 --machine slow.toml")
+    machine = create_machine(job.Document, job=job)
+    job.Document.recompute()
+    job_on_machine(job, machine)
+    assert told == []
+    machine.MachineFile = "example_6tps"
+    job.Document.recompute()
+    job_on_machine(job, machine)
+    assert ["--machine example_6tps instead of" in each for each in told] == [True]
+    machine.Job, machine.WorkOffset = None, App.Placement(App.Vector(0, 0, 240), App.Rotation())
+    job.Document.recompute()
+    job_on_machine(job, machine)
+    assert "--work-offset 0,0,240,0 instead of 2,1,255,10" in told[-1]
 
 
 def test_a_machine_file_lies_beside_the_document_wherever_freecad_was_started(job, tmp_path, monkeypatch):
