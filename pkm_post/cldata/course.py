@@ -174,6 +174,7 @@ class Course:
     arcs: list[tuple[int, Arc]] = field(default_factory=list)
     circles: list[tuple[int, Arc]] = field(default_factory=list)
     cycles: list[tuple[int, Cycle | None]] = field(default_factory=list)
+    cycles_read: dict[str, list[int]] = field(default_factory=dict)
     cutcoms: list[Cutcom] = field(default_factory=list)
     starts: list[tuple[int, int]] = field(default_factory=list)
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)

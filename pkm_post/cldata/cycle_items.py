@@ -37,6 +37,7 @@ class CycleItems:
         values: the numbers by what they are.
         feed: with its unit; the unit is empty where none is written.
         to_initial: the tool returns to the height it had before the cycle.
+        by_position: numbers follow the kind without words.
     """
 
     words: CycleWords
@@ -46,6 +47,7 @@ class CycleItems:
     values: dict[str, float] = field(default_factory=dict)
     feed: tuple[str, float] | None = None
     to_initial: bool = False
+    by_position: bool = False
     _unit: str = ""
     _waiting: str = ""
     _placed: int = 0
@@ -57,21 +59,21 @@ class CycleItems:
             CycleError: one of them is not understood.
         """
         present = [item for item in items if item is not None]
-        by_position = bool(present) and isinstance(present[0], float)
-        if by_position and not self.positions:
+        self.by_position = bool(present) and isinstance(present[0], float)
+        if self.by_position and not self.positions:
             raise CycleError("L420", f"CYCLE/{self.kind},{present[0]:g}")
         for item in present:
             if isinstance(item, Statement):
                 raise CycleError("L412", f"{item.word}, {self._expected()}")
             if isinstance(item, str):
-                self._word(item, by_position)
+                self._word(item)
             else:
                 self._number(item)
         self._no_word_waits()
-        if by_position and "feed" in self.values:
+        if self.by_position and "feed" in self.values:
             self.feed = self._unit, self.values.pop("feed")
 
-    def _word(self, word: str, by_position: bool) -> None:
+    def _word(self, word: str) -> None:
         """Take a word: the name of the next number, a unit, or one that stands alone."""
         if self.words.down < 0 and word == AUTO and self._means("return"):
             self.to_initial, self._waiting = True, ""
@@ -85,7 +87,7 @@ class CycleItems:
             self._no_word_waits()
             if word in FEED_WORDS:
                 self._unit = word
-            self._waiting = "" if by_position and word in FEED_WORDS else word
+            self._waiting = "" if self.by_position and word in FEED_WORDS else word
 
     def _means(self, meaning: str) -> bool:
         """Whether the word that waits for its number has a meaning."""

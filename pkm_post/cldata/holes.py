@@ -32,14 +32,24 @@ def cycle(course: Course, row: int, statement: Statement) -> None:
         course.cycle_return = word
     else:
         try:
-            course.cycle = _understood(course, statement)
+            course.cycle, words = _understood(course, statement)
             course.cycles.append((row, course.cycle))
+            course.cycles_read.setdefault(words, []).append(row)
         except CycleError as fault:
             course.tell(fault.code, row, fault.found)
 
 
-def _understood(course: Course, statement: Statement) -> Cycle:
-    """The cycle of a statement."""
+def cycles_told(course: Course) -> list[str]:
+    """Whose words the cycles of a file were taken for, in words: one line for each maker."""
+    told = []
+    for words, rows in course.cycles_read.items():
+        more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
+        told.append(f"CYCLE in line {course.statements.place(rows[0])[0]}{more}: {words}")
+    return told
+
+
+def _understood(course: Course, statement: Statement) -> tuple[Cycle, str]:
+    """The cycle of a statement, and how it was taken, in words."""
     ours = words_of_dialect(course.dialect.name)
     words = ours or words_by_use(statement.words)
     kind = _kind(statement, words, guessed=ours is None)
@@ -50,7 +60,14 @@ def _understood(course: Course, statement: Statement) -> Cycle:
     wrong = _wrong(found, words)
     if wrong:
         raise CycleError("L412", f"CYCLE/{kind}: {wrong}")
-    return found
+    return found, f"words of {words.maker}, {_evidence(course, ours is None, items)}"
+
+
+def _evidence(course: Course, guessed: bool, items: CycleItems) -> str:
+    """Why the words of a cycle are those of a maker."""
+    by = "by themselves" if guessed else "as the option says" if course.options.dialect else "by the dialect"
+    numbers = ", ".join(items.positions)
+    return f"{by}; numbers are {numbers}, as the option says" if items.by_position else by
 
 
 def _kind(statement: Statement, words: CycleWords, guessed: bool) -> str:

@@ -14,6 +14,7 @@ from pkm_post.cldata.course import Course
 from pkm_post.cldata.dialects import DIALECTS, detect
 from pkm_post.cldata.faults import Faults
 from pkm_post.cldata.fit import fit_arcs
+from pkm_post.cldata.holes import cycles_told
 from pkm_post.cldata.length_unit import length_unit
 from pkm_post.cldata.lines import decoded, logical_lines
 from pkm_post.cldata.motion import program_of
@@ -76,7 +77,7 @@ def _program(course: Course, bulk: Array, names: ValueNames, file: str) -> Progr
     offsets, reading = contour_offsets(course, points, frames, arcs)
     if course.faults.any_errors():
         return None
-    return program_of(course, points, arcs, file, offsets, [*unit, *reading])
+    return program_of(course, points, arcs, file, offsets, [*unit, *cycles_told(course), *reading])
 
 
 def _unit(course: Course, points: Points) -> list[str]:

@@ -358,3 +358,30 @@ def test_increments_between_holes_count_from_point_to_point():
     found = program(f"{HEAD}{drilled}FROM/1,1,1\nGODLTA/1,0,0\n").position
     assert found[found[:, 2] < 0].tolist() == [[10, 0, -5], [10, 7, -4]]
     assert found[-1].tolist() == [2, 1, 1]
+
+
+@pytest.mark.parametrize(
+    "options, cycles, told",
+    [
+        ({"dialect": "nx"}, ["DRILL,RAPTO,2,FEDTO,-5"], ["5: words of NX, as the option says"]),
+        ({}, ["DRILL,FEDTO,5,RAPTO,2"] * 3, ["5 and 2 more: words of NCCS PostWorks, by themselves"]),
+        (
+            {"cycle_values": ("depth", "clearance")},
+            ["DRILL,DEPTH,5,CLEAR,2", "DRILL,5,2"],
+            [
+                "5: words of Creo, by themselves",
+                "7: words of Creo, by themselves; numbers are depth, clearance, as the option says",
+            ],
+        ),
+    ],
+)
+def test_the_program_tells_whose_words_its_cycles_were_taken_for(options, cycles, told):
+    text = "UNITS/MM\nLOADTL/1,LENGTH,100\nFEDRAT/600,MMPM\nGOTO/0,0,9\n"
+    text += "".join(f"CYCLE/{cycle}\nGOTO/0,0,0\n" for cycle in cycles)
+    lines = [line for line in program(text, **options).reading if line.startswith("CYCLE")]
+    assert lines == [f"CYCLE in line {one}" for one in told]
+
+
+def test_a_dialect_that_shows_says_whose_words_cycles_have():
+    found = program("$$-> FEATNO / 1\nUNITS/MM\nRAPID\nGOTO/0,0,9\nCYCLE/DRILL,DEPTH,5,CLEAR,2,MMPM,60\nGOTO/0,0,0\n")
+    assert found.reading == ("CYCLE in line 5: words of Creo, by the dialect",)
