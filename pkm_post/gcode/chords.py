@@ -17,7 +17,7 @@ from pkm_post.model.program import Array
 
 CHORD_ERROR = 1e-3
 """mm that chords may leave the arc they replace."""
-_COPIED = ("feed", "operation", "line", "side_offset", "plane", "spin", "exact_path", "tip_tolerance")
+_COPIED = ("feed", "operation", "line", "side_offset", "smaller_tool", "plane", "spin", "exact_path", "tip_tolerance")
 """What every chord has of its arc."""
 
 
