@@ -14,6 +14,7 @@ import numpy as np
 from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.codes import Group
 from pkm_post.gcode.findings import Findings
+from pkm_post.gcode.frames import normal_coordinate
 from pkm_post.gcode.modal import Modal, carried, is_arc, is_cycle
 from pkm_post.gcode.motions import span
 from pkm_post.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
@@ -26,6 +27,8 @@ _BY_ANGLES, _BY_VECTOR = 434, 435
 _UPRIGHT = (0.0, 0.0, 1.0)
 _TILTED = 1e-9
 """rad: a tool axis nearer to upright is upright."""
+_ALONG = 1 - 1e-12
+"""Cosine of an angle of a millionth of a radian, which is what six decimals say: a tool that near stands in line."""
 _LENGTH_ERROR = 1e-3
 """A normal whose length differs more from 1 is told; less is rounding."""
 
@@ -42,6 +45,21 @@ def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
         idle &= (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
         faults.tell_all("G424", idle, lambda row: f"({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
     return locked(axes)
+
+
+def check_cycles(modal: Modal, axes: Array, faults: Findings) -> None:
+    """Tell holes that are not drilled along the tool: a cycle moves along the normal of its plane, whatever leans.
+
+    Args:
+        modal: codes of N blocks.
+        axes: (N, 3) unit tool axis in coordinates of the program.
+        faults: takes what is found.
+    """
+    rows = np.flatnonzero(modal.moves & is_cycle(modal.in_force[Group.MOTION]))
+    axis, across = axes[rows], normal_coordinate(modal.in_force[Group.PLANE][rows])
+    along = np.abs(np.take_along_axis(axis, across[:, None].astype(np.int64), axis=1)[:, 0])
+    for row in rows[(along < _ALONG) & (axis[:, 2] < _ALONG)].tolist():
+        faults.tell("G429", row, f"tool axis ({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
 
 
 def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> tuple[Array, Array]:

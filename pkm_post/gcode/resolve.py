@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.gcode.arc_motions import arcs_of, known_ones, lengths, single_turns
-from pkm_post.gcode.axes import spins, surface_normals, tool_axes
+from pkm_post.gcode.axes import check_cycles, spins, surface_normals, tool_axes
 from pkm_post.gcode.blocks import Blocks
 from pkm_post.gcode.checks import check
 from pkm_post.gcode.codes import ARCS, END_OF_CYCLES, NONE, Group
@@ -111,11 +111,13 @@ class _Settings:
 
 def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> _Settings:
     tools = tools_in_spindle(blocks, modal, options, faults)
+    axes = tool_axes(blocks, modal, options, faults)
+    check_cycles(modal, axes, faults)
     return _Settings(
         tools=tools,
         spindle=spindle_speeds(blocks, modal),
         sides=side_offsets(blocks, modal, tools, options, faults),
-        axes=tool_axes(blocks, modal, options, faults),
+        axes=axes,
         normals=surface_normals(blocks, faults),
         spins=spins(blocks, modal, options),
     )

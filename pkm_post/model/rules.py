@@ -178,6 +178,10 @@ RULES: dict[str, Rule] = {
         "a dwell lasts longer than a minute",
         "check it; read a part program whose dwells are in ms with --dwell-unit ms",
     ),
+    "G429": _error(
+        "a cycle drills along the normal of its plane, and the tool leans out of it",
+        "write the hole as G0 and G1 along the tool, or set the tool upright before the cycle",
+    ),
     # G5: writing G-code
     "G501": _error("the tool axis tilts, and this form of G-code cannot say it", "choose a form with five axes"),
     "G502": _error("the tool axis points down, and this form of G-code cannot say it", "choose vectors or a head"),

@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from pkm_post.gcode import ReadOptions, read
+from pkm_post.model import Tool
+
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "oracles"))
 
@@ -143,3 +146,41 @@ def test_words_in_force_with_two_meanings_are_refused(lines):
 def test_the_cure_helps(lines):
     rows, faults = ours("\n".join(["G21 F100", "G90 G0 X0 Y0 Z50", *lines, "M2"]))
     assert rows is not None, faults
+
+
+LEANS = "G21 F100\nG0 X0 Y0 Z50\nG43.5 H1 G0 I{} J{} K{}\n"
+
+
+def of_leaning_tool(vector, hole):
+    tool = Tool(1, "drill", 5.0, 0.0, 60.0)
+    options = ReadOptions(tools={1: tool}, default_tool=tool, axis_words="vector")
+    program, faults = read(f"{LEANS.format(*vector)}{hole}\nG80\nG0 I0 J0 K1\nM2\n", "part.ngc", options)
+    return program, [(fault.code, fault.place.line) for fault in faults]
+
+
+@pytest.mark.parametrize(
+    ("vector", "hole"),
+    [
+        ((0, 0, 1), "G81 X1 Z-1 R5"),
+        ((1e-7, 0, 1), "G81 X1 Z-1 R5"),
+        ((0, 1, 0), "G18 G81 X1 Y-1 R5"),
+        ((-1, 0, 0), "G19 G81 Y1 X-1 R5"),
+    ],
+)
+def test_holes_are_drilled_along_the_tool(vector, hole):
+    program, told = of_leaning_tool(vector, hole)
+    assert program is not None and told == []
+
+
+@pytest.mark.parametrize(
+    ("vector", "hole"),
+    [
+        ((0, 0.6, 0.8), "G81 X1 Z-1 R5"),
+        ((1e-5, 0, 1), "G81 X1 Z-1 R5"),
+        ((0, 1, 0), "G81 X1 Z-1 R5"),
+        ((0, 1, 0), "G19 G81 Y1 X-1 R5"),
+    ],
+)
+def test_a_leaning_tool_is_not_plunged_sideways(vector, hole):
+    """CAM operations refuse it as well (J122): a drill would go into the part beside its point."""
+    assert of_leaning_tool(vector, hole) == (None, [("G429", 4)])
