@@ -15,10 +15,8 @@ from pkm_post.model.certificate import Coverage, Extent, Topic
 
 _SAME = 1e-6
 """mm, and of unit axes: a tool that changes so near to the pose of the machine file changes there."""
-_TO_THE_START = (
-    "each strut moves by itself, on a way that is not planned; pmac approach and the panel plan one,"
-    " loading the program by other means does not"
-)
+_UNPLANNED = "each strut moves by itself, on a way that is not planned"
+_PLANNED_BY_HAND = f"{_UNPLANNED}; pmac approach and the panel plan one, loading the program by other means does not"
 _Answer = tuple[str, str]
 """How a hazard is covered, or nothing; and why it is not."""
 
@@ -26,7 +24,7 @@ _Answer = tuple[str, str]
 def beside_the_path(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
     """How the tool comes to the first point, to tool changes and back, and how the spindle comes to its speed."""
     rows: tuple[tuple[str, _Answer], ...] = (
-        ("way to the start of the program", ("", _TO_THE_START)),
+        ("way to the start of the program", ("", _to_the_start(machine))),
         ("approach from the start to the first point", (_from_the_start(trajectory), "")),
         ("tool change", _tool_change(machine, trajectory)),
         ("spindle speed at the first cut", _spindle(machine, trajectory)),
@@ -35,6 +33,10 @@ def beside_the_path(machine: Machine, trajectory: Trajectory) -> tuple[Coverage,
         Coverage(Topic.BESIDE_THE_PATH, subject, Extent.PROVEN if how else Extent.NOT_COVERED, how or why_not)
         for subject, (how, why_not) in rows
     )
+
+
+def _to_the_start(machine: Machine) -> str:
+    return _UNPLANNED if machine.controller.get("kind") == "power_pmac" else _PLANNED_BY_HAND
 
 
 def _from_the_start(trajectory: Trajectory) -> str:

@@ -370,6 +370,10 @@ RULES: dict[str, Rule] = {
         "the program cuts after a tool change without starting the spindle",
         "start the spindle with M3 or M4 between the tool change and the cut",
     ),
+    "K144": _warning(
+        "the diameter of a tool is unknown, and whether the spindle takes it is not checked",
+        "say the diameter: --tool NUMBER=D for G-code, the tool of the CAM job, or the tool statement of CL data",
+    ),
     # N1: surface normals, and compensation with them
     "N101": _error("a contact point, normal or tool axis is no number or has no direction", "regenerate the path"),
     "N102": _error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),

@@ -78,6 +78,7 @@ def line_trajectory(
         return None, told
     # A trajectory begins at the home of its machine: here that is where the tool is. A line goes straight from there.
     standing = replace(machine, home_tip=here.tip, home_axis=here.axis, home_spin=here.spin, tool_change=None)
+    standing = replace(standing, largest_tool_diameter=math.inf)  # that of the tool in the spindle is not known here
     trajectory, faults = trajectory_of(program, standing, options)
     told += tuple(replace(fault, code="C201") if fault.code == _NO_MOVE else fault for fault in faults)
     if trajectory is None or reading.axis_words == _SAYS_THE_SPIN:

@@ -181,15 +181,15 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
 def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Diagnostic]:
     """The tools in use that the spindle does not take, each where it is first in use."""
     for used, row in zip(*np.unique(number, return_index=True), strict=True):
-        tool = program.tools[int(used)]
+        tool, place = program.tools[int(used)], program.place(int(row))
         for what, size, most in (
             ("diameter", tool.diameter, machine.largest_tool_diameter),
             ("gauge length", tool.length, machine.longest_tool),
         ):
             if size > most:
-                yield Diagnostic(
-                    "K140", program.place(int(row)), f"T{tool.number}: {what} {size:g} mm, at most {most:g} mm"
-                )
+                yield Diagnostic("K140", place, f"T{tool.number}: {what} {size:g} mm, at most {most:g} mm")
+        if tool.diameter == 0 and machine.largest_tool_diameter < np.inf:
+            yield Diagnostic("K144", place, f"T{tool.number}, at most {machine.largest_tool_diameter:g} mm")
 
 
 def _first_of_each(operation: Array, wrong: Array) -> list[int]:

@@ -83,6 +83,13 @@ def test_a_tool_change_counts_as_covered_where_the_trajectory_has_it_at_the_pose
         assert extent is Extent.NOT_COVERED and why in detail
 
 
+def test_a_way_to_the_start_is_promised_where_this_program_plans_one():
+    for kind, promised in (("turbo_pmac", True), ("power_pmac", False)):
+        machine = replace(example(), controller=example().controller | {"kind": kind})
+        extent, detail = beside_the_path(machine, TRAJECTORY)["way to the start of the program"]
+        assert extent is Extent.NOT_COVERED and ("pmac approach" in detail) is promised
+
+
 def test_the_spindle_counts_as_covered_where_the_motion_waits_for_it():
     job = program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], events=CHANGES, tools=TOOLS)
     waits, no_time = replace(machines.example(), spin_up_time=2.0), machines.example()

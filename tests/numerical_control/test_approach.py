@@ -179,7 +179,7 @@ def test_a_line_by_hand_goes_straight_whatever_the_safe_height(station):
     from pkm_post.numerical_control.mdi import line_trajectory
 
     pose = ToolChange(np.array([0.0, 0.0, 500.0]), UP, 0.0, 290.0)
-    machine = dataclasses.replace(MACHINE, tool_change=pose, spin_up_time=2.0)
+    machine = dataclasses.replace(MACHINE, tool_change=pose, spin_up_time=2.0, largest_tool_diameter=40.0)
     here = Pose(np.array([0.0, 0.0, 200.0]), UP, 0.0)
     trajectory, told = line_trajectory("G0 X10", machine, here, TOOL)
     assert told == () and len(trajectory) == 1 and trajectory.operations == ("",)

@@ -192,6 +192,14 @@ def test_what_stands_against_a_tool_change(code, changed, machine):
     assert {fault.code for fault in faults} == {code}
 
 
+def test_a_tool_of_unknown_diameter_is_told_where_the_largest_one_is_stated():
+    made = program([[0, 0, 60], [10, 0, 60]], tools={1: dataclasses.replace(BALL, diameter=0.0)})
+    limited = dataclasses.replace(example(), largest_tool_diameter=12.0)
+    trajectory, faults = place(made, limited, ON_PALLET)
+    assert trajectory is not None and [(fault.code, fault.found) for fault in faults] == [("K144", "T1, at most 12 mm")]
+    assert place(made, example(), ON_PALLET)[1] == ()
+
+
 def test_tools_that_are_not_used_are_not_measured():
     giant = TOOLS | {9: Tool(9, "giant", 500.0, 0.0, 700.0)}
     machine = dataclasses.replace(example(), largest_tool_diameter=12.0, longest_tool=150.0)
