@@ -148,7 +148,7 @@ def test_the_cure_helps(lines):
     assert rows is not None, faults
 
 
-LEANS = "G21 F100\nG0 X0 Y0 Z50\nG43.5 H1 G0 I{} J{} K{}\n"
+LEANS = "G21 F100\nG0 X0 Y0 Z50\nG43.5 H1 G0 I{:.7f} J{:.7f} K{:.7f}\n"
 
 
 def of_leaning_tool(vector, hole):
