@@ -56,7 +56,7 @@ def posted(folder, name, text, **choices):
     file = folder / name
     file.write_text(text)
     choices = {"tool_lengths": {1: 60.0}, "options": Options(work_offset=WORK_OFFSET)} | choices
-    return post_file(file, "example_6tps", folder / "out", **choices)
+    return post_file(file, choices.pop("machine", "example_6tps"), folder / "out", **choices)
 
 
 def test_g_code_and_cl_data_of_one_path_give_one_report(tmp_path):
@@ -66,6 +66,66 @@ def test_g_code_and_cl_data_of_one_path_give_one_report(tmp_path):
     ]
     assert all(report["certificate"]["holds"] for report in reports)
     assert reports[0]["motion"] == reports[1]["motion"]
+
+
+G_HOLES = """\
+T1 M6 G43 H1
+G21 G90 G94 S8000 M3
+G0 X0 Y0 Z30
+G98 G81 X10 Y0 R3 Z-9 F300
+G81 X-15 Y5 R13 Z1
+G80
+M5
+M30
+"""
+CL_HOLES = """\
+TOOL PATH/HOLES,TOOL,D
+UNITS/MM
+TLDATA/DRILL,10.0,0.0,75.0,118.0,35.0
+LOAD/TOOL,1
+SPINDL/RPM,8000,CLW
+RAPID
+GOTO/0,0,30,0,0,1
+CYCLE/DRILL,RAPTO,3.0,FEDTO,-9.0,RTRCTO,AUTO,MMPM,300.0
+GOTO/10,0,0
+GOTO/-15,5,10
+CYCLE/OFF
+SPINDL/OFF
+END-OF-PATH
+"""
+
+
+@pytest.fixture
+def fine_machine(tmp_path):
+    """The example machine with a decimal more, which the full acceleration of long rapid moves needs (V118)."""
+    text = (ADDON / "resources" / "machines" / "example_6tps.toml").read_text(encoding="utf-8")
+    file = tmp_path / "fine.toml"
+    file.write_text(text.replace("length_decimals = 6", "length_decimals = 7"), encoding="utf-8")
+    return str(file)
+
+
+def test_canned_cycles_and_cycles_of_cl_data_give_one_report(tmp_path, fine_machine):
+    reading = Reading("vector", {1: cutter(10.0)})
+    canned = posted(tmp_path, "a.ngc", G_HOLES, reading=reading, machine=fine_machine).report
+    cycles = posted(tmp_path, "a.cls", CL_HOLES, machine=fine_machine).report
+    assert canned["certificate"]["holds"]
+    assert canned["motion"] == cycles["motion"]
+    assert cycles["program"]["reading"] == ["CYCLE in line 8: words of NX, by the dialect"]
+
+
+def test_numbers_without_words_are_posted_when_they_are_named(tmp_path, fine_machine, capsys):
+    file = tmp_path / "part.aptsource"
+    words = "CYCLE/DRILL,9.,300.,3.,MMPM"
+    holes = CL_HOLES.replace("TLDATA/DRILL,10.0,0.0,75.0,118.0,35.0\n", "").replace("TOOL PATH/HOLES,TOOL,D\n", "")
+    lines = [words if line.startswith("CYCLE/DRILL") else line for line in holes.splitlines()]
+    file.write_text("\n".join(["$$ CATIA APT VERSION 1.0", *lines, ""]))
+    command = ["post", str(file), "--machine", fine_machine, "--out", str(tmp_path / "out")]
+    command += ["--work-offset=0,0,250", "--tool-length=1=60"]
+    assert main(command) == 1
+    assert "L420" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+    assert main([*command, "--cycle-values=depth,feed,clearance"]) == 0
+    assert "numbers are depth, feed, clearance, as the option says" in capsys.readouterr().out
 
 
 CONTOUR = """\
