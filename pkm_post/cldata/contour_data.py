@@ -56,9 +56,13 @@ class _Taken:
     by_arcs: bool = False
 
 
+_Cutter = tuple[int, float]
+"""Number and radius of a tool."""
+
+
 @dataclass
 class _Tight:
-    """The arcs of one tool that are tighter than it: their statements and radii."""
+    """The arcs of one cutter that are tighter than it: their statements and radii."""
 
     towards: list[tuple[int, float]] = field(default_factory=list)
     away: list[tuple[int, float]] = field(default_factory=list)
@@ -76,7 +80,8 @@ def contour_offsets(course: Course, points: Points, frames: Array, arcs: Fitted)
     _tell_unused_wear(course)
     normal = _normals(course, points, frames)
     tight = _tight_arcs(course, points, arcs, normal)
-    taken = [_taken(course, cutcom, tight) for cutcom in course.cutcoms]
+    shown = _shown_by_arcs(course, tight)
+    taken = [_taken(course, cutcom, shown) for cutcom in course.cutcoms]
     _tell_undecided(course, taken, tight)
     offsets = []
     for cutcom, how, axis in zip(course.cutcoms, taken, normal, strict=True):
@@ -99,8 +104,8 @@ def _normals(course: Course, points: Points, frames: Array) -> Array:
     return normal
 
 
-def _tight_arcs(course: Course, points: Points, arcs: Fitted, normal: Array) -> dict[int, _Tight]:
-    """By tool, the arcs under its CUTCOMs that are tighter than it."""
+def _tight_arcs(course: Course, points: Points, arcs: Fitted, normal: Array) -> dict[_Cutter, _Tight]:
+    """By cutter, the arcs under its CUTCOMs that are tighter than it."""
     row = points.row[arcs.point]
     owner = in_force(row, [cutcom.row for cutcom in course.cutcoms])
     mine = np.flatnonzero(owner >= 0)
@@ -109,14 +114,29 @@ def _tight_arcs(course: Course, points: Points, arcs: Fitted, normal: Array) -> 
     size = np.array([cutcom.radius for cutcom in course.cutcoms])[owner]
     radius = norm(across(points.position[end - 1] - arcs.centre[mine], arcs.axis[mine]))
     bend = side * dot(arcs.axis[mine], normal[owner])
-    found: dict[int, _Tight] = {}
+    found: dict[_Cutter, _Tight] = {}
     for index in np.flatnonzero((radius < size - _TIGHTER) & (np.abs(bend) > 0.5)).tolist():
-        one = found.setdefault(course.cutcoms[owner[index]].tool, _Tight())
+        one = found.setdefault(_cutter(course.cutcoms[owner[index]]), _Tight())
         (one.towards if bend[index] > 0 else one.away).append((int(points.row[end[index]]), float(radius[index])))
     return found
 
 
-def _taken(course: Course, cutcom: Cutcom, tight: dict[int, _Tight]) -> _Taken:
+def _cutter(cutcom: Cutcom) -> _Cutter:
+    return cutcom.tool, cutcom.radius
+
+
+def _shown_by_arcs(course: Course, tight: dict[_Cutter, _Tight]) -> dict[_Cutter, _Taken]:
+    """By cutter what its arcs show, where they do in this dialect."""
+    if not course.dialect.tight_arcs_are_centre:
+        return {}
+    return {
+        cutter: _Taken(CENTRE, _shown(course, arcs.towards, "bend towards it", cutter[1]), by_arcs=True)
+        for cutter, arcs in tight.items()
+        if arcs.towards and not arcs.away
+    }
+
+
+def _taken(course: Course, cutcom: Cutcom, shown: dict[_Cutter, _Taken]) -> _Taken:
     """What the points of a CUTCOM are."""
     if not cutcom.side:
         return _Taken()
@@ -124,11 +144,7 @@ def _taken(course: Course, cutcom: Cutcom, tight: dict[int, _Tight]) -> _Taken:
         return _Taken(course.options.contour_data, "as the option says")
     if cutcom.said is not None:
         return _Taken(cutcom.said.points, f"as {cutcom.said.words} says")
-    arcs = tight.get(cutcom.tool, _Tight())
-    if course.dialect.tight_arcs_are_centre and arcs.towards and not arcs.away:
-        shown = _shown(course, arcs.towards, "bend towards it", cutcom.radius)
-        return _Taken(CENTRE, shown, by_arcs=True)
-    return _Taken()
+    return shown.get(_cutter(cutcom), _Taken())
 
 
 def _distance(course: Course, cutcom: Cutcom, how: _Taken) -> float:
@@ -160,14 +176,14 @@ def _lines(course: Course, rows: list[int]) -> str:
     return f"CUTCOM in line {course.statements.place(rows[0])[0]}{others}"
 
 
-def _tell_undecided(course: Course, taken: list[_Taken], tight: dict[int, _Tight]) -> None:
-    """Tell of each tool whose CUTCOMs can be read in two ways, with what its arcs show."""
-    by_tool: dict[int, list[Cutcom]] = {}
+def _tell_undecided(course: Course, taken: list[_Taken], tight: dict[_Cutter, _Tight]) -> None:
+    """Tell of each cutter whose CUTCOMs can be read in two ways, with what its arcs show."""
+    by_cutter: dict[_Cutter, list[Cutcom]] = {}
     for cutcom, how in zip(course.cutcoms, taken, strict=True):
         if cutcom.side and not how.points:
-            by_tool.setdefault(cutcom.tool, []).append(cutcom)
-    for tool, mine in by_tool.items():
-        arcs, radius = tight.get(tool, _Tight()), mine[0].radius
+            by_cutter.setdefault(_cutter(cutcom), []).append(cutcom)
+    for (tool, radius), mine in by_cutter.items():
+        arcs = tight.get((tool, radius), _Tight())
         hints = [f"{_lines(course, [cutcom.row for cutcom in mine])} with T{tool}"]
         if arcs.towards:
             hints.append(f"{_shown(course, arcs.towards, 'bend towards it', radius)}, as the centre may")

@@ -237,6 +237,11 @@ def test_another_tool_shows_nothing_of_this_one():
     assert (fault.code, fault.found) == ("L429", "CUTCOM in line 23 with T2")
 
 
+def test_another_cutter_of_this_number_shows_nothing_of_it_either():
+    other = led(9.0).replace("CUTTER/10.,0,5.", "CUTTER/12.,0,6.").removeprefix("UNIT/MM\n")
+    assert codes(led(1.0) + other) == ["L430", "L429"]
+
+
 def rotation(seed):
     """A rotation of space."""
     matrix, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
