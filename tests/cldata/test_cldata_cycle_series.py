@@ -198,3 +198,34 @@ def test_upright_series_are_those_of_canned_cycles():
         canned, told = gcode.read("\n".join([*nc, "G80", "M2"]), "part.ngc")
         assert not errors(told)
         assert tips(drilled) == pytest.approx(tips(canned), abs=NANOMETRE), cl
+
+
+CYCLE_ITEMS = [
+    "DRILL", "DEEP", "BRKCHP", "DEEP2", "BORE", "REAM", "FACE", "CSINK", "TAP", "INIT", "CLEAR", "ON", "OFF", "FEDTO",
+    "DEPTH", "RAPTO", "RTRCTO", "RETURN", "AUTO", "MANUAL", "STEP", "INCR", "SUBPECK", "1STPECK", "DWELL", "REV",
+    "MMPM", "IPR", "INVERS", "TWIST", "", "0", "-3", "5", "5", "2.5", "1e9", "-1e-9", "(POINT/1,2)", "N=4", "'a'",
+]  # fmt: skip
+SOUND_CYCLES = ["DRILL,FEDTO,-9,RAPTO,2", "DRILL,DEPTH,9,CLEAR,5,RAPTO,2", "DRILL,FEDTO,9,RAPTO,3", "DRILL,9,60,2"]
+
+
+def test_any_cycle_gives_a_program_or_diagnostics():
+    random = np.random.default_rng(7)
+    kept = 0
+    for _ in range(1500):
+        lines = ["UNITS/MM", "FEDRAT/100", "RAPID", "GOTO/0,0,50"]
+        for _ in range(random.integers(1, 3)):
+            items = random.choice(SOUND_CYCLES).split(",")
+            for _ in range(random.integers(0, 2)):
+                items.insert(random.integers(0, len(items) + 1), random.choice(CYCLE_ITEMS))
+            if random.random() < 0.2:
+                items = random.choice(CYCLE_ITEMS, random.integers(0, 6)).tolist()
+            lines += [f"CYCLE/{','.join(items)}", "GOTO/1,2,3", "GOTO/4,5,6,.1,0,.995"]
+        names = ((), ("depth", "feed", "clearance"))[random.integers(2)]
+        options = ReadOptions(dialect=random.choice([None, "nx", "creo", "solidworks", "catia"]), cycle_values=names)
+        program, told = read("\n".join(lines), "part.cl", options)
+        assert (program is None) == bool(errors(told)), lines
+        if program is not None:
+            kept += 1
+            assert np.isfinite(program.position).all()
+            assert (program.feed[program.kind == Kind.LINE] > 0).all()
+    assert kept > 100
