@@ -18,6 +18,9 @@ EXAMPLES = {
     "--wear": ("1=0.02", "1=-0.01"),
     "--cl-dialect": ("nx", "catia"),
     "--cycle-values": ("depth,feed", "depth"),
+    "--part": ("far.stl", "none"),
+    "--stock": ("far.stl", "none"),
+    "--fixture": ("far.stl", "farther.stl"),
     "--actual-tool": ("1=9.5,4.75", "1=9"),
     "--surface-speed": ("120", "150.5"),
     "--spin": ("x-in-plane=20", "optimise=joints"),
@@ -26,6 +29,10 @@ EXAMPLES = {
 """Each with an effect of its own, so that one is not mistaken for the other."""
 SWITCHES = {"--keep-chip-load": ("--keep-chip-load", "--no-keep-chip-load")}
 """On and off."""
+
+
+ADDED = {"--fixture"}
+"""What comes to what is said before, and replaces nothing of it."""
 
 
 def words(flag: str, which: int) -> list[str]:

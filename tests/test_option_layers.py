@@ -6,7 +6,7 @@ import shlex
 
 import numpy as np
 import pytest
-from option_examples import FLAGS, words
+from option_examples import ADDED, FLAGS, words
 
 from pkm_post.options import (
     flag_of,
@@ -65,7 +65,15 @@ def test_defaults_are_not_given():
     assert list(overrides(given_in(typed("--tip-tolerance 0.01 --machine a")), given_in(typed("")))) == []
 
 
-@pytest.mark.parametrize("flag", FLAGS)
+@pytest.mark.parametrize("flag", sorted(ADDED))
+def test_what_is_added_replaces_nothing(flag):
+    job, given = (typed(shlex.join(words(flag, which))) for which in (0, 1))
+    (name,) = given_in(given)
+    assert vars(layered(job, given_in(given)))[name] == [*vars(job)[name], *vars(given)[name]]
+    assert list(overrides(given_in(job), given_in(given))) == []
+
+
+@pytest.mark.parametrize("flag", [flag for flag in FLAGS if flag not in ADDED])
 def test_one_option_goes_before_and_all_others_stay(flag):
     job = typed(shlex.join([word for each in FLAGS for word in words(each, 0)]))
     given = given_in(typed(shlex.join(words(flag, 1))))
@@ -99,7 +107,8 @@ def test_options_in_place_of_all_take_back_what_they_do_not_say():
 def test_options_are_said_as_they_were_typed(seed):
     chance = random.Random(seed)
     chosen = shlex.join(word for flag in FLAGS if chance.random() < 0.6 for word in words(flag, chance.randrange(2)))
-    again = shlex.join(retyped(said_by(options_from(typed(chosen)))))
+    said = said_by(options_from(typed(chosen)))
+    again = shlex.join(retyped({name: value for name, value in said.items() if value is not None}))
     assert same(options_of(again), options_of(chosen))
 
 

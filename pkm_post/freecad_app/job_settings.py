@@ -81,7 +81,7 @@ def settings_of(
         Refused: the arguments of the job are not understood, J117.
     """
     own = own_arguments(job, post_processor)
-    chosen = layered(own, given)
+    chosen = layered(_placed(job, own), given)
     lengths = tool_lengths_from(chosen)
     found = (
         *_replaced(job, given_in(own), given, options, selection),
@@ -90,7 +90,7 @@ def settings_of(
         *_unknown_tools(job, given, beside),
     )
     return JobSettings(
-        _where_it_lies(job, chosen.machine) if "machine" not in given else chosen.machine,
+        chosen.machine,
         _at_fixture(options or options_from(chosen), job, selection),
         lengths,
         chosen,
@@ -110,11 +110,21 @@ def _fixture(job: Any, selection: Selection) -> str:
     return next(iter(selection.fixtures_of(job)), "G54")
 
 
-def _where_it_lies(job: Any, machine: str) -> str:
-    """The machine file that a job means: one beside its document, wherever FreeCAD was started."""
-    beside = FilePath(job.Document.FileName).parent / machine if job.Document.FileName else None
-    is_path = machine.endswith(".toml")
-    return str(beside) if is_path and beside is not None and beside.is_file() else machine
+def _placed(job: Any, own: argparse.Namespace) -> argparse.Namespace:
+    """The arguments of a job with the files they name: those beside its document, wherever FreeCAD was started."""
+    folder = FilePath(job.Document.FileName).parent if job.Document.FileName else None
+
+    def where(file: str) -> str:
+        return str(folder / file) if folder is not None and (folder / file).is_file() else file
+
+    named = {name: value for name, value in given_in(own).items() if name in _FILES}
+    files = {name: [(file, where(path)) for file, path in value] if isinstance(value, list) else where(value)
+             for name, value in named.items() if name != "machine" or value.endswith(".toml")}  # fmt: skip
+    return argparse.Namespace(**(vars(own) | files | {"given": {**given_in(own), **files}}))
+
+
+_FILES = ("machine", "part", "stock", "fixture")
+"""Options with the names of files; a machine may be one that comes with PKM Post instead."""
 
 
 def _replaced(

@@ -293,7 +293,7 @@ def options_from(namespace: argparse.Namespace) -> Options:
         surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
         also=namespace.also,
         actual_tools=_cutters(namespace.actual_tool),
-        mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(dict(namespace.fixture))),
+        mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(dict(namespace.fixture).values())),
     )
 
 

@@ -7,11 +7,14 @@ The other opinion is the pipeline itself, called with options that were put toge
 import random
 import re
 import shlex
+from dataclasses import replace
 
 import FreeCAD as App
+import numpy as np
 import pytest
 from cam_jobs import add_operation
-from option_examples import FLAGS, words
+from meshes import binary_stl
+from option_examples import ADDED, FLAGS, words
 from Path.Post.Processor import PostProcessorFactory
 
 import pkm_post
@@ -32,6 +35,8 @@ ALWAYS = {"--work-offset": "--work-offset=0,0,250", "--surface-speed": "--surfac
 """Where the machine reaches, and what --keep-chip-load needs; in every job but where the option itself is tried."""
 NO_EFFECT_HERE = {"--corners", "--leads", "--swallowed"}
 """They are for contours with the tool beside them, which this job has not."""
+MESHES = {"far": -5000.0, "farther": -6000.0}
+"""Files with a triangle so far below the part that nothing touches it, and its height, mm."""
 FOR_PART_PROGRAMS = {"--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values"}
 """What G-code and CL data do not say; a job has nothing to be read so."""
 NORMALS = "--actual-tool"
@@ -46,6 +51,8 @@ def job(job, tmp_path, monkeypatch):
     for name, speed in (("slow", 18), ("slower", 12)):
         changed = re.sub(r"(?m)^(rapid|feed)_speed = .*$", rf"\1_speed = {speed}.0", text)
         (tmp_path / f"{name}.toml").write_text(changed, encoding="utf-8")
+    for name, z in MESHES.items():
+        (tmp_path / f"{name}.stl").write_bytes(binary_stl(np.array([[[0, 0, z], [9, 0, z], [0, 9, z]]])))
     add_operation(job, CUT)
     job.PostProcessor = "hexapod_pmac"
     job.Document.saveAs(str(tmp_path / "part.FCStd"))
@@ -67,7 +74,8 @@ def by_pipeline(job, arguments, folder):
     chosen = typed(arguments)
     program, _ = read_job(job, tool_lengths_from(chosen))
     machine, _ = machine_named(chosen.machine)
-    pipeline.post(program, machine, folder / "part.pmc", options_from(chosen))
+    options = replace(options_from(chosen), setup=prepared_job(job, settings_of(job)).options.setup)
+    pipeline.post(program, machine, folder / "part.pmc", options)
     return contents(folder)
 
 
@@ -118,7 +126,9 @@ def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
         door(job, over_it, folder)
         assert contents(folder) == wanted, door.__name__
     told = capsys.readouterr().err
-    replaced = {"both": True, "job": flag == "--tool-length", "command line": flag in SAID_BY_EVERY_JOB}[where]
+    replaced = {"both": flag not in ADDED, "job": flag == "--tool-length", "command line": flag in SAID_BY_EVERY_JOB}[
+        where
+    ]
     assert (f"warning J125: an option stands in for what the job or the program says: {flag} " in told) == replaced
 
 
@@ -182,7 +192,7 @@ def test_a_machine_object_of_another_machine_is_told(job, monkeypatch):
 
 
 def test_a_machine_file_lies_beside_the_document_wherever_freecad_was_started(job, tmp_path, monkeypatch):
-    says(job, "--work-offset=0,0,250 --machine slow.toml")
+    says(job, "--work-offset=0,0,250 --machine slow.toml --fixture far.stl")
     wanted = by_pipeline(job, job.PostProcessorArgs, made(tmp_path / "wanted"))
     monkeypatch.chdir("/")
     for door in (by_cam, by_command_line):
