@@ -7,6 +7,7 @@ pose are told for the tool of the rest pose; lengths in mm, angles in degrees.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -42,6 +43,7 @@ class Home:
         turning_rate: which the strut speed allows about the tip, whatever the axis, rad/s.
         stiffness: (3,) of the tip in x, y and z of {M}, N/mm; None when it is not stated, or the pose singular.
         findings: of all checks of reach.
+        count_at_tip: how far one count of each strut moves the tip, mm; None where the pose is singular.
     """
 
     lengths: Array
@@ -49,6 +51,7 @@ class Home:
     turning_rate: float
     stiffness: Array | None
     findings: tuple[ReachFinding, ...]
+    count_at_tip: float | None
 
 
 def at_home(machine: Machine) -> Home:
@@ -65,6 +68,7 @@ def at_home(machine: Machine) -> Home:
         singular_values=values,
         turning_rate=float(machine.strut_speed / norm(jacobian_of_tip(machine, *pose)[0, :, 3:]).max()),
         stiffness=stiffness,
+        count_at_tip=_count_at_tip(machine, pose),
         findings=reach_findings(machine, way),
     )
 
@@ -79,6 +83,16 @@ def machine_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
     _, faults = controller_settings(machine)
     told = (replace(fault, place=Place(file)) for fault in faults)
     return (*told, *home_faults(machine, file), *change_faults(machine, file))
+
+
+def _count_at_tip(machine: Machine, pose: tuple[Array, ...]) -> float | None:
+    """The largest way of the tip, mm, that one count of each strut makes, with the signs that add up."""
+    jacobian = jacobian_of_tip(machine, *pose)[0]
+    counts = machine.controller.get("counts_per_mm")
+    if counts is None or np.linalg.cond(jacobian) > 1 / _SINGULAR:
+        return None
+    signs = np.array(list(itertools.product((-1.0, 1.0), repeat=6)))
+    return float(norm((np.linalg.inv(jacobian)[:3] @ signs.T).T).max() / counts)
 
 
 def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
@@ -153,6 +167,13 @@ def _limits(machine: Machine) -> Iterator[tuple[str, str]]:
     yield "strut speed", f"{machine.strut_speed:g} mm/s"
     yield "strut acceleration", f"{machine.strut_acceleration:g} mm/s^2"
     yield "strut jerk", f"{machine.strut_jerk:g} mm/s^3" if np.isfinite(machine.strut_jerk) else "no limit stated"
+    gains = machine.velocity_gain
+    yield (
+        "velocity gains",
+        "none stated: following errors are not looked at" if gains is None else f"{_span(gains)} 1/s",
+    )
+    rate = f"at most {machine.block_rate:g} in a second" if np.isfinite(machine.block_rate) else "no rate stated"
+    yield "points", f"{machine.shortest_interval} ms apart or more, {rate}"
     yield "base cones", f"{_span(np.degrees(machine.base_cone), 2)} degrees"
     yield "platform cones", f"{_span(np.degrees(machine.platform_cone), 2)} degrees"
     yield "spindle", f"{machine.spindle_least_speed:g} to {machine.spindle_speed:g} 1/min"
@@ -197,6 +218,8 @@ def _at_home(machine: Machine, home: Home) -> Iterator[tuple[str, str]]:
     yield "  turning rate of struts", turning
     if home.stiffness is not None:
         yield "  stiffness", ", ".join(f"{value / 1000.0:.1f}" for value in home.stiffness) + " N/um in x, y, z"
+    if home.count_at_tip is not None:
+        yield "  one count of each strut", f"moves the tip by {1000 * home.count_at_tip:.3f} um at most"
     for one in home.findings:
         shown, factor = SHOWN[one.subject.unit]
         if shown:  # the margin to singular poses is a bound; the value itself is told above

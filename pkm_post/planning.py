@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 
 from pkm_post.cubics import Cubics, poses_at
 from pkm_post.feed import (
+    SLOWER,
     Ceilings,
     PathBounds,
     Schedule,
@@ -21,11 +23,13 @@ from pkm_post.feed import (
     ToolPath,
     cell_times,
     even_marks,
+    factors_of_crowds,
     for_jerk,
     glimpse_within,
     knots,
     limits,
     rough_limits,
+    slower_feed,
     speed_profile,
     stations,
 )
@@ -39,6 +43,8 @@ _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
 _WINDOWS_MS = (4, 8, 16, 32, 64, 128)
 """Windows of time that are tried for a plan with a limit of jerk; the one with the shortest motion is taken."""
+_MOST_ROUNDS = 8
+"""How often a motion is planned once more, slower, for its controller; the certificate refuses what is left."""
 _STATIONS_AT_ONCE = 4096
 """Stations in one pass: what is computed for them stays in the processor's cache."""
 _MARKS_AT_ONCE = 2048
@@ -71,13 +77,19 @@ def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple
     """
     most = PathBounds.of(path)
     faults = reach_faults(machine, trajectory, *_way(path, stations(path, bent(path, most))))
+    return _schedule(path, machine, most), faults
+
+
+def _schedule(path: ToolPath, machine: Machine, most: PathBounds) -> Schedule:
+    """When the tool is where on a path with these bounds."""
     if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
-        return _without_jumps(path, machine), faults
+        return _without_jumps(path, machine)
     rough = rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
     close = below_feed(path, *rough)
     marks = stations(path, close)
     square, along = limits_at(path, marks, close, rough, machine)
-    return Schedule.of(marks, marks.s, marks.rest, speed_profile(marks.s, square, along)), faults
+    profile = speed_profile(marks.s, square, along)
+    return Schedule.of(marks, marks.s, marks.rest, profile, shortest_ms=machine.shortest_interval)
 
 
 def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
@@ -101,7 +113,7 @@ def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
     _, window_ms, course = min(
         (_averaged(for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS), key=lambda tried: tried[0]
     )
-    return Schedule.of(marks, *course, window_ms)
+    return Schedule.of(marks, *course, window_ms, machine.shortest_interval)
 
 
 def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Array, Array, Array]]:
@@ -117,6 +129,8 @@ def interpolate(
 ) -> Motion:
     """Tool poses at the whole milliseconds that the controller is given points for.
 
+    Where the controller does not take points so fast, the motion is planned once more, with a lower feed there.
+
     Args:
         path: the path with rounded corners.
         schedule: when the tool is where.
@@ -124,16 +138,33 @@ def interpolate(
         machine: decides how far the controller's cubics stray between two points.
         tolerances: what was asked for.
     """
-    marks = even_marks(schedule.rests_ms)
+    motion, factor = _interpolated(path, schedule, events, machine, tolerances)
+    for _ in range(_MOST_ROUNDS):
+        if (factor == 1).all():
+            break
+        path = replace(path, feed=slower_feed(path.feed, path.segments.extent, schedule.joint_time, factor))
+        schedule = _schedule(path, machine, PathBounds.of(path))
+        motion, factor = _interpolated(path, schedule, events, machine, tolerances)
+    return motion
+
+
+def _interpolated(
+    path: ToolPath, schedule: Schedule, events: tuple[Event, ...], machine: Machine, tolerances: Tolerances
+) -> tuple[Motion, Array]:
+    """The motion of a schedule; and by what factor the controller wants segments to be slower, (N,)."""
+    marks, shortest = even_marks(schedule.rests_ms), machine.shortest_interval
     stretches = [marks[first : first + _MARKS_AT_ONCE + 1] for first in range(0, len(marks) - 1, _MARKS_AT_ONCE)]
 
-    def knots_of(stretch: Array) -> Array:
-        return knots(stretch, schedule.edges_ms, Cubics(path, schedule, machine, tolerances, stretch).error)[:-1]
+    def knots_of(stretch: Array) -> tuple[Array, Array]:
+        cubics = Cubics(path, schedule, machine, tolerances, stretch)
+        found = knots(stretch, schedule.edges_ms, cubics.error, shortest)
+        return found[:-1], _too_coarse(found, cubics, shortest)
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        time_ms = np.concatenate([*threads.map(knots_of, stretches), marks[-1:]])
+        times, coarse = zip(*threads.map(knots_of, stretches), strict=True)
+    time_ms = np.concatenate([*times, marks[-1:]])
     poses = poses_at(path, schedule, time_ms)
-    return Motion(
+    motion = Motion(
         time_ms=time_ms,
         tip=poses.tip,
         axis=poses.axis,
@@ -146,6 +177,27 @@ def interpolate(
         joint_time=schedule.joint_time,
         events=_by_knot(events, schedule, time_ms),
     )
+    return motion, _slower(motion, np.concatenate(coarse, axis=1), machine.block_rate)
+
+
+def _too_coarse(found: Array, cubics: Cubics, shortest: int) -> Array:
+    """Starts and ends of intervals that the controller does not take shorter and that are not good enough, (2, R) ms.
+
+    Of one millisecond there is nothing shorter.
+    """
+    start, end = found[:-1], found[1:]
+    rows = np.flatnonzero((end - start < 2 * shortest) & (end - start > 1))
+    rows = rows[cubics.error(start[rows], end[rows]) > 1] if len(rows) else rows
+    return np.stack([start[rows], end[rows]])
+
+
+def _slower(motion: Motion, coarse: Array, block_rate: float) -> Array:
+    """By what factor each segment is to be slower for the controller, (N,)."""
+    factor = factors_of_crowds(motion.time_ms, motion.segment, block_rate, len(motion.joint_time))
+    begin, end = (np.searchsorted(motion.joint_time, ms / 1000) for ms in coarse)
+    for first, last in zip(begin, np.minimum(end, len(factor) - 1), strict=True):
+        factor[first : last + 1] = np.minimum(factor[first : last + 1], SLOWER)
+    return factor
 
 
 def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> tuple[Event, ...]:

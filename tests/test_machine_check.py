@@ -128,3 +128,17 @@ def test_a_file_is_complete_only_where_a_program_can_be_written_for_it(capsys, t
     assert told.out == ""
     assert f"{path}: error M104" in told.err and found in told.err
     assert [item.found for item in refused.value.diagnostics] == [told.err.split("form: ")[1].rsplit("; correct", 1)[0]]
+
+
+def test_figures_of_the_drives_are_those_of_the_home_pose():
+    rows = dict(summary(machine()))
+    assert rows["velocity gains"] == "50.0000 1/s"
+    assert rows["points"] == "1 ms apart or more, at most 500 in a second"
+    # No count moves the tip by more than the sum of the columns of J^-1.
+    one = machine()
+    pose = one.home_tip[None], one.home_axis[None], np.zeros(1), np.array([one.rest_tool_length])
+    columns = np.linalg.norm(np.linalg.inv(jacobian_of_tip(one, *pose)[0])[:3], axis=0)
+    most = at_home(one).count_at_tip * one.controller["counts_per_mm"]
+    assert columns.max() < most <= columns.sum()
+    silent = dict(summary(machine(velocity_gain=None, block_rate=np.inf)))
+    assert silent["velocity gains"].startswith("none stated") and silent["points"].endswith("no rate stated")

@@ -22,18 +22,19 @@ _PATH = (
 _LIMITS = (
     ("strut length, speed and acceleration", "the program as written, at every moment"),
     ("tip acceleration and turning rate of the tool axis", "the program as written, at every moment"),
+    ("intervals between points", "none is shorter than controller.shortest_interval"),
     ("joints and singular poses", "the planned path with its rounded corners, between its points as well"),
 )
 _SETUP = (
     ("geometry of the machine", "taken from the machine file"),
     ("work offset and gauge lengths", "taken from the job"),
     ("controller set-up, codes and override", "the set-up file states what the program relies on"),
-    ("following error, stiffness, heat and cutting forces", "no model of them is computed"),
+    ("stiffness, heat and cutting forces", "no model of them is computed"),
 )
 
 
 _JERK = "the mean acceleration from one interval to the next"
-_NO_JERK = "the machine file states no {}"
+_NO_LIMIT = "the machine file states no {}"
 _STEPS = "none is stated; the report has the largest"
 PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN = (
     Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, detail)
@@ -61,15 +62,30 @@ def coverage(
         *_rows(Topic.PATH, Extent.PROVEN, _PATH),
         *_rows(Topic.LIMITS, Extent.PROVEN, _LIMITS),
         *_jerks(machine),
+        _block_rate(machine),
         *_collisions(machine),
         *collisions,
         *beside_the_path(machine, trajectory),
         *_rows(Topic.SETUP, Extent.NOT_COVERED, _SETUP),
+        _following(machine),
     )
 
 
 def _rows(topic: Topic, extent: Extent, rows: tuple[tuple[str, str], ...]) -> tuple[Coverage, ...]:
     return tuple(Coverage(topic, subject, extent, detail) for subject, detail in rows)
+
+
+def _block_rate(machine: Machine) -> Coverage:
+    if math.isfinite(machine.block_rate):
+        return Coverage(Topic.LIMITS, "blocks in a second", Extent.PROVEN, "every second of the program")
+    return Coverage(Topic.LIMITS, "blocks in a second", Extent.NOT_COVERED, _NO_LIMIT.format("controller.block_rate"))
+
+
+def _following(machine: Machine) -> Coverage:
+    """Following errors are told as a contour error at the knots and halfway; there is no limit of it."""
+    if machine.velocity_gain is None:
+        return Coverage(Topic.SETUP, "following error", Extent.NOT_COVERED, _NO_LIMIT.format("struts.velocity_gain"))
+    return Coverage(Topic.SETUP, "following error", Extent.SAMPLED, "struts as first-order lags; a figure, no limit")
 
 
 def _jerks(machine: Machine) -> tuple[Coverage, ...]:
@@ -81,7 +97,7 @@ def _jerks(machine: Machine) -> tuple[Coverage, ...]:
     known = tuple(
         Coverage(Topic.LIMITS, subject, Extent.SAMPLED, _JERK)
         if math.isfinite(limit)
-        else Coverage(Topic.LIMITS, subject, Extent.NOT_COVERED, _NO_JERK.format(entry))
+        else Coverage(Topic.LIMITS, subject, Extent.NOT_COVERED, _NO_LIMIT.format(entry))
         for subject, entry, limit in limits
     )
     return (*known, Coverage(Topic.LIMITS, "steps of acceleration at knots", Extent.NOT_COVERED, _STEPS))

@@ -28,6 +28,8 @@ _MOST_DECIMALS = 9
 _MORE = (1, 2, 3, 4, 5)
 _HALF_DIGIT = 0.51
 """Of the last decimal: how far a program is from its plan by rounding."""
+_OF_KNOTS = ("V101", "V102", "V103", "V104", "V108", "V110", "V113", "V114")
+"""What more knots would mend."""
 _LITTLE = 0.01
 """Part of a value that makes no difference worth a word."""
 
@@ -53,7 +55,20 @@ def fault_causes(
     pairs = tuple(zip(certificate.findings, measured(exact).findings, strict=True))
     rounded = [number for number, (row, plan) in enumerate(pairs) if plan.holds and not row.holds]
     enough = _enough(exact, decimals, rounded, measured) if rounded else None
-    return tuple(_diagnostic(row, plan, decimals, enough) for row, plan in pairs if not row.holds)
+    faults = ((row, _diagnostic(row, plan, decimals, enough)) for row, plan in pairs if not row.holds)
+    return tuple(_of_short_intervals(fault, row.time, struts, machine) for row, fault in faults)
+
+
+def _of_short_intervals(fault: Diagnostic, time: float, struts: StrutMotion, machine: Machine) -> Diagnostic:
+    """The same, or that of an interval which the controller does not take in two, if it could be cut without that."""
+    row = np.clip(np.searchsorted(struts.time_ms, 1000 * time, side="right") - 1, 0, len(struts) - 2)
+    interval = int(np.diff(struts.time_ms[row : row + 2])[0])
+    if fault.code not in _OF_KNOTS or not 1 < interval < 2 * machine.shortest_interval:
+        return fault
+    found = (
+        f"{fault.found}, in an interval of {interval} ms; controller.shortest_interval is {machine.shortest_interval}"
+    )
+    return replace(fault, code="V119", found=found)
 
 
 def _as_printed(struts: StrutMotion, exact: StrutMotion, machine: Machine) -> Decimals | None:

@@ -13,14 +13,15 @@ from functools import partial
 
 import numpy as np
 
+from pkm_post.certificate.drives import contour_error, count_at_tip
 from pkm_post.certificate.instants import Looked, when_worst
 from pkm_post.certificate.joints import Passed
 from pkm_post.certificate.playback import Played
-from pkm_post.certificate.struts import acceleration_steps, off_plan, strut_jerk
+from pkm_post.certificate.struts import acceleration_steps, blocks_in_a_second, off_plan, strut_jerk
 from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_limits import tip_jerk, tool_limits
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Motion, Trajectory
+from pkm_post.model import Kind, Motion, Trajectory
 from pkm_post.model.certificate import Figure, Finding, Tolerances
 
 
@@ -52,6 +53,11 @@ def findings(
         ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, starts),
         ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, starts),
     )
+    too_short = machine.shortest_interval - np.diff(struts.time_ms)
+    rows = (*rows, ("V116", "interval shorter than the controller takes", "ms", too_short, 0.0, starts))
+    if math.isfinite(machine.block_rate):
+        blocks = blocks_in_a_second(struts.time_ms)
+        rows = (*rows, ("V117", "blocks in one second", "1/s", blocks, machine.block_rate, knots))
     if math.isfinite(machine.strut_jerk):
         rows = (*rows, ("V112", "strut jerk", "mm/s^3", strut_jerk(struts), machine.strut_jerk, knots))
     if math.isfinite(machine.tip_jerk):
@@ -61,8 +67,20 @@ def findings(
 
 def figures(task: Task, trajectory: Trajectory) -> tuple[Figure, ...]:
     """What is measured and has no limit."""
-    steps = acceleration_steps(task.struts)
-    return (_figure(trajectory, "step of strut acceleration at a knot", "mm/s^2", steps, _at_knots(task)),)
+    machine, struts, knots = task.machine, task.struts, _at_knots(task)
+    rows = [
+        ("step of strut acceleration at a knot", "mm/s^2", acceleration_steps(struts), knots),
+    ]
+    if not math.isfinite(machine.block_rate):
+        rows.append(("blocks in one second", "1/s", blocks_in_a_second(struts.time_ms), knots))
+    counts = machine.controller.get("counts_per_mm")
+    if counts is not None:
+        rows.append(("tip moved by one count of each strut", "um", count_at_tip(task, counts), knots))
+    if machine.velocity_gain is not None:
+        cuts = trajectory.kind[task.motion.segment[1:]] != Kind.RAPID
+        error = np.where(cuts, contour_error(task, machine.velocity_gain), 0.0)
+        rows.append(("contour error by following errors", "um", error, partial(_start, task.motion)))
+    return tuple(_figure(trajectory, *row) for row in rows)
 
 
 def _figure(trajectory: Trajectory, name: str, unit: str, values: Array, when: _When) -> Figure:

@@ -12,6 +12,8 @@ CERTIFIED = {
     "struts.speed": ("strut speed",),
     "struts.acceleration": ("strut acceleration",),
     "struts.jerk": ("strut jerk",),
+    "controller.shortest_interval": ("interval shorter than the controller takes",),
+    "controller.block_rate": ("blocks in one second",),
     "tool_path.rapid_speed": ("tip speed",),
     "tool_path.feed_speed": ("tip speed",),
     "tool_path.tip_acceleration": ("tip acceleration",),

@@ -104,3 +104,8 @@ def acceleration_steps(struts: StrutMotion) -> Array:
     begin, end = hermite_accelerations(*cubics(struts, np.arange(len(struts) - 1)))
     still = np.zeros((1, 6))
     return np.asarray(np.abs(np.concatenate([begin, still]) - np.concatenate([still, end])).max(axis=1))
+
+
+def blocks_in_a_second(time_ms: Array) -> Array:
+    """How many knots are in the second that begins with each, (K + 1,); dwells, which give more time, do not count."""
+    return np.asarray(np.searchsorted(time_ms, time_ms + 1000) - np.arange(len(time_ms)))

@@ -2,8 +2,8 @@
 """Knots: the whole milliseconds at which the controller is given a point.
 
 Few, but enough to keep the controller's cubic within tolerance: every interval that is not is cut in two, all
-intervals at once, until they hold or are one millisecond long. A cut is made where a blend begins or ends, if there is
-such a place: a cubic follows a straight or a blend for long, but not both.
+intervals at once, until they hold or are as short as the controller takes them. A cut is made where a blend begins or
+ends, if there is such a place: a cubic follows a straight or a blend for long, but not both.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def even_marks(rests_ms: Array) -> Array:
     return np.append(start, rests_ms[-1])
 
 
-def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array]) -> Array:
+def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array], shortest: int = 1) -> Array:
     """Times of the knots, (K,) whole ms, from the first rest to the last; every rest is one of them.
 
     Knots of one part do not depend on the other parts: a long motion may be cut at its even marks, and the knots of
@@ -35,16 +35,17 @@ def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Arra
         rests_ms: (R,) whole ms, or other marks that have to be knots.
         edges_ms: (E,) whole ms where intervals had best be cut, increasing.
         error: for starts and ends of intervals, (N,) whole ms each, the error by tolerance of each; 1 is just right.
+        shortest: no interval is cut into pieces below so many ms.
     """
     start, end = _even(rests_ms)
     edges_ms = edges_ms[slice(*np.searchsorted(edges_ms, rests_ms[[0, -1]]))]
     found = [start, rests_ms[-1:]]
     while len(start):
-        wide = end - start > 1
+        wide = end - start >= 2 * shortest
         start, end = start[wide], end[wide]
         wide = error(start, end) > 1
         start, end = start[wide], end[wide]
-        cut = _cut(start, end, edges_ms)
+        cut = _cut(start, end, edges_ms, shortest)
         found.append(cut)
         start, end = np.column_stack([start, cut]).ravel(), np.column_stack([cut, end]).ravel()
     return np.sort(np.concatenate(found))
@@ -59,11 +60,11 @@ def _even(rests_ms: Array) -> tuple[Array, Array]:
     return start, rests_ms[run] + (number + 1) * span[run] // pieces[run]
 
 
-def _cut(start: Array, end: Array, edges_ms: Array) -> Array:
-    """Where to cut intervals: at the edge nearest to the middle, without one in the middle."""
+def _cut(start: Array, end: Array, edges_ms: Array, shortest: int) -> Array:
+    """Where to cut intervals: at the edge nearest to the middle, without one in the middle; no piece is too short."""
     middle = (start + end) // 2
     bounded = np.concatenate([[np.iinfo(np.int64).min // 2], edges_ms, [np.iinfo(np.int64).max // 2]])
     above = np.searchsorted(bounded, middle)
     before, after = bounded[above - 1], bounded[above]
     nearest = np.where(middle - before < after - middle, before, after)
-    return np.where((nearest > start) & (nearest < end), nearest, middle)
+    return np.where((nearest >= start + shortest) & (nearest <= end - shortest), nearest, middle)

@@ -44,7 +44,9 @@ class Schedule:
     joint_time: Array
 
     @classmethod
-    def of(cls, stations: Stations, s: Array, rest: Array, square: Array, window_ms: int = 0) -> Schedule:
+    def of(
+        cls, stations: Stations, s: Array, rest: Array, square: Array, window_ms: int = 0, shortest_ms: int = 1
+    ) -> Schedule:
         """The schedule that runs through places with the given speeds squared.
 
         Args:
@@ -53,8 +55,9 @@ class Schedule:
             rest: (M,) whether the motion stops there.
             square: (M,) speed squared.
             window_ms: how long a window the course is averaged over.
+            shortest_ms: least time from one rest to the next.
         """
-        course, rests_ms = _stretched(s, rest, square, window_ms)
+        course, rests_ms = _stretched(s, rest, square, window_ms, shortest_ms)
         window, rests = window_ms / 1000, np.flatnonzero(rest)
         ends = np.append(np.diff(stations.segment) > 0, True)
         joint, under_way = stations.s[ends], ~stations.rest[ends]
@@ -83,12 +86,12 @@ class Schedule:
         return self.course.mean(time, self.window) if self.window else self.course.at(time)
 
 
-def _stretched(s: Array, rest: Array, square: Array, window_ms: int) -> tuple[Course, Array]:
+def _stretched(s: Array, rest: Array, square: Array, window_ms: int, shortest_ms: int) -> tuple[Course, Array]:
     """The course from rest to rest in whole milliseconds, with a window of time at each rest; and the rests."""
     speed, duration = np.sqrt(square), cell_times(s, square)
     run = np.cumsum(rest)[:-1] - 1
     elapsed = np.bincount(run, duration)
-    whole_ms = np.ceil(1000 * elapsed).astype(np.int64)
+    whole_ms = np.maximum(np.ceil(1000 * elapsed).astype(np.int64), shortest_ms)
     stretch = whole_ms / (1000 * elapsed)
     rests_ms = np.concatenate([[0], np.cumsum(whole_ms + window_ms)])
 

@@ -50,6 +50,8 @@ class Field:
 
 MOST_DECIMALS = 9
 MOST_WORDS = 2**24
+LONGEST_SHORTEST = 50
+"""ms: intervals of up to 128 ms can be cut evenly into pieces no shorter than that."""
 JOINT_KIND = forms.choice("universal", "spherical")
 
 FIELDS: tuple[Field, ...] = (
@@ -63,6 +65,7 @@ FIELDS: tuple[Field, ...] = (
     Field("struts.speed", forms.POSITIVE, units.SPEED, attribute="strut_speed"),
     Field("struts.acceleration", forms.POSITIVE, units.ACCELERATION, attribute="strut_acceleration"),
     Field("struts.jerk", forms.POSITIVE, units.JERK, default=None, attribute="strut_jerk"),
+    Field("struts.velocity_gain", forms.SIX_POSITIVE, units.RATE, default=None, attribute="velocity_gain"),
     Field("struts.length_offset", forms.SIX_NUMBERS, units.LENGTH, default=None, attribute="length_offset"),
     Field("struts.screw_lead", forms.NUMBER, units.LENGTH, default=0.0, attribute="screw_lead"),
     Field("struts.tube_radius", forms.POSITIVE, units.LENGTH, default=None, attribute="tube_radius"),
@@ -118,6 +121,14 @@ FIELDS: tuple[Field, ...] = (
     Field("controller.counts_per_mm", forms.POSITIVE, units.COUNT_DENSITY),
     Field("controller.zero_length", forms.SIX_NUMBERS, units.LENGTH),
     Field("controller.approach_speed", forms.POSITIVE, units.SPEED),
+    Field(
+        "controller.shortest_interval",
+        forms.whole_number(1, LONGEST_SHORTEST),
+        units.MILLISECONDS,
+        default=1,
+        attribute="shortest_interval",
+    ),
+    Field("controller.block_rate", forms.POSITIVE, units.RATE, default=None, attribute="block_rate"),
     Field("controller.memory_words", forms.whole_number(1, MOST_WORDS), default=237568),
     Field("controller.line_limit", forms.whole_number(40, 65536), default=159),
     Field("controller.codes.tool_change", forms.CODE),

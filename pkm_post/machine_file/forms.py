@@ -128,6 +128,14 @@ def _read_half_angles(value: Any, factor: float) -> Array:
     return np.full(STRUTS, angles)
 
 
+def _read_six_positive(value: Any, factor: float) -> Array:
+    shape = (STRUTS,) if isinstance(value, list) else ()
+    numbers = np.array(collect(value, shape)) * factor
+    if np.any(numbers <= 0.0):
+        raise FormError(_shorten(str(value)))
+    return np.full(STRUTS, numbers)
+
+
 def _text(words: str, accept: Callable[[str], Any]) -> Form:
     def read(value: Any, factor: float) -> str:
         if not isinstance(value, str) or not accept(value):
@@ -167,6 +175,7 @@ _CODE = re.compile(r"(?:[ -z|~]|\{value\}|\{value:d\}|\{value:\.[1-9]f\})+")
 NUMBER = _numbers("a number", finish=float)
 POSITIVE = _numbers("a number above 0", (), lambda number: number > 0.0, float)
 NOT_NEGATIVE = _numbers("a number, 0 or above", (), lambda number: number >= 0.0, float)
+SIX_POSITIVE = Form("a number above 0, or 6 of them", _read_six_positive)
 HALF_ANGLES = Form("an angle above 0 and at most a right angle, or 6 of them", _read_half_angles)
 STROKE = _numbers(
     "2 numbers, 0 < first < second",

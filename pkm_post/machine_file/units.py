@@ -45,6 +45,10 @@ JERK = Dimension("mm/s^3", length=1, time=-3)
 ANGLE = Dimension("deg", angle=1)
 TIME = Dimension("s", time=1)
 TURNING_RATE = Dimension("deg/s", angle=1, time=-1)
+MILLISECONDS = Dimension("ms")
+"""Whole ms whatever the units of the file: controllers count them."""
+RATE = Dimension("1/s")
+"""Per second, the only unit of time that a file may have."""
 SPINDLE_SPEED = Dimension("1/min")
 """Revolutions per minute whatever the units of the file: every spindle is named so."""
 COUNT_DENSITY = Dimension("1/mm")

@@ -139,6 +139,10 @@ class Machine:
             nothing is stated.
         strut_rigidity: Young's modulus times cross-section of the screw, N: a length l of it has the stiffness
             rigidity / l, in series with ``strut_stiffness``. Infinite when unstated.
+        shortest_interval: between two points that the controller takes, ms.
+        block_rate: most points that the controller takes in any second; infinite when no limit is stated.
+        velocity_gain: (6,) of the position loop of each strut, 1/s: a strut lags by its speed over that; None when
+            nothing is stated.
         tool_change: where tools are changed; None where the file states nothing, and they change where the tool is.
         spin_up_time: of the spindle from rest to its highest speed, s; None when it is not stated.
         spin_down_time: from its highest speed to rest, s; None when it is that of ``spin_up_time``.
@@ -191,6 +195,9 @@ class Machine:
     spindle_least_speed: float = 0.0
     strut_stiffness: float | None = None
     strut_rigidity: float = math.inf
+    shortest_interval: int = 1
+    block_rate: float = math.inf
+    velocity_gain: Array | None = None
     tool_change: ToolChange | None = None
     spin_up_time: float | None = None
     spin_down_time: float | None = None

@@ -486,10 +486,19 @@ RULES: dict[str, Rule] = {
     "V113": _error("the tool axis turns faster than the machine allows", "report this as a fault of the feed planner"),
     "V114": _error("the tip accelerates more than the machine allows", "report this as a fault of the feed planner"),
     "V115": _error("the acceleration of the tip changes too fast", "report this as a fault of the feed planner"),
+    "V116": _error("points come too close for the controller", "report this as a fault of the feed planner"),
+    "V117": _error(
+        "points come too fast for the controller",
+        "lower the feed, ask for a wider tolerance, or correct controller.block_rate of the machine file",
+    ),
     "V118": _error(
         "the program has too few decimals",
         "state more in controller.length_decimals and controller.speed_decimals, and controller.line_limit for longer"
         " lines if the controller takes them",
+    ),
+    "V119": _error(
+        "the path needs points closer together than the controller takes them",
+        "ask for a wider tolerance, lower the feed, or correct controller.shortest_interval of the machine file",
     ),
     # F1: files
     "F101": _error("the output cannot be written", "check the folder, its permissions and the free space"),

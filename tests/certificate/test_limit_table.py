@@ -18,7 +18,7 @@ NO_LIMITS = {
     "joints.base_axes", "joints.platform_axes", "interference.base_joint_radius",
     "interference.platform_joint_radius", "interference.bodies", "interference.fixtures",
     "singularity.characteristic_length", "tool_path.home_tip", "tool_path.home_axis", "tool_path.home_spin",
-    "tool_change.nose", "tool_change.axis", "tool_change.spin",
+    "struts.velocity_gain", "tool_change.nose", "tool_change.axis", "tool_change.spin",
     "work_offsets.*.origin", "work_offsets.*.rotation_z", "work_offsets.*.matrix", "controller.kind",
     "controller.letters", "controller.coordinate_system", "controller.program", "controller.length_decimals",
     "controller.speed_decimals", "controller.counts_per_mm", "controller.zero_length", "controller.codes.tool_change",
