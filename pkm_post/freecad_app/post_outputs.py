@@ -64,7 +64,7 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
         raise Refused([*found, Diagnostic("F101", Place(str(target)), str(fault))]) from fault
     lines = (
         f"trajectory: {target.name}",
-        f"machine: {settings.arguments.machine}",
+        f"machine: {FilePath(settings.machine).name}",
         f"segments: {len(trajectory)}",
         "reach checked, motion not planned, not certified",
     )

@@ -173,6 +173,13 @@ def test_reach_and_simulation_see_the_job_where_it_is_posted(job):
         assert trajectory.tools == posted.tools
 
 
+def test_no_text_depends_on_the_folder_of_the_document(job):
+    says(job, "--work-offset=0,0,250 --machine slow.toml")
+    job.PostProcessor = "hexapod_trajectory"
+    ((_, text),) = PostProcessorFactory.get_post_processor(job, "hexapod_trajectory").export()
+    assert "(machine: slow.toml)" in text
+
+
 def test_a_machine_object_of_another_machine_is_told(job, monkeypatch):
     told = []
     monkeypatch.setattr(App.Console, "PrintWarning", told.append)
