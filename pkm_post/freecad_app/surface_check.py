@@ -2,9 +2,10 @@
 """Surface check: what a path leaves on the faces of a model, and where it cuts into them.
 
 A program, a cutter and faces enter; the deepest gouge and the most material left, with their places, leave in mm.
-Faces are looked at in points; what is between them is not seen. Gouges are looked for on all faces of the model, with
-all moves, rapid ones too, and with the flank of the cutter: their depth is how far a point is inside the cutter where
-it comes deepest. Material left is measured along the normal, on the faces that were to be covered alone.
+Faces are looked at in points: what is found is a sample, and what is between the points may be worse. Gouges are looked
+for on all faces of the model, with all moves, rapid ones too, and with the flank of the cutter: their depth is how far
+a point is inside the cutter where it comes deepest. Material left is measured along the normal, on the faces that were
+to be covered alone.
 """
 
 from __future__ import annotations
@@ -25,13 +26,15 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import Program
 
 _FEWEST = 3
+_SPREAD = (0.7548776662466927, 0.5698402909980532)
+"""Shares of a cell from one point to the next, whose multiples fill a square evenly [Roberts2018]."""
 _NEAR = 0.1
 """mm: points that are farther from the cutter are not gouged, whatever their distance."""
 
 
 @dataclass(frozen=True)
 class Checked:
-    """The worst that a path does to a model.
+    """The worst that was found of what a path does to a model.
 
     Attributes:
         gouge: depth of the deepest cut into a face, 0 for none.
@@ -93,16 +96,25 @@ def _distances(
 
 
 def _samples(face: Any, flipped: bool, spacing: float) -> tuple[Array, Array]:
-    """Points of a face and normals there, evenly in its parameters."""
+    """Points of a face and normals there: a grid, and in each of its cells a point that lies in line with no others.
+
+    A grid alone may lie on the passes of the cutter, where nothing is left.
+    """
     surface = face_surface(face, flipped)
     u, v = np.linspace(surface.u.first, surface.u.last, 33), np.linspace(surface.v.first, surface.v.last, 33)
     coarse = surface.at(*(each.ravel() for each in np.meshgrid(u, v, indexing="ij"))).point.reshape(33, 33, 3)
     counts = [
-        max(math.ceil(float(np.max(np.sum(norm(np.diff(coarse, axis=axis)), axis=axis))) / spacing) + 1, _FEWEST)
-        for axis in (0, 1)
+        max(math.ceil(float(np.max(norm(np.diff(coarse, axis=axis)))) * 32 / spacing) + 1, _FEWEST) for axis in (0, 1)
     ]
-    spans = zip((surface.u, surface.v), counts, strict=True)
-    u, v = (each.ravel() for each in np.meshgrid(*(np.linspace(span.first, span.last, count) for span, count in spans)))
+    spans = tuple(zip((surface.u, surface.v), counts, strict=True))
+    grid = np.meshgrid(*(np.linspace(span.first, span.last, count) for span, count in spans), indexing="ij")
+    within = [each[:-1, :-1].ravel() for each in grid]
+    number = np.arange(1, len(within[0]) + 1)
+    inner = [
+        low + span.width / (count - 1) * np.mod(number * share, 1.0)
+        for low, (span, count), share in zip(within, spans, _SPREAD, strict=True)
+    ]
+    u, v = (np.append(each.ravel(), more) for each, more in zip(grid, inner, strict=True))
     held = surface.holds(u, v)
     patch = surface.at(u[held], v[held])
     return patch.point, patch.normal

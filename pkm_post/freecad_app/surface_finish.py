@@ -38,6 +38,8 @@ _VIEW = "pkm_post.freecad_gui.surface_finish_view"
 """The view is a floor above: it is named and not imported, as in saved documents."""
 _STEPS = 50
 """Of the progress bar, for each face."""
+_GOUGED = 1.1
+"""Depths in ChordTolerance beyond which a gouge is told: the measurement is as near as a tenth of that."""
 _REACH = 2.0
 """mm: more material left is not measured."""
 
@@ -141,6 +143,9 @@ def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace
         )  # fmt: skip
     obj.MaximumGouge, obj.GougePoint = checked.gouge, App.Vector(*checked.gouge_point)
     obj.MaximumExcess, obj.ExcessPoint = checked.excess, App.Vector(*checked.excess_point)
+    if checked.gouge > _GOUGED * obj.ChordTolerance.Value:
+        x, y, z = checked.gouge_point.tolist()
+        _value(checked, [Diagnostic("N311", _place(obj), f"{checked.gouge:.3f} mm at ({x:.3f}, {y:.3f}, {z:.3f})")])
 
 
 def _covered(

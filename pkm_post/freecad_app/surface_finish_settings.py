@@ -77,10 +77,12 @@ RESULTS: tuple[Row, ...] = (
     ("App::PropertyInteger", "ClampedAxes", _R,
      QT_TRANSLATE_NOOP("App::Property", "Points at which the tool axis was moved into its cone"), 0),
     ("App::PropertyFloat", "MaximumGouge", _R,
-     QT_TRANSLATE_NOOP("App::Property", "Deepest cut into the model, mm; -1 if not measured"), -1.0),
+     QT_TRANSLATE_NOOP("App::Property", "Deepest cut into the model found at points CheckSpacing apart, mm; deeper "
+                       "between them may be missed; -1 if not measured"), -1.0),
     ("App::PropertyVector", "GougePoint", _R, QT_TRANSLATE_NOOP("App::Property", "Where that is"), App.Vector()),
     ("App::PropertyFloat", "MaximumExcess", _R,
-     QT_TRANSLATE_NOOP("App::Property", "Most material left on the faces, mm; -1 if not measured"), -1.0),
+     QT_TRANSLATE_NOOP("App::Property", "Most material left found at points CheckSpacing apart, mm; more between them "
+                       "may be missed; -1 if not measured"), -1.0),
     ("App::PropertyVector", "ExcessPoint", _R, QT_TRANSLATE_NOOP("App::Property", "Where that is"), App.Vector()),
     ("App::PropertyAngle", "UsedConeLimit", _R,
      QT_TRANSLATE_NOOP("App::Property", "Half angle of the cone, with what the machine allows"), 180.0),

@@ -444,6 +444,10 @@ RULES: dict[str, Rule] = {
     "N308": _error("no face is chosen", "add faces as base geometry"),
     "N309": _error("a value has no meaning", "correct the property"),
     "N310": _error("the machine cannot reach the part with the tool upright", "move the part, or take another tool"),
+    "N311": _warning(
+        "the cutter goes deeper into the model than ChordTolerance",
+        "lean the tool away from what is beside the face, take a smaller cutter, or leave that part of the face out",
+    ),
     # T1: the binary trajectory
     "T101": _error("the file is not a trajectory file", "give a .pkmt file"),
     "T102": _error("the trajectory file has a version that this program does not know", "use a newer PKM Post"),

@@ -360,16 +360,16 @@
         <translation>刀轴被移入圆锥内的点数</translation>
     </message>
     <message>
-        <source>Deepest cut into the model, mm; -1 if not measured</source>
-        <translation>对模型的最大过切深度，mm；未测量时为 -1</translation>
+        <source>Deepest cut into the model found at points CheckSpacing apart, mm; deeper between them may be missed; -1 if not measured</source>
+        <translation>在间距为 CheckSpacing 的各点上测得的最大过切深度，mm；点与点之间可能更深而未被发现；未测量时为 -1</translation>
     </message>
     <message>
         <source>Where that is</source>
         <translation>其位置</translation>
     </message>
     <message>
-        <source>Most material left on the faces, mm; -1 if not measured</source>
-        <translation>面上最多的残留材料，mm；未测量时为 -1</translation>
+        <source>Most material left found at points CheckSpacing apart, mm; more between them may be missed; -1 if not measured</source>
+        <translation>在间距为 CheckSpacing 的各点上测得的最多残留材料，mm；点与点之间可能更多而未被发现；未测量时为 -1</translation>
     </message>
     <message>
         <source>Half angle of the cone, with what the machine allows</source>

@@ -33,6 +33,23 @@ def test_gouge_and_material_left_are_reported_with_their_places(document):
     assert (operation.MaximumGouge, operation.MaximumExcess) == (-1.0, -1.0)
 
 
+@pytest.mark.parametrize("spacing", [3.0, 1.5])
+def test_ridges_are_found_where_the_spacing_fits_the_passes(document, spacing):
+    # Passes of a ball of R 5, as far apart as the points or half as far: a grid alone lies on the passes.
+    job = job_on(document, Part.makeBox(30, 30, 10))
+    operation = valid(finish(job, lambda face: abs(face.BoundBox.ZMin - 10) < 0.1, Stepover=1.5, CheckSpacing=spacing))
+    ridge = 5.0 - math.sqrt(5.0**2 - 0.75**2)
+    assert 0.8 * ridge < operation.MaximumExcess < ridge + MICRON
+
+
+def test_a_gouge_beyond_the_tolerance_is_told(document, monkeypatch):
+    told = []
+    monkeypatch.setattr(App.Console, "PrintWarning", told.append)
+    floor = lambda face: face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9  # noqa: E731,E501
+    finish(job_on(document, step()), floor, Stepover=4.0, CheckSpacing=2.0)
+    assert [text for text in told if "N311" in text and "5.000 mm at (10.000" in text]
+
+
 @pytest.fixture(scope="module")
 def column():
     """The wall of the column finished with its bull nose, 31 degrees off it and 8 degrees forward."""
