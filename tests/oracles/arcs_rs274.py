@@ -42,7 +42,7 @@ def block(seed):
     near = chance.choice((0.9, 0.99, 0.999, 1.001, 1.01, 1.1)) * chance.choice((-1, 1))
     if chance.random() < 0.2:
         chord = 2 * (radius + near * HALF_CHORD[unit])
-        return f"{unit} {plane} {sense} {first}{chord:.7f} R{radius:.7f}"
+        return f"{unit} {plane} {sense} {first}{chord:.10f} R{radius:.10f}"
     small = 2 * np.sqrt(2) * ROUNDED[unit]
     off = near * chance.choice((small, small, 100 * small, max(0.001 * radius, small)))
     centre = radius * np.array([np.cos(angle / 3), np.sin(angle / 3)])
