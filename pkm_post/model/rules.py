@@ -452,7 +452,9 @@ RULES: dict[str, Rule] = {
     "T101": _error("the file is not a trajectory file", "give a .pkmt file"),
     "T102": _error("the trajectory file has a version that this program does not know", "use a newer PKM Post"),
     "T103": _error("the trajectory file is damaged", "make it again from its source"),
-    "T104": _error("the trajectory was made for another machine", "post the job again for this machine"),
+    "T104": _error(
+        "the trajectory was made for another machine", "name that machine, as by --machine, or post again for this one"
+    ),
     "T105": _error("the trajectory file does not say what tolerances were asked for", "post the job again"),
     # C1: the controller's program
     "C101": _error("the program has a line that is not understood", "post the job again; do not edit the program"),
