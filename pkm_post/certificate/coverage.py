@@ -82,7 +82,7 @@ def _block_rate(machine: Machine) -> Coverage:
 
 
 def _following(machine: Machine) -> Coverage:
-    """Following errors are told as a contour error at the knots and halfway; there is no limit of it."""
+    """Following errors are told as a contour error at the knots; there is no limit of it."""
     if machine.velocity_gain is None:
         return Coverage(Topic.SETUP, "following error", Extent.NOT_COVERED, _NO_LIMIT.format("struts.velocity_gain"))
     return Coverage(Topic.SETUP, "following error", Extent.SAMPLED, "struts as first-order lags; a figure, no limit")
