@@ -142,3 +142,12 @@ def test_figures_of_the_drives_are_those_of_the_home_pose():
     assert columns.max() < most <= columns.sum()
     silent = dict(summary(machine(velocity_gain=None, block_rate=np.inf)))
     assert silent["velocity gains"].startswith("none stated") and silent["points"].endswith("no rate stated")
+
+
+def test_a_job_that_is_out_of_reach_is_told_of_a_home_that_is(tmp_path):
+    far = machine(home_tip=np.array([0.0, 0.0, 900.0]))
+    for one, codes in ((far, {"M108"}), (machine(), set())):
+        with pytest.raises(Refused) as refused:
+            post(programs.program([[0, 0, 60], [10, 0, 60], [600, 0, 60]]), one, tmp_path / "x.pmc")
+        assert {item.code for item in refused.value.diagnostics} & {"M108"} == codes
+        assert any(item.code.startswith("K1") for item in refused.value.diagnostics)

@@ -17,6 +17,7 @@ from pkm_post.collisions import find_collisions, names_of
 from pkm_post.controllers import TABLES, controller_settings
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
+from pkm_post.machine_check import home_faults
 from pkm_post.model import Diagnostic, Machine, Motion, Place, Program, Refused, StrutMotion, Trajectory
 from pkm_post.model.certificate import Certificate, Coverage
 from pkm_post.model.diagnostics import errors
@@ -131,6 +132,8 @@ def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath
     with run.step(_FEED_PLAN) as told:
         tool_path = planning.tool_path(trajectory, frame.tolerances)
         schedule, faults = planning.plan_feed(tool_path, trajectory, frame.machine)
+        if errors(faults):  # where the machine cannot even stand at home, moving the part is no cure
+            faults = (*home_faults(frame.machine, frame.machine.name), *faults)
         run.accept(faults)
         told.append(f"{schedule.rests_ms[-1] / 1000:.1f} s of motion")
     return tool_path, schedule
