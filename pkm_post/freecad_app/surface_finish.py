@@ -39,7 +39,7 @@ _VIEW = "pkm_post.freecad_gui.surface_finish_view"
 _STEPS = 50
 """Of the progress bar, for each face."""
 _GOUGED = 1.1
-"""Depths in ChordTolerance beyond which a gouge is told: the measurement is as near as a tenth of that."""
+"""Depths in ChordTolerance beyond which a gouge is a fault: the measurement is as near as a tenth of that."""
 _REACH = 2.0
 """mm: more material left is not measured."""
 
@@ -145,7 +145,7 @@ def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace
     obj.MaximumExcess, obj.ExcessPoint = checked.excess, App.Vector(*checked.excess_point)
     if checked.gouge > _GOUGED * obj.ChordTolerance.Value:
         x, y, z = checked.gouge_point.tolist()
-        _value(checked, [Diagnostic("N311", _place(obj), f"{checked.gouge:.3f} mm at ({x:.3f}, {y:.3f}, {z:.3f})")])
+        _value(None, [Diagnostic("N311", _place(obj), f"{checked.gouge:.3f} mm at ({x:.3f}, {y:.3f}, {z:.3f})")])
 
 
 def _covered(

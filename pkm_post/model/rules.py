@@ -444,9 +444,10 @@ RULES: dict[str, Rule] = {
     "N308": _error("no face is chosen", "add faces as base geometry"),
     "N309": _error("a value has no meaning", "correct the property"),
     "N310": _error("the machine cannot reach the part with the tool upright", "move the part, or take another tool"),
-    "N311": _warning(
+    "N311": _error(
         "the cutter goes deeper into the model than ChordTolerance",
-        "lean the tool away from what is beside the face, take a smaller cutter, or leave that part of the face out",
+        "lean the tool away from what is beside the face, take a smaller cutter, or choose other faces; CheckSpacing 0"
+        " shows the path without the measurement",
     ),
     # T1: the binary trajectory
     "T101": _error("the file is not a trajectory file", "give a .pkmt file"),

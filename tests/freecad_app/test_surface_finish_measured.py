@@ -11,6 +11,7 @@ from part_jobs import corner, job_on, load_example
 from surface_finishes import AT_G54, CHORD, MICRON, cutting, finish, gap_to, poses, valid
 
 from pkm_post.freecad_app.post_job import post_job
+from pkm_post.model import Refused
 
 
 def step():
@@ -22,7 +23,8 @@ def test_gouge_and_material_left_are_reported_with_their_places(document):
     # A ball of R 5, upright over a floor up to the wall beside it: its axis comes to the wall, and it cuts R deep.
     floor = lambda face: face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9  # noqa: E731,E501
     job = job_on(document, step())
-    operation = valid(finish(job, floor, Stepover=2.0, CheckSpacing=1.0))
+    operation = finish(job, floor, Stepover=2.0, CheckSpacing=1.0)
+    assert "N311" in operation.getStatusString()
     assert operation.MaximumGouge == pytest.approx(5.0, abs=0.01)
     assert operation.GougePoint.x == pytest.approx(10.0)
     assert operation.GougePoint.z > 10.0
@@ -30,7 +32,7 @@ def test_gouge_and_material_left_are_reported_with_their_places(document):
     assert operation.ExcessPoint.z == pytest.approx(10.0)
     operation.CheckSpacing = 0
     job.Document.recompute()
-    assert (operation.MaximumGouge, operation.MaximumExcess) == (-1.0, -1.0)
+    assert (valid(operation).MaximumGouge, operation.MaximumExcess) == (-1.0, -1.0)
 
 
 @pytest.mark.parametrize("spacing", [3.0, 1.5])
@@ -42,12 +44,17 @@ def test_ridges_are_found_where_the_spacing_fits_the_passes(document, spacing):
     assert 0.8 * ridge < operation.MaximumExcess < ridge + MICRON
 
 
-def test_a_gouge_beyond_the_tolerance_is_told(document, monkeypatch):
-    told = []
-    monkeypatch.setattr(App.Console, "PrintWarning", told.append)
+def test_nothing_is_posted_over_a_gouge(document, tmp_path):
     floor = lambda face: face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9  # noqa: E731,E501
-    finish(job_on(document, step()), floor, Stepover=4.0, CheckSpacing=2.0)
-    assert [text for text in told if "N311" in text and "5.000 mm at (10.000" in text]
+    job = job_on(document, step())
+    operation = finish(job, floor, Stepover=4.0, CheckSpacing=2.0)
+    assert not operation.isValid()
+    assert "5.000 mm at (10.000" in operation.getStatusString()
+    assert operation.Path.Size == 0
+    with pytest.raises(Refused) as refused:
+        post_job(job, "example_6tps", tmp_path, AT_G54)
+    assert "J116" in [fault.code for fault in refused.value.diagnostics]
+    assert not any(tmp_path.iterdir())
 
 
 @pytest.fixture(scope="module")
