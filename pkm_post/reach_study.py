@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from pkm_post import pipeline
+from pkm_post.collisions import find_collisions, placed_part
 from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import Part
 from pkm_post.model import Diagnostic, Machine, Program
+from pkm_post.model.diagnostics import errors
 from pkm_post.position import best_position
 from pkm_post.reach import Reach, reach
 from pkm_post.spin import ZERO_TORSION, Rule, least_shares
@@ -50,16 +51,15 @@ class Study:
 
 
 def study(
-    program: Program, machine: Machine, options: pipeline.Options, free: str = "", part: Array | None = None
+    program: Program, machine: Machine, options: pipeline.Options, free: str = ""
 ) -> tuple[Study | None, tuple[Diagnostic, ...]]:
     """Check a program on a machine.
 
     Args:
         program: cutter locations in {C}.
         machine: geometry and limits.
-        options: work offset, spin and compensation.
+        options: work offset, spin and compensation, and the set-up.
         free: letters of ``position.FREEDOMS`` in which the part may be moved; none leaves it where it is.
-        part: (T, 3, 3) corners of triangles in {C} that spindle and holder must not touch.
 
     Returns:
         The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
@@ -82,14 +82,17 @@ def study(
         if placed is None:
             return None, told
         stages.append((f"spin {options.spin.rule.value}", least_shares(placed, machine)))
-    checked = reach(placed, machine, _in_machine(part, placed.machine_from_work))
-    return Study(checked, tuple(stages), placed.machine_from_work), (*told, *checked.faults())
+    setup, faults = pipeline.known_setup(options, program)
+    if errors(faults):
+        return None, (*told, *faults)
+    checked = reach(placed, machine, placed_part(setup, placed))
+    collisions = find_collisions(placed, machine, setup, options.tolerances)
+    both = (*checked.faults(), *(fault for fault in collisions.faults if fault.code not in _IN_REACH))
+    return Study(checked, tuple(stages), placed.machine_from_work), (*told, *both)
 
 
-def _in_machine(triangles: Array | None, machine_from_work: Array) -> Part | None:
-    if triangles is None or not len(triangles):
-        return None
-    return Part.of(triangles @ machine_from_work[:3, :3].T + machine_from_work[:3, 3])
+_IN_REACH = ("K117", "K121")
+"""What reach looks at as well, by the margins of each pose."""
 
 
 def told_offset(machine_from_work: Array) -> str:

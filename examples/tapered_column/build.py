@@ -9,6 +9,7 @@ centre of the foot. Units: mm, rad, mm/s. [paper section 6]
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import sys
 from dataclasses import dataclass
@@ -53,6 +54,7 @@ class Column:
         spindle_speed: in revolutions per minute.
         standoff: distance from the wall where the feed begins and ends.
         clearance: height above the column for rapid moves.
+        allowance: how far the wall of the stock is outside of the column: it was roughed before.
     """
 
     foot_semi_axes: tuple[float, float] = (60.0, 40.0)
@@ -68,6 +70,7 @@ class Column:
     spindle_speed: float = 12000.0
     standoff: float = 5.0
     clearance: float = 20.0
+    allowance: float = 0.5
 
     def __post_init__(self) -> None:
         along_x, along_y = self.foot_semi_axes
@@ -99,6 +102,15 @@ def solid(column: Column) -> Part.Shape:
     top = Part.Circle(App.Vector(0.0, 0.0, column.height), App.Vector(0.0, 0.0, 1.0), column.top_radius)
     make_solid, make_ruled = True, True
     return Part.makeLoft([Part.Wire(foot.toShape()), Part.Wire(top.toShape())], make_solid, make_ruled)
+
+
+def roughed(document: App.Document, column: Column) -> App.DocumentObject:
+    """The stock: the column with an allowance on its wall."""
+    foot = tuple(axis + column.allowance for axis in column.foot_semi_axes)
+    larger = dataclasses.replace(column, foot_semi_axes=foot, top_radius=column.top_radius + column.allowance)
+    stock = document.addObject("Part::Feature", "Stock")
+    stock.Label, stock.Shape = "Roughed column", solid(larger)
+    return stock
 
 
 def wall(shape: Part.Shape) -> Part.Face:
@@ -231,6 +243,8 @@ def build(
     job = Path.Main.Job.Create("Job", [part], None)
     if POST_PROCESSOR in Path.Preferences.allAvailablePostProcessors():
         job.PostProcessor = POST_PROCESSOR
+    box, job.Stock = job.Stock, roughed(document, column)
+    document.removeObject(box.Name)
     tool_controller = controller(job, column)
     first = Path.Op.Custom.Create("Quadrant_1", parentJob=job)
     first.Label = "Quadrant 1"

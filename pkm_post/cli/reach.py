@@ -15,7 +15,6 @@ from pkm_post.cli.reading import add_reading, reading_from
 from pkm_post.options import add_options, given_in
 
 if TYPE_CHECKING:
-    from pkm_post.geometry.vectors import Array
     from pkm_post.model import Diagnostic
     from pkm_post.pipeline import Prepared
 
@@ -60,10 +59,10 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         except Refused as refused:
             programs, failed = [], True
             _tell(refused.diagnostics)
-        for prepared, part in programs:
+        for prepared in programs:
             told = prepared.found
             if not errors(told):
-                made, more = study(*prepared.sound, prepared.options, namespace.place, part)
+                made, more = study(*prepared.sound, prepared.options, namespace.place)
                 told += more
                 found += [made] if made else []
             _tell(told)
@@ -75,14 +74,14 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     return int(failed)
 
 
-def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[tuple[Prepared, Array | None]]:
+def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]:
     """The programs of a file: that of a part program, or those of the jobs of a document."""
     from pkm_post.post_file import prepared_file
     from pkm_post.sources import is_part_program
 
     given = given_in(namespace)
     if is_part_program(file):
-        yield prepared_file(file, reading=reading_from(namespace), arguments=given), None
+        yield prepared_file(file, reading=reading_from(namespace), arguments=given)
     else:
         from pkm_post.freecad_app.post_job import read_document
 

@@ -5,6 +5,6 @@
 was checked against what, and what was not known.
 """
 
-from pkm_post.collisions.check import Collisions, find_collisions, names_of
+from pkm_post.collisions.check import Collisions, find_collisions, names_of, placed_part
 
-__all__ = ["Collisions", "find_collisions", "names_of"]
+__all__ = ["Collisions", "find_collisions", "names_of", "placed_part"]

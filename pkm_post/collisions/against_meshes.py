@@ -26,6 +26,11 @@ _LOOKED_AT = 24
 """Contacts of an operation of which it is computed how deep they are."""
 
 
+def placed(mesh: Mesh, machine_from_work: Array) -> Array:
+    """The triangles of a mesh in {M}, (T, 3, 3)."""
+    return mesh.triangles @ machine_from_work[:3, :3].T + machine_from_work[:3, 3]
+
+
 @dataclass(frozen=True)
 class Obstacle:
     """A mesh where it stands on the machine.
@@ -45,9 +50,9 @@ class Obstacle:
     @classmethod
     def of(cls, name: str, mesh: Mesh, machine_from_work: Array) -> Obstacle:
         """A mesh that lies in the work frame."""
-        placed = mesh.triangles @ machine_from_work[:3, :3].T + machine_from_work[:3, 3]
-        size = float(np.ptp(placed.reshape(-1, 3), axis=0).max())
-        return cls(name, mesh.source, Part.of(cut_small(placed, max(size, 1e-3) / _PIECES)), len(mesh.triangles))
+        triangles = placed(mesh, machine_from_work)
+        size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+        return cls(name, mesh.source, Part.of(cut_small(triangles, max(size, 1e-3) / _PIECES)), len(mesh.triangles))
 
 
 @dataclass(frozen=True)

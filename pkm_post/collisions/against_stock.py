@@ -94,7 +94,7 @@ def stock_faults(
         for cutter, swept in cuts:
             times = when_cut(points, met, swept, cutter.profile(), cutter.largest_profile(), tolerance)
             may, sure = np.minimum(may, times[0]), np.minimum(sure, times[1])
-        certain = ~(may < met)
+        certain = ~(may < met) & (not stock.assumed)
         hits = [(one.codes[0], certain)] if certain.any() else [(one.codes[1], ~(sure <= met))]
         for code, hit in hits:
             found += _told(driven, one.name, code, stock, points[hit], met[hit])

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.certificate.coverage import FIXTURES_NOT_KNOWN, NO_SETUP, PART_NOT_KNOWN, STOCK_NOT_KNOWN
-from pkm_post.collisions.against_meshes import Driven, Obstacle, faults, told
+from pkm_post.collisions.against_meshes import Driven, Obstacle, faults, placed, told
 from pkm_post.collisions.against_stock import Intruder, body_of, rapid_cutter, shank_of, stock_faults
 from pkm_post.collisions.contacts import ENOUGH, contacts, contacts_at_ends
 from pkm_post.collisions.coverage import Extents
@@ -22,6 +22,7 @@ from pkm_post.collisions.tool_shapes import cutter_pieces, shank_pieces
 from pkm_post.collisions.tools_in_use import InUse, not_cut_before, tools_in_use
 from pkm_post.geometry.triangles import is_closed
 from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import Part
 from pkm_post.kinematics.bodies import has_strut_bodies
 from pkm_post.model import Diagnostic, Machine, Place, Trajectory
 from pkm_post.model.certificate import Coverage, Tolerances
@@ -74,6 +75,13 @@ def names_of(setup: Setup) -> list[str]:
     """What is known, for people."""
     named = [("part", setup.part), ("stock", setup.stock), *(("fixture", mesh) for mesh in setup.fixtures)]
     return [f"{name} {mesh.source}" for name, mesh in named if mesh is not None]
+
+
+def placed_part(setup: Setup, trajectory: Trajectory) -> Part | None:
+    """The part where a trajectory has it on the machine; None where it is not known."""
+    if setup.part is None:
+        return None
+    return Part.of(placed(setup.part, trajectory.machine_from_work))
 
 
 @dataclass

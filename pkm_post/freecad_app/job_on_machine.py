@@ -12,9 +12,9 @@ from typing import Any
 
 import FreeCAD as App
 
-from pkm_post.freecad_app.frames import apply
+from pkm_post import pipeline
+from pkm_post.collisions import placed_part
 from pkm_post.freecad_app.job_settings import settings_of
-from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.kinematics import Part
 from pkm_post.model import Machine, Trajectory
@@ -53,7 +53,6 @@ def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
         if each.code == "J125":  # a job is seen otherwise than it says, or than it is posted
             App.Console.PrintWarning(f"{each}\n")
     trajectory, _ = read.placed()
-    triangles = part_mesh(job)
-    corners = apply(trajectory.machine_from_work, triangles.reshape(-1, 3)).reshape(-1, 3, 3)
-    _, machine = read.sound
-    return JobOnMachine(trajectory, machine, Part.of(corners) if len(corners) else None, read.options.tolerances)
+    program, machine = read.sound
+    setup, _ = pipeline.known_setup(read.options, program)
+    return JobOnMachine(trajectory, machine, placed_part(setup, trajectory), read.options.tolerances)

@@ -19,9 +19,7 @@ from pkm_post.freecad_app.arguments import given_by
 from pkm_post.freecad_app.job import NO_LENGTHS, document_name
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.kinds import is_job
-from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.freecad_app.prepared_job import prepared_job
-from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import READING, Given
 from pkm_post.result_names import Item, job_stem, lost_results
@@ -109,10 +107,8 @@ def post_document(
         return tuple(post_job(job, machine, out, options, tool_lengths, log, progress, arguments, jobs) for job in jobs)
 
 
-def read_document(
-    file: str | FilePath, given: Given, job_name: str | None = None
-) -> tuple[tuple[pipeline.Prepared, Array], ...]:
-    """The jobs of a saved document, each with its part.
+def read_document(file: str | FilePath, given: Given, job_name: str | None = None) -> tuple[pipeline.Prepared, ...]:
+    """The jobs of a saved document.
 
     Args:
         file: path of the document; it is not changed.
@@ -125,7 +121,7 @@ def read_document(
     with _opened(FilePath(file)) as document:
         jobs = _jobs_named(document, job_name)
         document.recompute()
-        return tuple((prepared_job(job, settings_of(job, given, beside=jobs)), part_mesh(job)) for job in jobs)
+        return tuple(prepared_job(job, settings_of(job, given, beside=jobs)) for job in jobs)
 
 
 def _jobs_named(document: Any, name: str | None) -> list[Any]:

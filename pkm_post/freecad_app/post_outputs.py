@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 import FreeCAD as App
 
 from pkm_post import outputs, pipeline, trajectory_file
+from pkm_post.collisions import find_collisions
 from pkm_post.files import staged
 from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
 from pkm_post.freecad_app.job import read_job
@@ -103,7 +104,10 @@ def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     job.Document.recompute()
     read = prepared_job(job, settings)
     trajectory, found = _value(read.placed())
-    return _value((trajectory, reach(trajectory, read.sound[1]).faults()), found)
+    program, machine = read.sound
+    setup, told = _value(pipeline.known_setup(read.options, program), found)
+    collisions = find_collisions(trajectory, machine, setup, read.options.tolerances)
+    return _value((trajectory, (*reach(trajectory, machine).faults(), *collisions.faults)), told)
 
 
 def _value(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:

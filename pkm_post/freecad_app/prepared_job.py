@@ -17,6 +17,7 @@ from pkm_post import pipeline
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.job import document_name, read_job
 from pkm_post.freecad_app.job_settings import JobSettings
+from pkm_post.freecad_app.job_setup import job_setup
 from pkm_post.freecad_app.machine_object import machine_of
 from pkm_post.machine_file import find_machine, machine_named
 from pkm_post.model import Diagnostic, Machine, Place
@@ -37,7 +38,7 @@ def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) ->
     Raises:
         Refused: the file of the machine object has faults.
     """
-    options = settings.options
+    options = replace(settings.options, setup=job_setup(job))
     if machine_object is None:
         machine, found = machine_named(settings.machine)
     else:

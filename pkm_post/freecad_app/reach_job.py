@@ -11,7 +11,6 @@ from typing import Any
 
 from pkm_post.freecad_app.arguments import POST_PROCESSORS, rewritten
 from pkm_post.freecad_app.job_settings import settings_of
-from pkm_post.freecad_app.part_mesh import part_mesh
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.model import Refused
 from pkm_post.reach_study import Study, study, told_offset
@@ -29,7 +28,7 @@ def study_job(job: Any, free: str = "") -> Study:
     """
     job.Document.recompute()
     read = prepared_job(job, settings_of(job))
-    found, told = study(*read.sound, read.options, free, part_mesh(job))
+    found, told = study(*read.sound, read.options, free)
     if found is None:
         raise Refused((*read.found, *told))
     return found

@@ -35,12 +35,12 @@ def set_gauge_length(tool_controller: Any, mm: float) -> None:
 
 def gauge_length(tool_controller: Any) -> float:
     """The gauge length that a tool controller says, mm; 0 if it says none."""
-    return _millimetres(tool_controller, GAUGE_LENGTH)
+    return millimetres(tool_controller, GAUGE_LENGTH)
 
 
 def bit_length(tool_controller: Any) -> float:
     """The length of the tool bit alone, mm; 0 if it says none. It is no gauge length."""
-    return _millimetres(tool_controller.Tool, "Length")
+    return millimetres(tool_controller.Tool, "Length")
 
 
 def read_tools(
@@ -81,32 +81,32 @@ def _tool(controller: Any, number: int, length: float) -> Tool:
     return Tool(number, bit.Label, length=length, **known(bit))
 
 
-def _millimetres(thing: Any, name: str) -> float:
+def millimetres(thing: Any, name: str) -> float:
     """A length property, 0 if there is none."""
     return float(getattr(getattr(thing, name, 0.0), "Value", 0.0))
 
 
 def _half_angle(bit: Any, name: str) -> float:
     """Half of an angle property, in rad: from the axis to one side."""
-    return math.radians(_millimetres(bit, name)) / 2
+    return math.radians(millimetres(bit, name)) / 2
 
 
 Sizes = dict[str, float]
 
 
 def _flat(bit: Any) -> Sizes:
-    return {"diameter": _millimetres(bit, "Diameter"), "corner_radius": 0.0}
+    return {"diameter": millimetres(bit, "Diameter"), "corner_radius": 0.0}
 
 
 def _ball(bit: Any) -> Sizes:
-    return _flat(bit) | {"corner_radius": _millimetres(bit, "Diameter") / 2}
+    return _flat(bit) | {"corner_radius": millimetres(bit, "Diameter") / 2}
 
 
 def _bull_nose(bit: Any) -> Sizes:
     """FreeCAD 1.0 has the radius of the flat, newer ones that of the corner."""
     if hasattr(bit, "CornerRadius"):
-        return _flat(bit) | {"corner_radius": _millimetres(bit, "CornerRadius")}
-    return _flat(bit) | {"corner_radius": _millimetres(bit, "Diameter") / 2 - _millimetres(bit, "FlatRadius")}
+        return _flat(bit) | {"corner_radius": millimetres(bit, "CornerRadius")}
+    return _flat(bit) | {"corner_radius": millimetres(bit, "Diameter") / 2 - millimetres(bit, "FlatRadius")}
 
 
 def _tapered_ball(bit: Any) -> Sizes:
@@ -122,7 +122,7 @@ def _pointed(bit: Any) -> Sizes:
 
 def _conical(bit: Any) -> Sizes:
     """A cone that is its side where it ends in a flat of its own diameter, and its bottom where it ends in a point."""
-    tip, half = _millimetres(bit, "TipDiameter"), _half_angle(bit, "CuttingEdgeAngle")
+    tip, half = millimetres(bit, "TipDiameter"), _half_angle(bit, "CuttingEdgeAngle")
     if tip > 0.0:
         return {"diameter": tip, "corner_radius": 0.0, "side_angle": half}
     return _flat(bit) | {"bottom_angle": math.pi / 2 - half}

@@ -22,10 +22,12 @@ class Mesh:
     Attributes:
         source: where it comes from, as messages call it: the name of a file or of an object.
         triangles: (T, 3, 3) corners in {C}, anticlockwise as seen from outside.
+        assumed: whether it was not chosen, such as the box CAM puts around a model: nothing about it is certain.
     """
 
     source: str
     triangles: Array
+    assumed: bool = False
 
     def __post_init__(self) -> None:
         freeze(self, len(self.triangles), {"triangles": (np.float64, (3, 3))})

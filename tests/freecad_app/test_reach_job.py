@@ -15,7 +15,10 @@ from pkm_post.model.diagnostics import errors
 def job(document):
     job = new_job(document)
     job.PostProcessor = "hexapod_pmac"
-    job.PostProcessorArgs = "--machine example_6tps --work-offset=600,0,200,10 --tip-tolerance 0.01"
+    # Where there is most room, the box is about the home pose, and the way from there to it goes through the box.
+    job.PostProcessorArgs = (
+        "--machine example_6tps --work-offset=600,0,200,10 --tip-tolerance 0.01 --part none --stock none"
+    )
     add_operation(job)
     return job
 
