@@ -18,6 +18,8 @@ from pkm_post.model import Machine, Poses
 
 _SPEED_SHARE = 0.95
 """Share of the speeds of struts and tool axis that is planned: the controller's cubics swing a little about it."""
+_TIP_SHARE = 0.98
+"""Share of the acceleration of the tip that is planned: the cubics take a little more, up to ``ROUNDED_SHARE``."""
 _AT_FEED = 1e-6
 """Part of the speed squared by which a plan at the feed may be below it by rounding."""
 _LONGER = 1.002
@@ -136,6 +138,6 @@ def _limited(machine: Machine, struts: Pair, tip: Pair, axis: Pair) -> tuple[Bou
             each=True,
             jerk=machine.strut_jerk,
         ),
-        Bounded(tip[0], tip[1], np.inf, machine.tip_acceleration, each=False, jerk=machine.tip_jerk),
+        Bounded(tip[0], tip[1], np.inf, _TIP_SHARE * machine.tip_acceleration, each=False, jerk=machine.tip_jerk),
         Bounded(axis[0], axis[1], _SPEED_SHARE * machine.axis_speed, np.inf, each=False),
     )

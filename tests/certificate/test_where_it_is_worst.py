@@ -50,6 +50,17 @@ def executed(trajectory, motion, time):
     return set(trajectory.line[under_way(motion, time)].tolist())
 
 
+def apart_from_joints(motion, begin, end, *times):
+    """Instants of an interval without those between a joint and the look beside it.
+
+    There the programmed point of the joint counts, which may be nearer than the segment under way.
+    """
+    times = np.array(times or np.linspace(begin, end, DENSE))
+    look = 4 * (end - begin) / (DENSE - 1)
+    joints = motion.joint_time[(motion.joint_time > begin - look) & (motion.joint_time < end + look)]
+    return times[(np.abs(times[:, None] - joints) > look).all(axis=1)]
+
+
 def under_way(motion, time):
     """Segments under way at a time, as the joints of the plan tell it: two at a joint."""
     ends = motion.joint_time
@@ -104,10 +115,12 @@ def test_no_moment_of_the_interval_is_worse_than_the_one_told(job):
     for finding in certificate.findings:
         if finding.code in LOOKED_FOR:
             knot = np.searchsorted(certificate.time, finding.time, side="right") - 1
-            times = np.linspace(*struts.time_ms[[knot, knot + 1]] / 1000, DENSE)
+            times = apart_from_joints(motion, *struts.time_ms[[knot, knot + 1]] / 1000)
             segments = np.array([under_way(motion, time)[0] for time in times])
             elsewhere = at_times(job, knot, times, segments)[finding.code].max()
             told = under_way(motion, finding.time)
             there = at_times(job, knot, np.full(len(told), finding.time), told)[finding.code].max()
             assert there >= NEARLY * elsewhere, finding
-            assert there == pytest.approx(finding.value, rel=FIGURE), finding
+            assert finding.value <= (1 + FIGURE) * there, finding
+            if finding.time in apart_from_joints(motion, *struts.time_ms[[knot, knot + 1]] / 1000, finding.time):
+                assert finding.value >= (1 - FIGURE) * there, finding
