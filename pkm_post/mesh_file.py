@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Mesh file: a solid in an STL file, binary or ASCII, as a mesh in mm, or what is wrong with the file.
 
+Other files are read by readers that rooms above register.
+
 Binary: 80 bytes, the number of triangles, 50 bytes for each; ASCII: ``solid``, then facets of an outer loop of three
 vertices, then ``endsolid``, which may come again. STL states no unit; mm are taken, and the work frame {C}. Normals and
 attributes are not read: the order of the corners says which side is outside. [STL1988]
@@ -10,6 +12,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +22,7 @@ from pkm_post.model.columns import Array
 from pkm_post.model.setup import Mesh
 
 SUFFIX = ".stl"
+STEP_SUFFIXES = (".step", ".stp")
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _FACET = (
@@ -32,18 +36,25 @@ _FARTHEST = 1e6
 """mm: coordinates beyond are a slip."""
 
 Result = tuple[Mesh | None, tuple[Diagnostic, ...]]
+READERS: dict[str, Callable[[Path, str], Result]] = {}
+"""Readers of other files by suffix. Where FreeCAD runs, ``freecad_app.step_file`` adds those of STEP."""
 
 
 def read_mesh(file: str | Path) -> Result:
     """Read the solid in a file.
 
     Args:
-        file: an STL file; its coordinates are mm in the work frame {C}.
+        file: an STL file, its coordinates in mm in the work frame {C}; where FreeCAD runs, a STEP file as well.
     """
     path = Path(file)
     name = os.fsencode(path).decode("utf-8", "replace")
-    if path.suffix.lower() != SUFFIX:
-        return None, (Diagnostic("K138", Place(name), f"expected a name that ends in {SUFFIX}"),)
+    suffix = path.suffix.lower()
+    if suffix in READERS:
+        return READERS[suffix](path, name)
+    if suffix != SUFFIX:
+        known = f"expected a name that ends in {' or '.join((SUFFIX, *STEP_SUFFIXES))}"
+        found = "STEP is read inside FreeCAD alone" if suffix in STEP_SUFFIXES else known
+        return None, (Diagnostic("K138", Place(name), found),)
     try:
         content = path.read_bytes()
     except OSError as fault:
@@ -64,6 +75,11 @@ def decode(content: bytes, name: str) -> Result:
         stated = f"{count} triangles are {_HEADER + count * _RECORD.itemsize} bytes, the file has {len(content)}"
         found = stated if len(content) >= _HEADER else f"{len(content)} bytes are no STL file"
         return None, (Diagnostic("K138", Place(name), found),)
+    return mesh_of_triangles(triangles, name)
+
+
+def mesh_of_triangles(triangles: Array, name: str) -> Result:
+    """Triangles (T, 3, 3) of a file as a mesh; there have to be some, at places that are possible."""
     if not len(triangles):
         return None, (Diagnostic("K138", Place(name), "no triangles"),)
     if not np.all(np.abs(triangles) <= _FARTHEST):

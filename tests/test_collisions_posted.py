@@ -115,7 +115,7 @@ def test_a_rapid_move_back_through_what_was_cut_is_posted(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("name", "content", "told"),
     [
-        ("part.step", b"ISO-10303-21;", "K138"),
+        ("part.obj", b"v 0 0 0", "expected a name that ends in .stl or .step or .stp"),
         ("part.stl", b"solid x\nfacet normal 0 0 1\nouter lop", "part.stl: line 3: error K138"),
         ("part.stl", None, "F103"),
     ],

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 _ADDON = Path(__file__).resolve().parents[2]
-_DOCUMENT = ".fcstd"
+_READ_BY_FREECAD = (".fcstd", ".step", ".stp")
 _START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
 """As ``-m pkm_post``, wherever the add-on is."""
 
@@ -21,11 +21,16 @@ def is_inside() -> bool:
     return "FreeCAD" in sys.modules
 
 
-def needs_freecad(files: Sequence[Path]) -> bool:
-    """Whether this process cannot read one of the files; documents are told by their names, which needs no NumPy."""
+def needs_freecad(files: Sequence[Path], solids: Sequence[str] = ()) -> bool:
+    """Whether this process cannot read one of the files, by their names, which needs no NumPy.
+
+    Args:
+        files: documents and part programs.
+        solids: files of part, stock and fixtures.
+    """
     if is_inside():
         return False
-    if any(file.suffix.lower() == _DOCUMENT for file in files):
+    if any(file.suffix.lower() in _READ_BY_FREECAD for file in (*files, *map(Path, solids))):
         return True
     from pkm_post.sources import is_part_program
 

@@ -20,7 +20,7 @@ from pkm_post.cli.inside_freecad import command_inside, command_outside, is_insi
 from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, reading_from
-from pkm_post.options import add_options, given_in
+from pkm_post.options import add_options, given_in, solid_files
 from pkm_post.result_names import Item, job_stem, lost_results, lost_sources
 
 if TYPE_CHECKING:
@@ -59,8 +59,8 @@ def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     files = namespace.files if namespace.only is None else [namespace.files[namespace.only]]
     at_a_time = min(namespace.jobs, len(files))
     if at_a_time > 1:
-        return _post_in_processes(files, arguments, at_a_time)
-    if needs_freecad(files):
+        return _post_in_processes(files, solid_files(namespace), arguments, at_a_time)
+    if needs_freecad(files, solid_files(namespace)):
         return run_inside(arguments)
     return max([_post_one(file, namespace) for file in files])
 
@@ -86,12 +86,12 @@ def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[Item]:
     return [Item(f"{label} of {file}", job_stem(file.stem, label, len(jobs))) for label in named]
 
 
-def _post_in_processes(files: Sequence[Path], arguments: Sequence[str], at_a_time: int) -> int:
+def _post_in_processes(files: Sequence[Path], solids: Sequence[str], arguments: Sequence[str], at_a_time: int) -> int:
     """The same command for each file, in a process of its own; what tells which file stands before any ``--``."""
     name, *others = arguments
     commands = []
     for number, file in enumerate(files):
-        start = command_inside if is_inside() or needs_freecad([file]) else command_outside
+        start = command_inside if is_inside() or needs_freecad([file], solids) else command_outside
         commands.append(start([name, f"{_ONLY}={number}", *others]))
     return run_many(commands, at_a_time, "posted") if all(commands) else 1
 

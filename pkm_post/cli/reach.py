@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.inside_freecad import needs_freecad, run_inside
 from pkm_post.cli.reading import add_reading, reading_from
-from pkm_post.options import add_options, given_in
+from pkm_post.options import add_options, given_in, solid_files
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
@@ -46,7 +46,7 @@ def _freedoms(text: str) -> str:
 
 
 def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    if needs_freecad(namespace.files):
+    if needs_freecad(namespace.files, solid_files(namespace)):
         return run_inside(arguments)
     from pkm_post.model import Refused
     from pkm_post.model.diagnostics import errors

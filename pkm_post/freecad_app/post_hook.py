@@ -8,12 +8,10 @@ nothing of it is imported when FreeCAD starts: the folder is added when CAM itse
 
 from __future__ import annotations
 
-import importlib.util
 import os
-import sys
-from collections.abc import Callable, Sequence
-from importlib.machinery import ModuleSpec
 from types import ModuleType
+
+from pkm_post.freecad_app.import_hook import when_imported
 
 FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "postprocessors")
 _PREFERENCES = "Path.Preferences"
@@ -21,35 +19,7 @@ _PREFERENCES = "Path.Preferences"
 
 def install() -> None:
     """Make the post-processors known, now if CAM is loaded and otherwise when it is."""
-    loaded = sys.modules.get(_PREFERENCES)
-    if loaded is not None:
-        _register(loaded)
-    elif not any(isinstance(finder, _WhenImported) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _WhenImported())
-
-
-class _WhenImported:
-    """Stands before the importers of Python until the preferences of CAM are imported."""
-
-    def find_spec(
-        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
-        """Find the preferences as Python does, and register the folder as soon as they are executed."""
-        if name != _PREFERENCES:
-            return None
-        sys.meta_path.remove(self)
-        spec = importlib.util.find_spec(name)
-        if spec is not None and spec.loader is not None:
-            spec.loader.exec_module = _followed_by_registration(spec.loader.exec_module)
-        return spec
-
-
-def _followed_by_registration(execute: Callable[[ModuleType], None]) -> Callable[[ModuleType], None]:
-    def exec_module(module: ModuleType) -> None:
-        execute(module)
-        _register(module)
-
-    return exec_module
+    when_imported(_PREFERENCES, _register)
 
 
 def _register(preferences: ModuleType) -> None:

@@ -72,7 +72,7 @@ class PostOutcome(QtWidgets.QWidget):
         certificate, seconds = posted.report["certificate"], posted.report["machining_time"]["total_s"]
         told = translate(
             "PostOutcome",
-            "Certified: every limit is kept at every moment ({} poses computed). {} s at the machine, {} files.",
+            "Certified, as far as the lines below say ({} poses computed). {} s at the machine, {} files.",
         )
         self.verdict.setText(told.format(certificate["instants"], seconds, len(posted.files)))
         self._show_diagnostics(posted.diagnostics)

@@ -348,7 +348,8 @@ RULES: dict[str, Rule] = {
         "see that it is cut before, or give the stock as it is before the first operation",
     ),
     "K138": _error(
-        "the mesh cannot be read", "write the solid as an STL file, ASCII or binary, in mm and in work coordinates"
+        "the solid cannot be read",
+        "write it as an STL file, ASCII or binary, in mm and in work coordinates, or as STEP where FreeCAD is",
     ),
     "K139": _warning(
         "the mesh of the stock is not closed, and only its surface is looked at", "write a closed solid as STL"

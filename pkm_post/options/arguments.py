@@ -220,19 +220,19 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--part": {
         "metavar": "FILE",
-        "help": "STL file of the finished part, mm in the work frame: holder, spindle, struts, shanks and rapid moves"
-        " are checked against it, or none (default: the models of the CAM job)",
+        "help": "STL or STEP file of the finished part, mm in the work frame: holder, spindle, struts, shanks and rapid"
+        " moves are checked against it, or none (default: the models of the CAM job)",
     },
     "--stock": {
         "metavar": "FILE",
-        "help": "STL file of the stock as it is before the first operation, likewise, or none (default: the stock of"
-        " the CAM job)",
+        "help": "STL or STEP file of the stock as it is before the first operation, likewise, or none (default: the"
+        " stock of the CAM job)",
     },
     "--fixture": {
         "metavar": "FILE",
         "type": _fixture,
         "default": [],
-        "help": "STL file of a clamp or vice, mm in the work frame, which nothing may touch; may be repeated",
+        "help": "STL or STEP file of a clamp or vice, mm in the work frame, which nothing may touch; may be repeated",
     },
     "--spin": {
         "metavar": "RULE",
@@ -295,6 +295,12 @@ def options_from(namespace: argparse.Namespace) -> Options:
         actual_tools=_cutters(namespace.actual_tool),
         mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(dict(namespace.fixture).values())),
     )
+
+
+def solid_files(namespace: argparse.Namespace) -> list[str]:
+    """The files of part, stock and fixtures."""
+    named = [namespace.part, namespace.stock, *dict(namespace.fixture).values()]
+    return [file for file in named if file is not None]
 
 
 def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading:

@@ -1850,8 +1850,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>已拒绝。未写出任何内容。</translation>
     </message>
     <message>
-        <source>Certified: every limit is kept at every moment ({} poses computed). {} s at the machine, {} files.</source>
-        <translation>已验证：任意时刻均未超出极限（计算了 {} 个位姿）。机床运行 {} s，{} 个文件。</translation>
+        <source>Certified, as far as the lines below say ({} poses computed). {} s at the machine, {} files.</source>
+        <translation>已验证，范围如下各行所述（计算了 {} 个位姿）。加工用时 {} 秒，{} 个文件。</translation>
     </message>
     <message>
         <source>Click to see it in full size</source>

@@ -64,7 +64,7 @@ _LIST = """
 import sys
 before = "Path" in sys.modules
 import Path.Preferences
-finders = [finder for finder in sys.meta_path if type(finder).__module__.startswith("pkm_post")]
+finders = [finder for finder in sys.meta_path if getattr(finder, "awaited", "") == "Path.Preferences"]
 print("posts:", before, Path.Preferences.allAvailablePostProcessors().count("hexapod_pmac"), len(finders))
 import Path.Post.Processor
 post = Path.Post.Processor.PostProcessorFactory.get_post_processor(None, "hexapod_pmac")
