@@ -369,7 +369,7 @@ def program_is_posted():
     (post,) = [each for each in form.findChildren(QtWidgets.QPushButton) if each.text() == "Post"]
     click(post)
     until(post.isEnabled, 90)
-    # The warnings about the stock that CAM assumes are a page of their own: the picture ends before the last of them.
+    # Warnings of the stock that CAM assumes make the panel long: the picture leaves out its lower end, to stay small.
     keep("certificate", outcome, round(0.85 * _content(outcome)))
     report = json.loads((FOLDER / f"{NAME}-report.json").read_text(encoding="utf-8"))
     verdict = outcome.verdict.text()
