@@ -261,7 +261,9 @@ def quarter_is_covered():
     press("PKM_SurfaceFinish")
     settle()
     (operation,) = job().Operations.Group
-    panel = operation.ViewObject.Proxy.panel
+    view = operation.ViewObject.Proxy
+    until(lambda: view.panel is not None)  # CAM opens it from the event loop
+    panel = view.panel
     page = panel.featurePages[-1]
     fields = page.form.fields
     fields["Order"].setCurrentIndex(fields["Order"].findText("Zigzag"))
