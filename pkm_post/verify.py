@@ -12,7 +12,7 @@ from typing import Any
 
 from pkm_post import planning, trajectory_file
 from pkm_post.certificate import certify
-from pkm_post.controllers import controller_settings, part_siblings
+from pkm_post.controllers import controller_settings, read_texts
 from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion
 from pkm_post.model.diagnostics import errors
 from pkm_post.report import summary
@@ -56,18 +56,10 @@ def _read(program: Path, machine: Machine) -> StrutMotion:
     if found is None:
         raise Refused(faults)
     controller, settings = found
-    first = _text(program)
-    others = part_siblings(controller, program.name, first)
-    texts = [(program.name, first), *((name, _text(program.with_name(name))) for name in others)]
+    texts, faults = read_texts(program, controller)
+    if texts is None:
+        raise Refused(faults)
     struts, faults = controller.read_parts(texts, settings)
     if struts is None:
         raise Refused(faults)
     return struts
-
-
-def _text(program: Path) -> str:
-    """The text of a program; bytes that are not ASCII become marks that its reader refuses."""
-    try:
-        return program.read_bytes().decode("ascii", errors="replace")
-    except OSError as fault:
-        raise Refused([Diagnostic("F103", Place(str(program)), str(fault))]) from fault

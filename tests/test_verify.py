@@ -119,13 +119,30 @@ def test_another_machine_is_found(machine, posted, change):
 
 @pytest.mark.parametrize(
     ("program", "trajectory", "code"),
-    [("cone.pmc", "cone-setup.pmc", "T101"), ("cone.pkmt", "cone.pkmt", "C101"), ("no.pmc", "cone.pkmt", "F103")],
+    [("cone.pmc", "cone-setup.pmc", "T101"), ("cone.pkmt", "cone.pkmt", "C108"), ("no.pmc", "cone.pkmt", "F103")],
 )
 def test_files_that_are_something_else_are_told(machine, posted, program, trajectory, code):
     folder = posted.program.parent
     with pytest.raises(Refused) as refused:
         verify(folder / program, folder / trajectory, machine)
     assert code in [fault.code for fault in refused.value.diagnostics]
+
+
+def test_line_ends_of_windows_are_verified(machine, posted, tmp_path):
+    program = tmp_path / "cone.pmc"
+    program.write_bytes(posted.program.read_bytes().replace(b"\n", b"\r\n"))
+    assert verify(program, posted.program.with_suffix(".pkmt"), machine) == posted.report
+
+
+def test_a_control_character_is_named(machine, posted, tmp_path):
+    program = tmp_path / "cone.pmc"
+    program.write_bytes(posted.program.read_bytes().replace(b"PKM", b"P\x0bKM", 1))
+    with pytest.raises(Refused) as refused:
+        verify(program, posted.program.with_suffix(".pkmt"), machine)
+    assert [(fault.code, fault.place.line, fault.place.column) for fault in refused.value.diagnostics] == [
+        ("C108", 1, 4)
+    ]
+    assert "0x0B, vertical tab" in str(refused.value)
 
 
 def test_a_trajectory_without_tolerances_is_refused(machine, posted, tmp_path):

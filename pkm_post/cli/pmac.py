@@ -142,7 +142,7 @@ def _session(namespace: argparse.Namespace) -> Session:
 
 def _target(namespace: argparse.Namespace) -> Target | None:
     """Machine and program that were named; None when they are not in order, which is told."""
-    from pkm_post.controllers import pmac, power_pmac
+    from pkm_post.controllers import pmac, power_pmac, read_text
     from pkm_post.machine_file import machine_named
     from pkm_post.pmac_link.job import read_job
 
@@ -154,10 +154,8 @@ def _target(namespace: argparse.Namespace) -> Target | None:
         return None
     if "program" not in namespace:
         return Target(machine, settings)
-    try:
-        text = namespace.program.read_text(encoding="ascii")
-    except (OSError, UnicodeDecodeError) as fault:
-        print(f"{namespace.program}: {fault}", file=sys.stderr)
+    text = _told(*read_text(namespace.program))
+    if text is None:
         return None
     job = _told(*read_job(text, settings, namespace.program.name))
     return None if job is None else JobTarget(machine, settings, job)

@@ -73,15 +73,16 @@ def serve(server: Server, ended: Callable[[], bool]) -> None:
 
 def _set_up(controller: Controller, file: Path) -> bool:
     """Carry out the lines of a file; tell the first that is refused."""
+    from pkm_post.controllers import read_text
     from pkm_post.pmac_simulator import MEANINGS, Line
 
-    try:
-        lines = file.read_text(encoding="ascii").splitlines()
-    except (OSError, UnicodeDecodeError) as fault:
-        print(f"{file}: {fault}", file=sys.stderr)
+    content, faults = read_text(file)
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    if content is None:
         return False
     port = Line(controller)
-    for place, text in enumerate(lines, start=1):
+    for place, text in enumerate(content.splitlines(), start=1):
         number = port.refusal(text)
         if number:
             print(f"{file}:{place}: ERR{number:03d}, {MEANINGS[number]}: {text}", file=sys.stderr)

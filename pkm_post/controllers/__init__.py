@@ -12,6 +12,7 @@ from pkm_post.controllers.kinds import (
     part_names,
     part_siblings,
 )
+from pkm_post.controllers.program_files import read_text, read_texts, text_of
 from pkm_post.controllers.tables import TABLES, Table
 
 __all__ = [
@@ -23,4 +24,7 @@ __all__ = [
     "controller_settings",
     "part_names",
     "part_siblings",
+    "read_text",
+    "read_texts",
+    "text_of",
 ]

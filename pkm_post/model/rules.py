@@ -473,6 +473,10 @@ RULES: dict[str, Rule] = {
     ),
     "C106": _error("the table has a line that is not understood", "post the job again; do not edit the table"),
     "C107": _error("the table differs from the motion it was made from", "post the job again; do not edit the table"),
+    "C108": _error(
+        "the program has a character that the controller does not take, or obeys at once",
+        "post the job again; do not edit the program: it is printable ASCII, in lines that end with LF or CR LF",
+    ),
     # C2: moves by hand, at the controller
     "C201": _error("nothing moves", "say which way, and how far"),
     "C202": _error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),

@@ -14,7 +14,7 @@ from typing import Any
 from pkm_post import outputs, planning, trajectory_file
 from pkm_post.certificate import certify
 from pkm_post.collisions import find_collisions, names_of
-from pkm_post.controllers import TABLES, controller_settings
+from pkm_post.controllers import TABLES, controller_settings, read_texts
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
 from pkm_post.machine_check import home_faults
@@ -109,7 +109,7 @@ def _all_steps(
     covered = _collisions(run, frame, trajectory, setup)
     motion, struts = _interpolation(run, frame, trajectory, tool_path, schedule)
     names = _motion_program(run, frame, trajectory, struts)
-    played, certificate = _certificate(run, frame, trajectory, motion, names, covered)
+    played, certificate = _certificate(run, frame, trajectory, motion, covered)
     report = _report(run, frame, trajectory, motion, played, certificate, program.reading)
     for name in options.also:
         _write_another(run, frame, name, trajectory, played)
@@ -174,11 +174,11 @@ def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: Stru
 
 
 def _certificate(
-    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, names: list[str], covered: tuple[Coverage, ...]
+    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
 ) -> tuple[StrutMotion, Certificate]:
     """The program read back from its text, and what it does."""
     with run.step(_CERTIFICATE) as told:
-        texts = outputs.read_parts(frame.path, names)
+        texts = run.value(read_texts(frame.path, frame.controller))
         played = run.value(frame.controller.read_parts(texts, frame.settings))
         measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
         certificate = run.value(measured)

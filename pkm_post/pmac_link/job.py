@@ -7,15 +7,12 @@ motion in mm, or what is wrong with it.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
-from pkm_post.controllers.pmac import Settings, read_program
+from pkm_post.controllers.pmac import Settings, read_part
 from pkm_post.model import Diagnostic, StrutMotion
 from pkm_post.pmac_link.listing import Program, program_of
 from pkm_post.pmac_link.status import Array
-
-_COMMENT = re.compile(r"^;.*$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -44,8 +41,7 @@ def read_job(text: str, settings: Settings, file: str) -> tuple[Job | None, tupl
         settings: of the machine's controller.
         file: its name, for the diagnostics.
     """
-    # What a part says of the others is in its comments; they are not sent, so they are not read either.
-    motion, faults = read_program(_COMMENT.sub(";", text), settings, file)
+    motion, faults = read_part(text, settings, file)
     if motion is None:
         return None, faults
     return Job(program_of(text), motion), faults

@@ -59,11 +59,11 @@ def program_of(text: str) -> Program:
     Raises:
         ValueError: the text has not the frame of a program.
     """
-    lines = (line.split(";", 1)[0].strip() for line in text.splitlines())
+    lines = (line.split(";", 1)[0].strip() for line in text.split("\n"))
     found = _OPENING.fullmatch("\n".join(line for line in lines if line))
     if found is None:
         raise ValueError("text: expected CLOSE, DELETE GATHER, OPEN PROG, CLEAR, lines and CLOSE")
-    return Program(int(found[1]), tuple(found[2].splitlines()))
+    return Program(int(found[1]), tuple(found[2].removesuffix("\n").split("\n")))
 
 
 @dataclass(frozen=True)

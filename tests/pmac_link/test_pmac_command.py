@@ -74,6 +74,17 @@ def test_from_the_first_word_to_the_end_of_a_job(simulator, job, capsys, monkeyp
     assert "strut 6:" in (told := capsys.readouterr().out) and "no program runs" in told
 
 
+def test_bytes_that_do_not_belong_are_named_before_anything_is_sent(simulator, job, tmp_path, capsys):
+    made, port = simulator
+    file = tmp_path / "job.pmc"
+    file.write_bytes(job.read_bytes().replace(b";", b";\x0b", 1))
+    assert pmac("download", port, file) == 1
+    assert "job.pmc: line 1:2: error C108" in capsys.readouterr().err
+    file.write_bytes(job.read_bytes().replace(b"\n", b"\r\n"))
+    assert pmac("download", port, file) == 0
+    assert "listed back as sent" in capsys.readouterr().out
+
+
 def test_a_program_too_large_is_streamed(simulator, machine, tmp_path, capsys, monkeypatch):
     made, port = simulator
     settings, _ = settings_of(machine)

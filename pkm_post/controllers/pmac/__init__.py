@@ -22,6 +22,7 @@ __all__ = [
     "memory_faults",
     "program_parts",
     "program_text",
+    "read_part",
     "read_parts",
     "read_program",
     "rotary_opening",
@@ -50,6 +51,11 @@ def read_parts(
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
     """Read a motion program that was written in parts, or in one; as ``pvt.reader.read_parts``."""
     return reader.read_parts(texts, grammar(settings), settings)
+
+
+def read_part(text: str, settings: Settings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+    """Read a motion program, or one part of it by itself; what it says of other parts is not looked at."""
+    return reader.read_program(text, grammar(settings), settings, file)
 
 
 def read_program(text: str, settings: Settings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:

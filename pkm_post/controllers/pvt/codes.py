@@ -49,7 +49,8 @@ MEANINGS: dict[str, Meaning] = {
     "stop": Meaning(EventKind.STOP, 0.0),
     "optional_stop": Meaning(EventKind.STOP, 1.0),
 }
-"""The first that covers an event is its code: the stop of the spindle stands before its two directions."""
+"""The first that covers an event is its code: the stop of the spindle stands before its two directions. The
+reader has a statement of its own of what each code does (``syntax.EFFECTS``)."""
 
 LONGEST_DWELL = 8388.607
 """s; the controller cuts longer dwells down to this."""

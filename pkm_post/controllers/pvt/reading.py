@@ -12,9 +12,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from pkm_post.controllers.pvt.codes import MEANINGS
 from pkm_post.controllers.pvt.moves import Lines, lines_of
-from pkm_post.controllers.pvt.syntax import FINISHED, START, Grammar, state_after
+from pkm_post.controllers.pvt.syntax import EFFECTS, FINISHED, START, Grammar, effect, state_after
 from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
 from pkm_post.model.program import Array
 
@@ -104,10 +103,8 @@ class Reading:
         return "", None
 
     def _act(self, name: str, number: int, line: str, numbers: Sequence[str]) -> None:
-        if name in MEANINGS:
-            meaning = MEANINGS[name]
-            value = meaning.sign * float(numbers[0]) if meaning.value is None else meaning.value
-            self._events.append(Event(self._knots - 1, meaning.kind, value))
+        if name in EFFECTS:
+            self._events.append(Event(self._knots - 1, *effect(name, numbers)))
         elif name in self._acts:
             self._acts[name](number, line, numbers)
 
@@ -156,7 +153,7 @@ class Reading:
 
     def _expected(self) -> str:
         due = self._due[self._state]
-        names = [self.forms[name].name for name in due if name not in MEANINGS]
+        names = [self.forms[name].name for name in due if name not in EFFECTS]
         return " or ".join([*names, "a code"] if len(names) < len(due) else names) or "nothing more"
 
     def _fault(self, number: int, position: int, line: str, expected: str) -> None:
@@ -166,4 +163,4 @@ class Reading:
 
 
 def _kind(name: str) -> str:
-    return "code" if name in MEANINGS else name
+    return "code" if name in EFFECTS else name

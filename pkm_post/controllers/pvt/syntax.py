@@ -2,20 +2,21 @@
 """Syntax: the lines of a strut program, and which may follow which, for the reader.
 
 Enters: the settings of the controller. Leaves: for each kind of line its form, a sequence of pieces, so that a wrong
-line can be told to the column; and the flow, the order of the program. These rules are stated here on their own, not
-taken from the writer: a fault of the writer must not be read as if it were none. What opens a program each controller
-states for itself.
+line can be told to the column; what each code does; and the flow, the order of the program. These rules are stated here
+on their own, not taken from the writer: a fault of the writer must not be read as if it were none. What opens a program
+each controller states for itself.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
 from pkm_post.controllers.pvt.codes import FIELD
 from pkm_post.controllers.pvt.settings import Settings
+from pkm_post.model import EventKind
 
 
 @dataclass(frozen=True)
@@ -111,6 +112,33 @@ def _code_form(name: str, template: str) -> Form:
     number = WHOLE if field["form"] == "d" else DECIMAL
     parts = (template[: field.start()], number, template[field.end() :])
     return form(f"the code {name}", *(part for part in parts if part))
+
+
+_Effect = tuple[EventKind, Callable[[float], float] | float]
+EFFECTS: Mapping[str, _Effect] = {
+    "spindle_clockwise": (EventKind.SPINDLE, lambda number: +number),
+    "spindle_counterclockwise": (EventKind.SPINDLE, lambda number: -number),
+    "spindle_stop": (EventKind.SPINDLE, 0.0),
+    "tool_change": (EventKind.TOOL_CHANGE, lambda number: +number),
+    "stop": (EventKind.STOP, 0.0),
+    "optional_stop": (EventKind.STOP, 1.0),
+    "coolant_mist": (EventKind.COOLANT, 2.0),
+    "coolant_flood": (EventKind.COOLANT, 1.0),
+    "coolant_off": (EventKind.COOLANT, 0.0),
+}
+"""What the code of each name does: the kind of event, and its value, or the value by the number in the code. The names
+are those of ``[controller.codes]`` in machine files, which say in words what the code makes the machine do."""
+
+
+def effect(name: str, numbers: Sequence[str]) -> tuple[EventKind, float]:
+    """Kind and value of the event that a code makes happen.
+
+    Args:
+        name: of the code.
+        numbers: that stand in its line.
+    """
+    kind, value = EFFECTS[name]
+    return kind, value(float(numbers[0])) if callable(value) else value
 
 
 START, FINISHED = "start", "finished"

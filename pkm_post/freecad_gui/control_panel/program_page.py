@@ -11,6 +11,7 @@ from pathlib import Path
 import FreeCAD
 from PySide import QtWidgets
 
+from pkm_post.controllers import read_text
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.model import Diagnostic
@@ -96,7 +97,8 @@ class ProgramPage(QtWidgets.QWidget):
         settings = connection.target.settings
 
         def reading() -> tuple[Job | None, tuple[Diagnostic, ...]]:
-            return read_job(file.read_text(encoding="ascii"), settings, file.name)
+            text, faults = read_text(file)
+            return (None, faults) if text is None else read_job(text, settings, file.name)
 
         self._console.beside.do(reading, lambda read: self._take(file, *read))
 
