@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Lock: one process of this computer has something, and a file says which one that is.
+
+The system holds the lock and releases it with the process, however that ends. What a file says that nobody has locked
+means nothing.
+
+Enters: a path, words. Leaves: a lock, or the words of the process that has it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sys
+from pathlib import Path
+from typing import Any, Self
+
+if sys.platform == "win32":
+    import msvcrt
+
+    _LOCKED_BYTE = 1 << 30
+    """Others cannot read a byte that is locked: this one is far behind the words."""
+
+    def _lock(descriptor: int) -> None:
+        os.lseek(descriptor, _LOCKED_BYTE, os.SEEK_SET)
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+else:
+    import fcntl
+
+    def _lock(descriptor: int) -> None:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+_EVERYBODY = 0o666
+_MOST_BYTES = 4096
+
+Words = dict[str, Any]
+
+
+class Lock:
+    """A lock that this process has."""
+
+    def __init__(self, path: Path, descriptor: int) -> None:
+        self._path, self._descriptor = path, descriptor
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self.release()
+
+    def say(self, words: Words) -> None:
+        """Write what others read of it."""
+        os.ftruncate(self._descriptor, 0)
+        os.lseek(self._descriptor, 0, os.SEEK_SET)
+        os.write(self._descriptor, json.dumps(words).encode()[:_MOST_BYTES])
+
+    def release(self) -> None:
+        """Give it back. The file goes before: who waits for this one sees that it is no longer the one of the path."""
+        if sys.platform != "win32":  # there nobody removes a file that is open
+            self._path.unlink(missing_ok=True)
+        os.close(self._descriptor)
+
+
+def locked(path: Path) -> Lock | None:
+    """The lock of a path; None when another process has it.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    while True:
+        descriptor = _opened(path)
+        try:
+            _lock(descriptor)
+        except OSError:  # both systems say by this that another has it
+            os.close(descriptor)
+            return None
+        if _is_at(path, descriptor):
+            return Lock(path, descriptor)
+        os.close(descriptor)
+
+
+def words_of(path: Path) -> Words:
+    """What the process that has the lock says of itself; empty when it says nothing."""
+    try:
+        said = json.loads(path.read_bytes()[:_MOST_BYTES])
+    except (OSError, ValueError):
+        return {}
+    return said if isinstance(said, dict) else {}
+
+
+def _opened(path: Path) -> int:
+    """The file, for every user of the computer: a system may refuse to create what another user has created."""
+    flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
+    while True:
+        with contextlib.suppress(FileNotFoundError):
+            return os.open(path, flags)
+        with contextlib.suppress(FileExistsError):
+            descriptor = os.open(path, flags | os.O_CREAT | os.O_EXCL, _EVERYBODY)
+            if hasattr(os, "fchmod"):
+                os.fchmod(descriptor, _EVERYBODY)
+            return descriptor
+
+
+def _is_at(path: Path, descriptor: int) -> bool:
+    try:
+        there = os.stat(path)
+    except FileNotFoundError:
+        return False
+    return os.path.samestat(there, os.fstat(descriptor))
