@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 _PROGRAM = ".pmc"
-_ALWAYS = (_PROGRAM, "-setup.pmc", "-setup.cfg", ".pkmt", "-report.json", "-report.png")
+_ALWAYS = (_PROGRAM, "-setup.pmc", "-setup.cfg", ".pkmt", "-report.json", "-report.png", "-manifest.json")
 """How the names of results go on behind the stem, whatever the controller is."""
 _ALSO = {"csv": ".csv", "halstreamer": "-halstreamer.txt", "linuxcnc": "-linuxcnc.ngc"}
 """The same of what is written beside the program, by its name in ``options.ALSO``."""

@@ -10,16 +10,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from pkm_post import planning, trajectory_file
+from pkm_post import manifest, planning, trajectory_file
 from pkm_post.certificate import certify
 from pkm_post.controllers import controller_settings, read_texts
 from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion
 from pkm_post.model.diagnostics import errors
 from pkm_post.report import summary
 
+Findings = tuple[Diagnostic, ...]
 
-def verify(program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
-    """Certify a program that was written before.
+
+def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
+    """Certify a program that was written before, and look whether its files are those that were posted together.
 
     Args:
         program: the motion program, or the first of its parts.
@@ -27,11 +29,24 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
         machine: the machine it was made for.
 
     Returns:
-        The report; its certificate holds.
+        The report, whose certificate holds, and warnings.
 
     Raises:
-        Refused: a file cannot be read or is faulty, or the certificate does not hold.
+        Refused: a file cannot be read or is faulty, the certificate does not hold, or files are not as their manifest
+            says.
     """
+    listed = tuple(dict.fromkeys(one for file in (program, trajectory) for one in manifest.check(file)[1]))
+    try:
+        report = _certified(program, trajectory, machine)
+    except Refused as refused:
+        raise Refused((*listed, *refused.diagnostics)) from None
+    if errors(listed):
+        raise Refused(listed)
+    return report, listed
+
+
+def _certified(program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
+    """The report on a program that holds."""
     planned, faults = trajectory_file.read(trajectory)
     if planned is None:
         raise Refused(faults)

@@ -49,8 +49,9 @@ def test_post_starts_freecad_by_itself(tmp_path):
     told = pkm_post("post", part, "--machine", "example_6tps", "--out", tmp_path / "out dir", *REACHED)
     assert told.returncode == 0, told.stderr
     made = sorted(path.name for path in (tmp_path / "out dir").iterdir())
-    assert made == ["my_part-report.json", "my_part-report.png", "my_part-setup.pmc", "my_part.pkmt", "my_part.pmc"]
-    assert [Path(line).name for line in told.stdout.splitlines()[-5:]] == made
+    endings = ("-manifest.json", "-report.json", "-report.png", "-setup.pmc", ".pkmt", ".pmc")
+    assert made == [f"my_part{ending}" for ending in endings]
+    assert [Path(line).name for line in told.stdout.splitlines()[-6:]] == made
     assert json.loads((tmp_path / "out dir" / "my_part-report.json").read_text())["certificate"]["holds"]
 
 

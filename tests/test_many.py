@@ -92,7 +92,9 @@ def test_batch_is_told_file_by_file(programs, tmp_path):
     assert told.returncode == 1
     written = [Path(line).name for line in printed.splitlines() if line.startswith(str(tmp_path))]
     assert written == [
-        f"{name}{end}" for name in "ac" for end in ("-report.json", "-report.png", "-setup.pmc", ".pkmt", ".pmc")
+        f"{name}{end}"
+        for name in "ac"
+        for end in ("-manifest.json", "-report.json", "-report.png", "-setup.pmc", ".pkmt", ".pmc")
     ]
     assert re.search(r"b\.ngc: line 5.* error G408", errors)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == sorted(written)

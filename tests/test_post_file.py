@@ -166,6 +166,7 @@ def test_the_trajectory_names_its_source_by_its_hash(tmp_path):
 def test_all_files_carry_the_stem(tmp_path):
     made = posted(tmp_path, "part.ngc", G_CODE, reading=Reading("vector")).files
     assert sorted(path.name for path in made) == [
+        "part-manifest.json",
         "part-report.json",
         "part-report.png",
         "part-setup.pmc",

@@ -56,8 +56,7 @@ def judge(machine, posted):
 
 
 def test_a_posted_program_is_verified(machine, posted):
-    report = verify(posted.program, posted.program.with_suffix(".pkmt"), machine)
-    assert report == posted.report
+    assert verify(posted.program, posted.program.with_suffix(".pkmt"), machine) == (posted.report, ())
 
 
 def knots(text):
@@ -128,10 +127,10 @@ def test_files_that_are_something_else_are_told(machine, posted, program, trajec
     assert code in [fault.code for fault in refused.value.diagnostics]
 
 
-def test_line_ends_of_windows_are_verified(machine, posted, tmp_path):
-    program = tmp_path / "cone.pmc"
-    program.write_bytes(posted.program.read_bytes().replace(b"\n", b"\r\n"))
-    assert verify(program, posted.program.with_suffix(".pkmt"), machine) == posted.report
+def test_line_ends_of_windows_are_verified(machine, posted, copied):
+    program = copied / "cone.pmc"
+    program.write_bytes(program.read_bytes().replace(b"\n", b"\r\n"))
+    assert verify(program, copied / "cone.pkmt", machine) == (posted.report, ())
 
 
 def test_a_control_character_is_named(machine, posted, tmp_path):
@@ -139,7 +138,7 @@ def test_a_control_character_is_named(machine, posted, tmp_path):
     program.write_bytes(posted.program.read_bytes().replace(b"PKM", b"P\x0bKM", 1))
     with pytest.raises(Refused) as refused:
         verify(program, posted.program.with_suffix(".pkmt"), machine)
-    assert [(fault.code, fault.place.line, fault.place.column) for fault in refused.value.diagnostics] == [
+    assert [(one.code, one.place.line, one.place.column) for one in errors(refused.value.diagnostics)] == [
         ("C108", 1, 4)
     ]
     assert "0x0B, vertical tab" in str(refused.value)
@@ -150,7 +149,7 @@ def test_a_trajectory_without_tolerances_is_refused(machine, posted, tmp_path):
     trajectory_file.write(dataclasses.replace(trajectory, tolerances=None), tmp_path / "bare.pkmt")
     with pytest.raises(Refused) as refused:
         verify(posted.program, tmp_path / "bare.pkmt", machine)
-    assert [fault.code for fault in refused.value.diagnostics] == ["T105"]
+    assert [fault.code for fault in errors(refused.value.diagnostics)] == ["T105"]
 
 
 def test_the_command(posted, capsys, tmp_path):
@@ -161,3 +160,37 @@ def test_the_command(posted, capsys, tmp_path):
     wrong.write_text(next(changed_digits(posted.program.read_text())))
     assert main(["verify", str(wrong), *arguments[1:]]) == 1
     assert "error V1" in capsys.readouterr().err
+
+
+@pytest.fixture
+def copied(posted, tmp_path):
+    """The files of the posting, to be changed."""
+    for file in posted.files:
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    return tmp_path
+
+
+def refused_command(folder, capsys):
+    """What the command writes to the standard error when it ends with 1."""
+    assert main(["verify", str(folder / "cone.pmc"), "--against", str(folder / "cone.pkmt")]) == 1
+    printed = capsys.readouterr()
+    assert "holds" not in printed.out
+    return printed.err
+
+
+def test_files_of_two_postings_are_refused_by_name(copied, capsys):
+    (copied / "cone-report.json").write_text("{}")
+    assert "error F106" in (told := refused_command(copied, capsys)) and "cone-report.json has changed" in told
+
+
+def test_what_is_measured_is_told_beside_what_has_changed(posted, copied, capsys):
+    (copied / "cone.pmc").write_text(next(changed_digits(posted.program.read_text())))
+    told = refused_command(copied, capsys)
+    assert "cone.pmc has changed" in told and "error V1" in told
+
+
+def test_results_of_earlier_versions_have_no_manifest_and_are_measured(copied, capsys):
+    (copied / "cone-manifest.json").unlink()
+    assert main(["verify", str(copied / "cone.pmc"), "--against", str(copied / "cone.pkmt"), "--json"]) == 0
+    told = capsys.readouterr().err
+    assert told.count("warning F107") == 2

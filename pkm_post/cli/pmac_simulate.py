@@ -72,14 +72,20 @@ def serve(server: Server, ended: Callable[[], bool]) -> None:
 
 
 def _set_up(controller: Controller, file: Path) -> bool:
-    """Carry out the lines of a file; tell the first that is refused."""
+    """Carry out the lines of a file; tell the first that is refused.
+
+    A set-up of a posting is refused where it has changed since. Without a manifest it may be any other file of lines.
+    """
+    from pkm_post import manifest
     from pkm_post.controllers import read_text
+    from pkm_post.model.diagnostics import errors
     from pkm_post.pmac_simulator import MEANINGS, Line
 
     content, faults = read_text(file)
+    faults = (*faults, *errors(manifest.check(file)[1]))
     for fault in faults:
         print(fault, file=sys.stderr)
-    if content is None:
+    if content is None or faults:
         return False
     port = Line(controller)
     for place, text in enumerate(content.splitlines(), start=1):

@@ -34,10 +34,12 @@ def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if machine is None:
         return 1
     try:
-        report = verify(namespace.program, namespace.against, machine)
+        report, warnings = verify(namespace.program, namespace.against, machine)
     except Refused as refused:
         print(refused, file=sys.stderr)
         return 1
+    for warning in warnings:
+        print(warning, file=sys.stderr)
     if namespace.json:
         print(json.dumps(report, indent=2))
     else:

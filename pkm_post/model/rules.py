@@ -524,4 +524,13 @@ RULES: dict[str, Rule] = {
         "results of two jobs would have one name",
         "give the jobs labels that differ in letters or digits, not in their case and not in an ending such as -setup",
     ),
+    "F106": _error(
+        "results are not those that were posted together",
+        "post again, or bring back every file that the manifest lists",
+    ),
+    "F107": _warning(
+        "no manifest says which results belong to this file",
+        "post again, and keep the manifest and all that it lists with the program",
+    ),
+    "F108": _error("the manifest of results cannot be read", "post again, or bring back the manifest"),
 }

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pkm_post import outputs, planning, trajectory_file
+from pkm_post import manifest, outputs, planning, trajectory_file
 from pkm_post.certificate import certify
 from pkm_post.collisions import find_collisions, names_of
 from pkm_post.controllers import TABLES, controller_settings, read_texts
@@ -76,6 +76,7 @@ def post(
         with staged(program_path.parent) as folder:
             parts, report = _all_steps(run, program, machine, folder / program_path.name, options, setup)
             run.end()
+            manifest.write(folder, program_path.stem)
             names = sorted(path.name for path in folder.iterdir())
     except OSError as fault:
         if fault is run.raised_outside:

@@ -39,7 +39,7 @@ def test_a_job_is_posted_and_verified_for_every_kind(machine, tmp_path, kind):
     posted = post(job(), other, tmp_path / f"job{SUFFIX}")
     assert posted.report["certificate"]["holds"]
     assert f"job{controller.SETUP_SUFFIX}" in {path.name for path in posted.files}
-    assert verify(posted.program, posted.program.with_suffix(".pkmt"), other) == posted.report
+    assert verify(posted.program, posted.program.with_suffix(".pkmt"), other) == (posted.report, ())
 
 
 @pytest.mark.parametrize("kind", CONTROLLERS)
@@ -75,7 +75,7 @@ def test_a_program_larger_than_the_memory_is_certified_in_parts(machine, in_part
 
 def test_a_program_in_parts_is_verified_from_its_first(in_parts):
     small, posted = in_parts
-    assert verify(posted.program, posted.program.with_suffix(".pkmt"), small) == posted.report
+    assert verify(posted.program, posted.program.with_suffix(".pkmt"), small) == (posted.report, ())
 
 
 def test_a_part_that_is_missing_or_another_is_found(in_parts, tmp_path):

@@ -12,6 +12,7 @@ from Path.Post.Processor import PostProcessorFactory
 from Path.Post.Utils import FilenameGenerator
 
 import pkm_post
+from pkm_post import manifest
 from pkm_post.cli import main
 from pkm_post.cli.document_jobs import jobs_in
 from pkm_post.freecad_app.arguments import job_arguments
@@ -213,6 +214,15 @@ def test_cam_gets_the_text_and_finds_the_other_files_beside(ready, cam_post, tmp
     assert (tmp_path / "made by cam.ngc").read_text(encoding="ascii") == text
     assert (tmp_path / "made by cam.pkmt").is_file()
     assert "OPEN PROG" in text
+
+
+@pytest.mark.parametrize("line_end", ["\n", "\r\n"])
+def test_what_cam_writes_is_what_the_manifest_lists(cam_post, tmp_path, line_end):
+    ((_, text),) = cam_post.export()
+    written = tmp_path / "made by cam.ngc"
+    written.write_text(text, encoding="ascii", newline=line_end)  # as CAM does, on Windows with CR LF
+    listed, faults = manifest.check(written)
+    assert faults == () and {"made by cam.ngc", "made by cam.pkmt"} < set(listed.files)
 
 
 def test_cam_writes_nothing_when_the_job_is_refused(ready, cam_post, tmp_path):

@@ -16,7 +16,8 @@ def session(scene):
 def test_panel_writes_and_shows_the_certificate(session):
     found = session["posting_shows_the_certificate"]
     assert found["files"] == [
-        "gui-report.json", "gui-report.png", "gui-setup.pmc", "gui.FCStd", "gui.csv", "gui.pkmt", "gui.pmc",
+        "gui-manifest.json", "gui-report.json", "gui-report.png", "gui-setup.pmc", "gui.FCStd", "gui.csv", "gui.pkmt",
+        "gui.pmc",
     ]  # fmt: skip
     assert found["verdict"].startswith("Certified")
     assert found["findings"] >= 11  # rows of the certificate

@@ -3,6 +3,7 @@ import re
 
 import pytest
 
+from pkm_post import manifest
 from pkm_post.cli import main
 from pkm_post.pmac_simulator import Server
 
@@ -74,3 +75,12 @@ def test_arguments_without_sense_are_refused(arguments, told, capsys):
         main(["pmac", "simulate", *arguments])
     assert ended.value.code == 2
     assert told in capsys.readouterr().err
+
+
+def test_a_set_up_that_has_changed_since_it_was_posted_is_refused(tmp_path, capsys):
+    file = tmp_path / "part-setup.pmc"
+    file.write_text("I15=0\n")
+    manifest.write(tmp_path, "part")
+    file.write_text("I15=1\n")
+    assert main(["pmac", "simulate", "--tcp", "0", "--setup", str(file)]) == 1
+    assert "error F106" in (told := capsys.readouterr().err) and "part-setup.pmc has changed" in told
