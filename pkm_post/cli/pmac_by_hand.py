@@ -25,6 +25,7 @@ _SLOWEST_OVERRIDE = 0.05
 """A move is waited for as long as it would take at this override, which somebody may set meanwhile."""
 _START_S = 30.0
 """Added to that: the approach, and codes of the machine."""
+_HELD = "it is held, by somebody or, a jog, because this computer came too late to renew it; resume or abort it"
 
 
 def control_of(session: Session, target: Target, namespace: argparse.Namespace) -> NumericalControl:
@@ -63,18 +64,18 @@ def carry_out(
         return 0
     with held_at_the_end(session, target.settings):
         control.execute(plan)
-        status = wait_for_end(session, target, plan.seconds)
+        if control.silence_s is not None:
+            print(f"it rests within {control.silence_s:.1f} s if this computer falls silent, at 100 %", flush=True)
+        status = wait_for_end(control, plan.seconds)
     if ended_elsewhere(status, plan.lengths):
         return 1
     print(f"arrived; no strut is off by more than {off_target(status, plan.lengths):.4f} mm")
     return 0
 
 
-def wait_for_end(session: Session, target: Target, seconds: float) -> Status:
+def wait_for_end(control: NumericalControl, seconds: float) -> Status:
     """The state after a move that takes so many seconds at 100 %."""
-    from pkm_post.numerical_control.execute import wait_for_rest
-
-    return wait_for_rest(session, target.settings, _START_S + seconds / _SLOWEST_OVERRIDE)
+    return control.wait_for_rest(_START_S + seconds / _SLOWEST_OVERRIDE)
 
 
 def ended_elsewhere(status: Status, lengths: Array) -> bool:
@@ -82,7 +83,7 @@ def ended_elsewhere(status: Status, lengths: Array) -> bool:
     from pkm_post.numerical_control.execute import off_target
     from pkm_post.pmac_link.near import NEAR_MM
 
-    words = ["it is held; resume or abort it"] if status.held else list(status.words())
+    words = [_HELD] if status.held else list(status.words())
     if not words and off_target(status, lengths) > NEAR_MM:
         words = [f"it ended {off_target(status, lengths):.3f} mm of a strut from where it leads to"]
     print(*words, sep="\n", end="\n" if words else "", file=sys.stderr)

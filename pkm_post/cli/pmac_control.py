@@ -106,7 +106,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
         with held_at_the_end(session, target.settings):
             # Only what comes first is begun by hand; the others begin where the one before them ended.
             last = control.step(namespace.near if number == namespace.block else NEAR_MM)
-            status = wait_for_end(session, target, target.job.motion.time_ms[-1] / 1000)
+            status = wait_for_end(control, target.job.motion.time_ms[-1] / 1000)
         if ended_elsewhere(status, last):
             return 1
     print("the program has ended")

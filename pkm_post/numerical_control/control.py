@@ -23,6 +23,7 @@ from pkm_post.numerical_control.emergency import emergency_text
 from pkm_post.numerical_control.homing import Homing, HomingWatch, Phase, missing_homes, start_homing
 from pkm_post.numerical_control.plan import Plan, planned
 from pkm_post.numerical_control.single_block import Blocks, blocks_of
+from pkm_post.numerical_control.watchdog import Watchdog
 from pkm_post.pmac_link import operate, stopping
 from pkm_post.pmac_link.download import Loaded, Progress, download
 from pkm_post.pmac_link.faults import CancelledError, LinkLostError, NotReadyError, PmacError
@@ -87,11 +88,17 @@ class NumericalControl:
         self._blocks: tuple[Blocks, int] | None = None
         self._last = State(None, None)
         self._may_move = False
+        self._watchdog: Watchdog | None = None
+        self._is_attended: Callable[[], bool] = lambda: True
         self.tool_length = tool_length
 
     def give_way_when(self, is_waited_for: Callable[[], bool]) -> None:
         """From now on leave what takes long, and start nothing, while ``is_waited_for`` says that a stop waits."""
         self._session.give_way_when(is_waited_for)
+
+    def attended_while(self, is_attended: Callable[[], bool]) -> None:
+        """From now on renew the watchdog of a jog only while ``is_attended`` says that somebody looks on."""
+        self._is_attended = is_attended
 
     @property
     def tool_length(self) -> float:
@@ -106,9 +113,11 @@ class NumericalControl:
         self._readout = Readout(self._machine, length)
 
     def poll(self) -> State:
-        """Read everything once; a lost link is a state, not an error."""
+        """Read everything once, and renew the watchdog of a jog; a lost link is a state, not an error."""
         try:
             status = read_status(self._session, self._settings)
+            self._end_watch(status)
+            self.renew()
         except CancelledError:
             return self._last  # a stop is in a hurry; the next reading tells
         except PmacError as fault:
@@ -132,7 +141,8 @@ class NumericalControl:
             NotReadyError: nobody knows where the tool is, or it moves.
         """
         here = self._here()
-        return self._planned(*moves.trajectory_of(jog, self._machine, here, self.tool_length, feed))
+        plan, told = self._planned(*moves.trajectory_of(jog, self._machine, here, self.tool_length, feed))
+        return (None if plan is None else replace(plan, is_jog=True)), told
 
     def plan_line(self, line: str, reading: mdi.Reading | None = None) -> tuple[Plan | None, Findings]:
         """Plan a line of G-code from where the machine stands.
@@ -154,8 +164,31 @@ class NumericalControl:
         return self._planned(*moves.approach(self._machine, here, start, self.tool_length, feed))
 
     def execute(self, plan: Plan) -> Status:
-        """Load a plan, list it back and start it; as ``execute.execute``."""
-        return self._moving(lambda: execution.execute(self._session, self._machine, self._settings, plan.job))
+        """Load a plan, list it back and start it; as ``execute.execute``.
+
+        The controller holds a jog by itself when nobody calls ``poll``, ``renew`` or ``wait_for_rest`` any more.
+        """
+        order = self._session, self._machine, self._settings, plan.job
+        if not plan.is_jog:
+            return self._moving(lambda: execution.execute(*order))
+        status, self._watchdog = self._moving(lambda: execution.execute_watched(*order))
+        return status
+
+    @property
+    def silence_s(self) -> float | None:
+        """After how many seconds of silence the struts stand, at most, at 100 %; None when no jog is under way."""
+        return None if self._watchdog is None else self._watchdog.silence_s
+
+    def renew(self) -> None:
+        """Renew the watchdog of a jog, if one is under way and somebody looks on; several times a second."""
+        if self._watchdog is not None and self._is_attended():
+            self._watchdog.renew(self._session)
+
+    def wait_for_rest(self, seconds: float) -> Status:
+        """Watch until the machine rests, and renew the watchdog of a jog; as ``execute.wait_for_rest``."""
+        status = execution.wait_for_rest(self._session, self._settings, seconds, self.renew)
+        self._end_watch(status)
+        return status
 
     def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
         """Load a program and list it back, when the controller is set up for the machine; as ``download.download``.
@@ -212,7 +245,8 @@ class NumericalControl:
         return stopping.hold(self._session, self._settings)
 
     def resume(self) -> Status:
-        """Go on after a hold."""
+        """Go on after a hold; a jog whose watchdog had ended it goes on as well."""
+        self.renew()
         return self._moving(lambda: operate.resume(self._session, self._settings))
 
     def abort(self, at_once: bool = False) -> Status:
@@ -222,11 +256,16 @@ class NumericalControl:
 
     def override(self, percent: float) -> Status:
         """Set the override, above 0 and up to 100 %."""
-        return operate.override(self._session, self._settings, percent)
+        return operate.override(self._session, self._settings, percent, self.renew)
 
     def home(self, trigger: str) -> None:
         """Send the line that starts the homing of the machine; ``poll`` watches it then."""
         self._watch = self._moving(lambda: start_homing(self._session, self._settings, trigger))
+
+    def _end_watch(self, status: Status) -> None:
+        """A program that has ended needs its watchdog no more."""
+        if not status.running:
+            self._watchdog = None
 
     def _block(self) -> tuple[int, int] | None:
         return None if self._blocks is None else (self._blocks[1], len(self._blocks[0]))

@@ -6,10 +6,14 @@ Enters: a session and a plan, which nothing but the checks of planning makes. Le
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
 from pkm_post.controllers.pmac import Settings
 from pkm_post.model import Machine
+from pkm_post.numerical_control.watchdog import Watchdog, watchdog_of
 from pkm_post.pmac_link import operate
 from pkm_post.pmac_link.download import download
 from pkm_post.pmac_link.faults import PmacError
@@ -43,10 +47,14 @@ def execute(session: Session, machine: Machine, settings: Settings, job: Job, ne
     return operate.run(session, settings, job.program, job.first, near, machine)
 
 
+def execute_watched(session: Session, machine: Machine, settings: Settings, job: Job) -> tuple[Status, Watchdog]:
+    """Load a program with a watchdog and start it: it is held when its watchdog is not renewed; as ``execute``."""
+    dog = watchdog_of(session, settings, job.program)
+    return execute(session, machine, settings, replace(job, program=dog.program)), dog
+
+
 def wait_for_rest(
-    session: Session,
-    settings: Settings,
-    seconds: float,
+    session: Session, settings: Settings, seconds: float, meanwhile: Callable[[], None] = lambda: None
 ) -> Status:
     """Watch until no program runs and the struts stand.
 
@@ -54,6 +62,7 @@ def wait_for_rest(
         session: an open session.
         settings: of the controller.
         seconds: how long that may take; a program that waits in a hold ends the waiting as well.
+        meanwhile: is called after each reading.
 
     Raises:
         PmacError: it takes longer.
@@ -67,6 +76,7 @@ def wait_for_rest(
             raise PmacError(
                 f"the machine does not come to rest within {seconds:g} s; HOLD IT, OR USE THE EMERGENCY STOP"
             )
+        meanwhile()
         session.sleep(_POLL_S)
 
 

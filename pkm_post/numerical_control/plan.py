@@ -40,11 +40,13 @@ class Plan:
         job: its program and motion, as read back.
         certificate: what was measured.
         end: where the tool will be, by forward kinematics of the last lengths.
+        is_jog: whether it may only go on while somebody looks on.
     """
 
     job: Job
     certificate: Certificate
     end: Pose
+    is_jog: bool = False
 
     @property
     def lengths(self) -> Array:

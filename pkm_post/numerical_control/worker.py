@@ -24,6 +24,8 @@ Done = TypeVar("Done")
 Order = tuple[Future[Any], Callable[[NumericalControl], Any]]
 
 POLL_S = 0.1
+ATTENDED_S = 0.5
+"""Seconds for which somebody who has looked on counts as looking on: a window that hangs does not."""
 _CLOSE_S = 30.0
 """Seconds in which the order that is carried out has to end; it gives way, and each has deadlines of its own."""
 
@@ -35,12 +37,13 @@ class Worker:
         failure: why the thread has ended by itself, a fault of this program; None while it has not.
     """
 
-    def __init__(self, control: NumericalControl, period: float = POLL_S) -> None:
+    def __init__(self, control: NumericalControl, period: float = POLL_S, attended: float = ATTENDED_S) -> None:
         """Start the thread.
 
         Args:
             control: from now on the thread's alone.
             period: seconds from one reading to the next.
+            attended: seconds for which somebody who has looked on counts as looking on.
         """
         self._control, self._period = control, period
         self._stops: deque[Order] = deque()
@@ -49,7 +52,9 @@ class Worker:
         self._state, self._stop_since = State(None, None), math.inf
         self.failure: BaseException | None = None
         self._stopping = False
+        self._attended, self._attended_at = attended, -math.inf
         control.give_way_when(self._is_waited_for)
+        control.attended_while(self._is_attended)
         self._thread = threading.Thread(target=self._run, name="numerical control", daemon=True)
         self._thread.start()
 
@@ -59,6 +64,10 @@ class Worker:
         if self._is_stop_overdue() and not self._state.emergency:
             return replace(self._state, emergency=NOT_AT_REST)
         return self._state
+
+    def attend(self) -> None:
+        """Somebody looks on: a jog, which is held when nobody does, goes on for half a second."""
+        self._attended_at = time.monotonic()
 
     def submit(self, order: Callable[[NumericalControl], Done], urgent: bool = False) -> Future[Done]:
         """Have something done; returns at once.
@@ -99,6 +108,9 @@ class Worker:
             raise RuntimeError(f"the worker does not end within {_CLOSE_S:g} s")
         if self.failure is not None:
             raise RuntimeError("the worker ended by a fault") from self.failure
+
+    def _is_attended(self) -> bool:
+        return time.monotonic() - self._attended_at < self._attended
 
     def _is_waited_for(self) -> bool:
         """Whether a stop waits, or the end; the end waits for a stop that is being done, but not for ever."""

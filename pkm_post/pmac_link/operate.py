@@ -78,13 +78,16 @@ def resume(session: Session, settings: Settings) -> Status:
     return _go(session, settings, "R", lambda status: status.running and not status.held)
 
 
-def override(session: Session, settings: Settings, percent: float) -> Status:
+def override(
+    session: Session, settings: Settings, percent: float, meanwhile: Callable[[], None] = lambda: None
+) -> Status:
     """Set how fast time passes in programs, and see that it does.
 
     Args:
         session: an open session.
         settings: of the machine's controller.
         percent: above 0 and up to 100: programs were planned to the limits of the machine at 100 %.
+        meanwhile: is called after each reading.
 
     Raises:
         ValueError: the percentage is out of range; to stop, hold.
@@ -101,7 +104,7 @@ def override(session: Session, settings: Settings, percent: float) -> Status:
     def is_reached(status: Status) -> bool:
         return abs(status.override - percent) <= _OVERRIDE_REACHED
 
-    status = _watched(session, settings, is_reached, OVERRIDE_S, session.is_waited_for)
+    status = _watched(session, settings, is_reached, OVERRIDE_S, session.is_waited_for, meanwhile)
     if is_reached(status):
         return status
     session.give_way()
@@ -130,6 +133,7 @@ def _watched(
     holds: Callable[[Status], bool],
     seconds: float,
     is_over: Callable[[], bool] = lambda: False,
+    meanwhile: Callable[[], None] = lambda: None,
 ) -> Status:
     """The state as soon as something holds of it; the last one when the time, or the waiting, is over before."""
     until = session.now() + seconds
@@ -137,4 +141,5 @@ def _watched(
         status = read_status(session, settings)
         if holds(status) or session.now() >= until or is_over():
             return status
+        meanwhile()
         session.sleep(_POLL_S)

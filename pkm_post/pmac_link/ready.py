@@ -75,6 +75,18 @@ def check_start(status: Status, first: Array, near: float = NEAR_MM, machine: Ma
         raise NotReadyError(tuple(dict.fromkeys(reasons)))
 
 
+def number_of(session: Session, name: str) -> float:
+    """What a variable of the controller holds.
+
+    Raises:
+        LinkLostError: the answer is no number.
+    """
+    told = _one(session, name)
+    if not re.fullmatch(_REAL, told):
+        raise LinkLostError(f"{name}: expected a number, got {told!r}")
+    return float(told)
+
+
 def _motor_faults(status: Status) -> Iterator[str]:
     expected = {
         "homed": "not homed",
@@ -109,10 +121,10 @@ def _variable_faults(session: Session, settings: Settings) -> Iterator[str]:
         if letter in _ROTARY:
             expected[f"I{motor}27"] = (0, "no rollover of a strut")
     for name, (value, why) in expected.items():
-        got = _number(session, name)
+        got = number_of(session, name)
         if got != value:
             yield f"{name}: expected {value} ({why}), the controller has {got:g}"
-    served = _number(session, "I68")
+    served = number_of(session, "I68")
     if served < settings.coordinate_system - 1:
         yield f"I68: expected {settings.coordinate_system - 1} or more, the controller has {served:g}"
 
@@ -122,17 +134,10 @@ def _limit_faults(session: Session, settings: Settings, stroke: tuple[float, flo
     for motor, zero in zip(MOTORS, settings.zero_length, strict=True):
         low, high = sorted(settings.counts_per_mm * (length - zero) for length in stroke)
         for name, (least, most) in {f"I{motor}13": (-np.inf, high), f"I{motor}14": (low, np.inf)}.items():
-            got = _number(session, name)
+            got = number_of(session, name)
             if got == 0 or not least - 1 <= got <= most + 1:
                 within = f"{most:.0f} or less" if np.isfinite(most) else f"{least:.0f} or more"
                 yield f"{name}: expected {within} and not 0, which is no limit; the controller has {got:g}"
-
-
-def _number(session: Session, name: str) -> float:
-    told = _one(session, name)
-    if not re.fullmatch(_REAL, told):
-        raise LinkLostError(f"{name}: expected a number, got {told!r}")
-    return float(told)
 
 
 def _one(session: Session, query: str) -> str:

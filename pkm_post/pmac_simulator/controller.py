@@ -10,6 +10,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -127,18 +128,16 @@ class Controller:
 
     def _said_by(self, number: int) -> Callable[[str, str], None]:
         """What a program of this coordinate system says to ports, or asks for as if by a port."""
-        session = Session(self, system=number)
+        return partial(self._say, Session(self, system=number))  # no closure: it goes along with a copy of this
 
-        def outside(kind: str, text: str) -> None:
-            try:
-                said: list[str | CommandError] = [text] if kind == "SEND" else [*execute(session, text)]
-            except CommandError as error:
-                said = [error]
-            for item in said:
-                for listen in self.listeners:
-                    listen(item)
-
-        return outside
+    def _say(self, session: Session, kind: str, text: str) -> None:
+        try:
+            said: list[str | CommandError] = [text] if kind == "SEND" else [*execute(session, text)]
+        except CommandError as error:
+            said = [error]
+        for item in said:
+            for listen in self.listeners:
+                listen(item)
 
     def _tick(self, ms: float) -> None:
         commanded = np.full(SIMULATED_MOTORS, np.nan)

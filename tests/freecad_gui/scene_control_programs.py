@@ -154,6 +154,20 @@ def an_abort_ends_a_jog():
 
 
 @step
+def a_window_that_hangs_lets_a_jog_be_held():
+    panel = the_panel()
+    _begin_to_move(1)
+    panel.console._timer.stop()  # what a window that hangs does not do either
+    found = {"held": until(lambda: newest().status.held and newest().status.standing, 30)}
+    panel.console._timer.start(100)
+    read_again()
+    found["activity"] = panel.face.activity.text()
+    click(panel.face.stops.abort)
+    idle()
+    return found
+
+
+@step
 def it_is_not_closed_beside_a_machine_that_moves():
     panel = the_panel()
     _begin_to_move(1)

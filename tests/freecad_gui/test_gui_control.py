@@ -131,6 +131,11 @@ def test_an_abort_ends_a_jog(programs):
     assert found["enabled"] and found["left"] > 1.0  # of 20 mm, which take two seconds
 
 
+def test_a_window_that_hangs_lets_a_jog_be_held(programs):
+    found = programs["a_window_that_hangs_lets_a_jog_be_held"]
+    assert found["held"] and "a program is held" in found["activity"]
+
+
 def test_it_is_not_closed_beside_a_machine_that_moves(programs):
     found = programs["it_is_not_closed_beside_a_machine_that_moves"]
     question = "The machine moves, or may move. What is to become of it?"

@@ -69,9 +69,9 @@ class Station:
         return bytes(self.wire.sent)
 
 
-def new_station():
+def new_station(kind="tcp"):
     """A station that nobody has touched."""
-    wire = Wire(copy.deepcopy(set_up()), "tcp", moves=True)
+    wire = Wire(copy.deepcopy(set_up()), kind, moves=True)
     session = wire.session()
     return Station(wire, NumericalControl(session, MACHINE, SETTINGS, TOOL))
 

@@ -3,6 +3,7 @@
 
 import copy
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -76,6 +77,36 @@ def test_a_signal_holds_a_move_by_hand(made, action, arguments, number):
         _, said = process.communicate(timeout=LONGEST_S)
         assert process.returncode == 1 and "interrupted and held" in said
         assert made.runs_program() and not is_moving(made)
+
+
+@pytest.mark.parametrize("kind", ["tcp", "serial"])
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_jog_whose_computer_dies_or_hangs_comes_to_rest_by_itself(made, kind, number):
+    """Nothing is sent any more: the controller holds the program within the time that was stated."""
+    feed, clock = 5.0, []
+    with served(made, kind) as port:
+        process = started("jog", port, "--x", "100", "--feed", str(60 * feed))
+        until(lambda: np.abs(made.motors.speed).max() > 1.0 or process.poll() is not None)
+        stated = next(line for line in iter(process.stdout.readline, "") if "falls silent" in line)
+        process.send_signal(number)
+        until(lambda: process_is_still(process, number))
+        clock.append(made.time)
+        start = made.motors.commanded.copy()
+        until(lambda: not is_moving(made))
+        clock.append(made.time)
+        gone = np.abs(made.motors.commanded - start).max() / SETTINGS.counts_per_mm
+        process.kill()
+        process.communicate(timeout=LONGEST_S)
+    within = float(re.search(r"within (\S+) s", stated)[1])
+    assert (clock[1] - clock[0]) / 1000 <= within < 2.0
+    assert gone <= feed * (within - 0.5)  # a strut is no faster than the tip; half of the speed in the last second
+    assert made.systems[0].holding and not is_moving(made)
+
+
+def process_is_still(process, number):
+    """Whether a signal that ends or stops a process has done so."""
+    state = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[0]
+    return state == ("Z" if number == signal.SIGKILL else "T")
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])

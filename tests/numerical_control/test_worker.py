@@ -27,6 +27,9 @@ class Stub:
     def give_way_when(self, is_waited_for):
         self.gives_way = is_waited_for
 
+    def attended_while(self, is_attended):
+        self.is_attended = is_attended
+
     def poll(self):
         self.polls += 1
         if self.polls == -1:
@@ -58,6 +61,14 @@ def worker(stub):
 def test_the_state_is_read_again_and_again(worker, stub):
     until(lambda: stub.polls > 5 and worker.state.lost)
     assert int(worker.state.lost) > 0
+
+
+def test_somebody_who_looked_on_once_counts_for_a_while(stub):
+    worker = Worker(stub, period=0.005, attended=0.05)
+    assert not stub.is_attended()
+    until(lambda: worker.attend() or stub.is_attended())
+    until(lambda: not stub.is_attended())
+    worker.close()
 
 
 def test_orders_are_carried_out_in_their_order_and_give_results(worker, stub):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Programs that run: stops, steps, assignments, branches, calls, and those that cannot go on."""
 
+import copy
+
 import pytest
 
 RUNNING, RUNTIME_ERROR = 1, 1 << 22
@@ -60,6 +62,14 @@ def test_quitting_ends_behind_the_moves_that_are_computed(machine):
     machine.say("R")
     machine.wait(1000)
     assert machine.position()[0] == 504
+
+
+def test_a_program_that_holds_itself_in_a_copy_holds_the_copy(machine):
+    machine.lines('OPEN PROG 1\nCLEAR\nLINEAR TS0 TA10 TM100\nA501\nCMD"&1H"\nA502\nA503\nCLOSE')
+    other = copy.deepcopy(machine.controller)
+    other.load(["B1R"])
+    other.advance(100)
+    assert other.systems[0].holding and not machine.controller.systems[0].holding
 
 
 @pytest.mark.parametrize(

@@ -190,7 +190,9 @@ class Console(QtCore.QObject):
         self.stops = 0 if job is None else len(stops_of(job))
 
     def _look(self) -> None:
-        """Called by the timer."""
+        """Called by the timer; while it calls, somebody can see what the machine does."""
+        if self.connection is not None:
+            self.connection.worker.attend()
         if self.connection is not None and self.connection.worker.failure is not None:
             told = translate("ControlPanel", "An error of this program ended the connection. THE MACHINE GOES ON.")
             self.told.emit(told, True)
