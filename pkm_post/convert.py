@@ -10,9 +10,10 @@ from pathlib import Path
 
 from pkm_post.files import staged
 from pkm_post.gcode import Form, write
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic
 from pkm_post.model.diagnostics import errors
 from pkm_post.sources import AS_WRITTEN, Reading, read_part_program
+from pkm_post.unwritten import unwritten
 
 TARGETS: dict[str, Form] = {f"gcode:{form.value}": form for form in Form}
 """What a program can be converted to, by the word that people type."""
@@ -49,5 +50,5 @@ def convert(
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="ascii", newline="\n")
     except OSError as fault:
-        return (*found, *told, Diagnostic("F101", Place(str(out)), str(fault)))
+        return (*found, *told, unwritten(out, fault))
     return (*found, *told)

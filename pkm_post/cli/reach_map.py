@@ -50,9 +50,9 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
     from pkm_post.files import staged
     from pkm_post.machine_file import machine_named
-    from pkm_post.model import Diagnostic, Place
     from pkm_post.position import reach_map
     from pkm_post.report.reach_plot import draw_reach
+    from pkm_post.unwritten import unwritten
 
     if math.prod(map(len, (namespace.x, namespace.y, namespace.z))) > _MOST_PLACES:
         print(f"expected --x, --y and --z with at most {_MOST_PLACES} places together", file=sys.stderr)
@@ -74,7 +74,7 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
                 print(warning, file=sys.stderr)
             names = sorted(path.name for path in folder.iterdir())
     except OSError as fault:
-        print(Diagnostic("F101", Place(str(namespace.out)), str(fault)), file=sys.stderr)
+        print(unwritten(namespace.out, fault), file=sys.stderr)
         return 1
     for name in names:
         print(namespace.out / name)

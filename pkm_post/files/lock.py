@@ -58,24 +58,34 @@ class Lock:
 
     def release(self) -> None:
         """Give it back. The file goes before: who waits for this one sees that it is no longer the one of the path."""
-        if sys.platform != "win32":  # there nobody removes a file that is open
+        if sys.platform == "win32":  # an open file cannot be removed there: it stays for who waits for it
+            os.close(self._descriptor)
+            self._remove()
+        else:
+            self._remove()
+            os.close(self._descriptor)
+
+    def _remove(self) -> None:
+        with contextlib.suppress(PermissionError):  # open on Windows, or another user's in a folder such as /tmp
             self._path.unlink(missing_ok=True)
-        os.close(self._descriptor)
 
 
 def locked(path: Path) -> Lock | None:
     """The lock of a path; None when another process has it.
 
     Raises:
-        OSError: the file cannot be written.
+        OSError: the file cannot be written, or the file system has no locks.
     """
     while True:
         descriptor = _opened(path)
         try:
             _lock(descriptor)
-        except OSError:  # both systems say by this that another has it
+        except (BlockingIOError, PermissionError):  # the one of POSIX, the other of Windows: another has it
             os.close(descriptor)
             return None
+        except OSError:
+            os.close(descriptor)
+            raise
         if _is_at(path, descriptor):
             return Lock(path, descriptor)
         os.close(descriptor)

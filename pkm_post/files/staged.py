@@ -8,67 +8,103 @@ a program, nor a program beside the report of another one.
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from pkm_post.files.lock import Lock, locked
+from pkm_post.files.moved import move
+
+_PREFIX = ".staged-"
+_PRIVATE = re.compile(re.escape(_PREFIX) + "[a-z0-9_]{8}")
+"""The names of private folders, as ``tempfile.mkdtemp`` makes them."""
+_LOCK = _PREFIX + "lock"
+"""Of a folder, while a process moves files into it."""
+_OWNER = "owner"
+"""Of a private folder, locked as long as its process lives."""
+_PATIENCE = 30.0
+"""s, for another process to move its files; that takes milliseconds."""
+_PAUSE = 0.005
+"""s, until the lock is tried again."""
+
+
+class BusyError(OSError):
+    """Another process has been moving files into a folder for too long."""
+
 
 @contextmanager
-def staged(folder: Path) -> Iterator[Path]:
+def staged(folder: Path, last: str = "") -> Iterator[Path]:
     """Yield a fresh private folder inside ``folder``; what is written there moves into ``folder`` when the block ends.
 
     Promised: a file appears under its final name complete and with its content on disk, never in part. When the block
-    raises, nothing appears. When a file cannot be moved, those that were moved before it and are new in ``folder`` are
-    removed again. The private folder is removed in every case.
+    raises, or a file cannot be moved, everything is as it was before. What is replaced goes before anything comes: also
+    a process that is killed, or a failure of power, leaves no new file beside an earlier one. Of two processes that
+    move files into one folder the second waits for the first. The private folder is removed in every case; that of a
+    process that was killed is removed by the next that writes into ``folder``.
 
-    Not promised: a file that replaced one of the same name stays when a later file cannot be moved, as the old content
-    is gone. A reader that looks while the files are moved, name by name in sorted order, sees some old and some new
-    ones. A process that is killed leaves its private folder, named ``.staged-`` and some letters. ``folder`` itself is
-    made when it is missing, and stays.
+    Not promised: a process that is killed while it moves files leaves some of them, or some of the earlier ones. Then
+    there is no ``last``. ``folder`` itself is made when it is missing, and stays.
 
     Args:
         folder: where the files belong.
+        last: the name of a file among them that is removed first and comes last.
 
     Raises:
+        BusyError: another process does not end moving files.
+        MixedError: files could not be moved, and not all that had been there could be put back.
         OSError: a folder cannot be made, what the block left is not all files, or one cannot be synchronised or moved.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    private = Path(tempfile.mkdtemp(prefix=".staged-", dir=folder))
-    try:
+    with _private(folder) as private:
+        new, aside = private / "new", private / "aside"
+        new.mkdir()
+        aside.mkdir()
+        yield new
+        for name in sorted(os.listdir(new)):
+            _synchronise(new / name)
+        with _lock_of(folder / _LOCK):
+            move(new, folder, aside, last)
+
+
+@contextmanager
+def _private(folder: Path) -> Iterator[Path]:
+    """A fresh private folder, which others can see is of a living process."""
+    with ExitStack() as stack:
+        with _lock_of(folder / _LOCK):
+            _sweep(folder)
+            private = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
+            stack.callback(shutil.rmtree, private, ignore_errors=True)  # the next sweep has what this cannot remove
+            stack.enter_context(_lock_of(private / _OWNER))
         yield private
-        names = sorted(os.listdir(private))
-        for name in names:
-            _synchronise(private / name)
-        _move(names, private, folder)
-    finally:
-        shutil.rmtree(private)
+
+
+def _sweep(folder: Path) -> None:
+    """Remove the private folders of processes that have ended."""
+    for name in filter(_PRIVATE.fullmatch, os.listdir(folder)):
+        try:
+            owner = locked(folder / name / _OWNER)
+        except OSError:
+            continue  # another user's, or its process is removing it
+        if owner is not None:
+            owner.release()
+            shutil.rmtree(folder / name, ignore_errors=True)
+
+
+def _lock_of(path: Path) -> Lock:
+    """The lock of a path, when the process that has it gives it back or ends."""
+    deadline = time.monotonic() + _PATIENCE
+    while (lock := locked(path)) is None:
+        if time.monotonic() > deadline:
+            raise BusyError(f"another process has been moving files into {path.parent} for {_PATIENCE:g} s")
+        time.sleep(_PAUSE)
+    return lock
 
 
 def _synchronise(file: Path) -> None:
     """Wait until the content of a file is on disk; a folder cannot be opened so and is refused."""
     with file.open("r+b") as stream:  # Windows synchronises only what is open for writing
         os.fsync(stream.fileno())
-
-
-def _move(names: list[str], source: Path, target: Path) -> None:
-    """Move files by name from one folder to another; after a failure, remove again those that are new there."""
-    with ExitStack() as undo:
-        for name in names:
-            is_new = not os.path.lexists(target / name)
-            os.replace(source / name, target / name)
-            if is_new:
-                undo.callback((target / name).unlink)
-        _synchronise_names(target)
-        undo.pop_all()
-
-
-def _synchronise_names(folder: Path) -> None:
-    """Wait until the names in a folder are on disk; Windows cannot open folders and stores names by itself."""
-    if os.name == "posix":
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 import FreeCAD as App
 
-from pkm_post import outputs, pipeline, trajectory_file
+from pkm_post import manifest, outputs, pipeline, trajectory_file
 from pkm_post.collisions import find_collisions
 from pkm_post.files import staged
 from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
@@ -25,9 +25,10 @@ from pkm_post.freecad_app.post_job import post_to
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.gcode import Form, write
-from pkm_post.model import Diagnostic, Place, Refused, Trajectory
+from pkm_post.model import Diagnostic, Refused, Trajectory
 from pkm_post.model.diagnostics import errors
 from pkm_post.reach import reach
+from pkm_post.unwritten import unwritten
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
@@ -57,12 +58,13 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
     trajectory, found = _reachable(job, settings)
     target = path.with_suffix(".pkmt")
     try:
-        with staged(target.parent) as folder:
+        with staged(target.parent, manifest.manifest_name(target.stem)) as folder:
             stored = folder / target.name
             trajectory_file.write(replace(trajectory, tolerances=settings.options.tolerances), stored)
             _value(trajectory_file.read(stored), found)
+            manifest.write(folder, target.stem)
     except OSError as fault:
-        raise Refused([*found, Diagnostic("F101", Place(str(target)), str(fault))]) from fault
+        raise Refused([*found, unwritten(target, fault)]) from fault
     lines = (
         f"trajectory: {target.name}",
         f"machine: {FilePath(settings.machine).name}",

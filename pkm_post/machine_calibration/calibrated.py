@@ -16,6 +16,7 @@ from pkm_post.machine_calibration.measurements import read_measurements
 from pkm_post.machine_file import CannotRewriteError, find_machine, machine_named, machine_of, with_entries
 from pkm_post.model import Diagnostic, Machine, Place
 from pkm_post.model.diagnostics import errors
+from pkm_post.unwritten import unwritten
 
 _WRITTEN = 1e-6
 """mm: by how much a number may change when it is written."""
@@ -41,15 +42,15 @@ def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[st
     told = _told(found, str(measurements))
     if errors(told):
         return None, told
-    text, unwritten = _text(path, found, len(measured), measurements.name, str(out))
-    told += unwritten
+    text, faults = _text(path, found, len(measured), measurements.name, str(out))
+    told += faults
     if text is None:
         return None, told
     try:
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="utf-8", newline="")
     except OSError as fault:
-        return None, (*told, Diagnostic("F101", Place(str(out)), str(fault)))
+        return None, (*told, unwritten(out, fault))
     return report(machine, found, len(measured)), told
 
 

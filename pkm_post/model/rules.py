@@ -533,4 +533,12 @@ RULES: dict[str, Rule] = {
         "post again, and keep the manifest and all that it lists with the program",
     ),
     "F108": _error("the manifest of results cannot be read", "post again, or bring back the manifest"),
+    "F109": _error(
+        "another process is moving its files into the folder",
+        "try again when it has ended, or choose another folder",
+    ),
+    "F110": _error(
+        "files were not all replaced, and earlier ones could not be put back",
+        "close the programs that have the named files open, remove them, and try again",
+    ),
 }

@@ -18,7 +18,7 @@ from pkm_post.controllers import TABLES, controller_settings, read_texts
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
 from pkm_post.machine_check import home_faults
-from pkm_post.model import Diagnostic, Machine, Motion, Place, Program, Refused, StrutMotion, Trajectory
+from pkm_post.model import Machine, Motion, Program, Refused, StrutMotion, Trajectory
 from pkm_post.model.certificate import Certificate, Coverage
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.setup import Setup
@@ -28,6 +28,7 @@ from pkm_post.pipeline.options import LINUXCNC, Options
 from pkm_post.pipeline.placed import trajectory_of
 from pkm_post.pipeline.run import Findings, Log, Progress, Run, quiet, unwatched
 from pkm_post.report import plots, summary
+from pkm_post.unwritten import unwritten
 
 SUFFIX = ".pmc"
 """How the name of a motion program ends."""
@@ -73,7 +74,7 @@ def post(
         raise Refused(found)
     run = Run(log, progress, _shares(options), list(found))
     try:
-        with staged(program_path.parent) as folder:
+        with staged(program_path.parent, manifest.manifest_name(program_path.stem)) as folder:
             parts, report = _all_steps(run, program, machine, folder / program_path.name, options, setup)
             run.end()
             manifest.write(folder, program_path.stem)
@@ -81,7 +82,7 @@ def post(
     except OSError as fault:
         if fault is run.raised_outside:
             raise
-        raise Refused([*run.warnings, Diagnostic("F101", Place(str(program_path)), str(fault))]) from fault
+        raise Refused([*run.warnings, unwritten(program_path, fault)]) from fault
     run.accept(outputs.left_over(program_path, names))
     files, programs = (tuple(program_path.parent / name for name in each) for each in (names, parts))
     return Posted(program_path, files, report, tuple(run.warnings), programs)

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Files appear together, complete, or not at all."""
 
+import errno
+import itertools
 import os
 import stat
 
 import pytest
 
-from pkm_post.files import staged
+from pkm_post.files import MixedError, staged
 
 
 def contents(folder):
@@ -58,28 +60,114 @@ def test_existing_files_are_replaced_and_others_kept(tmp_path):
     assert contents(tmp_path) == {"part.pmc": "new", "other.pmc": "other"}
 
 
-def test_new_files_are_taken_back_when_one_cannot_be_moved(tmp_path):
-    (tmp_path / "a-old").write_text("old")
-    (tmp_path / "c-folder").mkdir()
-    with pytest.raises(OSError, match="c-folder"), staged(tmp_path) as private:
-        for name in ("a-old", "b-new", "c-folder", "d-new"):
-            (private / name).write_text("new")
-    assert names(tmp_path) == ["a-old", "c-folder"]
-    assert contents(tmp_path) == {"a-old": "new"}  # what was replaced is not changed back
+def write_generation(folder, text, count=4):
+    """Files a, b and so on with the same text; the last of them is the one that comes last."""
+    with staged(folder, last="c") as private:
+        for name in "abcd"[:count]:
+            (private / name).write_text(text)
 
 
-def test_new_files_are_taken_back_when_the_names_cannot_be_stored(tmp_path, monkeypatch):
-    fsync = os.fsync
+def failing(monkeypatch, name, when):
+    """Let a function of ``os`` fail at the calls for which ``when`` holds, as that of a system would."""
+    real = getattr(os, name)
 
-    def fail_on_folders(descriptor):
-        if stat.S_ISDIR(os.fstat(descriptor).st_mode):
-            raise OSError("no space for names")
-        fsync(descriptor)
+    def call(*arguments):
+        if when(*arguments):
+            raise PermissionError(errno.EACCES, "used by another process", str(arguments[0]))
+        return real(*arguments)
 
-    monkeypatch.setattr("os.fsync", fail_on_folders)
-    with pytest.raises(OSError, match="no space for names"), staged(tmp_path) as private:
-        (private / "part.pmc").write_text("program")
-    assert names(tmp_path) == []
+    monkeypatch.setattr(f"os.{name}", call)
+
+
+OLD = dict.fromkeys("abcd", "old")
+
+
+def test_a_folder_is_never_replaced_by_a_file(tmp_path):
+    (tmp_path / "a").write_text("old")
+    (tmp_path / "c").mkdir()
+    (tmp_path / "c" / "inside").write_text("kept")
+    with pytest.raises(IsADirectoryError):
+        write_generation(tmp_path, "new")
+    assert contents(tmp_path) == {"a": "old", os.path.join("c", "inside"): "kept"}
+    assert names(tmp_path) == ["a", "c"]
+
+
+@pytest.mark.parametrize("name", "abcd")
+@pytest.mark.parametrize("is_new", [True, False])
+def test_all_is_as_it_was_when_one_file_cannot_be_moved(tmp_path, monkeypatch, name, is_new):
+    write_generation(tmp_path, "old")
+    failing(
+        monkeypatch,
+        "replace",
+        lambda source, target: source.name == name and source.parent.name == ("new" if is_new else tmp_path.name),
+    )
+    with pytest.raises(PermissionError, match="used by another process"):
+        write_generation(tmp_path, "new")
+    assert contents(tmp_path) == OLD
+    assert names(tmp_path) == list("abcd")
+
+
+@pytest.mark.parametrize("which", range(3))
+def test_all_is_as_it_was_when_names_cannot_be_stored(tmp_path, monkeypatch, which):
+    write_generation(tmp_path, "old")
+    folders = itertools.count()
+
+    def is_the_one(descriptor):
+        return stat.S_ISDIR(os.fstat(descriptor).st_mode) and next(folders) == which
+
+    failing(monkeypatch, "fsync", is_the_one)
+    with pytest.raises(PermissionError):
+        write_generation(tmp_path, "new")
+    assert contents(tmp_path) == OLD
+    assert names(tmp_path) == list("abcd")
+
+
+def test_an_interrupt_while_files_are_moved_leaves_all_as_it_was(tmp_path, monkeypatch):
+    replace = os.replace
+    for moves in itertools.count():
+        write_generation(tmp_path, "old")
+        left = itertools.count(moves, -1)
+
+        def interrupted(source, target, left=left):
+            replace(source, target)
+            if next(left) == 0:
+                raise KeyboardInterrupt
+
+        with monkeypatch.context() as patched:
+            patched.setattr("os.replace", interrupted)
+            try:
+                write_generation(tmp_path, "new")
+            except KeyboardInterrupt:
+                assert contents(tmp_path) == OLD
+            else:
+                break
+    assert moves == 8
+    assert contents(tmp_path) == dict.fromkeys("abcd", "new")
+
+
+def test_files_that_cannot_be_put_back_are_named_and_the_last_is_not_there(tmp_path, monkeypatch):
+    write_generation(tmp_path, "old")
+
+    def b_does_not_come_and_a_does_not_go(source, target):
+        return "new" in (source if source.name == "b" else target if source.name == "a" else tmp_path).parent.name
+
+    failing(monkeypatch, "replace", b_does_not_come_and_a_does_not_go)
+    with pytest.raises(MixedError, match="could not be put back: a$"):
+        write_generation(tmp_path, "new")
+    assert contents(tmp_path) == {"a": "new", "b": "old", "d": "old"}
+
+
+def test_what_is_replaced_goes_before_anything_comes(tmp_path, monkeypatch):
+    write_generation(tmp_path, "old")
+    seen, replace = [], os.replace
+
+    def looking(source, target):
+        replace(source, target)
+        seen.append("".join(sorted(f"{name}{text[0]}" for name, text in contents(tmp_path).items() if len(name) == 1)))
+
+    monkeypatch.setattr("os.replace", looking)
+    write_generation(tmp_path, "new", count=3)
+    assert seen == ["aobodo", "aodo", "do", "ando", "anbndo", "anbncndo"]
 
 
 def test_nothing_appears_when_a_file_cannot_be_stored(tmp_path, monkeypatch):
@@ -123,7 +211,7 @@ def test_every_file_is_stored_before_the_first_is_moved(tmp_path, monkeypatch):
     with staged(tmp_path) as private:
         for name in ("b", "c", "a"):
             (private / name).write_text(name)
-    assert calls[:6] == ["fsync", "fsync", "fsync", "replace a", "replace b", "replace c"]
+    assert calls[:7] == ["fsync", "fsync", "fsync", "fsync", "replace a", "replace b", "replace c"]
 
 
 @pytest.mark.parametrize("mask", [0o022, 0o077])

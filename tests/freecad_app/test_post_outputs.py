@@ -39,7 +39,7 @@ def refused(job, name):
 def test_trajectory_is_written_beside_a_text_that_names_it(job, tmp_path):
     text = exported(job, "hexapod_trajectory")
     assert text.splitlines()[0] == "(trajectory: made [by cam].pkmt)"
-    assert [path.name for path in tmp_path.iterdir()] == ["made (by cam).pkmt"]
+    assert {path.name for path in tmp_path.iterdir()} == {"made (by cam)-manifest.json", "made (by cam).pkmt"}
     trajectory, faults = trajectory_file.read(tmp_path / "made (by cam).pkmt")
     assert faults == ()
     assert f"(segments: {len(trajectory)})" in text
