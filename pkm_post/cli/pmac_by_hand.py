@@ -50,9 +50,11 @@ def carry_out(
     control: NumericalControl,
     plan: Plan | None,
     told: tuple[Diagnostic, ...],
+    near: float | None = None,
 ) -> int:
-    """Tell a plan, have it carried out, and tell where it has led."""
+    """Tell a plan, have it carried out, and tell where it has led; ``near`` is as for ``execute``."""
     from pkm_post.numerical_control.execute import off_target
+    from pkm_post.pmac_link.near import NEAR_MM
     from pkm_post.pmac_link.readout import pose_text
 
     for diagnostic in told:
@@ -63,7 +65,7 @@ def carry_out(
     if namespace.check:
         return 0
     with held_at_the_end(session, target.settings):
-        control.execute(plan)
+        control.execute(plan, NEAR_MM if near is None else near)
         if control.silence_s is not None:
             print(f"it rests within {control.silence_s:.1f} s if this computer falls silent, at 100 %", flush=True)
         status = wait_for_end(control, plan.seconds)

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.pmac_by_hand import carry_out, control_of, ended_elsewhere, wait_for_end
+from pkm_post.cli.pmac_by_hand import carry_out, control_of
 from pkm_post.cli.pmac_stop import held_at_the_end
 
 if TYPE_CHECKING:
@@ -89,25 +89,26 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
 
 
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Run a program from rest to rest; each line of the standard input starts a block."""
-    from pkm_post.numerical_control.single_block import blocks_of
+    """Run a program line by line of its source; each line of the standard input starts one."""
+    from pkm_post.numerical_control.single_block import blocks_of_program
     from pkm_post.pmac_link.faults import NotReadyError
-    from pkm_post.pmac_link.near import NEAR_MM
 
     control = control_of(session, target, namespace)
-    count = len(blocks_of(target.job, target.settings, namespace.number))
-    if namespace.block > count:
-        raise NotReadyError([f"there is no block {namespace.block}: the program has {count}"])
-    control.open_blocks(target.job, namespace.block)
-    for number in range(namespace.block, count + 1):
-        print(f"block {number} of {count}: Enter starts it, the end of the input ends here", flush=True)
+    blocks, told = blocks_of_program(namespace.program, target.machine)
+    for diagnostic in told:
+        print(diagnostic, file=sys.stderr)
+    if blocks is None:
+        return 1
+    if namespace.block > len(blocks):
+        raise NotReadyError([f"there is no block {namespace.block}: the program has {len(blocks)}"])
+    control.open_blocks(blocks, namespace.block)
+    for number in range(namespace.block, len(blocks) + 1):
+        print(f"{blocks.shown(number)}; Enter starts it, the end of the input ends here", flush=True)
         if not sys.stdin.readline():
             return 0
-        with held_at_the_end(session, target.settings):
-            # Only what comes first is begun by hand; the others begin where the one before them ended.
-            last = control.step(namespace.near if number == namespace.block else NEAR_MM)
-            status = wait_for_end(control, target.job.motion.time_ms[-1] / 1000)
-        if ended_elsewhere(status, last):
+        # Only what comes first is begun by hand; the others begin where the one before them ended.
+        near = namespace.near if number == namespace.block else None
+        if carry_out(session, target, namespace, control, *control.plan_step(), near):
             return 1
     print("the program has ended")
     return 0
@@ -137,7 +138,7 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "jog": (jog, "move the tool or one strut a little, planned and checked", ("machine",)),
     "mdi": (mdi, "carry out a line of G-code, planned and checked", ("machine",)),
     "approach": (approach, "bring the tool to the start of a program, planned and checked", ("machine", "program")),
-    "step": (step, "run a program from rest to rest", ("machine", "program")),
+    "step": (step, "run a program line by line of its source, each to rest", ("machine", "program")),
     "continue": (go_on, "go on after a stop (M0, M1) of a program that was run", ("machine", "program")),
     "override": (override, "how fast time passes in programs, in %%", ("machine",)),
 }

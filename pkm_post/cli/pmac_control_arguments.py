@@ -69,7 +69,7 @@ def _add_step(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--block", type=count, default=1, metavar="N", help="begin at this block (%(default)s)")
     near = "how far each strut and the tip may be from where the first block begins (%(default)s)"
     parser.add_argument("--near", type=positive, default=NEAR_MM, metavar="MM", help=near)
-    parser.set_defaults(tool_length=None)
+    parser.set_defaults(tool_length=None, check=False)
     _add_number(parser)
 
 

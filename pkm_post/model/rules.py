@@ -482,6 +482,10 @@ RULES: dict[str, Rule] = {
     "C202": _error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),
     "C203": _error("a line by hand cannot change the tool", "change it, and say its gauge length"),
     "C204": _error("the way needs more memory than one program has", "jog less far, or program a higher feed"),
+    "C205": _error(
+        "the lines of the program's source are not known",
+        "keep all results of a posting together in one folder, or post the job again",
+    ),
     # V1: the certificate
     "V101": _error("the tool tip leaves the programmed path", "ask for a wider tolerance, or report this as a fault"),
     "V102": _error("the tool axis leaves the programmed axis", "ask for a wider tolerance, or report this as a fault"),

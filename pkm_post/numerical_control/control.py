@@ -22,7 +22,7 @@ from pkm_post.numerical_control import execute as execution
 from pkm_post.numerical_control.emergency import emergency_text
 from pkm_post.numerical_control.homing import Homing, HomingWatch, Phase, missing_homes, start_homing
 from pkm_post.numerical_control.plan import Plan, planned
-from pkm_post.numerical_control.single_block import Blocks, blocks_of
+from pkm_post.numerical_control.single_block import Blocks, Shown
 from pkm_post.numerical_control.watchdog import Watchdog
 from pkm_post.pmac_link import operate, stopping
 from pkm_post.pmac_link.download import Loaded, Progress, download
@@ -32,7 +32,7 @@ from pkm_post.pmac_link.near import NEAR_MM
 from pkm_post.pmac_link.readout import Pose, Readout, standing_pose
 from pkm_post.pmac_link.ready import check_setup
 from pkm_post.pmac_link.session import Session
-from pkm_post.pmac_link.status import Array, Status, read_status
+from pkm_post.pmac_link.status import Status, read_status
 
 Findings = tuple[Diagnostic, ...]
 
@@ -52,7 +52,7 @@ class State:
         lost: why there is no link; empty while there is one.
         emergency: what a person has to do, when the link was lost while the machine may move.
         homing: of a homing that was started here; None when none was.
-        block: number of the block that runs or comes next, and of how many; None without single block.
+        block: the block that comes next; None without single block.
     """
 
     status: Status | None
@@ -60,7 +60,7 @@ class State:
     lost: str = ""
     emergency: tuple[str, ...] = ()
     homing: Homing | None = None
-    block: tuple[int, int] | None = None
+    block: Shown | None = None
 
 
 class NumericalControl:
@@ -81,7 +81,7 @@ class NumericalControl:
             machine: the machine.
             settings: of its controller.
             tool_length: gauge length of the tool in the spindle, mm; ``tool_length`` may be changed at any time.
-            number: of the program of moves by hand and of single blocks.
+            number: of the program of moves by hand and of single blocks, and of the variable P of their watchdogs.
         """
         self._session, self._machine, self._settings, self._number = session, machine, settings, number
         self._watch: HomingWatch | None = None
@@ -163,15 +163,18 @@ class NumericalControl:
             raise NotReadyError(["no pose of the platform that small steps from home lead to is that of the start"])
         return self._planned(*moves.approach(self._machine, here, start, self.tool_length, feed))
 
-    def execute(self, plan: Plan) -> Status:
+    def execute(self, plan: Plan, near: float = NEAR_MM) -> Status:
         """Load a plan, list it back and start it; as ``execute.execute``.
 
         The controller holds a jog by itself when nobody calls ``poll``, ``renew`` or ``wait_for_rest`` any more.
         """
         order = self._session, self._machine, self._settings, plan.job
-        if not plan.is_jog:
-            return self._moving(lambda: execution.execute(*order))
-        status, self._watchdog = self._moving(lambda: execution.execute_watched(*order))
+        if plan.is_jog:
+            status, self._watchdog = self._moving(lambda: execution.execute_watched(*order))
+        else:
+            status = self._moving(lambda: execution.execute(*order, near))
+        if plan.block and self._blocks is not None:
+            self._blocks = self._blocks[0], plan.block + 1
         return status
 
     @property
@@ -207,38 +210,33 @@ class NumericalControl:
         """Go on behind a stop (M0, M1) of a program, numbered from 1, at which it stands; as ``stops.go_on``."""
         return self._moving(lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
 
-    def open_blocks(self, job: Job, at: int = 1) -> int:
+    def open_blocks(self, blocks: Blocks, at: int = 1) -> int:
         """Take a program for single block; how many blocks it has.
 
         Args:
-            job: the program.
+            blocks: of the program.
             at: the block that comes next, from 1.
 
         Raises:
             ValueError: there is no such block.
         """
-        blocks = blocks_of(job, self._settings, self._number)
         if not 1 <= at <= len(blocks):
             raise ValueError(f"at: expected a block from 1 to {len(blocks)}, got {at}")
         self._blocks = blocks, at
         return len(blocks)
 
-    def step(self, near: float = NEAR_MM) -> Array:
-        """Start the block that comes next; the one behind it comes next then.
-
-        Returns:
-            (6,) strut lengths that it leads to, mm.
+    def plan_step(self) -> tuple[Plan | None, Findings]:
+        """Plan the block that comes next, from where it begins; when it is executed, the one behind it comes next.
 
         Raises:
             ValueError: no program was taken for single block, or all its blocks have run.
         """
         if self._blocks is None or self._blocks[1] > len(self._blocks[0]):
-            raise ValueError("step: expected a block that comes next, got none")
+            raise ValueError("plan_step: expected a block that comes next, got none")
         blocks, number = self._blocks
-        job = blocks.job(number)
-        self._moving(lambda: execution.execute(self._session, self._machine, self._settings, job, near))
-        self._blocks = blocks, number + 1
-        return job.motion.length[-1]
+        block = blocks.block(number)
+        plan, told = self._planned(block, (), block.tolerances or TOLERANCES)
+        return (None if plan is None else replace(plan, block=number)), told
 
     def hold(self) -> Status:
         """Slow down to rest on the path."""
@@ -267,8 +265,8 @@ class NumericalControl:
         if not status.running:
             self._watchdog = None
 
-    def _block(self) -> tuple[int, int] | None:
-        return None if self._blocks is None else (self._blocks[1], len(self._blocks[0]))
+    def _block(self) -> Shown | None:
+        return None if self._blocks is None else self._blocks[0].shown(self._blocks[1])
 
     def _emergency(self) -> tuple[str, ...]:
         """What to do now that the link is lost; nothing when there never was one."""
@@ -299,8 +297,10 @@ class NumericalControl:
             raise NotReadyError(["no pose of the platform that small steps from home lead to has these strut lengths"])
         return pose
 
-    def _planned(self, trajectory: Trajectory | None, told: Findings) -> tuple[Plan | None, Findings]:
+    def _planned(
+        self, trajectory: Trajectory | None, told: Findings, tolerances: Tolerances = TOLERANCES
+    ) -> tuple[Plan | None, Findings]:
         if trajectory is None:
             return None, told
-        plan, faults = planned(trajectory, self._machine, self._settings, TOLERANCES, self._number)
+        plan, faults = planned(trajectory, self._machine, self._settings, tolerances, self._number)
         return plan, told + faults

@@ -111,7 +111,7 @@ def facts(state: State, desk: Desk) -> frozenset[Why]:
         Why.BUSY: desk.busy,
         Why.NO_JOB: not desk.has_job,
         Why.NOT_LOADED: not desk.loaded,
-        Why.NO_BLOCK: not desk.stepping or state.block is None or state.block[0] > state.block[1],
+        Why.NO_BLOCK: not desk.stepping or state.block is None or state.block.is_over,
         Why.NO_STOP: not desk.has_stops,
         Why.RUNS: status is not None and status.running and not held,
         Why.HELD: held,

@@ -41,12 +41,14 @@ class Plan:
         certificate: what was measured.
         end: where the tool will be, by forward kinematics of the last lengths.
         is_jog: whether it may only go on while somebody looks on.
+        block: which block of a program it is, from 1; 0 for other moves.
     """
 
     job: Job
     certificate: Certificate
     end: Pose
     is_jog: bool = False
+    block: int = 0
 
     @property
     def lengths(self) -> Array:

@@ -1,27 +1,64 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Single block: a program in the pieces between its rests, each of them a program of its own.
+"""Single block: a posted program, line by line of the source that people see, each line to rest.
 
-The controller's own single step ends behind one move, and a PVT move ends at speed. Between two rests there is nothing
-to step to. So the program is cut where every printed speed is zero, as it is for parts: a block begins at the very
-lengths where the one before it ended, and what happens at a rest belongs to the block behind it. When a block has
-ended, the machine stands and no program runs; nothing else has to hold. The stops of the program (M0, M1) are left out:
-a block ends at each of them anyway.
+A posted motion program rounds corners and runs through the ends of lines, and the controller's own single step ends
+after one PVT move, at speed. So what is stepped through is not the motion program but the trajectory that was posted
+with it: the segments of one line are planned by themselves, from rest to rest, and certified as any move by hand is.
+What takes place between two lines that move belongs to the second. A tool change ends a block as well. The stops of the
+program (M0, M1) are left out: each block ends at rest anyway.
 
-Enters: a program that was read. Leaves: jobs, one for each block, whose motions together are its motion.
+Enters: a motion program beside the other results of its posting. Leaves: a trajectory for each block, and what to show
+of it.
 """
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
-from pkm_post.controllers.pmac import Settings, program_text
-from pkm_post.controllers.pvt.parts import parted
-from pkm_post.controllers.pvt.writer import rests
-from pkm_post.model import EventKind, StrutMotion
-from pkm_post.numerical_control.defaults import OWN_PROGRAM
-from pkm_post.pmac_link.job import Job, read_job
+from pkm_post import manifest, trajectory_file
+from pkm_post.geometry.vectors import Array
+from pkm_post.model import Diagnostic, EventKind, Machine, Place, Trajectory
+from pkm_post.model.diagnostics import errors
+from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
+from pkm_post.sources import is_part_program
+
+Findings = tuple[Diagnostic, ...]
+
+_TRAJECTORY = ".pkmt"
+_MOST_SOURCE = 1 << 28
+"""Bytes of a source that is read for its lines."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What to show of the block that comes next.
+
+    Attributes:
+        number: of the block, from 1; one more than ``count`` when all have run.
+        count: of the blocks.
+        operation: of the job, empty where the source has none.
+        line: in the source, or number of the command in its operation.
+        text: that line, or where it leads to in the work frame where the source is not at hand.
+    """
+
+    number: int
+    count: int
+    operation: str = ""
+    line: int = 0
+    text: str = ""
+
+    @property
+    def is_over(self) -> bool:
+        """Whether no block comes next."""
+        return self.number > self.count
+
+    def __str__(self) -> str:
+        where = " ".join(filter(None, (self.operation, f"line {self.line}")))
+        return f"block {self.number} of {self.count}, {where}: {self.text}"
 
 
 @dataclass(frozen=True)
@@ -29,68 +66,117 @@ class Blocks:
     """The blocks of a program.
 
     Attributes:
-        motions: of the blocks, in order.
-        settings: of the controller, with the number that blocks run under.
+        trajectory: of the whole.
+        lines: of its source, none where that is not at hand.
+        begins: (B,) the first segment of each block.
     """
 
-    motions: tuple[StrutMotion, ...]
-    settings: Settings
+    trajectory: Trajectory
+    lines: tuple[str, ...]
+    begins: Array
 
     def __len__(self) -> int:
-        return len(self.motions)
+        return len(self.begins)
 
-    def job(self, number: int) -> Job:
-        """A block as a program.
+    def shown(self, number: int) -> Shown:
+        """What to show of a block, numbered from 1; one behind the last is the end."""
+        if number > len(self):
+            return Shown(number, len(self))
+        place = self.trajectory.place(self._rows(number)[0])
+        known = 0 < place.line <= len(self.lines)
+        text = self.lines[place.line - 1].strip() if known else self._target(number)
+        return Shown(number, len(self), place.operation, place.line, text)
+
+    def block(self, number: int) -> Trajectory:
+        """A block as a trajectory from rest to rest.
 
         Args:
             number: of the block, from 1.
 
         Raises:
-            ValueError: there is no such block, or its text does not give its motion back.
+            ValueError: there is no such block.
         """
-        if not 1 <= number <= len(self.motions):
-            raise ValueError(f"number: expected a block from 1 to {len(self.motions)}, got {number}")
-        return job_of(self.motions[number - 1], self.settings, f"block {number} of {len(self.motions)}")
+        if not 1 <= number <= len(self):
+            raise ValueError(f"number: expected a block from 1 to {len(self)}, got {number}")
+        whole, (first, end) = self.trajectory, self._rows(number)
+        with_before, at = self._segments(max(first - 1, 0), end), int(first > 0)
+        block = self._segments(first, end)
+        last = np.arange(len(block)) == len(block) - 1
+        behind = end + (end == len(whole))  # what takes place behind the last segment belongs to it
+        events = (each for each in whole.events if first <= each.row < behind and each.kind is not EventKind.STOP)
+        return replace(
+            block,
+            exact_stop=block.exact_stop | last,
+            smooth=block.smooth & ~last,
+            start_tip=with_before.tip_before()[at],
+            start_axis=with_before.axis_before()[at],
+            start_spin=float(with_before.spin_before()[at]),
+            events=tuple(replace(each, row=each.row - first) for each in events),
+        )
+
+    def _segments(self, first: int, end: int) -> Trajectory:
+        """Some segments; their start is that of the whole."""
+        columns = {name: getattr(self.trajectory, name)[first:end] for name in TRAJECTORY_COLUMNS}
+        return replace(self.trajectory, **columns, events=())
+
+    def _rows(self, number: int) -> tuple[int, int]:
+        """The first segment of a block, and the one behind its last."""
+        first, *behind = self.begins[number - 1 : number + 1].tolist()
+        return first, behind[0] if behind else len(self.trajectory)
+
+    def _target(self, number: int) -> str:
+        machine_from_work, tip = self.trajectory.machine_from_work, self.trajectory.tip[self._rows(number)[1] - 1]
+        x, y, z = machine_from_work[:3, :3].T @ (tip - machine_from_work[:3, 3]) + 0.0
+        return f"-> X{x:.3f} Y{y:.3f} Z{z:.3f}"
 
 
-def blocks_of(job: Job, settings: Settings, number: int = OWN_PROGRAM) -> Blocks:
-    """The blocks of a program.
+def blocks_of(trajectory: Trajectory, lines: tuple[str, ...] = ()) -> Blocks:
+    """The blocks of a trajectory: its segments with one operation and line, between two tool changes."""
+    begins = np.ones(len(trajectory), dtype=np.bool_)
+    begins[1:] = (np.diff(trajectory.line) != 0) | (np.diff(trajectory.operation) != 0)
+    changes = [each.row for each in trajectory.events if each.kind is EventKind.TOOL_CHANGE]
+    begins[[row for row in changes if row < len(trajectory)]] = True
+    return Blocks(trajectory, lines, np.flatnonzero(begins))
+
+
+def blocks_of_program(program: Path, machine: Machine) -> tuple[Blocks | None, Findings]:
+    """The blocks of a motion program, by the trajectory that was posted with it.
 
     Args:
-        job: the program.
-        settings: of the controller it was written for.
-        number: of the program that blocks run under.
-
-    Raises:
-        ValueError: the number is that of the jobs.
+        program: the motion program, or a part of it; the other results of its posting lie beside it.
+        machine: the machine it is for.
     """
-    if number == settings.program:
-        raise ValueError(f"number: expected another one than that of the jobs, got {number}")
-    last = len(job.motion) - 1
-    cuts = [int(knot) for knot in rests(job.motion, settings) if 0 < knot < last]
-    events = tuple(event for event in job.motion.events if event.kind is not EventKind.STOP)
-    return Blocks(parted(replace(job.motion, events=events), cuts), replace(settings, program=number))
+    posted, faults = manifest.check(program)
+    if errors(faults):
+        return None, faults
+    names = [] if posted is None else [name for name in posted.files if name.endswith(_TRAJECTORY)]
+    if not names:
+        return None, (Diagnostic("C205", Place(str(program)), "no manifest beside it lists it with a trajectory"),)
+    file = program.with_name(names[0])
+    trajectory, faults = trajectory_file.read(file)
+    if trajectory is None:
+        return None, faults
+    if trajectory.machine_fingerprint != machine.fingerprint:
+        found = f"made for {trajectory.machine}, to be run on {machine.name}"
+        return None, (*faults, Diagnostic("T104", Place(str(file)), found))
+    return blocks_of(trajectory, _lines_of_source(trajectory, program.parent)), faults
 
 
-def job_of(motion: StrutMotion, settings: Settings, name: str) -> Job:
-    """A piece of a program as a program.
-
-    Args:
-        motion: of the piece.
-        settings: of the controller, with the number it runs under.
-        name: what it is.
-
-    Raises:
-        ValueError: its text does not give its motion back.
-    """
-    job, faults = read_job(program_text(motion, settings, [name]), settings, name)
-    if job is None or not same(job.motion, motion):
-        raise ValueError(f"{name}: expected a text that gives its motion back, got {faults}")
-    return job
+def _lines_of_source(trajectory: Trajectory, folder: Path) -> tuple[str, ...]:
+    """The lines of the part program, where it lies as it was posted: under its name, or beside the results."""
+    source = Path(trajectory.source)
+    if not is_part_program(source):
+        return ()
+    for file in (source, folder / source.name):
+        content = _content(file)
+        if hashlib.sha256(content).hexdigest() == trajectory.source_fingerprint:
+            return tuple(content.decode("utf-8", "replace").replace("\r\n", "\n").split("\n"))
+    return ()
 
 
-def same(one: StrutMotion, other: StrutMotion) -> bool:
-    """Whether two motions are one, to the last digit."""
-    return one.events == other.events and all(
-        np.array_equal(getattr(one, name), getattr(other, name)) for name in ("time_ms", "length", "speed")
-    )
+def _content(file: Path) -> bytes:
+    try:
+        with file.open("rb") as stream:
+            return stream.read(_MOST_SOURCE)
+    except OSError:
+        return b""  # a source that is not at hand is not shown

@@ -13,13 +13,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from pkm_post.controllers.pmac import Settings
+import numpy as np
+
+from pkm_post.controllers.pmac import Settings, program_text
 from pkm_post.controllers.pvt.parts import parted
-from pkm_post.model import EventKind, Machine
+from pkm_post.model import EventKind, Machine, StrutMotion
 from pkm_post.numerical_control.execute import execute
-from pkm_post.numerical_control.single_block import job_of
 from pkm_post.pmac_link.faults import NotReadyError
-from pkm_post.pmac_link.job import Job
+from pkm_post.pmac_link.job import Job, read_job
 from pkm_post.pmac_link.near import NEAR_MM
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status
@@ -59,6 +60,30 @@ def job_behind(job: Job, stop: Stop, settings: Settings) -> Job:
     rest = replace(job.motion, events=job.motion.events[stop.event + 1 :])
     motion = parted(rest, [row])[-1] if row else rest
     return job_of(motion, replace(settings, program=job.program.number), f"behind stop {stop.number}")
+
+
+def job_of(motion: StrutMotion, settings: Settings, name: str) -> Job:
+    """A piece of a program as a program.
+
+    Args:
+        motion: of the piece.
+        settings: of the controller, with the number it runs under.
+        name: what it is.
+
+    Raises:
+        ValueError: its text does not give its motion back.
+    """
+    job, faults = read_job(program_text(motion, settings, [name]), settings, name)
+    if job is None or not same(job.motion, motion):
+        raise ValueError(f"{name}: expected a text that gives its motion back, got {faults}")
+    return job
+
+
+def same(one: StrutMotion, other: StrutMotion) -> bool:
+    """Whether two motions are one, to the last digit."""
+    return one.events == other.events and all(
+        np.array_equal(getattr(one, name), getattr(other, name)) for name in ("time_ms", "length", "speed")
+    )
 
 
 def go_on(

@@ -796,8 +796,12 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>下一程序段</translation>
     </message>
     <message>
-        <source>Run it to its next rest</source>
-        <translation>运行到下一个静止处</translation>
+        <source>Run the next line of its source, to rest</source>
+        <translation>运行源程序的下一行，直到静止</translation>
+    </message>
+    <message>
+        <source>Not sent: the block is refused</source>
+        <translation>未发送：该程序段被拒绝</translation>
     </message>
     <message>
         <source>Go on after stop</source>
@@ -1064,8 +1068,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>倍率 {:g} %</translation>
     </message>
     <message>
-        <source>block {} of {} comes next</source>
-        <translation>下一个是程序段 {}，共 {} 段</translation>
+        <source>block {} of {} comes next, line {}: {}</source>
+        <translation>下一个是程序段 {}，共 {} 段，第 {} 行：{}</translation>
     </message>
     <message>
         <source>no home yet: strut {}</source>

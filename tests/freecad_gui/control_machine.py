@@ -6,6 +6,7 @@ from gui import FOLDER, click, until
 from PySide import QtCore, QtWidgets
 
 PER_BLOCK = 100
+LINES = ("G1 X2 Y0 Z150 F1200", "X2 Y1", "X0 Y0")
 HOME_MM = 1007.8869
 """The struts of the example at home."""
 
@@ -88,6 +89,15 @@ def program_file(name, *events):
     file = FOLDER / name
     file.write_text(program_text(motion, settings, [name]), encoding="ascii")
     return file
+
+
+def posted_file(name, *lines):
+    """A part program that was posted for the machine of the panel."""
+    from pkm_post.post_file import post_file
+
+    source = FOLDER / name
+    source.write_text("\n".join(("G21 G90 G54", *lines, "M30", "")), encoding="ascii")
+    return post_file(source, "example_6tps", FOLDER, tool_lengths={0: the_panel().face.connecting.taken_length}).program
 
 
 def connect_and_home():

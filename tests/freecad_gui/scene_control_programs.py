@@ -5,11 +5,13 @@ import FreeCADGui
 import numpy as np
 from control_machine import (
     HOME_MM,
+    LINES,
     PER_BLOCK,
     connect_and_home,
     idle,
     messages,
     newest,
+    posted_file,
     press_in_box,
     program_file,
     read_again,
@@ -88,26 +90,37 @@ def it_starts_from_its_start_alone_and_is_brought_there():
 
 
 @step
-def it_runs_from_rest_to_rest():
+def it_runs_line_by_line():
     panel = the_panel()
     face, console = panel.face, panel.console
-    found = {"step before": face.program.step.isEnabled()}
+    page = face.program
+    found = {"step before": page.step.isEnabled()}
+    before = len(messages())
+    click(page.begin_at)  # what was opened was not posted: nobody knows the lines of its source
+    until(lambda: len(messages()) > before and not console.waits)
+    found["refused"] = messages()[before:]
     face.stops.override.setValue(100)
     until(lambda: newest().status.override == 100, 10)
     idle()
-    click(face.program.begin_at)
+    page.read(posted_file("lines.ngc", *LINES))
+    until(lambda: page.name.text().startswith("lines.pmc") and not console.waits)
+    settle()
+    until(lambda: page.begin_at.isEnabled())
+    click(page.begin_at)
     until(lambda: newest().block is not None and not console.has_orders)
     settle()
-    found["blocks"] = [messages()[-1], list(newest().block)]
-    out = []
-    for number in (2, 3):
-        until(lambda: face.program.step.isEnabled())
-        click(face.program.step)
-        until(lambda number=number: newest().block[0] == number, 30)
+    found["blocks"] = [messages()[-1], str(newest().block)]
+    read_again()
+    found["activity"] = face.activity.text()
+    places = []
+    for number in range(2, len(LINES) + 2):
+        until(lambda: page.step.isEnabled())
+        click(page.step)
+        until(lambda number=number: newest().block.number == number, 30)
         idle()
-        out.append(float((newest().status.commanded - HOME_MM).mean()))
+        places.append(newest().pose.tip.tolist())
     settle()
-    found["out"], found["step"] = out, face.program.step.isEnabled()
+    found["places"], found["step"] = places, page.step.isEnabled()
     return found
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The panel of numerical control in a FreeCAD with a window, before a simulated machine over loopback."""
 
+import numpy as np
 import pytest
 
 from pkm_post.numerical_control.emergency import STEPS
@@ -113,10 +114,14 @@ def test_a_program_starts_from_its_start_alone_and_the_tool_is_brought_there(pro
     assert found["started"] == [] and found["started at"] == pytest.approx([0, 0, 300], abs=10 * NEAR_MM)
 
 
-def test_it_runs_from_rest_to_rest(programs):
-    found = programs["it_runs_from_rest_to_rest"]
-    assert found["blocks"] == ["The program has 2 blocks; block 1 comes next", [1, 2]]
-    assert found["out"] == pytest.approx([1.0, 0.0], abs=NEAR_MM)
+def test_it_runs_line_by_line(programs):
+    found = programs["it_runs_line_by_line"]
+    assert "C205" in "".join(found["refused"])
+    first = "block 1 of 3, line 2: G1 X2 Y0 Z150 F1200"
+    assert found["blocks"] == ["The program has 3 blocks; block 1 comes next", first]
+    assert "block 1 of 3 comes next, line 2: G1 X2 Y0 Z150 F1200" in found["activity"]
+    places = np.array([[2, 0, 300], [2, 1, 300], [0, 0, 300]])
+    assert found["places"] == pytest.approx(places, abs=10 * NEAR_MM)
     assert (found["step before"], found["step"]) == (False, False)
 
 

@@ -15,6 +15,7 @@ from pkm_post.model import ToolChange
 from pkm_post.numerical_control import moves
 from pkm_post.numerical_control.control import NumericalControl
 from pkm_post.numerical_control.moves import Cartesian
+from pkm_post.numerical_control.single_block import blocks_of_program
 from pkm_post.pipeline import post
 from pkm_post.pmac_link.faults import NotReadyError
 from pkm_post.pmac_link.job import read_job
@@ -39,10 +40,16 @@ def lengths_at(tip, axis=UP, spin=0.0, tool=TOOL):
 @pytest.fixture(scope="module")
 def posted(tmp_path_factory):
     """A job that was posted: it starts at home."""
-    program = post(cone(40, turns=0.2), MACHINE, tmp_path_factory.mktemp("job") / "cone.pmc").program
+    return in_folder(tmp_path_factory.mktemp("job"))[0]
+
+
+def in_folder(folder):
+    """A job that was posted, and its blocks."""
+    program = post(cone(40, turns=0.2), MACHINE, folder / "cone.pmc").program
     made, faults = read_job(program.read_text(), SETTINGS, program.name)
-    assert not faults
-    return made
+    blocks, told = blocks_of_program(program, MACHINE)
+    assert not faults and not told
+    return made, blocks
 
 
 def jog(station, **how):
@@ -85,17 +92,19 @@ def test_it_tells_how_far_away_the_tool_is(station, posted):
     assert "tip 5.000 mm, axis 2.0000 degrees, spin " in told
 
 
-def test_the_stream_and_single_block_begin_at_the_start_as_well(station, posted):
+def test_the_stream_and_single_block_begin_at_the_start_as_well(station, tmp_path):
     from pkm_post.pmac_link.stream import stream
 
+    posted, blocks = in_folder(tmp_path)
     jog(station, shift=(2.0, 0.0, 0.0))
     session = station.wire.session()
     with pytest.raises(NotReadyError, match="the tool is away from the start"):
         stream(session, SETTINGS, posted.program, posted.first, 2600, 1.9, machine=MACHINE)
     session.close()
-    station.control.open_blocks(posted)
+    station.control.open_blocks(blocks)
+    plan, _ = station.control.plan_step()
     with pytest.raises(NotReadyError, match="the tool is away from the start"):
-        station.control.step()
+        station.control.execute(plan)
 
 
 def test_the_first_point_of_another_program_is_approached(station):

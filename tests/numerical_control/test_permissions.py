@@ -7,6 +7,7 @@ import pytest
 from pkm_post.numerical_control.control import State
 from pkm_post.numerical_control.homing import Homing, Phase
 from pkm_post.numerical_control.permissions import AGAINST, Desk, Order, Why, facts, may_move, refusal
+from pkm_post.numerical_control.single_block import Shown
 from pkm_post.pmac_link.status import MotorBits, Status, SystemBits
 
 STANDING, HOMED, RUNNING = 1 << 37, 1 << 10, 1 << 48  # [EPICSpmac]
@@ -61,7 +62,9 @@ def test_a_pause_of_a_homing_is_no_rest(watched, phase, moves):
     assert (Order.JOG not in allowed(state, Desk(connected=True, homing=watched))) == moves
 
 
-@pytest.mark.parametrize(("block", "allows"), [(None, False), ((1, 3), True), ((3, 3), True), ((4, 3), False)])
+@pytest.mark.parametrize(
+    ("block", "allows"), [(None, False), (Shown(1, 3), True), (Shown(3, 3), True), (Shown(4, 3), False)]
+)
 def test_a_step_needs_a_block_that_comes_next(block, allows):
     state, desk = State(status(), None, block=block), Desk(connected=True, has_job=True, stepping=True)
     assert (refusal(Order.STEP, facts(state, desk)) is None) == allows

@@ -9,12 +9,13 @@ import time
 import numpy as np
 import pytest
 from rig import served
-from station import PER_BLOCK, SETTINGS, job, set_up
+from station import PER_BLOCK, SETTINGS, TOOL, job, set_up
 
 from pkm_post.cli import main
 from pkm_post.cli.pmac_control import tell_emergency
 from pkm_post.controllers.pmac import program_text
-from pkm_post.model import Event, EventKind, StrutMotion
+from pkm_post.model import Event, EventKind
+from pkm_post.post_file import post_file
 
 MACHINE = "example_6tps"
 LONGEST_S = 60.0
@@ -103,25 +104,37 @@ def test_override(simulator, capsys):
     assert "override 40 %" in capsys.readouterr().out
 
 
-def test_from_rest_to_rest(simulator, capsys, monkeypatch, tmp_path):
-    _, port = simulator
-    share = np.arange(26) / 25
-    out, rate = (1 - np.cos(np.pi * share)) / 2, np.pi * np.sin(np.pi * share)
-    rate[[0, -1]] = 0.0
-    length = np.concatenate([out, 1 - out[1:]])[:, None] * np.ones(6) + START
-    speed = np.concatenate([rate, -rate[1:]])[:, None] * np.ones(6)
-    motion = StrutMotion(20 * np.arange(51), length, speed, (Event(25, EventKind.STOP, 0.0),))
-    file = tmp_path / "job.pmc"
-    file.write_text(program_text(motion, SETTINGS, ["job"]))
-    monkeypatch.setattr("sys.stdin", io.StringIO("\n\n"))
+LINES = ("G1 X2 Y0 Z300 F3000", "X2 Y1", "X0 Y0")
+
+
+def test_line_by_line(simulator, capsys, monkeypatch, tmp_path):
+    made, port = simulator
+    source = tmp_path / "part.ngc"
+    source.write_text("G21 G90 G54\n" + "\n".join(LINES) + "\nM30\n")
+    post_file(source, MACHINE, tmp_path, tool_lengths={0: TOOL})
+    file = tmp_path / "part.pmc"
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n\n\n"))
     assert pmac("step", port, file) == 0
     told = capsys.readouterr().out
-    assert "block 1 of 2" in told and "block 2 of 2" in told and told.endswith("the program has ended\n")
+    begun = [line for line in told.splitlines() if line.startswith("block")]
+    assert begun == [
+        f"block {number} of 3, line {number + 1}: {line}; Enter starts it, the end of the input ends here"
+        for number, line in enumerate(LINES, 1)
+    ]
+    assert told.count("arrived; no strut is off by more than 0.000") == 3 and told.endswith("the program has ended\n")
+    assert pmac("approach", port, file, "--feed", 6000) == 0
     monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
     assert pmac("step", port, file) == 0
-    assert "the program has ended" not in capsys.readouterr().out
-    assert pmac("step", port, file, "--block", 3) == 1
-    assert "there is no block 3: the program has 2" in capsys.readouterr().err
+    told = capsys.readouterr().out
+    assert "the program has ended" not in told and "block 2 of 3, line 3" in told
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
+    assert pmac("step", port, file, "--block", 2) == 0
+    assert "block 3 of 3, line 4" in capsys.readouterr().out
+    assert pmac("step", port, file, "--block", 4) == 1
+    assert "there is no block 4: the program has 3" in capsys.readouterr().err
+    (tmp_path / "part-manifest.json").unlink()
+    assert pmac("step", port, file) == 1
+    assert "C205" in capsys.readouterr().err and not made.runs_program()
 
 
 def test_behind_a_stop(simulator, capsys, tmp_path):

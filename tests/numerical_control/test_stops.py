@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Going on behind M0 and M1."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from station import PER_BLOCK, job
 
 from pkm_post.model import Event, EventKind
-from pkm_post.numerical_control.stops import job_behind, stops_of
+from pkm_post.numerical_control.stops import job_behind, same, stops_of
 from pkm_post.pmac_link.faults import NotReadyError
 
 COUNT = 1e-4
@@ -97,3 +99,11 @@ def test_an_aborted_program_is_not_gone_on_with(station):
             station.control.go_on(made, stop)
     with pytest.raises(NotReadyError, match="no program is held; after a stop"):
         station.control.resume()
+
+
+def test_a_piece_is_another_motion_when_a_number_differs(station):
+    motion = job(station.settings, ()).motion
+    length = motion.length.copy()
+    length[3, 3] += 1e-6
+    assert same(motion, motion)
+    assert not same(motion, dataclasses.replace(motion, length=length))

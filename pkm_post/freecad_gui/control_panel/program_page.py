@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program page: a motion program opened, loaded, started, or run from rest to rest.
+"""Program page: a motion program opened, loaded, started, or run line by line of its source.
 
 A file enters, is read beside the window, and goes to the controller when that is wished.
 """
@@ -15,9 +15,10 @@ from pkm_post.controllers import read_text
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.model import Diagnostic
-from pkm_post.numerical_control.control import NumericalControl, State
+from pkm_post.numerical_control.control import State
 from pkm_post.numerical_control.permissions import Order, Why
 from pkm_post.numerical_control.plan import Plan
+from pkm_post.numerical_control.single_block import Blocks, blocks_of_program
 from pkm_post.pmac_link.job import Job, read_job
 
 translate = FreeCAD.Qt.translate
@@ -37,7 +38,7 @@ class ProgramPage(QtWidgets.QWidget):
 
     def __init__(self, console: Console) -> None:
         super().__init__()
-        self._console = console
+        self._console, self._file = console, Path()
         self.name, self.block, self.bar = QtWidgets.QLabel(), QtWidgets.QSpinBox(), QtWidgets.QProgressBar()
         self.stop = QtWidgets.QSpinBox()
         self.block.setRange(1, _MOST_BLOCKS)
@@ -58,8 +59,8 @@ class ProgramPage(QtWidgets.QWidget):
              Order.START, self._start),
             (translate("ControlPanel", "Begin at block"), translate("ControlPanel", "Take it for single block"),
              Order.BLOCKS, self._begin_at),
-            (translate("ControlPanel", "Next block"), translate("ControlPanel", "Run it to its next rest"),
-             Order.STEP, self._step),
+            (translate("ControlPanel", "Next block"),
+             translate("ControlPanel", "Run the next line of its source, to rest"), Order.STEP, self._step),
             (translate("ControlPanel", "Go on after stop"),
              translate("ControlPanel", "Start what comes after the stop (M0, M1) at which the machine stands"),
              Order.GO_ON, self._go_on),
@@ -107,6 +108,7 @@ class ProgramPage(QtWidgets.QWidget):
             self._console.told.emit(str(each), job is None)
         if job is not None and self._console.connection is not None:
             self._console.take_job(job)
+            self._file = file
             self.stop.setMaximum(max(1, self._console.stops))
             seconds = translate("ControlPanel", "{:.1f} s").format(job.motion.time_ms[-1] / 1000)
             self.name.setText(f"{file.name}, {seconds}")
@@ -130,20 +132,27 @@ class ProgramPage(QtWidgets.QWidget):
         self._console.order(lambda control: control.go_on(job, stop))
 
     def _begin_at(self) -> None:
-        job, at = self._console.job, self.block.value()
+        file, connection, at = self._file, self._console.connection, self.block.value()
+        assert connection is not None
+        machine = connection.target.machine
+        self._console.beside.do(lambda: blocks_of_program(file, machine), lambda found: self._take_blocks(*found, at))
 
-        def opening(control: NumericalControl) -> int:
-            count = control.open_blocks(job)
-            if at > 1:
-                control.open_blocks(job, min(at, count))
-            return count
+    def _take_blocks(self, blocks: Blocks | None, told: tuple[Diagnostic, ...], at: int) -> None:
+        for each in told:
+            self._console.told.emit(str(each), blocks is None)
+        if blocks is not None and self._console.connection is not None:
+            first = min(at, len(blocks))
+            opened = lambda count: self._opened(count, first)  # noqa: E731 - with what was asked for
+            self._console.order(lambda control: control.open_blocks(blocks, first), opened)
 
-        self._console.order(opening, self._opened)
-
-    def _opened(self, count: int) -> None:
+    def _opened(self, count: int, first: int) -> None:
         self._console.stepping = True
         told = translate("ControlPanel", "The program has {} blocks; block {} comes next")
-        self._console.told.emit(told.format(count, min(self.block.value(), count)), False)
+        self._console.told.emit(told.format(count, first), False)
 
     def _step(self) -> None:
-        self._console.order(lambda control: control.step())
+        self._console.move(lambda control: control.plan_step(), self._stepped)
+
+    def _stepped(self, plan: Plan | None) -> None:
+        if plan is None:
+            self._console.told.emit(translate("ControlPanel", "Not sent: the block is refused"), True)

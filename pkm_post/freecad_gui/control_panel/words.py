@@ -12,6 +12,7 @@ import FreeCAD
 from pkm_post.numerical_control.control import State
 from pkm_post.numerical_control.homing import Homing, Phase
 from pkm_post.numerical_control.permissions import Why
+from pkm_post.numerical_control.single_block import Shown
 from pkm_post.pmac_link.status import Bits, Status
 
 translate = FreeCAD.Qt.translate
@@ -105,13 +106,17 @@ def activity_text(state: State) -> str:
     if status.running:
         told = why_text(Why.HELD if status.held else Why.RUNS)
     moves = [] if status.standing else [why_text(Why.MOVES)]
-    block = [] if state.block is None or state.block[0] > state.block[1] else [_block_text(*state.block)]
+    block = [] if state.block is None or state.block.is_over else [_block_text(state.block)]
     override = translate("ControlPanel", "override {:g} %").format(status.override)
     return ", ".join([told, *moves, *block, override, *_told(status.system, SYSTEM)])
 
 
-def _block_text(number: int, count: int) -> str:
-    return translate("ControlPanel", "block {} of {} comes next").format(number, count)
+def _block_text(block: Shown) -> str:
+    """The operation of the job has a name of its own."""
+    text = ": ".join(filter(None, (block.operation, block.text)))
+    return translate("ControlPanel", "block {} of {} comes next, line {}: {}").format(
+        block.number, block.count, block.line, text
+    )
 
 
 def strut_text(status: Status, index: int) -> str:
