@@ -12,10 +12,15 @@ def post_job(job, machine=None, out=".", **choices):  # type: ignore[no-untyped-
         machine: name of a machine that comes with PKM Post, or path of a machine file; None for that of the job.
         out: folder for the results.
         choices: arguments, options, tool_lengths, log and progress of that function.
+
+    Raises:
+        pkm_post.model.Refused: as that function, and F130 where memory runs out.
     """
     from pkm_post.freecad_app.post_job import post_job as post
+    from pkm_post.out_of_memory import memory_or_refused
 
-    return post(job, machine, out, **choices)
+    with memory_or_refused(job.Label):
+        return post(job, machine, out, **choices)
 
 
 def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-def]
@@ -38,19 +43,24 @@ def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-d
         A tuple with a ``pkm_post.pipeline.Posted`` for each motion program: one, or one for each job of a document.
 
     Raises:
-        pkm_post.model.Refused: something in the input or the folder does not allow it. Of a document with several jobs,
-            those posted before stay posted; of anything else nothing was written.
+        pkm_post.model.Refused: something in the input or the folder does not allow it, or there is not enough memory
+            (F130). Of a document with several jobs, those posted before stay posted; of anything else nothing was
+            written.
         ValueError: the suffix of the file is not known, or there are both arguments and options.
     """
     from os import PathLike
     from pathlib import Path
 
-    if isinstance(source, str | PathLike) and Path(source).suffix.lower() != ".fcstd":
-        from pkm_post.post_file import post_file
+    from pkm_post.out_of_memory import memory_or_refused
 
-        return (post_file(Path(source), machine, out, **choices),)
-    from pkm_post.freecad_app import post_job as jobs
+    is_path = isinstance(source, str | PathLike)
+    with memory_or_refused(str(source) if is_path else source.Label):
+        if is_path and Path(source).suffix.lower() != ".fcstd":
+            from pkm_post.post_file import post_file
 
-    if isinstance(source, str | PathLike):
-        return jobs.post_document(Path(source), machine, out, **choices)
-    return (jobs.post_job(source, machine, out, **choices),)
+            return (post_file(Path(source), machine, out, **choices),)
+        from pkm_post.freecad_app import post_job as jobs
+
+        if is_path:
+            return jobs.post_document(Path(source), machine, out, **choices)
+        return (jobs.post_job(source, machine, out, **choices),)

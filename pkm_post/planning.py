@@ -7,8 +7,6 @@ kinematics sees no planner. This module brings the two together.
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -38,6 +36,7 @@ from pkm_post.kinematics import Way, reach_faults, strut_rates
 from pkm_post.model import Diagnostic, Event, Machine, Motion, StrutMotion, Trajectory
 from pkm_post.model.certificate import Tolerances
 from pkm_post.speed_limits import below_feed, bent, bounded_by, feed_at, limits_at, rough_feed, roughly_bounded
+from pkm_post.workers import workers
 
 _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
@@ -160,8 +159,7 @@ def _interpolated(
         found = knots(stretch, schedule.edges_ms, cubics.error, shortest)
         return found[:-1], _too_coarse(found, cubics, shortest)
 
-    with ThreadPoolExecutor(os.cpu_count()) as threads:
-        times, coarse = zip(*threads.map(knots_of, stretches), strict=True)
+    times, coarse = zip(*workers().map(knots_of, stretches), strict=True)
     time_ms = np.concatenate([*times, marks[-1:]])
     poses = poses_at(path, schedule, time_ms)
     motion = Motion(

@@ -160,7 +160,7 @@ def test_the_number_of_threads_does_not_matter(monkeypatch, workers):
     machine, trajectory, path, schedule = planned(cone)
     monkeypatch.setattr(planning, "_MARKS_AT_ONCE", 4)
     expected = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
-    monkeypatch.setattr(planning, "ThreadPoolExecutor", lambda _: ThreadPoolExecutor(workers))
+    monkeypatch.setattr(planning, "workers", lambda: ThreadPoolExecutor(workers))
     found = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
     np.testing.assert_array_equal(found.time_ms, expected.time_ms)
     np.testing.assert_array_equal(found.tip, expected.tip)

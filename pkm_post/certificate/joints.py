@@ -8,8 +8,6 @@ rounded corner, where it is farthest from both its segments, even instants seldo
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +18,7 @@ from pkm_post.geometry import angle_between, hermite_lengths, norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import forward
 from pkm_post.model import Trajectory
+from pkm_post.workers import workers
 
 _SETTLED = 0.005
 """Part of the tolerances by which the course may miss a joint: what it can miss is added to what is told."""
@@ -52,8 +51,7 @@ def pass_joints(task: Task, trajectory: Trajectory) -> Passed:
     def part(first: int) -> tuple[Array, ...]:
         return _passed(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
 
-    with ThreadPoolExecutor(os.cpu_count()) as threads:
-        found = list(threads.map(part, range(0, len(trajectory), _AT_ONCE)))
+    found = list(workers().map(part, range(0, len(trajectory), _AT_ONCE)))
     return Passed(*(np.concatenate(columns, axis=-1) for columns in zip(*found, strict=True)))
 
 

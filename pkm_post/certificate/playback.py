@@ -9,8 +9,6 @@ instants are added until little can hide.
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +18,7 @@ from pkm_post.certificate.joints import Passed
 from pkm_post.certificate.struts import cubics, extremes
 from pkm_post.certificate.tool_at import Task
 from pkm_post.geometry.vectors import Array
+from pkm_post.workers import workers
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
 """Instants of each interval that are looked at, its two knots among them; then of those in which the worst could hide:
@@ -99,8 +98,7 @@ def _look_again(task: Task, seen: Seen, peaks: _Peaks, rows: Array, instants: in
     if not len(rows):
         return
     blocks = _blocks(rows, _AT_ONCE // instants)
-    with ThreadPoolExecutor(os.cpu_count()) as threads:
-        again = Seen.joined(list(threads.map(lambda some: look(task, some, instants, closely), blocks)))
+    again = Seen.joined(list(workers().map(lambda some: look(task, some, instants, closely), blocks)))
     at_joint = np.flatnonzero(peaks.off[0, rows] > again.worst[0])
     again.tip_tolerance[at_joint] = peaks.tip_tolerance[rows[at_joint]]
     seen.worst[:, rows] = np.concatenate([np.maximum(again.worst[:2], peaks.off[:, rows]), again.worst[2:]])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and its like.
 
-Exit code 0 when all was done, 1 when the input was refused, or nobody reads the output any more, 2 when the arguments
-make no sense, 130 after Ctrl-C. Each module adds its commands to the parser and runs them.
+Exit code 0 when all was done, 1 when the input was refused, memory ran out, or nobody reads the output any more, 2 when
+the arguments make no sense, 130 after Ctrl-C. Each module adds its commands to the parser and runs them.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from collections.abc import Sequence
 import pkm_post
 from pkm_post.cli import machine, part_programs, pmac, post, reach, reach_map, verify
 from pkm_post.cli.many import INTERRUPTED
+from pkm_post.out_of_memory import FAULTS, lack_of_memory
 
 __all__ = ["main"]
 
@@ -25,8 +26,8 @@ _OPTIONAL = ("lark", "serial", "paramiko")
 
 def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
-    _prepare_streams()
     try:
+        _prepare_streams()
         namespace = _parser().parse_args(arguments)
         code: int = namespace.run(namespace, arguments)
         sys.stdout.flush()
@@ -36,12 +37,18 @@ def main(arguments: Sequence[str]) -> int:
         return 1
     except KeyboardInterrupt:
         return INTERRUPTED
-    except ImportError as missing:
-        if missing.name not in _OPTIONAL:
+    except FAULTS as fault:
+        told = lack_of_memory(fault, "pkm_post") or _not_installed(fault)
+        if told is None:
             raise
-        print(missing, file=sys.stderr)
+        print(told, file=sys.stderr)
         return 1
     return code
+
+
+def _not_installed(fault: BaseException) -> str | None:
+    """What to install, where an optional package is missing."""
+    return str(fault) if isinstance(fault, ImportError) and fault.name in _OPTIONAL else None
 
 
 def _prepare_streams() -> None:

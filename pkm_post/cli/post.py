@@ -21,6 +21,7 @@ from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, reading_from
 from pkm_post.options import add_options, given_in, solid_files
+from pkm_post.out_of_memory import memory_or_refused
 from pkm_post.result_names import Item, job_stem, lost_results, lost_sources
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def _post_one(file: Path, namespace: argparse.Namespace) -> int:
 
     post, line = _part_program if is_part_program(file) else _document, ProgressLine(file.name)
     try:
-        with line:
+        with line, memory_or_refused(str(file)):
             results = post(file, namespace, line)
     except Refused as refused:
         print(refused, file=sys.stderr)

@@ -60,10 +60,12 @@ class HexapodPost(PostProcessor):
         from pkm_post.freecad_app.post_outputs import OUTPUTS
         from pkm_post.freecad_app.progress import Stopped
         from pkm_post.model import Refused
+        from pkm_post.out_of_memory import memory_or_refused
 
         try:
-            settings = settings_of(self._job, post_processor=self.name, selection=self._chosen)
-            text, diagnostics = OUTPUTS[self.name](self._job, settings, program_path(self._job))
+            with memory_or_refused(self._job.Label):
+                settings = settings_of(self._job, post_processor=self.name, selection=self._chosen)
+                text, diagnostics = OUTPUTS[self.name](self._job, settings, program_path(self._job))
         except Refused as refused:
             _tell(refused)
             raise

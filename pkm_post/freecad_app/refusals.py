@@ -13,18 +13,20 @@ from functools import wraps
 from typing import Any
 
 from pkm_post.model import Refused
+from pkm_post.out_of_memory import memory_or_refused
 
 Execute = Callable[[Any, Any], Any]
 """The method of a proxy by which FreeCAD has an object computed."""
 
 
 def briefly_refused(execute: Execute) -> Execute:
-    """Let what ``execute`` refuses leave it without the way through the code."""
+    """Let what ``execute`` refuses, or has no memory for, leave it without the way through the code."""
 
     @wraps(execute)
     def brief(proxy: Any, obj: Any) -> Any:
         try:
-            return execute(proxy, obj)
+            with memory_or_refused(obj.Label):
+                return execute(proxy, obj)
         except Refused as refused:
             raise refused.with_traceback(None) from None
 

@@ -6,16 +6,35 @@ A command that changes a document runs in one transaction, so that one undo take
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import FreeCAD
 import FreeCADGui
+from PySide import QtWidgets
 
 from pkm_post.freecad_app.transaction import transaction
 from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.out_of_memory import FAULTS, lack_of_memory
 
 translate = FreeCAD.Qt.translate
+
+
+@contextmanager
+def memory_or_told(title: str) -> Iterator[None]:
+    """Show in a window that there is not enough memory for what is done; whatever else is raised goes on.
+
+    Args:
+        title: of the window.
+    """
+    try:
+        yield
+    except FAULTS as fault:
+        diagnostic = lack_of_memory(fault, title)
+        if diagnostic is None:
+            raise
+        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, str(diagnostic))
 
 
 @dataclass(frozen=True)
@@ -63,9 +82,10 @@ class Command:
         """Run the command; on a fault everything is as before."""
         subject = next(iter(FreeCADGui.Selection.getSelection()), None)
         document = subject.Document if subject else FreeCAD.ActiveDocument
-        with transaction(document, translate(self.name, self.text)):
-            self.action(subject)
-        document.recompute()
+        with memory_or_told(translate(self.name, self.text)):
+            with transaction(document, translate(self.name, self.text)):
+                self.action(subject)
+            document.recompute()
 
 
 @dataclass(frozen=True)
@@ -78,7 +98,8 @@ class WindowCommand(Command):
 
     def Activated(self) -> None:
         """Open the window."""
-        self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
+        with memory_or_told(translate(self.name, self.text)):
+            self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
 
 
 @dataclass(frozen=True)
@@ -89,6 +110,12 @@ class PanelCommand(Command):
         """Add the object and open its panel; on a fault everything is as before."""
         (subject,) = FreeCADGui.Selection.getSelection()
         document, before = subject.Document, set(subject.Document.Objects)
+        with memory_or_told(translate(self.name, self.text)):
+            self._add(subject, document, before)
+
+    def _add(
+        self, subject: FreeCAD.DocumentObject, document: FreeCAD.Document, before: set[FreeCAD.DocumentObject]
+    ) -> None:
         document.openTransaction(translate(self.name, self.text))
         try:
             self.action(subject)

@@ -26,6 +26,7 @@ from pkm_post.freecad_gui.task import Task
 from pkm_post.freecad_gui.workbench import ICONS
 from pkm_post.model import Refused
 from pkm_post.options import READING
+from pkm_post.out_of_memory import memory_or_refused
 from pkm_post.pipeline import Prepared
 
 translate = FreeCAD.Qt.translate
@@ -83,7 +84,8 @@ class PostPanel:
         self._show_progress(READING, 0.0)
         QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
         try:
-            read = self._read()
+            with memory_or_refused(self.job.Label):
+                read = self._read()
         except BaseException as fault:
             self._show_end(fault)
             if not isinstance(fault, Refused):

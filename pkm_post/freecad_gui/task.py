@@ -13,6 +13,7 @@ from typing import Any
 from PySide import QtCore
 
 from pkm_post.freecad_app.progress import Stopped
+from pkm_post.out_of_memory import memory_or_refused
 
 
 class Task(QtCore.QThread):
@@ -52,12 +53,13 @@ class Task(QtCore.QThread):
     def run(self) -> None:
         """Called by Qt in the other thread: nothing may leave it but what is kept here."""
         try:
-            self._value = self._call()
+            with memory_or_refused("PKM Post"):
+                self._value = self._call()
         except BaseException as fault:
             self._fault = fault
 
     def value(self) -> Any:
-        """What the call gave back; what it raised is raised here."""
+        """What the call gave back; what it raised is raised here, and ``Refused`` where memory ran out."""
         if self._fault is not None:
             raise self._fault
         return self._value

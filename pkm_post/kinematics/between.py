@@ -14,9 +14,7 @@ for, every check does so, and goes down only to where one is possible.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,6 +24,7 @@ from pkm_post.kinematics.findings import ReachFinding, Subject
 from pkm_post.kinematics.placed import Placed
 from pkm_post.kinematics.way import Way
 from pkm_post.model import Machine
+from pkm_post.workers import workers
 
 _AT_ONCE = 2048
 """Poses per pass: the working arrays of one pass stay in the processor's cache."""
@@ -68,8 +67,7 @@ def survey(
     turn = way.turn()
     if faults_alone:
         surveys = [_Survey(machine, way, replace(check, comfort=0.0), turn) for check in checks]
-        with ThreadPoolExecutor(os.cpu_count()) as threads:
-            return tuple(threads.map(lambda one: one.strided(_STRIDE_FOR_FAULTS, 0.0), surveys))
+        return tuple(workers().map(lambda one: one.strided(_STRIDE_FOR_FAULTS, 0.0), surveys))
     surveys = [_Survey(machine, way, check, turn) for check in checks]
     thorough = [one for one in surveys if one.check.comfort == np.inf]
     if thorough:

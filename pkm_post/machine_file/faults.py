@@ -7,12 +7,13 @@ order of the text. ``tomllib`` keeps no lines for entries: they are found by loo
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from pkm_post.machine_file.fields import Name
+from pkm_post.machine_file.fields import FIELDS, Name
 from pkm_post.model import Diagnostic, Place
 
 _PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
@@ -22,13 +23,17 @@ _KEY = re.compile(rf"\s*({_DOTTED})\s*=")
 _TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
+MOST_SHOWN = 100
+"""Faults of a file that are shown; looking for the names that are meant takes the most time."""
+
+
 @dataclass(frozen=True)
 class Fault:
-    """One fault: code of its rule, name of the entry, what was found there."""
+    """One fault: code of its rule, name of the entry, what was found there; for M105 that is the name that is meant."""
 
     code: str
     name: Name
-    found: str
+    found: str = ""
 
 
 def _parts(dotted: str) -> Name:
@@ -65,13 +70,26 @@ def _line(name: Name, lines: dict[Name, int]) -> int:
 
 
 def tell(faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]) -> tuple[Diagnostic, ...]:
-    """The faults as diagnostics, from the first line to the last."""
+    """The faults as diagnostics, from the first line to the last; of very many the first, and how many more."""
     lines = entry_lines(text, document)
     placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])
-    return tuple(
-        Diagnostic(fault.code, Place(file, line=line), f"{'.'.join(fault.name)}: {fault.found}")
-        for line, fault in placed
-    )
+    told = [
+        Diagnostic(
+            fault.code, Place(file, line=line), f"{'.'.join(fault.name)}: {fault.found or _suggestion(fault.name)}"
+        )
+        for line, fault in placed[:MOST_SHOWN]
+    ]
+    if len(placed) > MOST_SHOWN:
+        line, _ = placed[MOST_SHOWN]
+        told.append(Diagnostic("M208", Place(file, line=line), f"{len(placed) - MOST_SHOWN} more from here on"))
+    return tuple(told)
+
+
+def _suggestion(name: Name) -> str:
+    """The known name nearest to an unknown one."""
+    known = dict.fromkeys(".".join(field.name[:length]) for field in FIELDS for length in range(1, len(field.name) + 1))
+    nearest = difflib.get_close_matches(".".join(name), known, n=1)
+    return f"the nearest known entry is {nearest[0]}" if nearest else "no known entry is like it"
 
 
 def not_toml(fault: Exception, file: str, text: str) -> Diagnostic:

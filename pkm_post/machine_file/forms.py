@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Forms: what the value of an entry may look like, in words and as a reading function.
 
-Enters: one value as ``tomllib`` gives it and the factor of its unit. Leaves: the same in mm, rad, s as a number, a
+Enters: one value as ``tomllib`` gives it and the scale of its unit. Leaves: the same in mm, rad, s as a number, a
 numpy array or a text, or ``FormError`` that says what was there instead. The words are those of the documentation.
 """
 
@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from pkm_post.machine_file.units import Scale
+
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 LARGEST = 1e12
@@ -24,6 +26,8 @@ UNKNOWN = "unknown"
 """Stands in a template for what is not known of a machine."""
 RIGID_TOLERANCE = 1e-6
 """How far a typed matrix may be from a rotation: six decimals are common."""
+_ROOM = 1.0 + 1e-9
+"""For the rounding of units, so that the limits themselves make sense."""
 AXIS_LETTERS = "ABCUVWXYZ"
 STRUTS = 6
 MOST_SHOWN = 60
@@ -39,7 +43,7 @@ class Form:
     """One form: its words, after "expected", and the function that reads a value and converts it."""
 
     words: str
-    read: Callable[[Any, float], Any]
+    read: Callable[[Any, Scale], Any]
 
 
 def _shorten(text: str) -> str:
@@ -87,16 +91,30 @@ def collect(value: Any, shape: tuple[int, ...], at: tuple[int, ...] = ()) -> Any
     return [collect(item, shape[1:], (*at, index)) for index, item in enumerate(value, start=1)]
 
 
+def converted(value: Any, shape: tuple[int, ...], scale: Scale, is_positive: bool = False) -> Array:
+    """The numbers of ``value`` in mm, rad and s.
+
+    Raises:
+        FormError: they have another shape, or a size that makes no sense; a positive one may not be too small either.
+    """
+    numbers: Array = np.array(collect(value, shape)) * scale.factor
+    size = np.abs(numbers)
+    if np.any(size > scale.most * _ROOM) or (is_positive and np.any((numbers > 0.0) & (size < scale.least / _ROOM))):
+        raise FormError(f"{_shorten(str(value))}; {scale.words}")
+    return numbers
+
+
 def _numbers(
     words: str,
     shape: tuple[int, ...] = (),
     accept: Callable[[Array], Any] = lambda numbers: True,
     finish: Callable[[Array], Any] = lambda numbers: numbers,
+    is_positive: bool = False,
 ) -> Form:
     """A form of numbers: their shape, what is accepted of them once converted, what they become."""
 
-    def read(value: Any, factor: float) -> Any:
-        numbers = np.array(collect(value, shape)) * factor
+    def read(value: Any, scale: Scale) -> Any:
+        numbers = converted(value, shape, scale, is_positive)
         if not accept(numbers):
             raise FormError(_shorten(str(value)))
         return finish(numbers)
@@ -108,7 +126,7 @@ def _unit(directions: Array) -> Array:
     return np.asarray(directions / np.linalg.norm(directions, axis=1, keepdims=True))
 
 
-def _read_pose(value: Any, factor: float) -> Array:
+def _read_pose(value: Any, scale: Scale) -> Array:
     pose = np.array(collect(value, (4, 4)))
     rotation = pose[:3, :3]
     rigid = np.abs(rotation @ rotation.T - np.eye(3)).max() <= RIGID_TOLERANCE and np.linalg.det(rotation) > 0.0
@@ -116,28 +134,30 @@ def _read_pose(value: Any, factor: float) -> Array:
         raise FormError("a matrix that is no rigid motion")
     left, _, right = np.linalg.svd(rotation)
     pose[:3, :3] = left @ right  # the nearest rotation: typed decimals must not stretch a path
-    pose[:3, 3] *= factor
+    pose[:3, 3] = converted(pose[:3, 3].tolist(), (3,), scale)
     return pose
 
 
-def _read_half_angles(value: Any, factor: float) -> Array:
-    shape = (STRUTS,) if isinstance(value, list) else ()
-    angles = np.array(collect(value, shape)) * factor
+def _read_half_angles(value: Any, scale: Scale) -> Array:
+    angles = converted(value, _one_or_six(value), scale, is_positive=True)
     if np.any((angles <= 0.0) | (angles > math.pi / 2.0)):
         raise FormError(_shorten(str(value)))
     return np.full(STRUTS, angles)
 
 
-def _read_six_positive(value: Any, factor: float) -> Array:
-    shape = (STRUTS,) if isinstance(value, list) else ()
-    numbers = np.array(collect(value, shape)) * factor
+def _one_or_six(value: Any) -> tuple[int, ...]:
+    return (STRUTS,) if isinstance(value, list) else ()
+
+
+def _read_six_positive(value: Any, scale: Scale) -> Array:
+    numbers = converted(value, _one_or_six(value), scale, is_positive=True)
     if np.any(numbers <= 0.0):
         raise FormError(_shorten(str(value)))
     return np.full(STRUTS, numbers)
 
 
 def _text(words: str, accept: Callable[[str], Any]) -> Form:
-    def read(value: Any, factor: float) -> str:
+    def read(value: Any, scale: Scale) -> str:
         if not isinstance(value, str) or not accept(value):
             raise FormError(shown(value))
         return value
@@ -153,7 +173,7 @@ def choice(*names: str) -> Form:
 def whole_number(least: int, most: int) -> Form:
     """The form of an entry that counts, from ``least`` to ``most``."""
 
-    def read(value: Any, factor: float) -> int:
+    def read(value: Any, scale: Scale) -> int:
         if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
             raise FormError(shown(value))
         return value
@@ -161,7 +181,7 @@ def whole_number(least: int, most: int) -> Form:
     return Form(f"a whole number from {least} to {most}", read)
 
 
-def _read_letters(value: Any, factor: float) -> tuple[str, ...]:
+def _read_letters(value: Any, scale: Scale) -> tuple[str, ...]:
     letters = value if isinstance(value, list) else []
     known = [letter for letter in letters if isinstance(letter, str) and len(letter) == 1 and letter in AXIS_LETTERS]
     if len(known) != len(letters) or len(set(known)) != STRUTS or len(letters) != STRUTS:
@@ -173,7 +193,7 @@ _CODE = re.compile(r"(?:[ -z|~]|\{value\}|\{value:d\}|\{value:\.[1-9]f\})+")
 """Printable ASCII, braces only around the number of the event."""
 
 NUMBER = _numbers("a number", finish=float)
-POSITIVE = _numbers("a number above 0", (), lambda number: number > 0.0, float)
+POSITIVE = _numbers("a number above 0", (), lambda number: number > 0.0, float, is_positive=True)
 NOT_NEGATIVE = _numbers("a number, 0 or above", (), lambda number: number >= 0.0, float)
 SIX_POSITIVE = Form("a number above 0, or 6 of them", _read_six_positive)
 HALF_ANGLES = Form("an angle above 0 and at most a right angle, or 6 of them", _read_half_angles)
@@ -184,7 +204,12 @@ STROKE = _numbers(
     lambda stroke: (float(stroke[0]), float(stroke[1])),
 )
 POINT = _numbers("3 numbers", (3,))
-UPWARDS = _numbers("3 numbers, the third above 0", (3,), lambda row: row[2] > 0.0, lambda row: _unit(row[None])[0])
+UPWARDS = _numbers(
+    "3 numbers, the third above 0",
+    (3,),
+    lambda row: row[2] > 0.0 and np.linalg.norm(row) > SHORTEST_DIRECTION,
+    lambda row: _unit(row[None])[0],
+)
 SIX_NUMBERS = _numbers("6 numbers", (STRUTS,), finish=lambda numbers: tuple(map(float, numbers)))
 SIX_POINTS = _numbers("6 rows of 3 numbers", (STRUTS, 3))
 SIX_DIRECTIONS = _numbers(

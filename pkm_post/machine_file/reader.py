@@ -7,7 +7,6 @@ entries say against each other. A file with a fault gives no machine, as a limit
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import tomllib
 from collections.abc import Iterator
@@ -19,8 +18,9 @@ from pkm_post.machine_file.faults import Fault, not_toml, tell
 from pkm_post.machine_file.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
 from pkm_post.machine_file.forms import NAME, PROSE, FormError, holds_unknown, shown
 from pkm_post.machine_file.rest_pose import rest_axes
+from pkm_post.machine_file.text_limits import MOST_BYTES, too_deep, too_large
 from pkm_post.machine_file.tool_change import tool_change
-from pkm_post.machine_file.units import factor, stated_units
+from pkm_post.machine_file.units import Scale, stated_units
 from pkm_post.machine_file.work_offsets import offset_names, stated_poses, work_offsets
 from pkm_post.model import Diagnostic, Machine, Place
 
@@ -40,7 +40,8 @@ def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
     """
     file = str(path)
     try:
-        content = path.read_bytes()
+        with path.open("rb") as stream:
+            content = stream.read(MOST_BYTES + 1)
     except (OSError, ValueError) as fault:
         return None, (Diagnostic("M101", Place(file), getattr(fault, "strerror", None) or str(fault)),)
     return machine_of(content, file)
@@ -53,13 +54,19 @@ def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnos
         content: TOML in UTF-8.
         file: what diagnostics call it.
     """
+    limit = too_large(content, file)
+    if limit:
+        return None, (limit,)
     try:
         text = content.decode("utf-8")
     except ValueError as fault:
         return None, (Diagnostic("M101", Place(file), str(fault)),)
+    limit = too_deep(text, file)
+    if limit:
+        return None, (limit,)
     try:
         document = tomllib.loads(text)
-    except (ValueError, RecursionError) as fault:
+    except ValueError as fault:
         return None, (not_toml(fault, file, text),)
     offsets = offset_names(document)
     values, faults = _read_entries(document, offsets)
@@ -80,12 +87,12 @@ def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[st
         present.add(name)
         try:
             if known is None:
-                faults.append(Fault("M105", name, _suggestion(name)))
+                faults.append(Fault("M105", name))
             elif isinstance(known, Field) and known.form not in _FREE_TEXTS and holds_unknown(value):
                 values.pop(".".join(name), None)
                 faults.append(Fault("M107", name, f"expected {known.form.words}"))
             elif isinstance(known, Field):
-                values[".".join(name)] = known.form.read(value, factor(known.dimension, units))
+                values[".".join(name)] = known.form.read(value, Scale.of(known.dimension, units))
             else:
                 faults.append(Fault("M104", name, f"expected a table, got {shown(value)}"))
         except FormError as wrong:
@@ -112,13 +119,6 @@ def _missing(present: set[Name]) -> list[Fault]:
         if field.default is REQUIRED
         and not any(field.name[:length] in present for length in range(1, len(field.name) + 1))
     ]
-
-
-def _suggestion(name: Name) -> str:
-    """The known name nearest to an unknown one."""
-    known = dict.fromkeys(".".join(field.name[:length]) for field in FIELDS for length in range(1, len(field.name) + 1))
-    nearest = difflib.get_close_matches(".".join(name), known, n=1)
-    return f"the nearest known entry is {nearest[0]}" if nearest else "no known entry is like it"
 
 
 def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Machine:

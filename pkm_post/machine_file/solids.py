@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Solids of a machine file: the bodies that move with the platform and the boxes that stand still.
 
-Enters: a list of tables as ``tomllib`` gives it and the factor of the length unit. Leaves: ``model.Body`` and
+Enters: a list of tables as ``tomllib`` gives it and the scale of its length unit. Leaves: ``model.Body`` and
 ``model.Box`` in mm, or ``FormError`` that says which table of the list is wrong.
 """
 
@@ -12,15 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.machine_file.forms import NAME, Form, FormError, collect, shown
+from pkm_post.machine_file.forms import NAME, Form, FormError, converted, shown
+from pkm_post.machine_file.units import Scale
 from pkm_post.model import Body, Box
 
 _NAME = "name"
+MOST_SOLIDS = 100
+"""Of either sort: each body is checked against each fixture, all along the path."""
 
 
-def _tables(value: Any, shapes: dict[str, tuple[int, ...]], factor: float) -> Iterator[tuple[str, dict[str, Any]]]:
+def _tables(value: Any, shapes: dict[str, tuple[int, ...]], scale: Scale) -> Iterator[tuple[str, dict[str, Any]]]:
     """The name of each table and its numbers in mm, when it has these keys and no others."""
-    if not isinstance(value, list):
+    if not isinstance(value, list) or len(value) > MOST_SOLIDS:
         raise FormError(shown(value))
     for place, table in enumerate(value, start=1):
         where = f" at place {place}"
@@ -30,30 +33,32 @@ def _tables(value: Any, shapes: dict[str, tuple[int, ...]], factor: float) -> It
             missing = stray[0] not in table
             raise FormError(("no " if missing else "") + stray[0] + where)
         try:
-            name = NAME.read(table[_NAME], factor)
-            yield name, {key: np.array(collect(table[key], shape)) * factor for key, shape in shapes.items()}
+            name = NAME.read(table[_NAME], scale)
+            yield name, {key: converted(table[key], shape, scale) for key, shape in shapes.items()}
         except FormError as wrong:
             raise FormError(f"{wrong}{where}") from wrong
 
 
-def _read_bodies(value: Any, factor: float) -> tuple[Body, ...]:
+def _read_bodies(value: Any, scale: Scale) -> tuple[Body, ...]:
     bodies = []
-    for name, numbers in _tables(value, {"radius": (), "from": (), "to": ()}, factor):
+    for name, numbers in _tables(value, {"radius": (), "from": (), "to": ()}, scale):
         body = Body(name, *(float(numbers[key]) for key in ("radius", "from", "to")))
-        if body.radius <= 0.0 or body.start >= body.end:
+        if body.radius < scale.least or body.start >= body.end:
             raise FormError(f"{name} of radius {body.radius:g} mm from {body.start:g} to {body.end:g} mm")
         bodies.append(body)
     return tuple(bodies)
 
 
-def _read_boxes(value: Any, factor: float) -> tuple[Box, ...]:
+def _read_boxes(value: Any, scale: Scale) -> tuple[Box, ...]:
     boxes = []
-    for name, corners in _tables(value, {"lowest": (3,), "highest": (3,)}, factor):
+    for name, corners in _tables(value, {"lowest": (3,), "highest": (3,)}, scale):
         if np.any(corners["lowest"] >= corners["highest"]):
             raise FormError(f"{name} with a corner 'lowest' that is not below 'highest' in x, y and z")
         boxes.append(Box(name, **corners))
     return tuple(boxes)
 
 
-BODIES = Form("a list of tables with name, radius above 0, from, to above from", _read_bodies)
-FIXTURES = Form("a list of tables with name, lowest, highest, two corners of 3 numbers", _read_boxes)
+BODIES = Form(f"a list of at most {MOST_SOLIDS} tables with name, radius above 0, from, to above from", _read_bodies)
+FIXTURES = Form(
+    f"a list of at most {MOST_SOLIDS} tables with name, lowest, highest, two corners of 3 numbers", _read_boxes
+)

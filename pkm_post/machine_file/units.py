@@ -22,40 +22,80 @@ rest of a file whose own unit is unknown."""
 
 @dataclass(frozen=True)
 class Dimension:
-    """What kind of quantity an entry is.
+    """What kind of quantity an entry is, and which sizes of it make sense: no machine comes near to others.
 
     Attributes:
+        noun: how the documentation calls it.
         unit: its unit in a file that uses mm, deg and s; ``-`` for plain numbers and texts.
+        least: smallest size of a number that has to be above 0, in that unit.
+        most: largest size of any number, in that unit.
         length: exponent of the length unit.
         angle: exponent of the angle unit.
         time: exponent of the time unit.
     """
 
+    noun: str
     unit: str
+    least: float
+    most: float
     length: int = 0
     angle: int = 0
     time: int = 0
 
 
-PLAIN = Dimension("-")
-LENGTH = Dimension("mm", length=1)
-SPEED = Dimension("mm/s", length=1, time=-1)
-ACCELERATION = Dimension("mm/s^2", length=1, time=-2)
-JERK = Dimension("mm/s^3", length=1, time=-3)
-ANGLE = Dimension("deg", angle=1)
-TIME = Dimension("s", time=1)
-TURNING_RATE = Dimension("deg/s", angle=1, time=-1)
-MILLISECONDS = Dimension("ms")
+PLAIN = Dimension("plain number", "-", 0.0, 1e12)
+LENGTH = Dimension("length", "mm", 1e-3, 1e6, length=1)
+SPEED = Dimension("speed", "mm/s", 1e-3, 1e6, length=1, time=-1)
+ACCELERATION = Dimension("acceleration", "mm/s^2", 1e-2, 1e9, length=1, time=-2)
+JERK = Dimension("jerk", "mm/s^3", 1e-1, 1e12, length=1, time=-3)
+ANGLE = Dimension("angle", "deg", 1e-3, 1e4, angle=1)
+TIME = Dimension("time", "s", 1e-3, 1e4, time=1)
+TURNING_RATE = Dimension("turning rate", "deg/s", 1e-3, 1e6, angle=1, time=-1)
+MILLISECONDS = Dimension("interval", "ms", 1, 1e3)
 """Whole ms whatever the units of the file: controllers count them."""
-RATE = Dimension("1/s")
+RATE = Dimension("gain", "1/s", 1e-3, 1e6)
 """Per second, the only unit of time that a file may have."""
-SPINDLE_SPEED = Dimension("1/min")
+BLOCK_RATE = Dimension("block rate", "1/s", 10, 1e6)
+"""The same of points of a motion, which are at most 128 ms apart."""
+SPINDLE_SPEED = Dimension("spindle speed", "1/min", 1e-2, 1e6)
 """Revolutions per minute whatever the units of the file: every spindle is named so."""
-COUNT_DENSITY = Dimension("1/mm")
+COUNT_DENSITY = Dimension("counts per length", "1/mm", 1e-3, 1e9)
 """Per mm whatever the units of the file: the entry carries its unit in its name."""
-STIFFNESS = Dimension("N/mm")
+STIFFNESS = Dimension("stiffness", "N/mm", 1e-3, 1e12)
 """N/mm whatever the units of the file, as a file states no unit of force."""
-FORCE = Dimension("N")
+FORCE = Dimension("force", "N", 1e-3, 1e12)
+SINGULAR_VALUE = Dimension("singular value", "-", 1e-6, 1e3)
+DIMENSIONS = (
+    LENGTH, SPEED, ACCELERATION, JERK, ANGLE, TIME, TURNING_RATE, RATE, BLOCK_RATE, SPINDLE_SPEED, COUNT_DENSITY,
+    STIFFNESS, FORCE, SINGULAR_VALUE,
+)  # fmt: skip
+"""Those with sizes of their own, in the order of the documentation."""
+_OF_THE_TABLE = {quantity: next(iter(sizes.values())) for quantity, sizes in UNITS.items()}
+"""The units of ``Dimension.unit``: mm, deg and s."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How the numbers of an entry are converted, and which of them make sense.
+
+    Attributes:
+        factor: takes a number of the file to mm, rad and s.
+        least: smallest size that makes sense where a number is above 0, in mm, rad and s.
+        most: largest size that makes sense, in mm, rad and s.
+        words: the same in words.
+    """
+
+    factor: float
+    least: float
+    most: float
+    words: str
+
+    @classmethod
+    def of(cls, dimension: Dimension, units: dict[str, float]) -> Scale:
+        """That of a quantity in a file with these units, from ``stated_units``."""
+        size, unit = factor(dimension, _OF_THE_TABLE), "" if dimension.unit == "-" else f" {dimension.unit}"
+        words = f"sizes from {dimension.least:g} to {dimension.most:g}{unit} make sense"
+        return cls(factor(dimension, units), dimension.least * size, dimension.most * size, words)
 
 
 def stated_units(document: dict[str, Any]) -> dict[str, float]:

@@ -283,6 +283,9 @@ RULES: dict[str, Rule] = {
     "M203": _error("no machine fits the measurements", "look for wrong rows, units and frames in the measurements"),
     "M204": _error("the calibrated machine cannot be written", "correct what is said of the file that was written"),
     "M205": _warning("the poses do not determine all parameters", "measure at more places, with more tilt and spin"),
+    "M206": _error("the machine file is too large", "leave out what no entry of docs/machine-file.md is"),
+    "M207": _error("the machine file is nested too deeply", "write tables and lists as docs/machine-file.md has them"),
+    "M208": _error("there are more faults than are shown", "correct those that are shown, then check again"),
     # K1: what the machine can reach
     "K101": _error("a strut would be too short", "move or turn the part on the table, or use another tool length"),
     "K102": _error("a strut would be too long", "move or turn the part on the table, or use another tool length"),
@@ -544,5 +547,9 @@ RULES: dict[str, Rule] = {
     "F110": _error(
         "files were not all replaced, and earlier ones could not be put back",
         "close the programs that have the named files open, remove them, and try again",
+    ),
+    "F130": _error(
+        "there is not enough memory",
+        "close other programs, do fewer operations or files at a time, or use a computer with more memory",
     ),
 }

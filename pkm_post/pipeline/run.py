@@ -70,7 +70,11 @@ class Run:
         self._tell(self.progress, name, self._done_before(name))
         told: list[str] = []
         begin = time.perf_counter()
-        yield told
+        try:
+            yield told
+        except MemoryError as fault:
+            fault.add_note(f"in the step {name}")
+            raise
         self._tell(self.log, f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(told)}")
 
     def print(self, lines: Iterable[str]) -> None:

@@ -7,6 +7,7 @@ the frame: what is the same for all of them.
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from pkm_post.model import Machine, Motion, Program, Refused, StrutMotion, Traje
 from pkm_post.model.certificate import Certificate, Coverage
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.setup import Setup
+from pkm_post.out_of_memory import memory_or_refused
 from pkm_post.pipeline.frame import Frame, Posted
 from pkm_post.pipeline.known_setup import known_setup
 from pkm_post.pipeline.options import LINUXCNC, Options
@@ -74,15 +76,21 @@ def post(
         raise Refused(found)
     run = Run(log, progress, _shares(options), list(found))
     try:
-        with staged(program_path.parent, manifest.manifest_name(program_path.stem)) as folder:
+        results = staged(program_path.parent, manifest.manifest_name(program_path.stem))
+        with memory_or_refused(str(program_path)), results as folder:
             parts, report = _all_steps(run, program, machine, folder / program_path.name, options, setup)
             run.end()
             manifest.write(folder, program_path.stem)
-            names = sorted(path.name for path in folder.iterdir())
+            posted = _posted(run, program_path, sorted(os.listdir(folder)), parts, report)
     except OSError as fault:
         if fault is run.raised_outside:
             raise
         raise Refused([*run.warnings, unwritten(program_path, fault)]) from fault
+    return posted
+
+
+def _posted(run: Run, program_path: Path, names: list[str], parts: list[str], report: dict[str, Any]) -> Posted:
+    """What is told of the files, made before they appear: nothing can fail afterwards."""
     run.accept(outputs.left_over(program_path, names))
     files, programs = (tuple(program_path.parent / name for name in each) for each in (names, parts))
     return Posted(program_path, files, report, tuple(run.warnings), programs)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What is refused is told without the way through the code; what is our own fault is told with it."""
 
+from types import SimpleNamespace
+
 import pytest
 from cam_jobs import add_operation
 
@@ -22,7 +24,7 @@ def test_only_what_is_refused_is_told_briefly(fault, last):
         deep()
 
     with pytest.raises(type(fault)) as told:
-        execute(None, None)
+        execute(None, SimpleNamespace(Label="Mirror"))
     assert told.traceback[-1].name == last
     assert told.value is fault
 

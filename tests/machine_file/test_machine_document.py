@@ -4,8 +4,10 @@
 import re
 from pathlib import Path
 
+from pkm_post.machine_file.faults import MOST_SHOWN
 from pkm_post.machine_file.fields import FIELDS, REQUIRED
-from pkm_post.machine_file.units import UNITS
+from pkm_post.machine_file.text_limits import DEEPEST, MOST_BYTES
+from pkm_post.machine_file.units import DIMENSIONS, MILLISECONDS, PLAIN, UNITS
 
 DOCUMENT = (Path(__file__).parents[2] / "docs" / "machine-file.md").read_text(encoding="utf-8")
 ROW = re.compile(r"^\| `([^`]+)` \| (.*?) \| (.*?) \| (.*?) \| (.*?) \|$", re.MULTILINE)
@@ -33,3 +35,17 @@ def test_document_names_every_unit():
 
 def test_document_names_every_code():
     assert all(f"M10{number}" in DOCUMENT for number in range(1, 8))
+    assert all(f"| M{number} | " in DOCUMENT for number in range(206, 209))
+
+
+def test_document_has_the_sizes_that_make_sense():
+    _, found = DOCUMENT.split("| quantity | unit | smallest above 0 | largest |\n|---|---|---|---|\n")
+    sizes = [f"| {each.noun} | {each.unit} | {each.least:g} | {each.most:g} |" for each in DIMENSIONS]
+    assert found.split("\n\n")[0].splitlines() == sizes
+    assert {field.dimension for field in FIELDS} - {*DIMENSIONS} == {PLAIN, MILLISECONDS}
+
+
+def test_document_has_the_limits_of_the_text():
+    assert f"at most {MOST_BYTES} bytes" in DOCUMENT
+    assert f"at most {DEEPEST} deep" in DOCUMENT
+    assert f"more than {MOST_SHOWN} faults the first {MOST_SHOWN}" in DOCUMENT

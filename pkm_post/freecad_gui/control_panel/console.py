@@ -16,7 +16,7 @@ import FreeCAD
 from PySide import QtCore
 
 from pkm_post.freecad_gui.control_panel.beside import Beside, Then
-from pkm_post.model import Diagnostic
+from pkm_post.model import Diagnostic, Refused
 from pkm_post.numerical_control.connection import Connection, Target, connect
 from pkm_post.numerical_control.control import NumericalControl, State
 from pkm_post.numerical_control.permissions import Desk, Why, facts
@@ -30,7 +30,7 @@ translate = FreeCAD.Qt.translate
 Call = Callable[[NumericalControl], Any]
 
 _LOOK_MS = 100
-_TOLD = (PmacError, OSError, UnicodeError, ImportError)
+_TOLD = (PmacError, OSError, UnicodeError, ImportError, Refused)
 """Faults of machine, link and files, and packages that are not installed: a person reads them. All others are ours."""
 
 

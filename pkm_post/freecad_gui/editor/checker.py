@@ -9,6 +9,7 @@ from functools import partial
 from PySide import QtCore
 
 from pkm_post.freecad_gui.task import Task
+from pkm_post.model import Refused
 from pkm_post.program_text import check_text
 from pkm_post.sources import Reading
 
@@ -22,7 +23,7 @@ class Checker(QtCore.QObject):
     checked = QtCore.Signal(object)
     """A ``CheckedText``."""
     missing = QtCore.Signal(str)
-    """What is not installed, so that nothing can be read."""
+    """What is not installed, or that there is no memory, so that nothing can be read."""
 
     def __init__(self, text_of: Callable[[], tuple[str, str, Reading]], parent: QtCore.QObject) -> None:
         super().__init__(parent)
@@ -58,7 +59,7 @@ class Checker(QtCore.QObject):
             return
         try:
             checked = task.value()
-        except ImportError as missing:
+        except (ImportError, Refused) as missing:
             self.missing.emit(str(missing))
         else:
             self.checked.emit(checked)

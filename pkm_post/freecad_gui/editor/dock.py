@@ -21,6 +21,7 @@ from pkm_post.freecad_gui.editor.file_drop import FileDrop
 from pkm_post.freecad_gui.editor.posting import Posting
 from pkm_post.freecad_gui.editor.tool_bar import tool_bar
 from pkm_post.model import Refused
+from pkm_post.out_of_memory import memory_or_refused
 from pkm_post.program_text import Content
 from pkm_post.sources import SUFFIXES, is_part_program
 
@@ -116,7 +117,8 @@ class ProgramEditor(QtWidgets.QDockWidget):
             )
         elif self._saved():
             try:
-                return linked.decode_file(self.body.file, self.body.reading.chosen(), job)
+                with memory_or_refused(str(self.body.file)):
+                    return linked.decode_file(self.body.file, self.body.reading.chosen(), job)
             except Refused as refused:
                 QtWidgets.QMessageBox.warning(self, title, str(refused))
         return None
