@@ -109,8 +109,6 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
             if namespace.name not in _STOPS:
                 session.open()
             connected = True
-            for note in session.notes:
-                print(note, file=sys.stderr)
             return int(namespace.action(session, target, namespace))
     except PmacError as fault:
         print(fault, file=sys.stderr)
@@ -125,7 +123,7 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _session(namespace: argparse.Namespace) -> Session:
-    """A session with the port that was named, and with the rights of the action."""
+    """A session with the port that was named."""
     from pkm_post.pmac_link.session import Leftover, Session
 
     port = replace(
@@ -135,8 +133,7 @@ def _session(namespace: argparse.Namespace) -> Session:
         handshake=namespace.rtscts,
         known_hosts=namespace.known_hosts,
     )
-    rights = {"clears": Leftover.CLEAR, "joins": Leftover.JOIN}
-    leftover = next((rights[need] for need in namespace.needs if need in rights), Leftover.REFUSE)
+    leftover = Leftover.STOP if namespace.name in _STOPS else Leftover.LEAVE
     return Session(port, namespace.patience, leftover=leftover)
 
 

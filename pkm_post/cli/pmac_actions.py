@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import time
 from collections.abc import Callable
@@ -25,6 +26,14 @@ if TYPE_CHECKING:
 _IDENTITY = ("TYPE", "VER", "CID", "SIZE", "I42", "I68")
 _IDENTITY_OF_POWER_PMAC = ("CID", "Sys.MaxCoords")
 _CLEAR_SCREEN = "\x1b[H\x1b[J"
+_QUESTION = (
+    r"#\d+[?PVF]|&\d+(?:\?\??|PR|%)|\?{1,3}|[PVF%]|PR|SIZE|TYPE|VER(?:SION)?|CID|[IPQ]\d+(?:\.\.\d+)?|(?:&\d+)?#\d+->"
+)
+_STOP = r"(?:&\d+)?[HA]|#\d+K|P8187\.\.8191=0"
+_NEEDS_NO_RIGHT = re.compile(
+    rf"(?:{_QUESTION}|{_STOP})(?: (?:{_QUESTION}|{_STOP}))*|LIST .*|[\w.]+\[[\w.\[\]]+", re.IGNORECASE
+)
+"""Lines of the terminal that ask, stop, or free the variables that say who has the machine."""
 
 
 @dataclass(frozen=True)
@@ -62,12 +71,24 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
             print(f"{query}: {' '.join(session.ask(query))}")
         except RefusedError as refused:
             print(f"{query}: {refused}")
+    _print_motion(session, target, is_power)
     if target is not None and is_power:
         print("the set-up of a Power PMAC is not compared: how it tells its axis definitions is not known")
     elif target is not None:
         check_setup(session, target.settings, target.machine.strut_stroke)
         print(f"set up for {target.machine.name}")
     return 0
+
+
+def _print_motion(session: Session, target: Target | None, is_power: bool) -> None:
+    """Say whether the machine moves; without a machine, of which coordinate system and scale are not known, roughly."""
+    from pkm_post.pmac_link.motion import is_busy, settled_status
+    from pkm_post.pmac_link.readout import activity_text
+
+    if target is not None:
+        print(activity_text(settled_status(session, target.settings)))
+    elif not is_power:
+        print("a program runs, or a motor moves" if is_busy(session) else "no program runs, and no motor moves")
 
 
 def download(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
@@ -142,33 +163,37 @@ def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> 
 
 
 def terminal(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
-    """Send each line once: nobody knows which of them only ask."""
-    from pkm_post.pmac_link.faults import PmacError
+    """Send each line once; all but well-known questions and stops need the right to move the machine."""
+    from pkm_post.pmac_link.faults import NotOwnerError, PmacError
+    from pkm_post.pmac_link.ownership import take
 
+    refused = False
     for line in sys.stdin:
         if not line.strip():
             continue
         try:
+            if session.keeper is None and not _NEEDS_NO_RIGHT.fullmatch(line.strip()):
+                take(session, "terminal")
             print("\n".join(session.order(line.strip())) or "done", flush=True)
         except (PmacError, ValueError) as fault:
+            refused |= isinstance(fault, NotOwnerError)
             print(fault, flush=True)
-    return 0
+    return int(refused)
 
 
 ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "probe": (probe, "say what controller answers, and whether it is set up for the machine", ()),
-    "download": (download, "load a program, list it back and compare", ("machine", "program", "clears")),
+    "download": (download, "load a program, list it back and compare", ("machine", "program")),
     "run": (start, "start a program that is loaded, from its beginning", ("machine", "program")),
-    "stream": (stream, "run a program too large to be loaded, while it is sent", ("machine", "program", "clears")),
-    "hold": (hold, "slow the program down to rest, on its path", ("machine", "clears")),
-    "resume": (resume, "go on after a hold", ("machine", "joins")),
-    "abort": (abort, "end the program: hold, then abort", ("machine", "clears")),
-    "status": (status, "struts, following errors and faults in words", ("machine", "joins")),
-    "monitor": (monitor, "the same with the pose of the tool, again and again", ("machine", "joins")),
+    "stream": (stream, "run a program too large to be loaded, while it is sent", ("machine", "program")),
+    "hold": (hold, "slow the program down to rest, on its path", ("machine",)),
+    "resume": (resume, "go on after a hold", ("machine",)),
+    "abort": (abort, "end the program: hold, then abort", ("machine",)),
+    "status": (status, "struts, following errors and faults in words", ("machine",)),
+    "monitor": (monitor, "the same with the pose of the tool, again and again", ("machine",)),
     "terminal": (terminal, "send lines of the standard input, each once", ()),
 }
-"""For each action what it does, in words, and what it needs: a machine or a program that is named, or the right to
-clear a program buffer that is open, or to join a stream. To stop is more urgent than to load."""
+"""For each action what it does, in words, and what it needs: a machine or a program that is named."""
 
 OF_POWER_PMAC = ("probe", "hold", "abort", "status", "monitor", "terminal")
 """What is known of a Power PMAC suffices for these."""

@@ -33,13 +33,14 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
     import time
 
     from pkm_post.numerical_control.homing import Phase, missing_homes, start_homing
+    from pkm_post.pmac_link.ownership import owned
     from pkm_post.pmac_link.status import read_status
 
     if namespace.trigger is None:
         missing = missing_homes(read_status(session, target.settings))
         print(f"not homed: strut {', '.join(map(str, missing))}" if missing else "all struts are homed")
         return int(bool(missing))
-    with held_at_the_end(session, target.settings):
+    with owned(session, "home"), held_at_the_end(session, target.settings):
         watch = start_homing(session, target.settings, namespace.trigger)
         while True:
             seen = watch.see(read_status(session, target.settings), session.now())

@@ -49,12 +49,14 @@ def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     controller = Controller(Settings(memory_words=namespace.memory) if namespace.memory else Settings())
     if namespace.setup and not _set_up(controller, namespace.setup):
         return 1
-    server = Server(controller, namespace.speed)
+    server = None
     try:
+        server = Server(controller, namespace.speed)
         address = f"serial:{server.add_pty()}" if namespace.pty else f"tcp:127.0.0.1:{server.add_tcp(namespace.tcp)}"
     except OSError as fault:
         print(f"no connection can be offered: {fault}", file=sys.stderr)
-        server.close()
+        if server is not None:
+            server.close()
         return 1
     print(f"A simulated Turbo PMAC is at {address}; Ctrl-C ends it.", flush=True)
     serve(server, lambda: False)

@@ -47,7 +47,6 @@ def abort(session: Session, target: Target, namespace: argparse.Namespace) -> in
 def _print(session: Session, status: Status) -> int:
     from pkm_post.pmac_link.readout import state_text
 
-    print(*session.notes, sep="\n", end="\n" if session.notes else "", file=sys.stderr)
     print(state_text(status))
     return 0
 

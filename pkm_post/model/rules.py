@@ -489,6 +489,26 @@ RULES: dict[str, Rule] = {
         "the lines of the program's source are not known",
         "keep all results of a posting together in one folder, or post the job again",
     ),
+    "C210": _error(
+        "another client has the machine",
+        "wait until it has ended, or end it there; where nothing of it is left, stop the machine first (hold, then"
+        " abort); status, monitor, hold and abort work meanwhile",
+    ),
+    "C211": _error(
+        "another client has taken the machine meanwhile",
+        "look what the machine does, and begin again when the other client has ended",
+    ),
+    "C212": _error(
+        "the lock of the controller cannot be kept on this computer", "make the folder for temporary files writable"
+    ),
+    "C213": _error(
+        "the variables that say who has the machine hold what no client writes",
+        "keep P8187 to P8191 free in the programs of the controller; P8187..8191=0 in the terminal frees them",
+    ),
+    "C214": _error(
+        "a program buffer is open that this port cannot close",
+        "close it where it was opened, or disconnect what loads a program there",
+    ),
     # V1: the certificate
     "V101": _error("the tool tip leaves the programmed path", "ask for a wider tolerance, or report this as a fault"),
     "V102": _error("the tool axis leaves the programmed axis", "ask for a wider tolerance, or report this as a fault"),

@@ -48,12 +48,10 @@ class Connection:
     Attributes:
         target: what was connected to.
         worker: takes orders.
-        notes: what was found and done while connecting, in words.
     """
 
     target: Target
     worker: Worker
-    notes: tuple[str, ...]
     _session: Session
     _training: Training | None
 
@@ -111,13 +109,12 @@ def connect(target: Target, tool_length: float, simulated_speed: float = 1.0) ->
     if port is None:
         training = Training(target.machine, target.settings, tool_length, simulated_speed)
         port = port_named(training.port)
-    # A stop must not fail because a download was cut, so what is left of one is made empty, and that is told.
-    session = Session(port, leftover=Leftover.CLEAR)
+    session = Session(port, leftover=Leftover.STOP)
     number = _own_number(target.settings.program)
     try:
         control = NumericalControl(session, target.machine, target.settings, tool_length, number)
         session.open()
-        return Connection(target, Worker(control), tuple(session.notes), session, training)
+        return Connection(target, Worker(control), session, training)
     except BaseException:
         session.close()
         if training is not None:

@@ -9,6 +9,7 @@ Enters: a session, a machine and what is in its spindle. Leaves: states and plan
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -20,15 +21,17 @@ from pkm_post.model.certificate import Tolerances
 from pkm_post.numerical_control import defaults, mdi, moves, stops
 from pkm_post.numerical_control import execute as execution
 from pkm_post.numerical_control.emergency import emergency_text
-from pkm_post.numerical_control.homing import Homing, HomingWatch, Phase, missing_homes, start_homing
+from pkm_post.numerical_control.homing import Homing, HomingWatch, Phase, check_trigger, missing_homes, start_homing
 from pkm_post.numerical_control.plan import Plan, planned
 from pkm_post.numerical_control.single_block import Blocks, Shown
 from pkm_post.numerical_control.watchdog import Watchdog
 from pkm_post.pmac_link import operate, stopping
 from pkm_post.pmac_link.download import Loaded, Progress, download
-from pkm_post.pmac_link.faults import CancelledError, LinkLostError, NotReadyError, PmacError
+from pkm_post.pmac_link.faults import CancelledError, LinkLostError, NotOwnerError, NotReadyError, PmacError
 from pkm_post.pmac_link.job import Job
+from pkm_post.pmac_link.motion import settled_status
 from pkm_post.pmac_link.near import NEAR_MM
+from pkm_post.pmac_link.ownership import take
 from pkm_post.pmac_link.readout import Pose, Readout, standing_pose
 from pkm_post.pmac_link.ready import check_setup
 from pkm_post.pmac_link.session import Session
@@ -37,6 +40,7 @@ from pkm_post.pmac_link.status import Status, read_status
 Findings = tuple[Diagnostic, ...]
 
 Done = TypeVar("Done")
+_log = logging.getLogger(__name__)
 
 TOLERANCES = Tolerances(1e-3, math.radians(1e-3))
 """Of moves by hand: those that posting has unless the user says otherwise."""
@@ -120,12 +124,18 @@ class NumericalControl:
             self.renew()
         except CancelledError:
             return self._last  # a stop is in a hurry; the next reading tells
+        except NotOwnerError as fault:
+            _log.warning("%s", fault)
+            if self._session.keeper is not None:
+                self._session.keeper.release()
+            return self._last
         except PmacError as fault:
             self._last = State(
                 self._last.status, self._last.pose, str(fault), self._emergency(), self._last.homing, self._block()
             )
             return self._last
         self._may_move = False
+        self._give_back(status)
         homing = None if self._watch is None else self._watch.see(status, self._session.now())
         if homing is not None and homing.phase is not Phase.SEARCHING:
             self._watch = None
@@ -170,9 +180,9 @@ class NumericalControl:
         """
         order = self._session, self._machine, self._settings, plan.job
         if plan.is_jog:
-            status, self._watchdog = self._moving(lambda: execution.execute_watched(*order))
+            status, self._watchdog = self._owning("jog", lambda: execution.execute_watched(*order))
         else:
-            status = self._moving(lambda: execution.execute(*order, near))
+            status = self._owning("run", lambda: execution.execute(*order, near))
         if plan.block and self._blocks is not None:
             self._blocks = self._blocks[0], plan.block + 1
         return status
@@ -204,11 +214,11 @@ class NumericalControl:
     def start(self, job: Job, near: float = NEAR_MM) -> Status:
         """Start a program that is loaded, from its beginning; as ``operate.run``."""
         order = self._session, self._settings, job.program, job.first, near, self._machine
-        return self._moving(lambda: operate.run(*order))
+        return self._owning("run", lambda: operate.run(*order))
 
     def go_on(self, job: Job, stop: int, near: float = NEAR_MM) -> Status:
         """Go on behind a stop (M0, M1) of a program, numbered from 1, at which it stands; as ``stops.go_on``."""
-        return self._moving(lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
+        return self._owning("run", lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
 
     def open_blocks(self, blocks: Blocks, at: int = 1) -> int:
         """Take a program for single block; how many blocks it has.
@@ -258,7 +268,8 @@ class NumericalControl:
 
     def home(self, trigger: str) -> None:
         """Send the line that starts the homing of the machine; ``poll`` watches it then."""
-        self._watch = self._moving(lambda: start_homing(self._session, self._settings, trigger))
+        check_trigger(trigger)
+        self._watch = self._owning("home", lambda: start_homing(self._session, self._settings, trigger))
 
     def _end_watch(self, status: Status) -> None:
         """A program that has ended needs its watchdog no more."""
@@ -274,6 +285,22 @@ class NumericalControl:
             return emergency_text(None)
         return () if self._last.status is None else emergency_text(self._last.status)
 
+    def _owning(self, what: str, order: Callable[[], Done]) -> Done:
+        """Carry out what sets the machine in motion; the right to do so is kept until it is seen at rest."""
+        keeper = self._session.keeper or take(self._session, what)
+        try:
+            return self._moving(order)
+        except LinkLostError:
+            raise  # it may move
+        except BaseException:
+            keeper.release()
+            raise
+
+    def _give_back(self, status: Status) -> None:
+        """Let others move a machine that rests."""
+        if self._session.keeper is not None and self._watch is None and status.standing and not status.running:
+            self._session.keeper.release()
+
     def _moving(self, order: Callable[[], Done]) -> Done:
         """Carry out what may set the machine in motion; until the next reading it may move."""
         try:
@@ -286,7 +313,7 @@ class NumericalControl:
 
     def _here(self) -> Pose:
         """The pose that the controller wants, of a machine that stands."""
-        status = read_status(self._session, self._settings)
+        status = settled_status(self._session, self._settings)
         reasons = [f"strut {strut}: not homed" for strut in missing_homes(status)]
         reasons += ["a program runs, or is held"] if status.running else []
         reasons += [] if status.standing else ["a strut moves"]

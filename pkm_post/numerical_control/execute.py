@@ -19,6 +19,7 @@ from pkm_post.pmac_link.download import download
 from pkm_post.pmac_link.faults import PmacError
 from pkm_post.pmac_link.job import Job
 from pkm_post.pmac_link.near import NEAR_MM
+from pkm_post.pmac_link.ownership import owned
 from pkm_post.pmac_link.ready import check_setup, check_start
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
@@ -40,11 +41,13 @@ def execute(session: Session, machine: Machine, settings: Settings, job: Job, ne
         NotReadyError: set-up or machine are not as they have to be; nothing was loaded, or nothing was started.
         DownloadError: it could not be loaded; nothing was started.
         CancelledError: a stop came first; nothing was started.
+        NotOwnerError: another client has the machine; nothing was loaded.
     """
-    check_start(read_status(session, settings), job.first, near, machine)
-    check_setup(session, settings, machine.strut_stroke)
-    download(session, job.program, is_cancelled=session.is_waited_for)
-    return operate.run(session, settings, job.program, job.first, near, machine)
+    with owned(session, "jog"):
+        check_start(read_status(session, settings), job.first, near, machine)
+        check_setup(session, settings, machine.strut_stroke)
+        download(session, job.program, is_cancelled=session.is_waited_for)
+        return operate.run(session, settings, job.program, job.first, near, machine)
 
 
 def execute_watched(session: Session, machine: Machine, settings: Settings, job: Job) -> tuple[Status, Watchdog]:

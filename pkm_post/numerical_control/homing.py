@@ -17,8 +17,10 @@ from dataclasses import dataclass
 
 from pkm_post.controllers.pmac import Settings
 from pkm_post.pmac_link.faults import NotReadyError
+from pkm_post.pmac_link.motion import settled_status
+from pkm_post.pmac_link.ownership import owned
 from pkm_post.pmac_link.session import Session
-from pkm_post.pmac_link.status import MOTORS, Status, read_status
+from pkm_post.pmac_link.status import MOTORS, Status
 
 _FORMS = {
     "ENABLE PLC n": re.compile(r"ENA(?:BLE)? ?PLC ?\d{1,2}", re.IGNORECASE),
@@ -82,9 +84,16 @@ def start_homing(session: Session, settings: Settings, trigger: str) -> HomingWa
         ValueError: the line has none of the forms.
         NotReadyError: a program runs, a strut moves, or a motor has a fault; nothing was sent.
         OutcomeUnknownError: nobody knows whether it was carried out; the machine may move.
+        NotOwnerError: another client has the machine; nothing was sent.
     """
     check_trigger(trigger)
-    status = read_status(session, settings)
+    with owned(session, "home"):
+        _check_rest(settled_status(session, settings))
+        session.order(trigger)
+    return HomingWatch(session.now())
+
+
+def _check_rest(status: Status) -> None:
     reasons = [*_faults(status)]
     if status.running:
         reasons.append("a program runs, or is held")
@@ -92,8 +101,6 @@ def start_homing(session: Session, settings: Settings, trigger: str) -> HomingWa
         reasons.append("a strut moves")
     if reasons:
         raise NotReadyError(reasons)
-    session.order(trigger)
-    return HomingWatch(session.now())
 
 
 def missing_homes(status: Status) -> tuple[int, ...]:

@@ -16,7 +16,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pkm_post.pmac_link.faults import CancelledError, DownloadError, LinkLostError, PmacError, RefusedError
+from pkm_post.pmac_link.free_words import free_words
 from pkm_post.pmac_link.listing import Comparison, Program, compare
+from pkm_post.pmac_link.ownership import owned
 from pkm_post.pmac_link.session import Session
 
 ATTEMPTS = 5
@@ -79,7 +81,13 @@ def download(
         RefusedError: the buffer could not be opened, for a program runs or another buffer is open; nothing changed.
         DownloadError: it failed; says whether anything is left under the number.
         CancelledError: it was stopped, and nothing is left under the number.
+        NotOwnerError: another client has the machine; nothing changed.
     """
+    with owned(session, "download"):
+        return _download(session, program, progress, is_cancelled)
+
+
+def _download(session: Session, program: Program, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
     try:
         _open(session, program.number)
     except LinkLostError as lost:
@@ -141,15 +149,6 @@ def _clear_away(session: Session, number: int) -> bool:
         _log.error("program %d could not be cleared: %s", number, fault)
         return False
     return True
-
-
-def free_words(session: Session) -> int:
-    """Words of memory that are free; below zero while a buffer is open."""
-    (told,) = session.ask("SIZE")[:1] or ("",)
-    try:
-        return int(told)
-    except ValueError:
-        raise LinkLostError(f"SIZE: expected a number of words, got {told!r}") from None
 
 
 def _check_room(session: Session, program: Program) -> None:

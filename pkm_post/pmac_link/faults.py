@@ -8,6 +8,10 @@ nobody knows whether it was carried out is a third: it must never be sent again 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pkm_post.model import Diagnostic
 
 MEANINGS: dict[int, str] = {
     1: "not allowed while a program runs",
@@ -75,6 +79,30 @@ class OutcomeUnknownError(LinkLostError):
     def __init__(self, command: str, why: str) -> None:
         super().__init__(f"whether the controller carried out {command!r} is unknown: {why}")
         self.command = command
+
+
+class DiagnosedError(PmacError):
+    """Something outside this program that a person has to put right, with its code and its cure.
+
+    Attributes:
+        diagnostic: what, where, and the cure.
+    """
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(str(diagnostic))
+        self.diagnostic = diagnostic
+
+
+class NotOwnerError(DiagnosedError):
+    """Another client has the right to move the machine, or has taken it.
+
+    Attributes:
+        what: the other client does, as ``ownership.WHAT`` has it; empty when that is not known.
+    """
+
+    def __init__(self, diagnostic: Diagnostic, what: str = "") -> None:
+        super().__init__(diagnostic)
+        self.what = what
 
 
 class NotReadyError(PmacError):

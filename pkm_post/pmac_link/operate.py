@@ -17,7 +17,9 @@ from pkm_post.model import Machine
 from pkm_post.pmac_link.download import listing_of
 from pkm_post.pmac_link.faults import NotReadyError, OutcomeUnknownError, PmacError
 from pkm_post.pmac_link.listing import Program
+from pkm_post.pmac_link.motion import settled_status
 from pkm_post.pmac_link.near import NEAR_MM
+from pkm_post.pmac_link.ownership import RESUMED_BY_ALL, owned
 from pkm_post.pmac_link.ready import check_start
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
@@ -53,12 +55,14 @@ def run(
         NotReadyError: the program is not there as it was written, or the machine is not ready.
         OutcomeUnknownError: the link failed at the start and the controller does not show that the program runs.
         CancelledError: a stop came first; nothing was started.
+        NotOwnerError: another client has the machine; nothing was started.
     """
-    there = listing_of(session, program)
-    if not there.same:
-        raise NotReadyError([f"program {program.number} in the controller is another one: {there.difference}"])
-    check_start(read_status(session, settings), first, near, machine)
-    return _go(session, settings, f"B{program.number}R", lambda status: status.running)
+    with owned(session, "run"):
+        there = listing_of(session, program)
+        if not there.same:
+            raise NotReadyError([f"program {program.number} in the controller is another one: {there.difference}"])
+        check_start(settled_status(session, settings), first, near, machine)
+        return _go(session, settings, f"B{program.number}R", lambda status: status.running)
 
 
 def resume(session: Session, settings: Settings) -> Status:
@@ -68,7 +72,13 @@ def resume(session: Session, settings: Settings) -> Status:
         NotReadyError: no program is held, or something is wrong.
         OutcomeUnknownError: the link failed, and the controller does not show that the program goes on.
         CancelledError: a stop came first; the program is still held.
+        NotOwnerError: the program is that of another client; the program is still held.
     """
+    with owned(session, "resume", beside=RESUMED_BY_ALL):
+        return _resume(session, settings)
+
+
+def _resume(session: Session, settings: Settings) -> Status:
     status = read_status(session, settings)
     reasons = list(status.words())
     if not status.held:
@@ -94,9 +104,15 @@ def override(
         NotReadyError: a program is held; its time base stands at 0.
         PmacError: the time base does not go there.
         CancelledError: a stop came before it got there.
+        NotOwnerError: another client has the machine.
     """
     if not 0 < percent <= 100:
         raise ValueError(f"percent: expected above 0 and up to 100, got {percent:g}")
+    with owned(session, "override", beside=RESUMED_BY_ALL):
+        return _override(session, settings, percent, meanwhile)
+
+
+def _override(session: Session, settings: Settings, percent: float, meanwhile: Callable[[], None]) -> Status:
     if read_status(session, settings).held:
         raise NotReadyError(["a program is held: resume it, or abort it, before the override is changed"])
     session.order(f"&{settings.coordinate_system}%{percent:.2f}")

@@ -26,6 +26,10 @@ class Door(Protocol):
     """What a session needs of a port; tests have doors of their own."""
 
     @property
+    def name(self) -> str:
+        """By which others know it, as ``port_named`` takes it; empty when nobody else can connect to it."""
+
+    @property
     def silence(self) -> float:
         """Seconds without a byte after which the controller has nothing more to say."""
 
@@ -63,6 +67,14 @@ class Port:
     silence: float = 0.1
     user: str = ""
     known_hosts: Path | None = None
+
+    @property
+    def name(self) -> str:
+        """As ``port_named`` takes it."""
+        if self.kind == "serial":
+            return f"serial:{self.address}"
+        host = f"[{self.address}]" if ":" in self.address else self.address
+        return f"{self.kind}:{self.user}{'@' if self.user else ''}{host}:{self.number}"
 
     @property
     def is_power(self) -> bool:

@@ -107,10 +107,15 @@ def state_text(status: Status) -> str:
         f"strut {motor}: {length:10.4f} mm, following error {error:8.4f} mm{'' if bits.has('homed') else ', NOT HOMED'}"
         for motor, length, error, bits in zip(MOTORS, status.length, status.following_error, status.motors, strict=True)
     ]
-    return "\n".join([*rows, f"{_activity(status)}, override {status.override:g} %", *status.words()])
+    return "\n".join([*rows, activity_text(status), *status.words()])
+
+
+def activity_text(status: Status) -> str:
+    """What program and struts do, for a terminal."""
+    return f"{_activity(status)}, override {status.override:g} %"
 
 
 def _activity(status: Status) -> str:
     if not status.running:
-        return "no program runs"
+        return "no program runs" if status.standing else "no program runs, BUT THE MACHINE MOVES"
     return "a program is held" if status.held else "a program runs"

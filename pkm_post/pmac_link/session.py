@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 from pkm_post.pmac_link.dialogue import Dialogue
 from pkm_post.pmac_link.exchange import Answer, Command, Kind, Lost, Refusal
@@ -30,12 +30,33 @@ HURRY_S = 0.4
 """Longest silence while a stop is sent: it tries again by itself, and soon."""
 
 
+class Keeper(Protocol):
+    """Who keeps the right to move the machine, and is called while the session does so (``ownership``)."""
+
+    def answered(self) -> None:
+        """A query was answered."""
+
+    def check(self) -> None:
+        """Something is about to be set, or loaded.
+
+        Raises:
+            PmacError: the right is gone.
+        """
+
+    def is_sure(self) -> bool:
+        """Whether the right was seen so lately that nobody can have taken it since."""
+
+    def release(self) -> None:
+        """Give the right back."""
+
+
 class Session:
     """A controller that answers.
 
     Attributes:
-        notes: what was found and done while connecting, in words.
-        connections: how often it has connected; a program buffer that was open before is closed since.
+        connections: how often it has connected; the owner's program buffer that was open before is closed since.
+        keeper: who keeps the right to move the machine; None while this session has not got it.
+        has_open_buffer: whether lines that are sent may go into a program buffer that was opened here.
     """
 
     def __init__(
@@ -43,7 +64,7 @@ class Session:
         port: Door,
         patience: float = 2.0,
         pause: float = 0.5,
-        leftover: Leftover = Leftover.REFUSE,
+        leftover: Leftover = Leftover.LEAVE,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
@@ -53,16 +74,18 @@ class Session:
             port: where the controller is.
             patience: seconds without a byte until an answer is given up.
             pause: seconds before a lost link is called back, longer each time.
-            leftover: what becomes of a program buffer that ``open`` finds open.
+            leftover: what becomes of a program buffer that ``open`` finds open while this session is not the owner.
             clock: seconds of a clock that only grows.
             sleep: waits so many seconds of it.
         """
         self._patience, self._pause, self._leftover = patience, pause, leftover
         self._clock, self._sleep = clock, sleep
         self._dialogue = Dialogue(port, patience, clock)
-        self._in_step = False
+        self._in_step, self._in_a_hurry = False, False
         self._attempts, self._calls = ATTEMPTS, CALLS
-        self.notes: list[str] = []
+        self.port_name = port.name
+        self.keeper: Keeper | None = None
+        self.has_open_buffer = False
         self.connections = 0
 
     def __enter__(self) -> Self:
@@ -82,14 +105,20 @@ class Session:
 
         Raises:
             LinkLostError: no controller answers.
-            NotReadyError: a program buffer is open, and it is not this session's to clear.
         """
-        self._call(self._leftover)
+        self._call()
 
     def close(self) -> None:
-        """Disconnect."""
+        """Disconnect, and give back the right to move the machine."""
+        if self.keeper is not None:
+            self.keeper.release()
         self._dialogue.close()
         self._in_step = False
+
+    @property
+    def has_handshake(self) -> bool:
+        """Whether it is a Turbo PMAC, of which a handshake is agreed."""
+        return bool(self._dialogue.handshake)
 
     def now(self) -> float:
         """Seconds of the clock of this session."""
@@ -128,13 +157,10 @@ class Session:
             LinkLostError: it was asked ``ATTEMPTS`` times and got no answer.
             CancelledError: it takes long, and something more urgent waits.
         """
-        command = Command(text, Kind.QUERY, self._patience, most)
-        for _ in range(self._attempts - 1):
-            try:
-                return self._exchange(command)
-            except LinkLostError:
-                self.give_way()
-        return self._exchange(command)
+        told = self._asked(Command(text, Kind.QUERY, self._patience, most))
+        if self.keeper is not None and not self._in_a_hurry:
+            self.keeper.answered()
+        return told
 
     def order(self, text: str) -> tuple[str, ...]:
         """Have a command carried out, once; what it says.
@@ -143,19 +169,24 @@ class Session:
             RefusedError: the controller refused it.
             OutcomeUnknownError: it may or may not have been carried out.
             LinkLostError: it surely was not.
+            PmacError: the right to move the machine is gone; it was not sent. A stop needs no right.
         """
-        return self._exchange(Command(text, Kind.SET, self._patience))
+        self._check()
+        self.has_open_buffer |= text.startswith("OPEN")
+        said = self._exchange(Command(text, Kind.SET, self._patience))
+        self.has_open_buffer &= text != "CLOSE"
+        return said
 
     @contextmanager
     def in_a_hurry(self) -> Iterator[None]:
         """Ask once, call once and wait ``HURRY_S`` at most, for a stop that tries again by itself."""
-        before = self._patience, self._attempts, self._calls
-        self._patience, self._attempts, self._calls = min(self._patience, HURRY_S), 1, 1
+        before = self._patience, self._attempts, self._calls, self._in_a_hurry
+        self._patience, self._attempts, self._calls, self._in_a_hurry = min(self._patience, HURRY_S), 1, 1, True
         self._dialogue.patience = self._patience
         try:
             yield
         finally:
-            self._patience, self._attempts, self._calls = before
+            self._patience, self._attempts, self._calls, self._in_a_hurry = before
             self._dialogue.patience = self._patience
 
     def interrupt(self, control: int) -> None:
@@ -190,6 +221,7 @@ class Session:
         count = self.lines_at_once(lines)
         if not count:
             raise ValueError(f"lines: expected lines that fit into one exchange, got {lines[:1]}")
+        self._check()
         self._exchange(Command("\n".join(lines[:count]), Kind.BUFFER, self._patience))
         return count
 
@@ -197,9 +229,21 @@ class Session:
         """How many of these lines ``load`` puts into the buffer in one exchange."""
         return self._dialogue.lines_at_once(lines)
 
+    def _check(self) -> None:
+        if self.keeper is not None and not self._in_a_hurry:
+            self.keeper.check()
+
+    def _asked(self, command: Command) -> tuple[str, ...]:
+        for _ in range(self._attempts - 1):
+            try:
+                return self._exchange(command)
+            except LinkLostError:
+                self.give_way()
+        return self._exchange(command)
+
     def _exchange(self, command: Command) -> tuple[str, ...]:
         if not self._in_step:
-            self._call(self._leftover.on_the_way if self.connections else self._leftover)
+            self._call()
         self._in_step = False  # until the end is known: an interrupt may come at any time
         try:
             ended = self._dialogue.run(command)
@@ -214,18 +258,21 @@ class Session:
             raise LinkLostError(f"{command.text[:60]!r}: {ended.why}")
         raise OutcomeUnknownError(command.text[:60], ended.why)
 
-    def _call(self, leftover: Leftover) -> None:
+    def _call(self) -> None:
         """Connect, several times if need be."""
+        is_own = self.keeper is not None and self.keeper.is_sure()
+        leftover = Leftover.CLOSE if is_own else self._leftover
         for attempt in range(self._calls):
             if attempt:
                 self.give_way()
                 self._sleep(self._pause * attempt)
             try:
-                self.notes += greet(self._dialogue, leftover)
+                greet(self._dialogue, leftover)
             except (LinkLostError, RefusedError) as fault:
                 if attempt == self._calls - 1:
                     raise LinkLostError(f"no controller that can be understood: {fault}") from fault
             else:
                 self._in_step = True
+                self.has_open_buffer &= leftover is not Leftover.CLOSE
                 self.connections += 1
                 return

@@ -51,6 +51,10 @@ class Bits:
 class MotorBits(Bits):
     """Two words of 24 bits: ``#n?``."""
 
+    def moving(self) -> MotorBits:
+        """The same of a motor that does not stand."""
+        return type(self)(self.value & ~(1 << self.PLACES["standing"]))
+
     DIGITS = 12
     PLACES = {
         "activated": 47, "negative_limit": 46, "positive_limit": 45, "amplifier_enabled": 43, "open_loop": 42,

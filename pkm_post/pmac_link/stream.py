@@ -21,11 +21,13 @@ from pkm_post.model import Machine
 from pkm_post.pmac_link.faults import CancelledError, PmacError, StreamError
 from pkm_post.pmac_link.gates import segments_of
 from pkm_post.pmac_link.listing import Program
+from pkm_post.pmac_link.motion import settled_status
 from pkm_post.pmac_link.near import NEAR_MM
+from pkm_post.pmac_link.ownership import owned
 from pkm_post.pmac_link.ready import check_start
 from pkm_post.pmac_link.rotary import Progress, RotaryStream
 from pkm_post.pmac_link.session import Session
-from pkm_post.pmac_link.status import Array, read_status
+from pkm_post.pmac_link.status import Array
 
 _log = logging.getLogger(__name__)
 
@@ -75,10 +77,18 @@ def stream(
         NotReadyError: the program cannot be streamed, or the machine is not ready; nothing was sent.
         StreamError: it failed; says where the machine rests and whether anything is left in the buffer.
         CancelledError: it was stopped; the machine rests and nothing is left in the buffer.
+        NotOwnerError: another client has the machine; nothing was sent.
     """
     streaming = RotaryStream(session, settings, segments_of(program, settings, words), words, near)
     streaming.rest = first
-    check_start(read_status(session, settings), first, near, machine)
+    with owned(session, "stream"):
+        check_start(settled_status(session, settings), first, near, machine)
+        return _streamed(session, streaming, program, progress, is_cancelled)
+
+
+def _streamed(
+    session: Session, streaming: RotaryStream, program: Program, progress: Progress, is_cancelled: Callable[[], bool]
+) -> Streamed:
     try:
         streaming.open()
         streaming.run(progress, is_cancelled)

@@ -3,6 +3,9 @@
 
 Enters: bytes of clients and the clock of the computer. Leaves: bytes. One thread does all, so that nothing happens to
 the controller at once. Connections from other computers are not taken.
+
+No client keeps the others waiting: each has its share of a turn, and from one that does not read its answers nothing is
+read any more. When the system has no more file descriptors, those who come wait until it has.
 """
 
 from __future__ import annotations
@@ -20,6 +23,8 @@ from pkm_post.pmac_simulator.ethernet import Packets
 from pkm_post.pmac_simulator.line import Line
 
 LOOPBACK = "127.0.0.1"
+WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
+"""FreeCAD leaves SIGPIPE at its default: a client that has gone would end it."""
 PERIOD_S = 0.005
 LONGEST_LAPSE_S = 0.25
 """A computer that cannot keep up, or slept, does not make the motors jump: simulated time falls behind."""
@@ -27,6 +32,14 @@ LONGEST_TURN_S = 0.02
 """Clients are not kept waiting longer than this while simulated time passes."""
 SLICE_MS = 20.0
 PIECE = 4096
+MORSEL = 64
+"""So many bytes of a client are taken in at once; they may ask for much."""
+SHARE_S = 0.005
+"""Of a turn, for each client."""
+MOST_UNSENT = 1 << 20
+"""Bytes that wait for a client to read them; from then on it is not listened to."""
+NO_DESCRIPTOR_S = 0.1
+"""Seconds until connections are taken again when the system could not take one."""
 
 
 class Stream(Protocol):
@@ -38,13 +51,27 @@ class Stream(Protocol):
 
 @dataclass
 class Channel:
-    """One client: how its bytes are read and written, and what is not written yet."""
+    """One client: how its bytes are read and written, what is not taken in yet, and what is not written yet."""
 
     read: Callable[[int], bytes]
     write: Callable[[bytes], int]
     close: Callable[[], None]
     stream: Stream
+    untaken: bytearray = field(default_factory=bytearray)
     unsent: bytearray = field(default_factory=bytearray)
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether it reads what it is sent, so that it may say more."""
+        return len(self.unsent) < MOST_UNSENT
+
+    def take(self) -> None:
+        """Take in what it has said, for its share of a turn."""
+        end = time.monotonic() + SHARE_S
+        while self.untaken and self.is_heard and time.monotonic() < end:
+            morsel = bytes(self.untaken[:MORSEL])
+            del self.untaken[:MORSEL]
+            self.unsent += self.stream.receive(morsel)
 
 
 class Server:
@@ -53,8 +80,9 @@ class Server:
     def __init__(self, controller: Controller, speed: float = 1.0) -> None:
         self._controller, self._speed = controller, speed
         self._selector = selectors.DefaultSelector()
-        self._ethernet, self._channels = Line(controller), dict[object, Channel]()
+        self._ethernet, self._channels = Line(controller), dict[int | socket.socket, Channel]()
         self._closers: list[Callable[[], None]] = []
+        self._listeners: dict[socket.socket, float] = {}
         self._serial: list[tuple[Line, Channel]] = []
 
     def add_tcp(self, port: int) -> int:
@@ -68,7 +96,7 @@ class Server:
         """
         listener = socket.create_server((LOOPBACK, port))
         listener.setblocking(False)
-        self._selector.register(listener, selectors.EVENT_READ, lambda: self._accept(listener))
+        self._listen(listener)
         self._closers.append(listener.close)
         return int(listener.getsockname()[1])
 
@@ -101,16 +129,20 @@ class Server:
         """Serve until ``ended`` says so."""
         before = time.monotonic()
         while not ended():
-            ready = self._selector.select(PERIOD_S)
+            ready = self._selector.select(0 if self._has_untaken() else PERIOD_S)
             now = time.monotonic()
             self._pass(1000 * self._speed * min(now - before, LONGEST_LAPSE_S))
             before = now
             for key, _ in ready:
                 key.data()
             for line, channel in self._serial:
-                channel.unsent += line.said()
+                said = line.said()
+                channel.unsent += said if channel.is_heard else b""
             for source, channel in list(self._channels.items()):
+                channel.take()
                 self._send(source, channel)
+                self._hear(source, channel)
+            self._listen_again(now)
 
     def _pass(self, ms: float) -> None:
         """Let simulated time pass; what does not fit into a turn is lost."""
@@ -127,16 +159,47 @@ class Server:
             closer()
         self._selector.close()
 
+    def _listen(self, listener: socket.socket) -> None:
+        self._selector.register(listener, selectors.EVENT_READ, lambda: self._accept(listener))
+
+    def _listen_again(self, now: float) -> None:
+        for listener, due in list(self._listeners.items()):
+            if now >= due:
+                del self._listeners[listener]
+                self._listen(listener)
+
+    def _has_untaken(self) -> bool:
+        return any(channel.untaken and channel.is_heard for channel in self._channels.values())
+
     def _accept(self, listener: socket.socket) -> None:
-        connection, _ = listener.accept()
+        try:
+            connection, _ = listener.accept()
+        except OSError:  # no descriptor for it, or it has gone again: the others are served meanwhile
+            self._selector.unregister(listener)
+            self._listeners[listener] = time.monotonic() + NO_DESCRIPTOR_S
+            return
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        channel = Channel(connection.recv, connection.send, connection.close, Packets(self._ethernet))
-        self._watch(connection, channel)
+
+        def send(data: bytes) -> int:
+            return connection.send(data, WITHOUT_SIGNAL)
+
+        self._watch(connection, Channel(connection.recv, send, connection.close, Packets(self._ethernet)))
 
     def _watch(self, source: int | socket.socket, channel: Channel) -> None:
         self._channels[source] = channel
-        self._selector.register(source, selectors.EVENT_READ, lambda: self._receive(source, channel))
+        self._hear(source, channel)
+
+    def _hear(self, source: int | socket.socket, channel: Channel) -> None:
+        """Read from a client as long as it reads itself, and what it said was taken in."""
+        if source not in self._channels:
+            return  # it was dropped
+        is_watched = source in self._selector.get_map()
+        wants = channel.is_heard and not channel.untaken
+        if wants and not is_watched:
+            self._selector.register(source, selectors.EVENT_READ, lambda: self._receive(source, channel))
+        elif is_watched and not wants:
+            self._selector.unregister(source)
 
     def _receive(self, source: int | socket.socket, channel: Channel) -> None:
         try:
@@ -146,11 +209,11 @@ class Server:
         except OSError:
             data = b""  # the client is gone, in whatever way
         if data:
-            channel.unsent += channel.stream.receive(data)
+            channel.untaken += data
         else:
             self._drop(source, channel)
 
-    def _send(self, source: object, channel: Channel) -> None:
+    def _send(self, source: int | socket.socket, channel: Channel) -> None:
         try:
             while channel.unsent:
                 del channel.unsent[: channel.write(bytes(channel.unsent[:PIECE]))]
@@ -159,7 +222,8 @@ class Server:
         except OSError:
             self._drop(source, channel)
 
-    def _drop(self, source: object, channel: Channel) -> None:
+    def _drop(self, source: int | socket.socket, channel: Channel) -> None:
         if self._channels.pop(source, None) is not None:
-            self._selector.unregister(source)  # type: ignore[arg-type]
+            if source in self._selector.get_map():
+                self._selector.unregister(source)
             channel.close()

@@ -77,6 +77,7 @@ class Wire:
     passed: int = 0
     sent: bytearray = field(default_factory=bytearray)
     line: Line = None
+    name = ""
 
     def __post_init__(self):
         self.line = self.line or Line(self.controller)
@@ -96,7 +97,7 @@ class Wire:
     def conversation(self):
         return SerialConversation(self.silence) if self.kind == "serial" else EthernetConversation(self.silence)
 
-    def session(self, patience=0.5, leftover=Leftover.CLEAR):
+    def session(self, patience=0.5, leftover=Leftover.LEAVE):
         return Session(self, patience, 0.1, leftover, self.clock, self.sleep)
 
 

@@ -5,8 +5,9 @@ import pytest
 from rig import Wire, controller, listed
 
 from pkm_post.pmac_link.download import listing_of
-from pkm_post.pmac_link.faults import CancelledError, LinkLostError, NotReadyError, OutcomeUnknownError, RefusedError
+from pkm_post.pmac_link.faults import CancelledError, DiagnosedError, LinkLostError, OutcomeUnknownError, RefusedError
 from pkm_post.pmac_link.listing import Program
+from pkm_post.pmac_link.ownership import owned
 from pkm_post.pmac_link.session import ATTEMPTS, Leftover
 from pkm_post.pmac_simulator import Line
 
@@ -94,32 +95,44 @@ def test_a_query_is_asked_so_often_and_no_more():
     assert wire.sent.count(b"P77") == ATTEMPTS
 
 
-def test_a_buffer_that_was_left_open_is_made_empty(wire):
+def test_a_buffer_that_was_left_open_is_made_empty(wire, caplog):
+    wire.session().open()  # the handshake is agreed from here on
     for line in ("OPEN PROG 10", "CLEAR", "ABS", "LINEAR"):
         assert not wire.line.refusal(line)
-    with wire.session() as session:
-        assert "was made empty" in session.notes[0]
+    with wire.session() as session, owned(session, "download"):
+        assert "was made empty" in caplog.text
         assert listing_of(session, Program(10, ())).same
 
 
-def test_a_buffer_that_is_open_is_not_everybodys_to_clear(wire):
+@pytest.mark.parametrize("leftover", [Leftover.LEAVE, Leftover.STOP])
+def test_a_buffer_that_is_open_is_left_alone_by_who_watches_or_stops(wire, leftover):
+    wire.session().open()  # the handshake is agreed from here on
     for line in ("OPEN PROG 10", "CLEAR", "ABS"):
         assert not wire.line.refusal(line)
-    with pytest.raises(NotReadyError, match="a program buffer is open"):
-        wire.session(leftover=Leftover.REFUSE).open()
+    with wire.session(leftover=leftover) as session:
+        assert session.ask("I3") == ("2",)
     assert not wire.line.refusal("LINEAR")
     assert wire.line.refusal("CLOSE") == 0
     assert [line for line in listed(wire.controller) if line != "RETURN"] == ["ABS", "LINEAR"]
-    with wire.session(leftover=Leftover.REFUSE) as session:
+
+
+def test_who_only_watches_does_not_agree_anew_while_a_buffer_is_open(wire):
+    for line in ("I3=1", "OPEN PROG 10", "CLEAR", "ABS"):
+        assert not wire.line.refusal(line)
+    with pytest.raises(LinkLostError, match="a program buffer is open"):
+        wire.session().open()
+    assert not wire.line.refusal("CLOSE") and listed(wire.controller)[:1] == ["ABS"]
+    with wire.session(leftover=Leftover.STOP) as session:
         assert session.ask("I3") == ("2",)
 
 
 def test_a_buffer_that_another_port_has_open_is_left_alone(wire):
+    wire.session().open()
     other = Line(wire.controller)
     for line in ("OPEN PROG 10", "CLEAR", "ABS"):
         assert not other.refusal(line)
-    with wire.session() as session:
-        assert "another port" in session.notes[0]
+    with wire.session() as session, pytest.raises(DiagnosedError, match="C214"), owned(session, "download"):
+        pass
     assert not other.refusal("LINEAR")
 
 

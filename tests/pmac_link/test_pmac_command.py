@@ -9,8 +9,11 @@ from rig import served
 
 from pkm_post.cli import main
 from pkm_post.controllers.pmac import program_text, settings_of, setup_text
+from pkm_post.files.lock import locked
 from pkm_post.machine_file import machine_named
 from pkm_post.model import StrutMotion
+from pkm_post.pmac_link.ownership import lock_path
+from pkm_post.pmac_link.ports import port_named
 from pkm_post.pmac_simulator import Controller
 
 MACHINE = "example_6tps"
@@ -140,3 +143,43 @@ def test_arguments_without_sense(arguments):
     with pytest.raises(SystemExit) as refused:
         main(["pmac", "status", "--machine", MACHINE, *arguments])
     assert refused.value.code == 2
+
+
+def test_one_client_has_the_machine_and_the_others_watch_and_stop(simulator, job, capsys, monkeypatch):
+    made, port = simulator
+    typed(monkeypatch, port, *(f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)))
+    assert pmac("download", port, job) == 0 and pmac("run", port, job) == 0
+    name = port_named(port).name
+    with locked(lock_path(name)) as lock:
+        lock.say({"user": "anna", "process": 4711, "what": "jog", "since": 0})
+        orders = [("download", job), ("run", job), ("stream", job), ("jog", "--x", 1), ("mdi", "G1 X1 F100")]
+        for order in (*orders, ("resume",), ("override", 50), ("home", "--trigger", "#1HM")):
+            capsys.readouterr()
+            assert pmac(order[0], port, *order[1:]) == 1
+            told = capsys.readouterr().err
+            if order[0] not in ("jog", "mdi"):  # they see first that the machine moves, and plan nothing
+                assert f"{name}: error C210: another client has the machine: process 4711 of anna, jog, since" in told
+        monkeypatch.setattr("sys.stdin", io.StringIO("#1P\nP5=1\n&1H\n"))
+        assert pmac("terminal", port, machine=None) == 1
+        assert "error C210" in capsys.readouterr().out and made.variables.read("P", 5) == 0
+        assert pmac("status", port) == 0 and pmac("probe", port) == 0
+        assert "a program is held" in capsys.readouterr().out
+        assert pmac("hold", port) == 0 and pmac("abort", port) == 0
+    assert not made.runs_program()
+    assert pmac("override", port, 50) == 0
+
+
+def test_probe_says_that_the_machine_moves(simulator, capsys, monkeypatch):
+    made, port = simulator
+    assert pmac("probe", port) == 0
+    assert "no program runs, override 100 %" in capsys.readouterr().out
+    assert pmac("probe", port, machine=None) == 0
+    assert "no program runs, and no motor moves" in capsys.readouterr().out
+    typed(monkeypatch, port, *(f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)), "#3J+")
+    capsys.readouterr()
+    assert pmac("probe", port) == 0
+    assert "no program runs, BUT THE MACHINE MOVES" in capsys.readouterr().out
+    assert pmac("probe", port, machine=None) == 0
+    assert "a program runs, or a motor moves" in capsys.readouterr().out
+    assert pmac("jog", port, "--x", 1) == 1
+    assert "a strut moves" in capsys.readouterr().err

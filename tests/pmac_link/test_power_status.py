@@ -22,7 +22,7 @@ NANOMETRE = 1e-6
 class Port:
     """A door to shells, with a clock that passes when somebody waits."""
 
-    silence, now = 0.1, 0.0
+    silence, now, name = 0.1, 0.0, ""
 
     def __init__(self, *shells):
         self.shells = iter(shells) if len(shells) > 1 else itertools.repeat(shells[0])

@@ -2,15 +2,20 @@
 """The doors: a TCP port of this computer, a pseudo terminal. Every wait has an end."""
 
 import os
+import re
 import select
+import signal
 import socket
 import struct
+import subprocess
+import sys
 import threading
 import time
 
 import pytest
 
-from pkm_post.pmac_simulator import Controller, Server
+from pkm_post.cli import main
+from pkm_post.pmac_simulator import Controller, Server, serve
 
 DEADLINE_S = 10.0
 
@@ -89,6 +94,75 @@ def test_a_client_that_does_not_read_does_not_stop_the_others(serving):
         except BlockingIOError:
             pass  # its own buffers are full, as they should be
         assert ask(other, "I3=2 P2=5") == b"\x06"
+
+
+def test_a_client_that_says_much_and_never_reads_is_not_listened_to_any_more(serving, monkeypatch):
+    monkeypatch.setattr(serve, "MOST_UNSENT", 1 << 14)
+    server, start = serving
+    create = socket.create_server
+
+    def with_little_room(address):
+        listener = create(address)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 14)
+        return listener
+
+    monkeypatch.setattr("socket.create_server", with_little_room)
+    port = server.add_tcp(0)
+    start()
+    request, over, turns = struct.pack(">BBHHH", 0x40, 0xBF, 0, 0, 7) + b"P0..699", threading.Event(), []
+
+    def talk(deaf):
+        while not over.is_set():
+            try:
+                turns.append(deaf.send(100 * request))
+            except TimeoutError:
+                turns.append(0)
+
+    with connected(port) as deaf, connected(port) as other:
+        deaf.settimeout(0.05)
+        talker = threading.Thread(target=talk, args=(deaf,))
+        talker.start()
+        try:
+            last = time.monotonic() + 6 * DEADLINE_S
+            while all(channel.is_heard for channel in list(server._channels.values())) or 0 not in turns:
+                assert ask(other, "I3=2 P2=5") == b"\x06" and time.monotonic() < last
+            for _ in range(10):
+                assert ask(other, "P2") == b"5\r\x06"
+        finally:
+            over.set()
+            talker.join(DEADLINE_S)
+        unsent = max(len(channel.unsent) for channel in server._channels.values())
+        assert unsent < serve.MOST_UNSENT + serve.MORSEL * 1400
+
+
+def test_a_server_without_file_descriptors_goes_on_and_takes_clients_again():
+    limit = "import resource, sys; resource.setrlimit(resource.RLIMIT_NOFILE, (16, 16))"
+    code = f"{limit}; from pkm_post.cli import main; sys.exit(main(['pmac', 'simulate', '--tcp', '0']))"
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as child:
+        try:
+            port = int(re.search(rb"tcp:127.0.0.1:(\d+)", child.stdout.readline())[1])
+            clients = [connected(port) for _ in range(30)]
+            assert ask(clients[0], "I3=2 P2=5") == b"\x06"
+            waiting = clients.pop()
+            waiting.sendall(struct.pack(">BBHHH", 0x40, 0xBF, 0, 0, 2) + b"P2")
+            assert ask(clients[0], "P2") == b"5\r\x06"
+            for client in clients:
+                client.close()
+            assert waiting.recv(2048) == b"5\r\x06"
+            waiting.close()
+        finally:
+            child.send_signal(signal.SIGINT)
+            _, told = child.communicate(timeout=DEADLINE_S)
+    assert child.returncode == 0 and told == b""
+
+
+def test_no_descriptor_at_all_is_told(capsys, monkeypatch):
+    def none_left():
+        raise OSError(24, "Too many open files")
+
+    monkeypatch.setattr("selectors.DefaultSelector", none_left)
+    assert main(["pmac", "simulate", "--tcp", "0"]) == 1
+    assert "no connection can be offered: [Errno 24]" in capsys.readouterr().err
 
 
 def test_time_that_the_computer_cannot_keep_up_with_keeps_no_client_waiting():

@@ -103,8 +103,6 @@ class Console(QtCore.QObject):
 
     def _connected(self, connection: Connection) -> None:
         self.connection = connection
-        for note in connection.notes:
-            self.told.emit(note, False)
         self._timer.start(_LOOK_MS)
         if not self._is_wanted:
             self.leave()
