@@ -108,7 +108,8 @@ def _fingerprint(name: str, stream: BinaryIO) -> str:
     is_text = not name.lower().endswith(_BINARY)
     digest = hashlib.sha256()
     for part in _parts(stream):
-        digest.update(part.replace(b"\r\n", b"\n") if is_text else part)
+        has_line_ends = is_text and b"\r" in part  # to look for one byte is much faster than for two
+        digest.update(part.replace(b"\r\n", b"\n") if has_line_ends else part)
     return digest.hexdigest()
 
 

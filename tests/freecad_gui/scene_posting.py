@@ -122,6 +122,8 @@ def posting_shows_the_certificate():
 
 @step
 def job_keeps_what_was_chosen():
+    from pkm_post import manifest
+
     document = FreeCAD.getDocument("gui")
     job, folder = document.getObject("Job"), FOLDER / "gui"
     kept = [job.PostProcessor, job.PostProcessorArgs, job.PostProcessorOutputFile]
@@ -131,12 +133,13 @@ def job_keeps_what_was_chosen():
     FreeCAD.setActiveDocument("gui")
     press("CAM_Post", job)
     same = (folder / "gui.pmc").read_bytes() == ours
+    listed = manifest.check(folder / "gui.pmc")[0] is not None
     shown = open_panel(document)
     again = {"text": shown.choices.text(), "folder": shown.choices.folder.text()}
     close()
     document.undo()
     document.undo()
-    return {"kept": kept, "same": same, "again": again, "undone": job.PostProcessorArgs}
+    return {"kept": kept, "same": same, "listed": listed, "again": again, "undone": job.PostProcessorArgs}
 
 
 @step

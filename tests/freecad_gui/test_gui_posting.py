@@ -35,7 +35,7 @@ def test_job_keeps_what_was_chosen_and_cam_posts_the_same(session):
     assert name == "hexapod_pmac"
     assert {"--tip-tolerance=0.002", "--also=csv", "--work-offset=0,0,250"} <= set(shlex.split(text))
     assert program.endswith("gui.pmc")
-    assert found["same"]
+    assert found["same"] and found["listed"]
     assert found["again"] == {"text": text, "folder": str(session.folder / "gui")}
     assert found["undone"] == "--work-offset=0,0,250"
 
