@@ -68,6 +68,14 @@ def write(folder: Path, stem: str) -> None:
     (folder / manifest_name(stem)).write_text(text, encoding="ascii", newline="\n")
 
 
+def listed(folder: Path, stem: str) -> tuple[str, ...]:
+    """The names of the results in a folder that an earlier posting made; none where it left no manifest."""
+    try:
+        return tuple(_read(folder / manifest_name(stem)).files)
+    except (OSError, _UnreadableError):  # readers of the results refuse them for it
+        return ()
+
+
 def check(file: Path) -> tuple[Manifest | None, Findings]:
     """The manifest that lists a result, with every listed file there and unchanged.
 

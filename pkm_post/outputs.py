@@ -24,19 +24,21 @@ _FOR_LINUXCNC = "-linuxcnc.ngc"
 _SETUPS = tuple(controller.SETUP_SUFFIX for controller in CONTROLLERS.values())
 
 
-def left_over(program: Path, names: Collection[str]) -> Findings:
+def left_over(program: Path, names: Collection[str], earlier: Collection[str] = ()) -> Findings:
     """The warning that files of an earlier result are beside a new one, or nothing.
 
-    Memory that was smaller made more parts, and what was wished for beside the program may have changed: such files
-    look as if they belonged to the new program.
+    Memory that was smaller made more parts, the program may have had another suffix, and what was wished for beside it
+    may have changed: such files look as if they belonged to the new program.
 
     Args:
         program: path of the motion program.
         names: the files of its folder that were made with it.
+        earlier: those that were made by the posting before, as its manifest lists them.
     """
     endings = (program.suffix, _FOR_LINUXCNC, *_SETUPS, *(table.SUFFIX for table in TABLES.values()))
     kin = re.compile("|".join(_with_parts(program.stem + ending) for ending in endings))
-    found = sorted(name for name in os.listdir(program.parent) if kin.fullmatch(name) and name not in names)
+    there = os.listdir(program.parent)
+    found = sorted(name for name in there if (kin.fullmatch(name) or name in earlier) and name not in names)
     return (Diagnostic("F104", Place(str(program)), ", ".join(found)),) if found else ()
 
 

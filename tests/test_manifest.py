@@ -74,6 +74,13 @@ def test_a_file_that_no_manifest_lists_is_a_warning(folder, name):
     assert refusal(folder / name)[0] == "F107"
 
 
+def test_it_says_what_an_earlier_posting_made(folder):
+    assert sorted(manifest.listed(folder, "part")) == sorted(RESULTS)
+    assert manifest.listed(folder, "other") == ()
+    (folder / "part-manifest.json").write_bytes(b"{")
+    assert manifest.listed(folder, "part") == ()
+
+
 def test_a_folder_that_is_missing_has_no_manifest(tmp_path):
     assert refusal(tmp_path / "gone" / "part.pmc")[0] == "F107"
 

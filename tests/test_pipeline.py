@@ -159,6 +159,12 @@ def test_tables_of_an_earlier_result_are_told(machine, tmp_path):
     assert warning.code == "F104" and ".csv" in warning.found
 
 
+def test_a_program_of_another_suffix_beside_the_new_report_is_told(machine, tmp_path):
+    post(cone(), machine, tmp_path / "cone.ngc")
+    (warning,) = post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc").diagnostics
+    assert (warning.code, warning.found) == ("F104", "cone.ngc")
+
+
 @pytest.mark.parametrize("jerk", [math.inf, 25000.0])
 @pytest.mark.parametrize("lean", [0.0, 10.0])
 def test_tools_of_different_lengths_are_posted(machine, tmp_path, jerk, lean):

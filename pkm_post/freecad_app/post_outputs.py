@@ -57,6 +57,7 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """A few lines about the trajectory, which is written beside them: CAM can write no bytes."""
     trajectory, found = _reachable(job, settings)
     target = path.with_suffix(".pkmt")
+    earlier = manifest.listed(target.parent, target.stem)
     try:
         with staged(target.parent, manifest.manifest_name(target.stem)) as folder:
             stored = folder / target.name
@@ -65,6 +66,8 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
             manifest.write(folder, target.stem)
     except OSError as fault:
         raise Refused([*found, unwritten(target, fault)]) from fault
+    made = (path.name, target.name, manifest.manifest_name(target.stem))
+    found = (*found, *outputs.left_over(path, made, earlier))
     lines = (
         f"trajectory: {target.name}",
         f"machine: {FilePath(settings.machine).name}",

@@ -91,7 +91,8 @@ def post(
 
 def _posted(run: Run, program_path: Path, names: list[str], parts: list[str], report: dict[str, Any]) -> Posted:
     """What is told of the files, made before they appear: nothing can fail afterwards."""
-    run.accept(outputs.left_over(program_path, names))
+    earlier = manifest.listed(program_path.parent, program_path.stem)
+    run.accept(outputs.left_over(program_path, names, earlier))
     files, programs = (tuple(program_path.parent / name for name in each) for each in (names, parts))
     return Posted(program_path, files, report, tuple(run.warnings), programs)
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Trajectories, programs for LinuxCNC and G-code by CAM's own post command."""
 
+import FreeCAD as App
 import numpy as np
 import pytest
 from cam_jobs import add_operation, new_job
@@ -45,6 +46,15 @@ def test_trajectory_is_written_beside_a_text_that_names_it(job, tmp_path):
     assert f"(segments: {len(trajectory)})" in text
     program, _ = read_job(job)
     assert trajectory.tip == pytest.approx(program.position + [0, 0, 250], abs=1e-9)  # mm; a shift and no turn
+
+
+def test_results_that_are_beside_another_trajectory_are_told(job, tmp_path, monkeypatch):
+    exported(job, "hexapod_pmac")
+    told = []
+    monkeypatch.setattr(App.Console, "PrintWarning", told.append)
+    exported(job, "hexapod_trajectory")
+    (warning,) = [line for line in told if "F104" in line]
+    assert "made (by cam)-report.json, made (by cam)-report.png, made (by cam)-setup.pmc;" in warning
 
 
 def test_text_that_names_the_trajectory_is_a_legal_program(job):
