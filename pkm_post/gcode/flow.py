@@ -7,6 +7,7 @@ subprograms; or every O word that belongs to nothing, with its row.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
@@ -61,11 +62,18 @@ class _Open:
 
 
 class _Linker:
-    """Goes through the O words once and keeps what is open, outermost first."""
+    """Goes through the O words once and keeps what is open, outermost first.
+
+    What is open is found by its label, not by a search: a program may have thousands of O words within each other.
+    """
 
     def __init__(self) -> None:
         self.flow = Flow()
         self.open: list[_Open] = []
+        self._subs: list[int] = []
+        """Where in ``open`` the subprograms are."""
+        self._depths: dict[tuple[str, str], list[int]] = {}
+        """By keyword and label, where in ``open`` such things are."""
 
     def take(self, row: int, word: OWord) -> None:
         """Link one O word.
@@ -82,7 +90,7 @@ class _Linker:
             self._begin_program(row, word.label)
         elif keyword == "while" and self._closes_do(word.label):
             self.flow.closing.add(row)
-            self._close(self.open.pop(), row)
+            self._close(self._popped(), row)
         elif keyword in CLOSES:
             self._close_or_divide(row, keyword, word.label)
         else:
@@ -100,50 +108,60 @@ class _Linker:
     def _closes_do(self, label: str) -> bool:
         return bool(self.open) and (self.open[-1].keyword, self.open[-1].label) == ("do", label)
 
-    def _begin(self, row: int, keyword: str, label: str) -> None:
-        twice = any(outer.label == label for outer in self._within())
+    def _push(self, row: int, keyword: str, label: str) -> None:
+        self._depths.setdefault((keyword, label), []).append(len(self.open))
+        if keyword == "sub":
+            self._subs.append(len(self.open))
         self.open.append(_Open(keyword, label, row))
+
+    def _popped(self) -> _Open:
+        opened = self.open.pop()
+        self._depths[opened.keyword, opened.label].pop()
+        if opened.keyword == "sub":
+            self._subs.pop()
+        return opened
+
+    def _begin(self, row: int, keyword: str, label: str) -> None:
+        twice = any(self._first_within(each, label) is not None for each in ("if", *LOOPS))
+        self._push(row, keyword, label)
         if twice:
             raise ExecutionFault("G310", f"O{_shown(label)} {keyword} within another O{_shown(label)}")
 
     def _begin_sub(self, row: int, keyword: str, label: str) -> None:
-        self.open.append(_Open(keyword, label, row))
-        if any(outer.keyword == "sub" for outer in self.open[:-1]):
+        self._push(row, keyword, label)
+        if len(self._subs) > 1:
             raise ExecutionFault("G312", f"O{_shown(label)} sub within another sub")
         _define(self.flow.subs, label, row)
 
     def _jump(self, row: int, keyword: str, label: str) -> None:
-        for loop in self._within():
-            if loop.label == label and loop.keyword in LOOPS:
-                loop.jumps.append(row)
-                return
-        raise ExecutionFault("G307", f"O{_shown(label)} {keyword}, outside of a loop of this label")
+        loops = [depth for loop in LOOPS if (depth := self._first_within(loop, label)) is not None]
+        if not loops:
+            raise ExecutionFault("G307", f"O{_shown(label)} {keyword}, outside of a loop of this label")
+        self.open[min(loops)].jumps.append(row)
 
     def _return(self, row: int, keyword: str, label: str) -> None:
-        if not any(outer.keyword == "sub" and outer.label == label for outer in self.open):
+        if not self._depths.get(("sub", label)):
             raise ExecutionFault("G312", f"O{_shown(label)} {keyword} outside of its sub")
 
-    def _within(self) -> list[_Open]:
-        """What is open here, without what is outside of the subprogram."""
-        subs = [index for index, outer in enumerate(self.open) if outer.keyword == "sub"]
-        return self.open[subs[-1] + 1 if subs else 0 :]
+    def _first_within(self, keyword: str, label: str) -> int | None:
+        """Where the outermost of such things is open here, without what is outside of the subprogram."""
+        depths = self._depths.get((keyword, label), [])
+        first = bisect_left(depths, self._subs[-1]) if self._subs else 0
+        return depths[first] if first < len(depths) else None
 
     def _close_or_divide(self, row: int, keyword: str, label: str) -> None:
-        wanted = (CLOSES[keyword], label)
-        depth = next((i for i in reversed(range(len(self.open))) if self._is(i) == wanted), None)
-        if depth is None:
+        depths = self._depths.get((CLOSES[keyword], label))
+        if not depths:
             raise ExecutionFault("G307", f"O{_shown(label)} {keyword} without {CLOSES[keyword]}")
-        within, self.open = self.open[depth + 1 :], self.open[: depth + 1]
+        inner = None
+        while len(self.open) > depths[-1] + 1:
+            inner = self._popped()
         if keyword.startswith("else"):
             self._divide(row, keyword, self.open[-1])
         else:
-            self._close(self.open.pop(), row)
-        if within:
-            inner = within[0]
+            self._close(self._popped(), row)
+        if inner is not None:
             raise ExecutionFault("G308", f"O{_shown(inner.label)} {inner.keyword} before O{_shown(label)} {keyword}")
-
-    def _is(self, index: int) -> tuple[str, str]:
-        return self.open[index].keyword, self.open[index].label
 
     def _divide(self, row: int, keyword: str, opened: _Open) -> None:
         if opened.has_else:

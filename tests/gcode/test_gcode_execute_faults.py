@@ -7,8 +7,10 @@ import time
 import pytest
 
 from pkm_post.gcode.execute import execute
+from pkm_post.gcode.flow import link
 from pkm_post.gcode.limits import ExecutionLimits
 from pkm_post.gcode.scan import scan_by_block
+from pkm_post.gcode.statements import OWord
 from pkm_post.model.diagnostics import RULES
 
 BOUND = 60.0  # s, far above what it takes, and far below what a hang takes
@@ -196,3 +198,32 @@ def test_programs_put_together_by_chance_end_in_blocks_or_faults():
         assert (plain is None) == bool(faults), text
         outcomes |= {fault.code for fault in faults} or {"blocks"}
     assert outcomes >= {"blocks", "G301", "G302", "G304", "G307", "G309", "G312", "G313", "G314"}
+
+
+class Label(str):
+    """A label that counts how often labels are compared or looked up."""
+
+    looked_up = 0
+
+    def __hash__(self):
+        Label.looked_up += 1
+        return super().__hash__()
+
+    def __eq__(self, other):
+        Label.looked_up += 1
+        return super().__eq__(other)
+
+
+@pytest.mark.parametrize("close", ["closed", "outer closed", "open", "with jumps"])
+def test_o_words_within_each_other_are_linked_in_linear_work(close):
+    count = 2000
+    opens = [OWord("while", Label(number), ()) for number in range(count)]
+    ends = [OWord("endwhile", Label(number), ()) for number in reversed(range(count))]
+    jumps = [OWord("break", Label(number), ()) for number in range(count)]
+    words = opens + {"closed": ends, "outer closed": ends[-1:], "open": [], "with jumps": jumps + ends}[close]
+    Label.looked_up = 0
+    flow, faults = link(dict(enumerate(words)))
+    assert Label.looked_up < 50 * len(words)
+    assert len(flow.last_row) == (count if close == "with jumps" else 0)
+    told = {"closed": 0, "outer closed": 1, "open": count, "with jumps": 0}
+    assert [fault.code for _, fault in faults] == ["G308"] * told[close]
