@@ -19,8 +19,18 @@ import numpy as np
 from pkm_post import cldata, gcode
 from pkm_post.gcode.options import AXIS_WORDS, DWELL_UNITS
 from pkm_post.model import Diagnostic, Place, Program, Tool
+from pkm_post.program_end import end_warnings
 
-__all__ = ["AS_WRITTEN", "AXIS_WORDS", "DWELL_UNITS", "SUFFIXES", "Reading", "is_part_program", "read_part_program"]
+__all__ = [
+    "AS_WRITTEN",
+    "AXIS_WORDS",
+    "DWELL_UNITS",
+    "SUFFIXES",
+    "Reading",
+    "is_part_program",
+    "read_content",
+    "read_part_program",
+]
 
 Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
@@ -41,6 +51,7 @@ class Reading:
             ``cldata.CYCLE_VALUES``.
         dwell_unit: of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
+        allow_open_end: whether a file may do without an end, such as M2 or FINI.
     """
 
     axis_words: str = "none"
@@ -52,6 +63,7 @@ class Reading:
     cycle_values: tuple[str, ...] = ()
     dwell_unit: str = "s"
     lengths: Mapping[int, float] = field(default_factory=dict)
+    allow_open_end: bool = False
 
 
 AS_WRITTEN = Reading()
@@ -72,17 +84,37 @@ def read_part_program(file: Path, reading: Reading) -> Result:
     Raises:
         ValueError: the suffix is not known.
     """
-    if not is_part_program(file):
-        raise ValueError(f"suffix of {file}: expected one of {', '.join(SUFFIXES)}")
+    _check_suffix(file)
     name = _storable(file)
     try:
         content = file.read_bytes()
     except OSError as fault:
         return None, (Diagnostic("F103", Place(name), str(fault)),)
-    program, diagnostics = SUFFIXES[file.suffix.lower()](content, name, reading)
+    program, diagnostics = read_content(content, name, reading)
     if program is not None:
         program = replace(program, source_fingerprint=hashlib.sha256(content).hexdigest())
     return program, diagnostics
+
+
+def read_content(content: bytes, name: str, reading: Reading) -> Result:
+    """Read the content of a file.
+
+    Args:
+        content: all of it.
+        name: of the file, as Unicode; ends with a known suffix.
+        reading: what the file does not say itself.
+
+    Raises:
+        ValueError: the suffix is not known.
+    """
+    _check_suffix(Path(name))
+    program, diagnostics = SUFFIXES[Path(name).suffix.lower()](content, name, reading)
+    return program, diagnostics if program is None else (*diagnostics, *end_warnings(program))
+
+
+def _check_suffix(file: Path) -> None:
+    if not is_part_program(file):
+        raise ValueError(f"suffix of {file}: expected one of {', '.join(SUFFIXES)}")
 
 
 def _storable(file: Path) -> str:
@@ -104,6 +136,7 @@ def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
         axis_words=reading.axis_words,
         unit=reading.unit or "mm",
         dwell_unit=reading.dwell_unit,
+        needs_end=not reading.allow_open_end,
     )
     program, diagnostics = gcode.read(content, file, options)
     if reading.wear:
@@ -131,6 +164,7 @@ def _read_cldata(content: bytes, file: str, reading: Reading) -> Result:
         contour_data=reading.contour_data,
         wear=reading.wear,
         cycle_values=reading.cycle_values,
+        needs_end=not reading.allow_open_end,
     )
     return cldata.read(content, file, options)
 

@@ -27,7 +27,7 @@ EXAMPLES = {
     "--also": ("csv", "halstreamer,linuxcnc"),
 }
 """Each with an effect of its own, so that one is not mistaken for the other."""
-SWITCHES = {"--keep-chip-load": ("--keep-chip-load", "--no-keep-chip-load")}
+SWITCHES = {flag: (flag, f"--no-{flag[2:]}") for flag in ("--keep-chip-load", "--allow-open-end")}
 """On and off."""
 
 

@@ -59,6 +59,7 @@ def test_what_a_part_program_does_not_say():
     assert (reading.axis_words, reading.unit, reading.contour_data) == ("vector", "inch", "centre")
     assert (reading.wear, reading.tools[3].diameter) == ({3: 0.1}, 8)
     assert part_program_from(parsed(), "none") == AS_WRITTEN
+    assert part_program_from(parsed("--allow-open-end"), "none").allow_open_end
     reading = part_program_from(parsed("--cl-dialect=creo", "--cycle-values=depth,feed,clearance"), "none")
     assert (reading.cl_dialect, reading.cycle_values) == ("creo", ("depth", "feed", "clearance"))
 

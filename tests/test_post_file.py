@@ -28,6 +28,7 @@ G0 X0 Y0 Z30
 G43.5 I0 J0 K1
 G1 X10 Y0 Z20 I0.1 J0 K1 F600
 G1 X20 Y5 Z20 I0.1 J0.1 K1
+G0 Z30
 M5
 M30
 """
@@ -43,6 +44,8 @@ GOTO/0,0,30,0,0,1
 FEDRAT/600,MMPM
 GOTO/10,0,20,0.0995037,0,0.9950372
 GOTO/20,5,20,0.0990148,0.0990148,0.9901475
+RAPID
+GOTO/20,5,30
 SPINDL/OFF
 FINI
 """
@@ -180,7 +183,7 @@ def test_all_files_carry_the_stem(tmp_path):
     [
         ("a.ngc", G_CODE, {"tool_lengths": {}, "reading": Reading("vector")}, ["J113"]),
         ("a.cls", CL_DATA, {"tool_lengths": {}}, ["J113"]),
-        ("a.cls", "GOTO/1,2\n", {}, ["L402"]),
+        ("a.cls", "GOTO/1,2\nFINI\n", {}, ["L402"]),
         ("a.ngc", G_CODE, {"reading": Reading("vector"), "options": Options(work_offset="G59")}, ["K108"]),
     ],
 )
@@ -192,7 +195,7 @@ def test_what_is_wrong_is_told_and_nothing_is_written(tmp_path, name, text, choi
 
 
 def test_faults_of_machine_and_file_are_told_together(tmp_path):
-    (tmp_path / "a.cls").write_text("GOTO/1,2\n")
+    (tmp_path / "a.cls").write_text("GOTO/1,2\nFINI\n")
     with pytest.raises(Refused) as refused:
         post_file(tmp_path / "a.cls", "no_such_machine", tmp_path)
     assert [fault.code for fault in refused.value.diagnostics] == ["M101", "L402"]

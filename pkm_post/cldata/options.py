@@ -47,6 +47,7 @@ class ReadOptions:
         wear: mm by tool number that CUTCOM offsets the path by beside the radius of the tool, or alone where the
             points are the centre of the tool; below 0 for a cutter that is smaller.
         default_tool: gives the gauge length of tools for which neither the file nor ``tools`` has one.
+        needs_end: whether the text is a whole file, which FINI, or END-OF-PATH and its like, has to end.
     """
 
     dialect: str | None = None
@@ -59,6 +60,7 @@ class ReadOptions:
     contour_data: str | None = None
     wear: Mapping[int, float] = field(default_factory=dict)
     default_tool: Tool | None = None
+    needs_end: bool = False
 
     def __post_init__(self) -> None:
         tables: dict[str, tuple[str | None, ...]] = {

@@ -10,6 +10,7 @@ import numpy as np
 
 from pkm_post.cldata.arc_moves import tell_unused
 from pkm_post.cldata.course import Course
+from pkm_post.cldata.ends import tell_open_end
 from pkm_post.cldata.statements import Statements
 from pkm_post.cldata.words import HANDLERS, PASSED_OVER, REFUSED, Handler
 from pkm_post.model.program import Array
@@ -45,6 +46,7 @@ def walk(course: Course, bulk: Array) -> Array:
             _tell_behind(course, row)
             break
     tell_unused(course)
+    tell_open_end(course, PASSED_OVER)
     for word, rows in unknown.items():
         times = f", {len(rows)} times" if len(rows) > 1 else ""
         course.tell("L404", rows[0], f"{word[:60]}{times}")

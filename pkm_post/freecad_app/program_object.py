@@ -10,6 +10,7 @@ the object is computed. ``decode`` makes an operation of a CAM job of it. Saved 
 from __future__ import annotations
 
 import importlib
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -57,6 +58,8 @@ _PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyEnumeration", "CycleValues", _G,
      QT_TRANSLATE_NOOP("App::Property", "What the numbers of a CYCLE statement are where they have no words"),
      [AS_THE_FILE_SAYS, *CYCLE_ORDERS]),
+    ("App::PropertyBool", "OpenEnd", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Whether the part program may have no end, such as M2 or FINI"), False),
 )  # fmt: skip
 _RESULTS: tuple[Row, ...] = (
     ("App::PropertyStringList", "Found", _G,
@@ -88,6 +91,7 @@ def create_program(
     unit: str | None = None,
     contour_data: str | None = None,
     cl_dialect: str | None = None,
+    allow_open_end: bool = False,
 ) -> Any:
     """Add a part program to a document.
 
@@ -100,14 +104,14 @@ def create_program(
         contour_data: what the points of CL data under CUTCOM are, one of ``cldata.CONTOUR_DATA``; as the file says if
             None.
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; by its words if None.
+        allow_open_end: whether it may have no end, such as M2 or FINI.
     """
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
     PartProgram(obj)
     obj.File, obj.Label = str(path), path.name
-    set_reading(
-        obj, Reading(axis_words, dwell_unit=dwell_unit, unit=unit, contour_data=contour_data, cl_dialect=cl_dialect)
-    )
+    reading = Reading(axis_words, unit=unit, contour_data=contour_data, cl_dialect=cl_dialect, dwell_unit=dwell_unit)
+    set_reading(obj, replace(reading, allow_open_end=allow_open_end))
     if App.GuiUp:
         importlib.import_module(_VIEW).ProgramView(obj.ViewObject)
     document.recompute()
@@ -125,18 +129,20 @@ def reading_of(obj: Any) -> Reading:
         contour_data=contour_data,
         cl_dialect=dialect,
         cycle_values=tuple(values.split(",")) if values else (),
+        allow_open_end=obj.OpenEnd,
     )
 
 
 def set_reading(obj: Any, reading: Reading) -> None:
     """Let the properties of a program object say this of its file; a wear and the cutters have none."""
-    choices = {
+    choices: dict[str, str | bool] = {
         "AxisWords": reading.axis_words,
         "DwellUnit": reading.dwell_unit,
         "Unit": reading.unit or AS_THE_FILE_SAYS,
         "ContourData": reading.contour_data or AS_THE_FILE_SAYS,
         "ClDialect": reading.cl_dialect or AS_THE_FILE_SAYS,
         "CycleValues": ",".join(reading.cycle_values) or AS_THE_FILE_SAYS,
+        "OpenEnd": reading.allow_open_end,
     }
     for name, choice in choices.items():
         if getattr(obj, name) != choice:

@@ -43,6 +43,7 @@ class Blocks:
             Such a row has no words and codes in the columns.
         comments: line and text of the comments that speak to the operator, and of those that describe a tool.
         source: name of the file.
+        closed: whether a percent sign closes the file.
     """
 
     line: Array
@@ -55,6 +56,7 @@ class Blocks:
     special: dict[int, Tree[Token]]
     comments: tuple[tuple[int, str], ...]
     source: str
+    closed: bool = False
 
     def __post_init__(self) -> None:
         rows = len(self.line)

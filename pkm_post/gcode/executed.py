@@ -124,6 +124,7 @@ class ExecutedBlocks:
             special={},
             comments=scanned.comments,
             source=scanned.source,
+            closed=scanned.closed,
         )
 
     def _rows(self) -> Array:

@@ -55,6 +55,8 @@ class ReadOptions:
         block_delete: whether blocks that begin with ``/`` are left out.
         unit: of lengths before G20 or G21, a key of ``UNITS``.
         dwell_unit: of P of G4 and of cycles, a key of ``DWELL_UNITS``.
+        needs_end: whether the text is a whole program, which M2, M30 or a percent sign has to end; a line typed by
+            hand is none.
     """
 
     tools: Mapping[int, Tool] = field(default_factory=dict)
@@ -67,6 +69,7 @@ class ReadOptions:
     block_delete: bool = False
     unit: str = "mm"
     dwell_unit: str = "s"
+    needs_end: bool = False
 
     def __post_init__(self) -> None:
         for name, allowed in (("axis_words", AXIS_WORDS), ("unit", UNITS), ("dwell_unit", DWELL_UNITS)):

@@ -3,7 +3,8 @@
 
 Blocks in the units they are written in enter; columns in mm, mm/s and unit vectors in {C} leave, every modal word
 resolved, cycles as moves, arcs with centre and axis; or what is wrong with the blocks. Moves before X, Y and Z are all
-known go to no place and are folded into the first one whose end is known. What follows M2 or M30 is not read.
+known go to no place and are folded into the first one whose end is known. What follows M2 or M30 is not read, and
+without them, or a percent sign, a file may have been cut short.
 """
 
 from __future__ import annotations
@@ -56,19 +57,20 @@ def resolve(
     """
     if blocks.special:
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
-    blocks = _without_spent_ends(_read(blocks, options))
+    blocks, ended = _read(blocks, options)
+    blocks = _without_spent_ends(blocks)
     faults = Findings(blocks)
     modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words))
     check(blocks, modal, options, faults)
     check_dwells(blocks, modal, options, text, faults)
-    if faults.stop():
-        return None, faults.in_order()
-    program = _program(blocks, modal, options, faults)
+    program = None if faults.stop() else _program(blocks, modal, options, faults)
+    if options.needs_end and not ended:
+        faults.tell("G430", len(blocks) - 1, "no M2, M30 or % behind it")
     return None if faults.stop() else program, faults.in_order()
 
 
-def _read(blocks: Blocks, options: ReadOptions) -> Blocks:
-    """The blocks that are carried out: without deleted ones, up to the end of the program."""
+def _read(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
+    """The blocks that are carried out, without deleted ones, up to the end of the program; and whether it has one."""
     ends = blocks.m_row[np.isin(blocks.m, ENDS)]
     if options.block_delete:
         ends = ends[~blocks.deleted[ends]]
@@ -76,7 +78,7 @@ def _read(blocks: Blocks, options: ReadOptions) -> Blocks:
         blocks = blocks.first(int(ends[0]) + 1)
     if options.block_delete and blocks.deleted.any():
         blocks = blocks.chosen(np.flatnonzero(~blocks.deleted))
-    return blocks
+    return blocks, blocks.closed or bool(len(ends))
 
 
 def _without_spent_ends(blocks: Blocks) -> Blocks:

@@ -12,17 +12,20 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.gcode.blocks import Blocks
-from pkm_post.gcode.faults import Faults
+from pkm_post.gcode.faults import Faults, readable
 from pkm_post.gcode.lexer import Lexed, lex
 from pkm_post.gcode.lines import clean, pieces, without_comments, without_lines
 from pkm_post.gcode.numbers import values_of
+from pkm_post.gcode.percent import Demarcated, demarcated
 from pkm_post.gcode.row import LONGEST_LINE, Row, read_row
 from pkm_post.gcode.shapes import BY_ITSELF, NOTHING, Shapes
 from pkm_post.gcode.table import Table
-from pkm_post.model.diagnostics import Diagnostic
+from pkm_post.model.diagnostics import Diagnostic, Place
 from pkm_post.model.program import Array
 
 Scanned = tuple[Blocks | None, tuple[Diagnostic, ...]]
+_SHOWN = 40
+"""Characters of a line."""
 
 
 def scan(text: bytes | str, file: str) -> Scanned:
@@ -35,12 +38,12 @@ def scan(text: bytes | str, file: str) -> Scanned:
     Raises:
         ImportError: lark is not installed.
     """
-    source = clean(text)
-    faults, shapes, table = Faults(file), Shapes(), Table(source.count(b"\n"))
-    for piece in pieces(source):
+    whole = clean(text)
+    part = demarcated(whole)
+    faults, shapes, table = Faults(file), Shapes(), Table(part.text.count(b"\n"))
+    for piece in pieces(part.text):
         _scan_piece(piece, shapes, table, faults)
-    told = faults.diagnostics()
-    return (None if told else table.blocks(file)), told
+    return _scanned(whole, part, table, faults, file)
 
 
 def scan_by_block(text: bytes | str, file: str) -> Scanned:
@@ -53,9 +56,10 @@ def scan_by_block(text: bytes | str, file: str) -> Scanned:
     Raises:
         ImportError: lark is not installed.
     """
-    source = clean(text)
-    faults, table = Faults(file), Table(source.count(b"\n"))
-    for line in source.split(b"\n")[:-1]:
+    whole = clean(text)
+    part = demarcated(whole)
+    faults, table = Faults(file), Table(part.text.count(b"\n"))
+    for line in part.text.split(b"\n")[:-1]:
         row = read_row(line)
         spoken: list[tuple[int, str]] = []
         if isinstance(row, Row):
@@ -65,8 +69,23 @@ def scan_by_block(text: bytes | str, file: str) -> Scanned:
         else:
             faults.add(table.next_line, line, row)
             table.add_row(Row())
+    return _scanned(whole, part, table, faults, file)
+
+
+def _scanned(whole: bytes, part: Demarcated, table: Table, faults: Faults, file: str) -> Scanned:
+    """The blocks of the table if there are no faults; and what is behind the end of the file."""
     told = faults.diagnostics()
-    return (None if told else table.blocks(file)), told
+    blocks = None if told else table.blocks(file, part.closed)
+    if part.behind >= 0:
+        line = whole.count(b"\n", 0, part.behind) + 1
+        told += (Diagnostic("G212", Place(file, line=line, column=1), _beginning(whole, part.behind)),)
+    return blocks, told
+
+
+def _beginning(text: bytes, offset: int) -> str:
+    """The first characters of the line that begins at an offset, as they can be shown."""
+    line = text[offset : text.find(b"\n", offset)][:_SHOWN]
+    return "".join(character if character.isprintable() else "?" for character in readable(line).strip())
 
 
 def _scan_piece(piece: bytes, shapes: Shapes, table: Table, faults: Faults) -> None:

@@ -111,11 +111,12 @@ class Table:
                 of_row = place[shape_of_row]
                 self._column(letter)[here] = values[np.where(of_row >= 0, first + of_row, -1)]
 
-    def blocks(self, source: str) -> Blocks:
+    def blocks(self, source: str, closed: bool) -> Blocks:
         """The blocks of all lines.
 
         Args:
             source: name of the file.
+            closed: whether a percent sign closes it.
         """
         g, g_row = self._g.joined()
         m, m_row = self._m.joined()
@@ -130,6 +131,7 @@ class Table:
             special=self._special,
             comments=tuple(self.comments),
             source=source,
+            closed=closed,
         )
 
 

@@ -116,6 +116,7 @@ RULES: dict[str, Rule] = {
         "write / first, then N; O words, LN and % begin a block; NX to TZ stand after LN",
     ),
     "G211": _error("an expression is nested too deeply", "split it, with parameters for its parts"),
+    "G212": _warning("blocks behind the percent sign that ends the file are not read", "remove them, or the sign"),
     # G3: the execution of a G-code program
     "G301": _error("a parameter has no value", "assign it before"),
     "G302": _error("there is no such parameter", "use whole numbers from 1 to 5601, or a name"),
@@ -181,6 +182,11 @@ RULES: dict[str, Rule] = {
     "G429": _error(
         "a cycle drills along the normal of its plane, and the tool leans out of it",
         "write the hole as G0 and G1 along the tool, or set the tool upright before the cycle",
+    ),
+    "G430": _error(
+        "the program has no end: it may have been cut short",
+        "get the whole file; if it is whole, write M2 or M30 behind it, give --allow-open-end, or set OpenEnd of the"
+        " program object",
     ),
     # G5: writing G-code
     "G501": _error("the tool axis tilts, and this form of G-code cannot say it", "choose a form with five axes"),
@@ -263,6 +269,12 @@ RULES: dict[str, Rule] = {
         "the wear of a tool changes nothing", "give --wear for a tool that the CL data compensates by CUTCOM"
     ),
     "L440": _TAPPING,
+    "L441": _error(
+        "the file has no end: it may have been cut short",
+        "get the whole file; if it is whole, write FINI behind it, give --allow-open-end, or set OpenEnd of the program"
+        " object",
+    ),
+    "L442": _error("an option means nothing for what is read", "leave it out"),
     # M1: the machine file
     "M101": _error("the machine file cannot be read", "check the path; python3 -m pkm_post machine list shows presets"),
     "M102": _error("the machine file is not valid TOML", "correct it at the place shown"),
@@ -538,6 +550,13 @@ RULES: dict[str, Rule] = {
     "V119": _error(
         "the path needs points closer together than the controller takes them",
         "ask for a wider tolerance, lower the feed, or correct controller.shortest_interval of the machine file",
+    ),
+    # V13: how a program ends
+    "V130": _warning(
+        "the spindle turns on at the end of the program", "let the program stop it, by M5, M2 or SPINDL/OFF"
+    ),
+    "V131": _warning(
+        "the tool ends low", "check that the program is whole, and retract the tool at its end if it has to be clear"
     ),
     # F1: files
     "F101": _error("the output cannot be written", "check the folder, its permissions and the free space"),

@@ -207,6 +207,11 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "help": "what the numbers of CYCLE statements of CL data are where they have no words, in order and joined by"
         f" commas: {', '.join(CYCLE_VALUES)}",
     },
+    "--allow-open-end": {
+        "action": "store_true",
+        "help": "take a part program without an end (M2, M30 or %% of G-code, FINI or END-OF-PATH of CL data), although"
+        " it may have been cut short; --no-allow-open-end takes it back",
+    },
     "--surface-speed": {
         "metavar": "M/MIN",
         "type": _surface_speed_or_none,
@@ -263,7 +268,10 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
 
 def add_part_program(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that say what a part program does not say itself."""
-    _add(parser, ("--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values"))
+    _add(
+        parser,
+        ("--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values", "--allow-open-end"),
+    )
 
 
 def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
@@ -315,6 +323,7 @@ def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading
         dict(namespace.wear),
         namespace.cl_dialect,
         namespace.cycle_values,
+        allow_open_end=namespace.allow_open_end,
     )
 
 

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 
 from pkm_post.check import Size, size_of
 from pkm_post.model import Diagnostic, Program
-from pkm_post.sources import AS_WRITTEN, SUFFIXES, Reading
+from pkm_post.model.diagnostics import errors
+from pkm_post.sources import AS_WRITTEN, Reading, read_content
+
+_OPEN_END = {"G430", "L441"}
+"""What is missing from a text until its last line is written; until then it has an error and can still be drawn."""
 
 
 @dataclass(frozen=True)
@@ -16,7 +19,8 @@ class CheckedText:
     """What was found in a text.
 
     Attributes:
-        program: as it is programmed, cutter compensation not applied; None when it could not be read.
+        program: as it is programmed, cutter compensation not applied; None when it could not be read. Of a text that
+            has no end yet, what there is.
         size: what it holds; None when it could not be read.
         diagnostics: with lines and columns of the text.
     """
@@ -38,9 +42,9 @@ def check_text(text: str, name: str, reading: Reading = AS_WRITTEN) -> CheckedTe
         ValueError: the suffix is not that of a part program.
         ImportError: lark is not installed.
     """
-    suffix = Path(name).suffix.lower()
-    if suffix not in SUFFIXES:
-        raise ValueError(f"suffix of {name}: expected one of {', '.join(SUFFIXES)}")
-    program, diagnostics = SUFFIXES[suffix](text.encode("utf-8"), name, reading)
+    content = text.encode("utf-8")
+    program, diagnostics = read_content(content, name, reading)
+    if program is None and {each.code for each in errors(diagnostics)} <= _OPEN_END:
+        program, _ = read_content(content, name, replace(reading, allow_open_end=True))
     size = size_of(program) if program is not None and len(program) else None
     return CheckedText(program, size, diagnostics)

@@ -140,6 +140,10 @@
         <translation>CYCLE 语句中没有关键字的数值的含义</translation>
     </message>
     <message>
+        <source>Whether the part program may have no end, such as M2 or FINI</source>
+        <translation>零件程序是否可以没有结束语句（如 M2 或 FINI）</translation>
+    </message>
+    <message>
         <source>What was found in reading the file</source>
         <translation>读取文件时发现的问题</translation>
     </message>
@@ -1160,6 +1164,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>CUTCOM：零件轮廓</translation>
     </message>
     <message>
+        <source>Open end allowed</source>
+        <translation>允许无结束</translation>
+    </message>
+    <message>
         <source>Unit as the file says</source>
         <translation>单位：按文件说明</translation>
     </message>
@@ -1186,6 +1194,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>The CAM system that wrote the CL data</source>
         <translation>生成刀位文件的 CAM 系统</translation>
+    </message>
+    <message>
+        <source>Take a program that neither M2, M30 or % nor FINI or END-OF-PATH ends</source>
+        <translation>接受没有以 M2、M30、% 或 FINI、END-OF-PATH 结束的程序</translation>
     </message>
     <message>
         <source>{} replaced</source>

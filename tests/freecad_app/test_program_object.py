@@ -124,6 +124,7 @@ GOTO/0,-10,0
 GOTO/0,50,0
 CUTCOM/OFF
 GOTO/-40,50,0
+END-OF-PATH
 """
 
 
@@ -164,6 +165,7 @@ GOTO/0,0,50
 CYCLE/DRILL,{}
 GOTO/10,0,0
 CYCLE/OFF
+FINI
 """
 
 
@@ -229,8 +231,21 @@ def test_what_an_operation_cannot_say_is_told(document, tmp_path, monkeypatch, c
     assert lost in told[0].found
 
 
+def test_a_program_without_an_end_has_no_path_unless_it_may(document, tmp_path):
+    file = written(tmp_path, "a.ngc", GCODE.replace("M2\n", ""))
+    obj = create_program(document, file)
+    assert [code_of(told) for told in obj.Found] == ["G430"]
+    assert obj.Path.Commands == []
+    with pytest.raises(Refused, match="G430"):
+        decode(obj, new_job(document))
+    obj.OpenEnd = True
+    document.recompute()
+    assert [code_of(told) for told in obj.Found] == ["V130"]
+    assert moves(obj) == moves(create_program(document, file, allow_open_end=True)) != []
+
+
 def test_faulty_program_is_not_decoded(document, tmp_path):
-    obj = create_program(document, written(tmp_path, "a.ngc", "G1 X1\n"))
+    obj = create_program(document, written(tmp_path, "a.ngc", "G1 X1\nM2\n"))
     with pytest.raises(Refused):
         decode(obj, new_job(document))
 

@@ -196,6 +196,7 @@ GOTO/0,-10,0
 GOTO/0,50,0
 CUTCOM/OFF
 GOTO/-40,50,0
+END-OF-PATH
 """
 
 
@@ -236,6 +237,7 @@ GOTO/0,0,50
 CYCLE/DRILL,FEDTO,-7,RAPTO,2
 GOTO/10,0,0
 CYCLE/OFF
+FINI
 """
 
 
@@ -263,6 +265,19 @@ def editor_asks_who_wrote_cl_data():
 
 def _codes(editor):
     return [re.search(r"\b[A-Z]\d{3}\b", text)[0] for text in _findings(editor)]
+
+
+@step
+def editor_asks_whether_a_program_may_have_no_end():
+    editor = _editor()
+    reading, before, file = editor.body.reading, editor.body.file, editor.body.file.with_name("cut.ngc")
+    file.write_text(PROGRAM.replace("M2\n", ""), encoding="ascii")
+    editor.open_file(file)
+    told, size = [_codes(editor)], editor.body.size.text()
+    reading.allow_open_end.setChecked(True)
+    told.append(_codes(editor))
+    editor.open_file(before)
+    return {"codes": told, "size": size, "after": reading.chosen().allow_open_end}
 
 
 @step

@@ -70,6 +70,12 @@ def test_editor_asks_who_wrote_cl_data(session):
     assert found["after"] is None
 
 
+def test_editor_shows_a_program_without_an_end_and_takes_it_where_it_may(session):
+    found = session["editor_asks_whether_a_program_may_have_no_end"]
+    assert found["codes"] == [["G430"], ["V130"]]
+    assert (found["size"], found["after"]) == ("5 blocks, 1 arcs, 76.5 mm", False)
+
+
 def test_editor_opens_a_part_program_that_is_dropped_among_other_files(session):
     found = session["editor_opens_what_is_dropped"]
     assert found["text"] == "G0 X1 Y2 Z3\n"

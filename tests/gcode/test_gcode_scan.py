@@ -224,7 +224,7 @@ def test_both_ways_give_the_same(program):
 def test_both_ways_give_the_same_of_the_lines_that_are_good(program):
     good = "\n".join(line for line in program.splitlines() if scan(line, "part.ngc")[0] is not None)
     one = scan(good, "part.ngc")
-    assert one[1] == ()
+    assert {fault.code for fault in one[1]} <= {"G212"}  # behind a percent sign
     assert_same(one, scan_by_block(good, "part.ngc"))
 
 

@@ -90,13 +90,13 @@ def test_faults_of_a_text_that_is_not_saved():
 
 
 def test_a_program_and_its_size():
-    checked = check_text("G21 G90\nG0 X0 Y0 Z5\nG1 X3 Y4 F100\n", "part.ngc")
+    checked = check_text("G21 G90\nG0 X0 Y0 Z5\nG1 X3 Y4 F100\nM2\n", "part.ngc")
     assert checked.size.length == pytest.approx(5.0)
     assert checked.diagnostics == ()
 
 
 def test_what_the_user_says_of_the_text_is_used():
-    text = "G21 G90 G43.5\nG0 X0 Y0 Z5 I0 J0 K1\nG1 X3 I0 J0.6 K0.8 F100\n"
+    text = "G21 G90 G43.5\nG0 X0 Y0 Z5 I0 J0 K1\nG1 X3 I0 J0.6 K0.8 F100\nM2\n"
     assert check_text(text, "a.ngc", Reading("vector")).program.tool_axis[-1] == pytest.approx([0, 0.6, 0.8])
     assert check_text(text, "a.ngc").program is None
 

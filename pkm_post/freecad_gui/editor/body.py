@@ -79,7 +79,9 @@ class Body(QtWidgets.QWidget):
         self.file = file
         obj = linked.object_of(file)
         # What was said of other CL data is not said of this file; of G-code most files have the same.
-        kept = replace(self.reading.chosen(), unit=None, contour_data=None, cl_dialect=None, cycle_values=())
+        kept = replace(
+            self.reading.chosen(), unit=None, contour_data=None, cl_dialect=None, cycle_values=(), allow_open_end=False
+        )
         self.reading.show_reading(kept if obj is None else reading_of(obj))
         self.text.set_language(self.language())
         self.reading.offer_for(self.language())

@@ -120,6 +120,7 @@ def _with_typed(reading: Reading, chosen: Namespace) -> Reading:
         contour_data=typed.contour_data or reading.contour_data,
         cl_dialect=typed.cl_dialect or reading.cl_dialect,
         cycle_values=typed.cycle_values or reading.cycle_values,
+        allow_open_end=typed.allow_open_end or reading.allow_open_end,
     )
 
 

@@ -34,6 +34,7 @@ class ReadingFields(QtWidgets.QWidget):
         self.axis_words, self.dwell_unit = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.unit, self.contour_data = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.cl_dialect = QtWidgets.QComboBox(self)
+        self.allow_open_end = QtWidgets.QCheckBox(translate("PKM_Editor", "Open end allowed"), self)
         # Seldom needed, and chosen in the properties of the program object: here it is kept alone.
         self._cycle_values: tuple[str, ...] = ()
         self.axis_words.addItems(list(AXIS_WORDS))
@@ -53,11 +54,16 @@ class ReadingFields(QtWidgets.QWidget):
             translate("PKM_Editor", "What the points of CL data under CUTCOM are: tool centre or part contour")
         )
         self.cl_dialect.setToolTip(translate("PKM_Editor", "The CAM system that wrote the CL data"))
+        self.allow_open_end.setToolTip(
+            translate("PKM_Editor", "Take a program that neither M2, M30 or % nor FINI or END-OF-PATH ends")
+        )
         layout = QtWidgets.QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for field in (self.axis_words, self.dwell_unit, self.unit, self.contour_data, self.cl_dialect):
             layout.addWidget(field)
             field.currentIndexChanged.connect(lambda index: self.changed.emit())
+        layout.addWidget(self.allow_open_end)
+        self.allow_open_end.toggled.connect(lambda is_on: self.changed.emit())
         self.offer_for(Language.GCODE)
 
     def offer_for(self, language: Language) -> None:
@@ -76,6 +82,7 @@ class ReadingFields(QtWidgets.QWidget):
             contour_data=self.contour_data.currentData(),
             cl_dialect=self.cl_dialect.currentData(),
             cycle_values=self._cycle_values,
+            allow_open_end=self.allow_open_end.isChecked(),
         )
 
     def show_reading(self, reading: Reading) -> None:
@@ -86,5 +93,6 @@ class ReadingFields(QtWidgets.QWidget):
         self.unit.setCurrentIndex(self.unit.findData(reading.unit))
         self.contour_data.setCurrentIndex(self.contour_data.findData(reading.contour_data))
         self.cl_dialect.setCurrentIndex(self.cl_dialect.findData(reading.cl_dialect))
+        self.allow_open_end.setChecked(reading.allow_open_end)
         self._cycle_values = reading.cycle_values
         blocker.unblock()
