@@ -24,6 +24,8 @@ from pkm_post.sources import AS_WRITTEN, Reading, read_part_program
 
 _LONGEST_LINE = 200
 """Characters of a line that is shown."""
+_BYTES = 4
+"""Of a character of UTF-8, at most."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,8 @@ def _with_caret(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
     """The line of a diagnostic, and a caret below its column."""
     line, column = diagnostic.place.line, diagnostic.place.column
     if not (column and line <= len(lines)):
+        return []
+    if len(lines[line - 1]) > _LONGEST_LINE * _BYTES:
         return []
     shown = lines[line - 1].decode("utf-8", "replace").replace("\t", " ")
     if len(shown) > _LONGEST_LINE or not shown.isprintable():

@@ -8,6 +8,7 @@ of comments, and for each the number of its first line. Columns are kept: nothin
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ from pkm_post.model.program import Array
 
 JOINT = "\x1f"
 """Stands where two lines were joined."""
+LONGEST_LINE = 100_000
+"""Bytes. Longer lines are no statements, and nothing looks into them."""
 MARK = "\x02"
 """Stands for a number in the shape of a statement."""
 
@@ -64,6 +67,34 @@ class Lines:
         """Line and column, from 1, of a character of a statement."""
         before = self.text[index][:offset]
         return int(self.number[index]) + before.count(JOINT), offset - (before.rfind(JOINT) + 1) + 1
+
+
+def without_long_lines(text: bytes | str) -> tuple[bytes | str, list[tuple[int, int]]]:
+    """A text with nothing in the place of lines that are too long; their numbers, from 1, and their bytes."""
+    if len(text) <= LONGEST_LINE:
+        return text, []
+    whole = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
+    if b"\r" in whole:
+        whole = whole.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    parts, too_long, done, number = [], [], 0, 1
+    for start, stop in _long_lines(whole):
+        number += whole.count(b"\n", done, start)
+        too_long.append((number, stop - start))
+        parts.append(whole[done:start])
+        done = stop
+    return (b"".join([*parts, whole[done:]]), too_long) if too_long else (text, [])
+
+
+def _long_lines(text: bytes) -> Iterator[tuple[int, int]]:
+    """Where the lines that are too long begin and end."""
+    start = 0
+    while len(text) - start > LONGEST_LINE:
+        feed = text.rfind(b"\n", start, start + LONGEST_LINE + 1)
+        if feed < 0:
+            feed = text.find(b"\n", start)
+            feed = feed if feed >= 0 else len(text)
+            yield start, feed
+        start = feed + 1
 
 
 def decoded(text: bytes | str) -> str:

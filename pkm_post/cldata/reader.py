@@ -16,7 +16,7 @@ from pkm_post.cldata.faults import Faults
 from pkm_post.cldata.fit import fit_arcs
 from pkm_post.cldata.holes import cycles_told
 from pkm_post.cldata.length_unit import length_unit
-from pkm_post.cldata.lines import decoded, logical_lines
+from pkm_post.cldata.lines import LONGEST_LINE, decoded, logical_lines, without_long_lines
 from pkm_post.cldata.motion import program_of
 from pkm_post.cldata.options import ReadOptions
 from pkm_post.cldata.points import Points, ValueNames, all_points, bulk_rows, resolve
@@ -47,9 +47,12 @@ def read(
         ImportError: lark is not installed.
     """
     options = options or ReadOptions()
+    faults = Faults(file)
+    text, too_long = without_long_lines(text)
+    for line, size in too_long:
+        faults.add("L104", (line, 0), f"a line of {size} bytes, at most {LONGEST_LINE}")
     whole = decoded(text)
     dialect = DIALECTS[options.dialect] if options.dialect else detect(whole)
-    faults = Faults(file)
     statements = scan(logical_lines(whole), faults)
     bulk, names = bulk_rows(statements, options, dialect)
     unit = length_unit(statements, whole)

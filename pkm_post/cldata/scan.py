@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pkm_post.cldata.faults import Fault, Faults, fault_of
 from pkm_post.cldata.grammar import STATEMENT
-from pkm_post.cldata.lines import JOINT, MARK, Lines
+from pkm_post.cldata.lines import JOINT, LONGEST_LINE, MARK, Lines
 from pkm_post.cldata.statements import Form, Statements, form_of
 from pkm_post.model.program import Array
 
@@ -42,6 +43,7 @@ def scan(lines: Lines, faults: Faults) -> Statements:
         lines: the text.
         faults: takes what is wrong with it.
     """
+    lines = _without_long_ones(lines, faults)
     body = _without_quoted_numbers("\n".join(lines.text))
     shapes = _NUMBER.sub(MARK, body).split("\n")
     known: dict[str, int] = {}
@@ -54,6 +56,19 @@ def scan(lines: Lines, faults: Faults) -> Statements:
     for line in np.flatnonzero((~good & filled)[shape]).tolist():
         faults.add_line(lines, line, lambda text: _fault_again(text))
     return _table(lines, _values(body), shape, marks, parsed, good)
+
+
+def _without_long_ones(lines: Lines, faults: Faults) -> Lines:
+    """The lines with nothing in the place of those that became too long when they were joined."""
+    too_long = [index for index, text in enumerate(lines.text) if len(text) > LONGEST_LINE]
+    if not too_long:
+        return lines
+    kept = list(lines.text)
+    for index in too_long:
+        found = f"{len(kept[index])} characters in {kept[index].count(JOINT) + 1} lines, at most {LONGEST_LINE}"
+        faults.add("L104", (int(lines.number[index]), 0), found)
+        kept[index] = ""
+    return replace(lines, text=kept)
 
 
 def parsed_line(shape: str, text: str) -> Form | Fault | UnexpectedInput | None:
