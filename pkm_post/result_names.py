@@ -2,7 +2,7 @@
 """Result names: what posting may write, so that no result takes the place of another one, or of a source.
 
 What is posted enters, each with the stem of its results; what would be lost leaves, in words. Capital and small letters
-count as the same, since they are to Windows, macOS and memory sticks. No file is read, and NumPy is not needed.
+count as the same, since they are to Windows, macOS and memory sticks. No file is opened, and NumPy is not needed.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from pathlib import Path
 _PROGRAM = ".pmc"
 _ALWAYS = (_PROGRAM, "-setup.pmc", "-setup.cfg", ".pkmt", "-report.json", "-report.png", "-manifest.json")
 """How the names of results go on behind the stem, whatever the controller is."""
+_PROMISED = (_PROGRAM, ".pkmt", "-report.json", "-manifest.json")
+"""Those of them that no choice leaves out."""
 _ALSO = {"csv": ".csv", "halstreamer": "-halstreamer.txt", "linuxcnc": "-linuxcnc.ngc"}
 """The same of what is written beside the program, by its name in ``options.ALSO``."""
 _IN_PARTS = (_PROGRAM, _ALSO["halstreamer"])
@@ -51,6 +53,17 @@ def job_stem(document: str, label: str, jobs: int) -> str:
 def result_names(item: Item) -> list[str]:
     """The names of what posting may write, but for the second part and those that follow it."""
     return [item.stem + ending for ending in (*_ALWAYS, *(_ALSO[name] for name in item.also))]
+
+
+def missing_results(items: Sequence[Item], out: Path) -> list[Path]:
+    """Which results are not there, though all was posted.
+
+    Args:
+        items: what was posted.
+        out: the folder for the results.
+    """
+    promised = [out / f"{item.stem}{ending}" for item in items for ending in _PROMISED]
+    return [path for path in promised if not path.is_file()]
 
 
 def lost_results(items: Sequence[Item]) -> list[str]:

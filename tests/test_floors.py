@@ -9,7 +9,7 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "pkm_post"
 
 BY_FLOOR = (
-    "model geometry files grammar argument_types result_names pmac_simulator workers",
+    "model geometry files grammar argument_types result_names document_file pmac_simulator workers",
     "gcode cldata placement compensation kinematics feed trajectory_file controllers machine_file mesh_file "
     "report manifest unwritten out_of_memory program_end",
     "spin surface_speed surface_path speed_limits cubics reach certificate sources pmac_link machine_check "

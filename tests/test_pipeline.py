@@ -13,7 +13,7 @@ from programs import BALL, ON_PALLET, cone, program, random_job
 from pkm_post.controllers import pmac
 from pkm_post.machine_file import find_machine, read_machine
 from pkm_post.model import Event, EventKind, Kind, Refused, Tool
-from pkm_post.pipeline import Options, post, step_names
+from pkm_post.pipeline import Options, post, step_names, steps
 
 
 @pytest.fixture(scope="module")
@@ -256,3 +256,20 @@ def test_what_the_log_raises_stops_the_run_and_leaves_nothing(machine, tmp_path)
     with pytest.raises(ConnectionError) as stopped:
         post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", log=closed)
     assert stopped.value is GONE and list(tmp_path.iterdir()) == []
+
+
+def test_a_result_that_something_else_took_away(machine, tmp_path, monkeypatch):
+    """As a virus scanner does, between the moving of the files and the end."""
+    move = steps.staged
+
+    @contextmanager
+    def taken(folder, *names):
+        with move(folder, *names) as private:
+            yield private
+        (folder / "cone.pkmt").unlink()
+
+    monkeypatch.setattr(steps, "staged", taken)
+    with pytest.raises(Refused) as refused:
+        post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc")
+    (fault,) = refused.value.diagnostics
+    assert (fault.code, fault.place.file) == ("F142", str(tmp_path / "cone.pkmt"))

@@ -16,10 +16,9 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
+from pkm_post.cli.inside_freecad import INTERRUPTED, judged, not_started
 from pkm_post.cli.progress_line import ProgressLine
 
-INTERRUPTED = 130
-"""The exit code of what Ctrl-C ended, as shells have it."""
 _TIME_TO_END = 10.0
 """Seconds a process has to remove what it began, before it is killed."""
 _APART = os.name == "posix"
@@ -38,7 +37,18 @@ class _Child:
         """Run it; exit code, output and errors."""
         if not self.is_wanted:
             return 1, "", ""
-        self.process = subprocess.Popen(
+        try:
+            self.process = self._started()
+        except OSError as fault:
+            return 1, "", f"{not_started(self.command, fault)}\n"
+        if not self.is_wanted:
+            self.interrupt()
+        printed, errors = self.process.communicate()
+        code, told = judged(self.command, self.process.returncode)
+        return code, printed, f"{errors}{told}\n" if told else errors
+
+    def _started(self) -> subprocess.Popen[str]:
+        return subprocess.Popen(
             self.command,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -48,10 +58,6 @@ class _Child:
             env=os.environ | {"PYTHONIOENCODING": "utf-8"},  # whatever the locale says
             start_new_session=_APART,
         )
-        if not self.is_wanted:
-            self.interrupt()
-        printed, errors = self.process.communicate()
-        return self.process.returncode, printed, errors
 
     def interrupt(self) -> None:
         """Let it end as if Ctrl-C had been pressed there, so that it leaves nothing half done."""

@@ -15,14 +15,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.argument_types import count, whole_from
-from pkm_post.cli.document_jobs import jobs_in
-from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside
+from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside, told
 from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, reading_from
+from pkm_post.document_file import Damaged, Job, read_document
 from pkm_post.options import add_options, given_in, solid_files
 from pkm_post.out_of_memory import memory_or_refused
-from pkm_post.result_names import Item, job_stem, lost_results, lost_sources
+from pkm_post.result_names import Item, job_stem, lost_results, lost_sources, missing_results
 
 if TYPE_CHECKING:
     from pkm_post.pipeline import Posted
@@ -58,12 +58,25 @@ def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         print(*faults, sep="\n", file=sys.stderr)
         return 2
     files = namespace.files if namespace.only is None else [namespace.files[namespace.only]]
+    return _post_files(files, namespace, arguments) or _all_there(files, namespace)
+
+
+def _post_files(files: Sequence[Path], namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     at_a_time = min(namespace.jobs, len(files))
     if at_a_time > 1:
         return _post_in_processes(files, solid_files(namespace), arguments, at_a_time)
     if needs_freecad(files, solid_files(namespace)):
         return run_inside(arguments)
     return max([_post_one(file, namespace) for file in files])
+
+
+def _all_there(files: Sequence[Path], namespace: argparse.Namespace) -> int:
+    """Look for the results where they were promised, whichever process was to write them; the exit code."""
+    items = [item for file in files for item in _items(file, namespace.job, namespace.also)]
+    missing = missing_results(items, namespace.out)
+    for path in missing:
+        print(told("F142", str(path), "it is not there, though posting ended well"), file=sys.stderr)
+    return int(bool(missing))
 
 
 def _faults(namespace: argparse.Namespace) -> list[str]:
@@ -80,11 +93,19 @@ def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[Item]:
     """What is posted of a file: a part program, or the jobs of a document, which say for themselves what to write."""
     if file.suffix.lower() != _DOCUMENT:
         return [Item(str(file), file.stem, also)]
-    jobs = jobs_in(file)
+    jobs = _jobs_in(file)
     if len(jobs) < 2:
         return [Item(str(file), job_stem(file.stem, "", 1))]
-    named = [label for name, label in jobs if wanted in (None, name, label)]
+    named = [job.label for job in jobs if wanted in (None, job.name, job.label)]
     return [Item(f"{label} of {file}", job_stem(file.stem, label, len(jobs))) for label in named]
+
+
+def _jobs_in(document: Path) -> tuple[Job, ...]:
+    """The CAM jobs of a document; none of one that cannot be read, which is refused where it is to be posted."""
+    try:
+        return read_document(document).jobs
+    except (OSError, Damaged):
+        return ()
 
 
 def _post_in_processes(files: Sequence[Path], solids: Sequence[str], arguments: Sequence[str], at_a_time: int) -> int:

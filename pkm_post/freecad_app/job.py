@@ -9,7 +9,7 @@ paths is added as events: tool, spindle and coolant, each where it changes and o
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
 from types import MappingProxyType
 from typing import Any
@@ -18,7 +18,8 @@ import numpy as np
 from Path.Base.Util import opProperty, toolControllerForOp
 
 from pkm_post.freecad_app.commands import read_commands
-from pkm_post.freecad_app.layers import is_ours, spoilers
+from pkm_post.freecad_app.document_damage import file_faults
+from pkm_post.freecad_app.operation_state import state_faults
 from pkm_post.freecad_app.selection import EVERYTHING, Selection
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
 from pkm_post.model import Diagnostic, Event, EventKind, Place, Program, Tool
@@ -49,16 +50,18 @@ def read_job(
         The program, or None if there are errors; and all that was found.
     """
     way = _Way(job)
-    faults = _selection_faults(job, selection, Place(way.source, job.Label))
-    for operation in selection.operations_of(job):
-        if opProperty(operation, "Active") is not False:
-            faults += _state_faults(operation, way.source) or way.add(operation)
+    faults = [*file_faults(job.Document), *_selection_faults(job, selection, Place(way.source, job.Label))]
+    active = [each for each in selection.operations_of(job) if opProperty(each, "Active") is not False]
+    for operation in active:
+        faults += state_faults(operation, way.source) or way.add(operation)
     way.switch(_OFF)
     tools, tool_faults = read_tools(way.controllers.values(), tool_lengths, way.source)
     faults += tool_faults
     if not way.rows and not errors(faults):
         faults.append(Diagnostic("J103", Place(way.source, job.Label), "nothing to post"))
-    return (None if errors(faults) else way.program(tools)), tuple(faults)
+    if errors(faults):
+        return None, tuple(faults)
+    return dataclasses.replace(way.program(tools), reading=(way.counted(job, active),)), tuple(faults)
 
 
 def document_name(document: Any) -> str:
@@ -71,16 +74,6 @@ def _selection_faults(job: Any, selection: Selection, place: Place) -> list[Diag
     fixtures, strangers = selection.fixtures_of(job), selection.strangers(job)
     faults = [Diagnostic("J111", place, ", ".join(fixtures))] if len(fixtures) > 1 else []
     return faults + [Diagnostic("J127", place, each.Label) for each in strangers]
-
-
-def _state_faults(operation: Any, source: str) -> list[Diagnostic]:
-    """What keeps the path of an operation from being what it should be."""
-    place = Place(source, operation.Label)
-    if not operation.isValid():
-        return [Diagnostic("J116", place, operation.getStatusString())]
-    if is_ours(operation) and operation.Base is None:
-        return [Diagnostic("J116", place, "the operation it copies is gone")]
-    return [Diagnostic("J108", place, layer.Label) for layer in spoilers(operation)]
 
 
 class _Way:
@@ -153,6 +146,11 @@ class _Way:
         self._programs.append(program)
         self.rows += len(program)
         return faults
+
+    def counted(self, job: Any, active: Sequence[Any]) -> str:
+        """How many operations were read, beside how many the job lists."""
+        meant = f"{len(active)} meant and active"
+        return f"operations of the job: {len(job.Operations.Group)} listed, {meant}, {len(self._programs)} read"
 
     def program(self, tools: Mapping[int, Tool]) -> Program:
         """All operations, one after the other."""

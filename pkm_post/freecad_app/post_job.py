@@ -16,6 +16,7 @@ import FreeCAD as App
 
 from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import given_by
+from pkm_post.freecad_app.document_damage import check_read, intact
 from pkm_post.freecad_app.job import NO_LENGTHS, document_name
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.kinds import is_job
@@ -100,7 +101,7 @@ def post_document(
         arguments: options that go before those of each job one by one.
 
     Raises:
-        Refused: as ``post_job``, and J101 and J102 for the document. Jobs posted before stay posted.
+        Refused: as ``post_job``, and J101, J102 and J129 to J131 for the document. Jobs posted before stay posted.
     """
     with _opened(FilePath(file)) as document:
         jobs = _jobs_named(document, job_name)
@@ -189,13 +190,15 @@ def file_name(job: Any) -> str:
 
 @contextlib.contextmanager
 def _opened(file: FilePath) -> Iterator[Any]:
-    """The document of a file; it is closed again unless it was open before."""
-    open_before = set(App.listDocuments())
+    """The document of a file, all of it checked and read; it is closed again unless it was open before."""
+    content, open_before = intact(file), set(App.listDocuments())
     try:
         document = App.openDocument(str(file))
     except OSError as fault:
         raise Refused([Diagnostic("J101", Place(str(file)), str(fault))]) from fault
     try:
+        if document.Name not in open_before:
+            check_read(document, content)
         yield document
     finally:
         if document.Name not in open_before:

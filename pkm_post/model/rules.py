@@ -40,6 +40,7 @@ _TAPPING = _error(
     "leave the threads out and tap them elsewhere, or mill them as helices",
 )
 """One fault, with a code for each kind of input."""
+_INTACT_COPY = "take an intact copy of the document, such as the backup beside it (.FCBak)"
 
 RULES: dict[str, Rule] = {
     # J1: the CAM job
@@ -92,6 +93,23 @@ RULES: dict[str, Rule] = {
         "a length offset (H) of another number than the tool's is in force, and its value is not known",
         "pass it with --tool-length NUMBER=MM; if it holds the length of the tool, that length",
     ),
+    "J129": _error("the file of the document is damaged", _INTACT_COPY),
+    "J130": _error("the content of the document contradicts itself", _INTACT_COPY),
+    "J131": _error("FreeCAD did not read all operations of the job", _INTACT_COPY),
+    "J132": _error(
+        "the path of an active operation is empty",
+        "mark the operation to be recomputed and recompute the document, or switch the operation off",
+    ),
+    "J133": _error(
+        "an operation was not computed after it, or what it is made from, was changed",
+        "let the document be recomputed (Skip Recomputes off), and recompute it",
+    ),
+    "J134": _error("FreeCAD could not read the path or another property of an operation", _INTACT_COPY),
+    "J135": _error(
+        "the path of an operation holds characters that are not UTF-8",
+        "take them out of what the operation is made from, mark it to be recomputed, and recompute the document",
+    ),
+    "J136": _error("something in the job has no path", "take it out of the operations of the job"),
     # G1: the letters of G-code
     "G101": _error("a character has no meaning here", "remove it, or put the text into a comment"),
     "G102": _error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),
@@ -560,7 +578,10 @@ RULES: dict[str, Rule] = {
     ),
     # F1: files
     "F101": _error("the output cannot be written", "check the folder, its permissions and the free space"),
-    "F102": _warning("the picture was not made: matplotlib is missing", "install python3-matplotlib"),
+    "F102": _warning(
+        "the picture was not made: matplotlib is missing or cannot be imported",
+        "install python3-matplotlib, in a version that fits NumPy",
+    ),
     "F103": _error("the file cannot be read", "check the path and its permissions"),
     "F104": _warning(
         "files of an earlier result are beside this one and do not belong to it",
@@ -591,4 +612,13 @@ RULES: dict[str, Rule] = {
         "there is not enough memory",
         "close other programs, do fewer operations or files at a time, or use a computer with more memory",
     ),
+    "F140": _error(
+        "FreeCAD could not be started",
+        "install FreeCAD 1.0 or newer, or name its FreeCADCmd in the environment variable FREECADCMD",
+    ),
+    "F141": _error(
+        "FreeCAD ended before the command had run in it",
+        "see what was printed before, and that FREECADCMD, if it is set, names FreeCADCmd of FreeCAD 1.0 or newer",
+    ),
+    "F142": _error("a result is missing", "see that nothing else removes files from the folder, and post again"),
 }

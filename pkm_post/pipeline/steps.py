@@ -19,7 +19,7 @@ from pkm_post.controllers import TABLES, controller_settings, read_texts
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
 from pkm_post.machine_check import home_faults
-from pkm_post.model import Machine, Motion, Program, Refused, StrutMotion, Trajectory
+from pkm_post.model import Diagnostic, Machine, Motion, Place, Program, Refused, StrutMotion, Trajectory
 from pkm_post.model.certificate import Certificate, Coverage
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.setup import Setup
@@ -86,6 +86,8 @@ def post(
         if fault is run.raised_outside:
             raise
         raise Refused([*run.warnings, unwritten(program_path, fault)]) from fault
+    gone = [path for path in posted.files if not path.is_file()]
+    run.accept(tuple(Diagnostic("F142", Place(str(path)), "it was written") for path in gone))
     return posted
 
 

@@ -7,7 +7,7 @@ certificate found. Without matplotlib there is a warning instead of a picture.
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import warnings
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,8 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Kind, Machine, Motion, Place, StrutMotion, Trajectory
 from pkm_post.model.certificate import Certificate, Tolerances
 
+_MATPLOTLIB = ("matplotlib.backends.backend_agg", "matplotlib.figure", "mpl_toolkits.mplot3d")
+"""What pictures are drawn with; the last is what 3D axes come from."""
 _LIMIT = {"color": "0.3", "linestyle": "--", "linewidth": 0.8}
 _AXES_SHOWN = 150
 _AXIS_DRAWN = 15.0
@@ -30,9 +32,15 @@ _PLOTS_OVER_TIME = {"left": 0.09, "right": 0.99, "bottom": 0.06, "top": 0.92, "h
 
 
 def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
-    """The warning that a picture is not made, or nothing."""
-    if importlib.util.find_spec("matplotlib") is None:
-        return (Diagnostic("F102", Place(picture.name), "no module named matplotlib"),)
+    """The warning that a picture is not made, or nothing.
+
+    Importing what is installed may raise anything: a matplotlib that was built for another NumPy does.
+    """
+    try:
+        for module in _MATPLOTLIB:
+            importlib.import_module(module)
+    except Exception as fault:
+        return (Diagnostic("F102", Place(picture.name), f"{type(fault).__name__}: {fault}"),)
     return ()
 
 

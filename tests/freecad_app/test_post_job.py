@@ -14,7 +14,7 @@ from Path.Post.Utils import FilenameGenerator
 import pkm_post
 from pkm_post import manifest
 from pkm_post.cli import main
-from pkm_post.cli.document_jobs import jobs_in
+from pkm_post.document_file import read_document
 from pkm_post.freecad_app.arguments import job_arguments
 from pkm_post.freecad_app.post_job import find_job, post_as_the_job_says, post_document, post_job
 from pkm_post.freecad_app.progress import Progress, Stopped
@@ -146,7 +146,7 @@ def test_jobs_whose_results_would_have_one_name_are_refused_at_every_door(ready,
     assert refusal(post_job, ready, MACHINE, tmp_path / "out", AT_FIXTURE) == ["F105"]
     assert refusal(post_as_the_job_says, second, tmp_path / "out") == ["F105"]
     path = saved(ready.Document, tmp_path)
-    assert jobs_in(path) == [("Job", label), ("Job001", other)]
+    assert [(job.name, job.label) for job in read_document(path).jobs] == [("Job", label), ("Job001", other)]
     assert refusal(post_document, path, MACHINE, tmp_path / "out", AT_FIXTURE) == ["F105"]
     assert main(["post", str(path), "--out", str(tmp_path / "out")]) == 2
     assert main(["post", str(path), "--job", label, "--out", str(tmp_path / "out")]) == 1

@@ -22,6 +22,7 @@ TOOL, SPINDLE, COOLANT, DWELL, STOP = (
 
 
 def program_of(job, **lengths):
+    job.Document.recompute()
     program, faults = read_job(job, **lengths)
     assert faults == ()
     return program
@@ -32,6 +33,7 @@ def events(program):
 
 
 def faults_of(job):
+    job.Document.recompute()
     program, faults = read_job(job)
     assert (program is None) == any(fault.severity.value == "error" for fault in faults)
     return [(fault.code, fault.place.operation, fault.place.line) for fault in faults]

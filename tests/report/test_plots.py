@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import dataclasses
+import sys
 
 import numpy as np
+import pytest
 from programs import cone
 
 from pkm_post.machine_file import machine_named
@@ -57,3 +59,36 @@ def test_a_reach_map_shows_the_name_of_the_machine_as_it_is(tmp_path):
     tip = np.array([[x, y, 200.0] for x in (0.0, 50.0) for y in (0.0, 50.0)])
     assert draw_reach(tmp_path / "map.png", NO_MATHEMATICS, tip, np.full(4, 0.5)) == ()
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+class Broken:
+    """An installation whose import raises."""
+
+    def __init__(self, fault):
+        self._fault = fault
+
+    def find_spec(self, name, path=None, target=None):
+        if name.startswith("matplotlib"):
+            raise self._fault
+
+
+BROKEN = (
+    ModuleNotFoundError("No module named 'matplotlib'"),
+    ImportError("numpy.core.multiarray failed to import"),
+    AttributeError("_ARRAY_API not found"),
+    ValueError("numpy.dtype size changed, may indicate binary incompatibility"),
+    RuntimeError("module was compiled against API version 0x10"),
+)
+
+
+@pytest.mark.parametrize("fault", BROKEN, ids=lambda fault: type(fault).__name__)
+def test_a_matplotlib_that_cannot_be_imported_costs_the_picture_alone(tmp_path, monkeypatch, fault):
+    for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setattr(sys, "meta_path", [Broken(fault), *sys.meta_path])
+    machine, _ = machine_named("example_6tps")
+    posted = post(cone(), machine, tmp_path / "part.pmc")
+    (warning,) = [each for each in posted.diagnostics if each.code == "F102"]
+    assert warning.found == f"{type(fault).__name__}: {fault}"
+    names = {path.name for path in tmp_path.iterdir()}
+    assert {"part.pmc", "part.pkmt", "part-report.json"} <= names and "part-report.png" not in names

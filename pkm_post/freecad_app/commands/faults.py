@@ -58,6 +58,11 @@ class Faults:
         return tuple(sorted(self.diagnostics, key=lambda fault: (fault.place.line, fault.code, fault.found)))
 
 
+def not_text(fault: UnicodeDecodeError, source: str, operation: str) -> Diagnostic:
+    """What is wrong with a command that FreeCAD stores as bytes that are no text."""
+    return Diagnostic("J135", Place(source, operation), repr(fault.object))
+
+
 def check_words(words: Words, faults: Faults) -> None:
     """Tell commands and words that have no meaning here."""
     for code in words.codes:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pkm_post.freecad_app.commands.drilling import without_cycles
-from pkm_post.freecad_app.commands.faults import Faults, check_words
+from pkm_post.freecad_app.commands.faults import Faults, check_words, not_text
 from pkm_post.freecad_app.commands.words import MOVES, Array, Words, in_force, latest
 from pkm_post.geometry import norm
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Program
@@ -59,7 +59,11 @@ def read_commands(
     Returns:
         The program, its lines the numbers of the commands from 1; None if there are errors.
     """
-    words, faults = Words.of(commands), Faults(source, operation)
+    faults = Faults(source, operation)
+    try:
+        words = Words.of(commands)
+    except UnicodeDecodeError as fault:
+        return None, (not_text(fault, source, operation),)
     check_words(words, faults)
     if any(fault.code == "J119" for fault in faults.diagnostics):
         return None, faults.in_order()

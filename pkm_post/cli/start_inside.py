@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Start inside: the command line in FreeCAD's Python, of the package that this file is in.
+
+``run_script.py`` runs this file. FreeCAD has imported the package already where it is an add-on. A wheel lies among
+packages for another Python, so the package alone is imported from there.
+"""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+
+
+def _import_package() -> None:
+    """Import the package from its folder, and do what ``Init.py`` of the add-on does for the command line."""
+    spec = importlib.util.spec_from_file_location(
+        "pkm_post", _PACKAGE / "__init__.py", submodule_search_locations=[str(_PACKAGE)]
+    )
+    if spec is None or spec.loader is None:
+        raise ImportError(f"there is no package in {_PACKAGE}")
+    package = importlib.util.module_from_spec(spec)
+    sys.modules["pkm_post"] = package
+    spec.loader.exec_module(package)
+    from pkm_post.freecad_app import step_file
+
+    step_file.install()
+
+
+if __name__ == "__main__":
+    if "pkm_post" not in sys.modules:
+        _import_package()
+    from pkm_post.cli import main
+    from pkm_post.cli.inside_freecad import as_ended_inside
+
+    sys.exit(as_ended_inside(main(sys.argv[1:])))
