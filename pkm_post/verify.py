@@ -1,23 +1,27 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Verify: whether a motion program that lies somewhere still does what a trajectory file says.
 
-The text of a program, a trajectory file and a machine enter; the report leaves, as posting would have written it. The
-plan is made anew from the trajectory: the same input gives the same plan, so a program that was posted has its knots.
+The text of a program, a trajectory file and a machine enter; the report leaves, as posting would have written it.
+Nothing is planned: what the program does is followed from its lengths and speeds, and compared with the trajectory, so
+that a program holds or does not hold whatever planner has made it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pkm_post import manifest, planning, trajectory_file
-from pkm_post.certificate import certify
-from pkm_post.controllers import controller_settings, read_texts
+from pkm_post import manifest, trajectory_file
+from pkm_post.certificate import certify, recovered
+from pkm_post.controllers import controller_settings, program_seal, read_texts
+from pkm_post.kinematics import reach_faults
 from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion
 from pkm_post.model.diagnostics import errors
 from pkm_post.report import summary
 
 Findings = tuple[Diagnostic, ...]
+Texts = Sequence[tuple[str, str]]
 
 
 def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
@@ -33,47 +37,63 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str,
 
     Raises:
         Refused: a file cannot be read or is faulty, the certificate does not hold, or files are not as their manifest
-            says.
+            or the heading of the program says.
     """
+    found, faults = controller_settings(machine)
+    if found is None:
+        raise Refused(faults)
+    texts, faults = read_texts(program, found[0])
+    if texts is None:
+        raise Refused(faults)
+    return verify_texts(texts, program, trajectory, machine)
+
+
+def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
+    """The same of the texts of all parts of a program, by file name, which were read from its files."""
     listed = tuple(dict.fromkeys(one for file in (program, trajectory) for one in manifest.check(file)[1]))
+    changed = tuple(
+        Diagnostic("C109", Place(name), "the lines give another one")
+        for name, text in texts
+        if program_seal.has_its_seal(text) is False
+    )
+    told = (*listed, *changed)
     try:
-        report = _certified(program, trajectory, machine)
+        report = _certified(texts, program, trajectory, machine)
     except Refused as refused:
-        raise Refused((*listed, *refused.diagnostics)) from None
-    if errors(listed):
-        raise Refused(listed)
-    return report, listed
+        raise Refused((*told, *refused.diagnostics)) from None
+    if errors(told):
+        raise Refused(told)
+    return report, told
 
 
-def _certified(program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
+def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
     """The report on a program that holds."""
     planned, faults = trajectory_file.read(trajectory)
     if planned is None:
         raise Refused(faults)
-    struts = _read(program, machine)
+    struts = _played(texts, machine)
     tolerances = planned.tolerances
     if tolerances is None:
         raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
-    path = planning.tool_path(planned, tolerances)
-    schedule, faults = planning.plan_feed(path, planned, machine)
-    if errors(faults):
+    found, faults = recovered(struts, program.name, planned, machine, tolerances)
+    if found is None:
         raise Refused(faults)
-    motion = planning.interpolate(path, schedule, planned.events, machine, tolerances)
-    certificate, faults = certify(struts, program.name, planned, machine, motion, tolerances)
+    certificate, faults = certify(
+        struts, program.name, planned, machine, found.motion, tolerances, spin_off=found.spin_off
+    )
+    faults = (*faults, *reach_faults(machine, planned, *found.way()))
     if certificate is None or errors(faults):
         raise Refused(faults)
-    return summary.report(planned, machine, certificate, tolerances, struts, motion)
+    files = summary.hashes([program_seal.digest(text) for _, text in texts], manifest.fingerprint_of_file(trajectory))
+    return summary.report(planned, machine, certificate, tolerances, struts, found.motion, files=files)
 
 
-def _read(program: Path, machine: Machine) -> StrutMotion:
-    """The motion of a program; its other parts lie beside its first one."""
+def _played(texts: Texts, machine: Machine) -> StrutMotion:
+    """The motion of a program in all its parts."""
     found, faults = controller_settings(machine)
     if found is None:
         raise Refused(faults)
     controller, settings = found
-    texts, faults = read_texts(program, controller)
-    if texts is None:
-        raise Refused(faults)
     struts, faults = controller.read_parts(texts, settings)
     if struts is None:
         raise Refused(faults)

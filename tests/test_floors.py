@@ -16,7 +16,7 @@ BY_FLOOR = (
     "machine_calibration",
     "position planning outputs collisions",
     "pipeline verify check convert",
-    "options reach_study numerical_control program_text",
+    "options reach_study numerical_control program_text loading",
     "post_file freecad_app",
     "cli freecad_gui",
     "__main__",

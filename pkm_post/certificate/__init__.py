@@ -2,5 +2,6 @@
 """Certificate: a program read back, played as the controller plays it, and compared with the programmed path."""
 
 from pkm_post.certificate.certify import certify
+from pkm_post.certificate.recovered import Recovered, recovered
 
-__all__ = ["certify"]
+__all__ = ["Recovered", "certify", "recovered"]

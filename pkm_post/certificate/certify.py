@@ -41,6 +41,7 @@ def certify(
     motion: Motion,
     tolerances: Tolerances,
     collisions: tuple[Coverage, ...] = NO_SETUP,
+    spin_off: Array | float = 0.0,
 ) -> tuple[Certificate | None, tuple[Diagnostic, ...]]:
     """Play a program and compare it with the trajectory it was made from.
 
@@ -49,9 +50,11 @@ def certify(
         program_name: names the program in diagnostics.
         trajectory: what was programmed.
         machine: geometry and limits.
-        motion: the plan; program and plan must have the same knots.
+        motion: the plan, or what was recovered of it; program and plan must have the same knots.
         tolerances: what was asked for.
         collisions: what was checked against part, stock and fixtures.
+        spin_off: (K + 1,) mm by which struts are off for a spin that was not programmed, where the motion was recovered
+            and so has the spin of the program itself.
     """
     faults = structure_faults(struts, program_name, trajectory, machine, motion)
     if faults:
@@ -61,7 +64,7 @@ def certify(
 
     def measured(struts: StrutMotion) -> Certificate:
         course = ToolCourse.of(machine, struts, motion, knots)
-        task = Task(struts, machine, ruler, motion, knots, course, ceiling)
+        task = Task(struts, machine, ruler, motion, knots, course, ceiling, spin_off)
         return _certificate(task, trajectory, tolerances, collisions)
 
     certificate = measured(struts)
@@ -95,6 +98,7 @@ def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:
     # reduceat over pairs (first, last + 1): the maxima of the ranges are every second result.
     bounds = np.column_stack([first, last + 1]).ravel()
     fastest = np.maximum.reduceat(np.append(trajectory.feed, 0.0), bounds)[::2]
-    change = np.abs(np.diff(norm(motion.tip_rate)))
+    speed = norm(motion.tip_rate)
+    change = np.abs(np.minimum(speed[1:], fastest) - np.minimum(speed[:-1], fastest))
     indivisible = np.diff(motion.time_ms) == 1
     return fastest * _FEED_SHARE + _FEED_ROUNDING + np.where(indivisible, _SWING * change, 0.0)

@@ -60,14 +60,14 @@ class TrajectoryRuler:
         trajectory, (segments, at) = self._trajectory, among(segment)
         before, turn = self._tip_before[segments], self._axis_turn[segments]
         chord = trajectory.tip[segments] - before
-        by_tip, by_axis = self._weights(segments)
         away = tip - taken(before, at)
         curved = np.flatnonzero((trajectory.kind[segments] == Kind.ARC)[at])
+        start = taken(self._axis_before[segments], at)
+        turns = bool(turn.any())
+        by_tip, by_axis = self._weights(segments)
         share = dot(away, taken(by_tip[:, None] * _over_square(chord), at))
         if len(curved):
             share[curved] = by_tip[at[curved]] * self._share_of_arc(tip[curved], axis[curved], segment[curved])
-        start = taken(self._axis_before[segments], at)
-        turns = bool(turn.any())
         if turns:
             share += dot(towards(start, axis), taken(by_axis[:, None] * _over_square(turn), at))
         share = np.clip(share, 0.0, 1.0)
@@ -76,6 +76,28 @@ class TrajectoryRuler:
             off[curved] = tip[curved] - self._on_arc(segment[curved], share[curved])
         expected = along(start, share[:, None] * taken(turn, at)) if turns else start
         return np.stack([norm(off), angle_between(axis, expected), self.tip_tolerance[segments][at]])
+
+    def share_of(self, tip: Array, axis: Array, segment: Array) -> tuple[Array, Array]:
+        """At which share of their segment poses fit best, (N,); and by how much that may be off within the tolerances.
+
+        The latter is infinite where the segment moves neither tip nor axis: there every share fits alike.
+        """
+        start, turn = self._axis_before[segment], self._axis_turn[segment]
+        before = self._tip_before[segment]
+        by_tip, by_axis = self._weights(segment)
+        chord = _over_square(self._trajectory.tip[segment] - before)
+        share = by_tip * dot(tip - before, chord) + by_axis * dot(towards(start, axis), _over_square(turn))
+        curved = np.flatnonzero(self._trajectory.kind[segment] == Kind.ARC)
+        if len(curved):
+            angle = by_axis[curved] * dot(towards(start[curved], axis[curved]), _over_square(turn[curved]))
+            of_arc = self._share_of_arc(tip[curved], axis[curved], segment[curved])
+            share[curved] = by_tip[curved] * of_arc + angle
+        ways = np.hypot(
+            self._trajectory.length[segment] / self.tip_tolerance[segment],
+            self._trajectory.angle[segment] / self.axis_tolerance,
+        )
+        slack = np.divide(1.0, ways, out=np.full(len(ways), np.inf), where=ways > 0)
+        return np.clip(share, 0.0, 1.0), slack
 
     def _weights(self, segments: Array) -> tuple[Array, ...]:
         """How much the shares that are nearest for the tip alone and for the axis alone count.

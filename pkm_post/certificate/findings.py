@@ -44,7 +44,7 @@ def findings(
         ("V102", "deviation of the tool axis", "degrees", *told(Looked.AXIS, np.degrees(played.axis), axis_limit)),
         ("V110", "tool tip off a programmed point", "mm", passed.tip, at_ends, joints),
         ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed.axis), axis_limit, joints),
-        ("V111", "strut off its plan", "mm", off_plan(struts, task.knots), tolerances.tip, knots),
+        ("V111", "strut off its plan", "mm", off_plan(struts, task.knots) + task.spin_off, tolerances.tip, knots),
         ("V108", "tip speed", "mm/s", *told(Looked.SPEED, played.tip_speed, task.ceiling)),
         ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, starts),
         ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),

@@ -37,11 +37,16 @@ def structure_faults(
         times = struts.time_ms.tolist(), motion.time_ms.tolist()
         found.append(("V110", _first_difference("knot", *times, "{} ms".format)))
     if struts.events != motion.events:
-        found.append(("V109", _first_difference("event", struts.events, motion.events, _event)))
+        found.append(("V109", event_fault(struts.events, motion.events)))
     for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):
         if speed.any():
             found.append(("V105", f"{which} speeds {speed.tolist()} mm/s"))
     return tuple(Diagnostic(code, Place(program_name), text) for code, text in found)
+
+
+def event_fault(found: Sequence[Event], planned: Sequence[Event]) -> str:
+    """The first event that differs, in words."""
+    return _first_difference("event", found, planned, _event)
 
 
 def _first_difference(

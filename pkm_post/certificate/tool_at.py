@@ -39,6 +39,7 @@ class Task:
         knots: what the machine is like there.
         course: where the tool is, about.
         ceiling: (K,) tip speed that each interval may have, mm/s.
+        spin_off: (K + 1,) mm of a strut by a spin that was not programmed, beside what it is off the plan.
     """
 
     struts: StrutMotion
@@ -48,6 +49,7 @@ class Task:
     knots: Knots
     course: ToolCourse
     ceiling: Array
+    spin_off: Array | float = 0.0
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,8 @@ def add_commands(commands: Any) -> None:
         parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
         if "program" in needs:
             parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+            told = "take the program though nothing shows that it is certified for this machine; that is logged"
+            parser.add_argument("--uncertified", action="store_true", help=told)
         _add_own(parser, name)
         pmac_control_arguments.add_own(parser, name)
         parser.set_defaults(run=_run, action=action, name=name, needs=needs)
@@ -139,9 +141,9 @@ def _session(namespace: argparse.Namespace) -> Session:
 
 def _target(namespace: argparse.Namespace) -> Target | None:
     """Machine and program that were named; None when they are not in order, which is told."""
-    from pkm_post.controllers import pmac, power_pmac, read_text
+    from pkm_post.controllers import pmac, power_pmac
+    from pkm_post.loading import job_to_load
     from pkm_post.machine_file import machine_named
-    from pkm_post.pmac_link.job import read_job
 
     machine = _told(*machine_named(namespace.machine))
     if machine is None:
@@ -151,10 +153,7 @@ def _target(namespace: argparse.Namespace) -> Target | None:
         return None
     if "program" not in namespace:
         return Target(machine, settings)
-    text = _told(*read_text(namespace.program))
-    if text is None:
-        return None
-    job = _told(*read_job(text, settings, namespace.program.name))
+    job = _told(*job_to_load(namespace.program, machine, settings, namespace.uncertified))
     return None if job is None else JobTarget(machine, settings, job)
 
 

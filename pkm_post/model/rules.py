@@ -510,6 +510,15 @@ RULES: dict[str, Rule] = {
         "the program has a character that the controller does not take, or obeys at once",
         "post the job again; do not edit the program: it is printable ASCII, in lines that end with LF or CR LF",
     ),
+    "C109": _error(
+        "the program was changed: its lines do not have the SHA-256 of its heading",
+        "post the job again; do not edit the program",
+    ),
+    "C110": _error(
+        "nothing shows that the program was certified",
+        "keep the trajectory file, the report and all parts of one posting beside the program, or post the job again;"
+        " pmac --uncertified loads it all the same",
+    ),
     # C2: moves by hand, at the controller
     "C201": _error("nothing moves", "say which way, and how far"),
     "C202": _error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),

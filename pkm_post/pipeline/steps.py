@@ -15,7 +15,7 @@ from typing import Any
 from pkm_post import manifest, outputs, planning, trajectory_file
 from pkm_post.certificate import certify
 from pkm_post.collisions import find_collisions, names_of
-from pkm_post.controllers import TABLES, controller_settings, read_texts
+from pkm_post.controllers import TABLES, controller_settings, program_seal, read_texts
 from pkm_post.feed import Schedule, ToolPath
 from pkm_post.files import staged
 from pkm_post.machine_check import home_faults
@@ -122,11 +122,15 @@ def _all_steps(
     covered = _collisions(run, frame, trajectory, setup)
     motion, struts = _interpolation(run, frame, trajectory, tool_path, schedule)
     names = _motion_program(run, frame, trajectory, struts)
-    played, certificate = _certificate(run, frame, trajectory, motion, covered)
-    report = _report(run, frame, trajectory, motion, played, certificate, program.reading)
+    played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
+    report = _report(run, frame, trajectory, motion, played, certificate, program.reading, files)
     for name in options.also:
         _write_another(run, frame, name, trajectory, played)
     return names, report
+
+
+def _trajectory_hash(frame: Frame) -> str:
+    return manifest.fingerprint_of_file(frame.beside(".pkmt"))
 
 
 def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
@@ -177,7 +181,9 @@ def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: Stru
     """Write the program and the set-up it relies on; the names of its parts."""
     with run.step(_PROGRAM) as told:
         controller, settings, machine = frame.controller, frame.settings, frame.machine
-        parts = controller.program_parts(struts, settings, summary.heading(trajectory))
+        records = program_seal.record_lines(_trajectory_hash(frame), machine.fingerprint)
+        unsealed = controller.program_parts(struts, settings, [*summary.heading(trajectory), *records])
+        parts = tuple(map(program_seal.sealed, unsealed))
         names = outputs.write_parts(frame.path, parts)
         setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
         if setup is not None:
@@ -188,15 +194,16 @@ def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: Stru
 
 def _certificate(
     run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
-) -> tuple[StrutMotion, Certificate]:
-    """The program read back from its text, and what it does."""
+) -> tuple[StrutMotion, Certificate, dict[str, Any]]:
+    """The program read back from its text, what it does, and what the report says of the bytes of both files."""
     with run.step(_CERTIFICATE) as told:
         texts = run.value(read_texts(frame.path, frame.controller))
         played = run.value(frame.controller.read_parts(texts, frame.settings))
         measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
         certificate = run.value(measured)
         told.append(f"{certificate.instants} instants")
-    return played, certificate
+        files = summary.hashes([program_seal.digest(text) for _, text in texts], _trajectory_hash(frame))
+    return played, certificate, files
 
 
 def _report(
@@ -207,11 +214,12 @@ def _report(
     played: StrutMotion,
     certificate: Certificate,
     reading: tuple[str, ...],
+    files: dict[str, Any],
 ) -> dict[str, Any]:
     """Write the report as JSON and picture; its content."""
     with run.step(_REPORT) as told:
         machine, tolerances = frame.machine, frame.tolerances
-        report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading)
+        report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files)
         summary.write(report, frame.beside("-report.json"))
         picture = frame.beside("-report.png")
         run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,11 @@ _AS_IT_IS = "axis values are strut lengths in mm, speeds in mm/s; do not edit: t
 def heading(trajectory: Trajectory) -> list[str]:
     """What a motion program says of itself in its first lines."""
     return [*origin(trajectory), _start(trajectory), _AS_IT_IS]
+
+
+def hashes(programs: Sequence[str], trajectory: str) -> dict[str, Any]:
+    """What the report says of the files it is about, by the SHA-256 of each; line ends of programs do not count."""
+    return {"programs_sha256": list(programs), "trajectory_sha256": trajectory}
 
 
 def _start(trajectory: Trajectory) -> str:
@@ -56,8 +61,9 @@ def report(
     struts: StrutMotion,
     motion: Motion,
     reading: Sequence[str] = (),
+    files: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """The report as data that JSON can hold; ``reading`` is as in ``model.Program``."""
+    """The report as data that JSON can hold; ``reading`` is as in ``model.Program``, ``files`` as of ``hashes``."""
     return {
         "format": _FORMAT,
         "program": {
@@ -70,6 +76,7 @@ def report(
             "tools": [vars(tool) for tool in _tools(trajectory)],
         },
         "machine": {"name": machine.name, "sha256": machine.fingerprint},
+        "files": dict(files or {}),
         "tolerances": {
             "tip_mm": tolerances.tip,
             "axis_deg": _rounded(np.degrees(tolerances.axis), 9),

@@ -32,7 +32,7 @@ def a_program_is_loaded_held_and_resumed():
     face, console = panel.face, panel.console
     face.pages.setCurrentWidget(face.program)
     lengths = newest().status.commanded
-    face.program.read(program_file("two.pmc"))
+    face.program.read(program_file("two.pmc"), uncertified=True)
     until(lambda: console.job is not None and not console.waits)
     settle()
     found = {
@@ -140,7 +140,7 @@ def a_program_goes_on_after_its_stop():
     panel = the_panel()
     page, console = panel.face.program, panel.console
     found = {"without stops": page.go_on.isEnabled()}
-    page.read(program_file("stop.pmc", Event(PER_BLOCK, EventKind.STOP, 0.0)))
+    page.read(program_file("stop.pmc", Event(PER_BLOCK, EventKind.STOP, 0.0)), uncertified=True)
     until(lambda: console.stops == 1 and not console.waits)
     settle()
     click(page.load)

@@ -113,7 +113,7 @@ def process_is_still(process, number):
 def test_a_signal_ends_a_stream_at_rest(made, tmp_path, number):
     assert not Line(made).refusal("&1DEFINE ROT 8000")
     with served(made) as port:
-        process = started("stream", port, "--rotary", "8000", str(slow_job(tmp_path)))
+        process = started("stream", port, "--uncertified", "--rotary", "8000", str(slow_job(tmp_path)))
         until(lambda: is_moving(made) or process.poll() is not None)
         process.send_signal(number)
         _, said = process.communicate(timeout=LONGEST_S)
@@ -144,7 +144,8 @@ def test_people_are_called_while_a_stop_is_not_confirmed_and_it_goes_on_trying(m
     file = str(slow_job(tmp_path))
     with served(made) as port:
         target = ["--port", port, "--machine", "example_6tps"]
-        assert main(["pmac", "download", *target, file]) == 0 and main(["pmac", "run", *target, file]) == 0
+        program = [*target, "--uncertified", file]
+        assert main(["pmac", "download", *program]) == 0 and main(["pmac", "run", *program]) == 0
         capsys.readouterr()
         hold, said = made.systems[0].hold, []
         made.systems[0].hold = made.systems[0].abort = lambda *_: None

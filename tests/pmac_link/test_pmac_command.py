@@ -2,6 +2,7 @@
 """The commands ``pmac`` against a simulated controller behind a TCP port and behind a pseudo terminal."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -48,7 +49,9 @@ def simulator(request, machine):
 
 
 def pmac(action, port, *arguments, machine=MACHINE):
-    return main(["pmac", action, "--port", port, *(["--machine", machine] if machine else []), *map(str, arguments)])
+    named = ["--machine", machine] if machine else []
+    by_hand = ["--uncertified"] if any(isinstance(argument, Path) for argument in arguments) else []
+    return main(["pmac", action, "--port", port, *named, *by_hand, *map(str, arguments)])
 
 
 def typed(monkeypatch, port, *lines):

@@ -11,15 +11,15 @@ from pathlib import Path
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.controllers import read_text
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.loading import job_to_load
 from pkm_post.model import Diagnostic
 from pkm_post.numerical_control.control import State
 from pkm_post.numerical_control.permissions import Order, Why
 from pkm_post.numerical_control.plan import Plan
 from pkm_post.numerical_control.single_block import Blocks, blocks_of_program
-from pkm_post.pmac_link.job import Job, read_job
+from pkm_post.pmac_link.job import Job
 
 translate = FreeCAD.Qt.translate
 
@@ -91,15 +91,14 @@ class ProgramPage(QtWidgets.QWidget):
         if name:
             self.read(Path(name))
 
-    def read(self, file: Path) -> None:
-        """Read a program file beside the window."""
+    def read(self, file: Path, uncertified: bool = False) -> None:
+        """Read a program file beside the window, certified or, where a macro says so, ``uncertified``."""
         connection = self._console.connection
         assert connection is not None
-        settings = connection.target.settings
+        target = connection.target
 
         def reading() -> tuple[Job | None, tuple[Diagnostic, ...]]:
-            text, faults = read_text(file)
-            return (None, faults) if text is None else read_job(text, settings, file.name)
+            return job_to_load(file, target.machine, target.settings, uncertified)
 
         self._console.beside.do(reading, lambda read: self._take(file, *read))
 

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Matching: when a played program passes the ends of the programmed segments, found without any plan.
+
+Enters: the course of a program, a trajectory, and the knots at which both rest. Leaves: a time for each joint. Between
+two rests the way that was played is as long as the programmed one, but for what rounded corners save: that says about
+where each joint is passed, and near there the moment at which the tool fits it best is looked for. Joints that were
+found tell more closely where those beside them are. Times are no promise: the certificate measures the program with
+them, and times that are wrong can make a deviation larger, never smaller.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.certificate.played_course import PlayedCourse
+from pkm_post.certificate.struts import cubics
+from pkm_post.geometry import hermite_lengths, norm
+from pkm_post.geometry.vectors import Array
+from pkm_post.kinematics import forward
+from pkm_post.model import Machine, Trajectory
+from pkm_post.model.certificate import Tolerances
+
+_LOOKS = 4
+"""Instants of each interval that are looked at."""
+_REACHES = (12, 4, 48, 8, 192, 16, 768, 24)
+"""How many instants on either side of where a joint ought to be are looked at, in turn, for those not found yet."""
+_FITS = 1.5
+"""Deviations by tolerance within which a joint counts as found; the certificate allows 1."""
+_WELL = 0.6
+"""Deviations by tolerance within which no better moment is looked for."""
+_NEWTON_STEPS = 8
+_SPIN_COUNTS = 1e-3
+"""Of the spin beside the tool axis: where the tool turns about its axis alone, nothing else tells when."""
+_AT_ONCE = 1 << 18
+"""Pairs of joints and instants in one pass."""
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Even instants of all intervals, (S,), and what joints are compared with there.
+
+    Attributes:
+        place: (7, S).
+        length: (S,) way from the start, turns included, mm.
+    """
+
+    place: Array
+    length: Array
+
+
+def joint_times(
+    course: PlayedCourse,
+    trajectory: Trajectory,
+    machine: Machine,
+    tolerances: Tolerances,
+    joints: Array,
+    knots: Array,
+) -> Array:
+    """When the end of each of the N segments is passed, (N,) s, never falling.
+
+    Args:
+        course: of the program.
+        trajectory: what was programmed.
+        machine: tells what a turn counts beside a way.
+        tolerances: what was asked for.
+        joints: (R,) segments at the ends of which both rest, ascending; the last is the last segment.
+        knots: (R,) the knots at which that is.
+    """
+    search = _Search(course, trajectory, machine, tolerances)
+    time, fit = np.full((2, len(trajectory)), np.nan)
+    time[joints], fit[joints] = course.time[knots], 0.0
+    for reach in _REACHES:
+        rows = np.flatnonzero(~(fit <= _WELL))
+        if not len(rows):
+            break
+        found, by = search.look(rows, search.guess(rows, time), reach)
+        better = (by <= _FITS) & ~(fit[rows] <= by)
+        time[rows[better]], fit[rows[better]] = found[better], by[better]
+        disorder = _disorder(time, joints)
+        time[disorder] = fit[disorder] = np.nan
+    missing = np.flatnonzero(np.isnan(time))
+    time[missing] = search.time_of(search.guess(missing, time))
+    moving = np.setdiff1d(np.arange(len(trajectory)), joints)
+    time[moving] = search.settled(moving, np.maximum.accumulate(time)[moving])
+    return np.asarray(np.maximum.accumulate(np.clip(time, 0.0, course.time[-1])))
+
+
+def _disorder(time: Array, joints: Array) -> Array:
+    """Rows of times that come before earlier ones or behind later ones; rests are not among them."""
+    known = np.flatnonzero(~np.isnan(time))
+    there = time[known]
+    wrong = (there < np.maximum.accumulate(there)) | (there > np.minimum.accumulate(there[::-1])[::-1])
+    wrong[np.searchsorted(known, joints)] = False
+    return known[wrong]
+
+
+class _Search:
+    """Looks for joints on a course."""
+
+    def __init__(self, course: PlayedCourse, trajectory: Trajectory, machine: Machine, tolerances: Tolerances) -> None:
+        self._course, self._count, self._machine = course, len(course.time) - 1, machine
+        turn = machine.characteristic_length
+        self._way = _way(course, turn)
+        spun = np.abs(np.diff(trajectory.spin, prepend=trajectory.start_spin))
+        self._programmed = np.cumsum(trajectory.length + turn * (trajectory.angle + spun))
+        self._joint = np.vstack([trajectory.tip.T, trajectory.axis.T, trajectory.spin])
+        by_tip = 1 / trajectory.tip_tolerances(tolerances.tip)
+        by_axis = np.full(len(trajectory), 1 / tolerances.axis)
+        self._weight = np.vstack([by_tip, by_axis, _SPIN_COUNTS * by_axis])[[0, 0, 0, 1, 1, 1, 2]]
+
+    def guess(self, rows: Array, time: Array) -> Array:
+        """About where joints are, as way from the start, (M,): by way between the joints whose times are known."""
+        known = np.flatnonzero(~np.isnan(time))
+        instant = time[known] * 1.0
+        at_known = np.interp(self._instant_of(instant), np.arange(len(self._way.length)), self._way.length)
+        programmed = np.append(0.0, self._programmed[known])
+        return np.asarray(np.interp(self._programmed[rows], programmed, np.append(0.0, at_known)))
+
+    def time_of(self, length: Array) -> Array:
+        """When a way from the start has been made, s."""
+        instant = np.interp(length, self._way.length, np.arange(len(self._way.length)))
+        interval = np.minimum(instant.astype(np.int64) // _LOOKS, self._count - 1)
+        return self._time_at(interval, instant / _LOOKS - interval)
+
+    def look(self, rows: Array, guess: Array, reach: int) -> Array:
+        """When joints are passed, s, looked for near a guess; and how far off the tool is then by tolerance, (2, M)."""
+        middle = np.searchsorted(self._way.length, guess)
+        at_once = max(1, _AT_ONCE // (2 * reach + 1))
+        parts = [slice(first, first + at_once) for first in range(0, len(rows), at_once)]
+        return np.hstack([self._look(rows[part], middle[part], reach) for part in parts])
+
+    def _look(self, rows: Array, middle: Array, reach: int) -> Array:
+        shift = np.arange(-reach, reach + 1)[:, None]
+        instants = np.clip(middle + shift, 0, len(self._way.length) - 1)
+        off = (self._way.place[:, instants] - self._joint[:, None, rows]) * self._weight[:, None, rows]
+        nearest = np.argmin(np.square(off).sum(axis=0), axis=0)
+        return self._closely(rows, instants[nearest, np.arange(len(rows))])
+
+    def _closely(self, rows: Array, instant: Array) -> Array:
+        """The same from the nearest instants on, by Newton's method, with steps no longer than from one to the next."""
+        interval, share = self._place(instant / _LOOKS)
+        time = self._time_at(interval, share)
+        for _ in range(_NEWTON_STEPS):
+            late = self._late(rows, interval, share, self._course.at(interval, share[None])[:, 0])
+            longest = (self._course.time[interval + 1] - self._course.time[interval]) / _LOOKS
+            time = np.clip(time - np.clip(late, -longest, longest), 0.0, self._course.time[-1])
+            interval, share = self._place(self._instant_of(time) / _LOOKS)
+        off = (self._course.at(interval, share[None])[:, 0] - self._joint[:, rows]) * self._weight[:, rows]
+        return np.stack([time, np.maximum(norm(off[:3].T), norm(off[3:6].T))])
+
+    def settled(self, rows: Array, time: Array) -> Array:
+        """Times of joints, one step nearer to where the tool fits them best, by its true poses."""
+        if not len(rows):
+            return time
+        interval, share = self._place(self._instant_of(time) / _LOOKS)
+        place = self._course.at(interval, share[None])[:, 0]
+        length = hermite_lengths(*cubics(self._course.struts, interval), share[:, None])[:, 0]
+        tool_length = self._course.tool_length[interval + 1]
+        pose = forward(self._machine, length, tool_length, place[:3].T, place[3:6].T, place[6])
+        place[:3], place[3:6] = pose.tip.T, pose.axis.T
+        late = self._late(rows, interval, share, place)
+        step = (self._course.time[interval + 1] - self._course.time[interval]) / _LOOKS
+        return np.where(pose.converged & (np.abs(late) < step), time - late, time)
+
+    def _late(self, rows: Array, interval: Array, share: Array, place: Array) -> Array:
+        """By how much, s, a pose of an interval is behind the one that fits a joint best, by Newton's method.
+
+        In a sharp corner the tool turns away from the joint within little way, so that its acceleration counts; where
+        that would make a farthest pose of it, it is left out.
+        """
+        weight = self._weight[:, rows]
+        off = (place - self._joint[:, rows]) * weight
+        rate, bend = (one * weight for one in self._course.rates_at(interval, share))
+        square = np.square(rate).sum(axis=0) + np.maximum((off * bend).sum(axis=0), 0.0)
+        return np.divide((off * rate).sum(axis=0), square, out=np.zeros(len(rows)), where=square > 0)
+
+    def _time_at(self, interval: Array, share: Array) -> Array:
+        begin, end = self._course.time[interval], self._course.time[interval + 1]
+        return np.asarray(begin + (end - begin) * share)
+
+    def _place(self, at: Array) -> tuple[Array, Array]:
+        interval = np.clip(np.floor(at).astype(np.int64), 0, self._count - 1)
+        return interval, np.clip(at - interval, 0.0, 1.0)
+
+    def _instant_of(self, time: Array) -> Array:
+        interval = np.clip(np.searchsorted(self._course.time, time) - 1, 0, self._count - 1)
+        begin, end = self._course.time[interval], self._course.time[interval + 1]
+        return np.asarray(_LOOKS * (interval + (time - begin) / (end - begin)))
+
+
+def _way(course: PlayedCourse, turn: float) -> _Way:
+    """The course at even instants; a turn of a radian counts as so many mm."""
+    count = len(course.time) - 1
+    inside = course.at(np.arange(count), np.linspace(0.0, 1.0, _LOOKS + 1)[:, None])
+    step = np.diff(inside, axis=1)  # within intervals: where the tool is changed, what the tip jumps by is no way
+    way = np.sqrt(np.square(step[:3]).sum(axis=0)) + turn * (
+        np.sqrt(np.square(step[3:6]).sum(axis=0)) + np.abs(step[6])
+    )
+    place = np.hstack([inside[:, :-1].transpose(0, 2, 1).reshape(7, -1), course.place[:, -1:]])
+    return _Way(place, np.append(0.0, np.cumsum(way.T)))
