@@ -23,9 +23,11 @@ from pkm_post.options import (
     flag_of,
     given_in,
     layered,
+    misfits,
     options_from,
     part_program_from,
     shown,
+    source_of,
     tool_lengths_from,
     typed,
 )
@@ -80,11 +82,14 @@ def prepared_file(
     """A part program with its machine and all that posting needs, and what was found in them; as ``post_file``."""
     if options is not None and arguments:
         raise ValueError("expected options or arguments, got both")
-    chosen = layered(typed(""), _given(arguments, Path(file)))
+    given = _given(arguments, Path(file))
+    chosen = layered(typed(""), given)
     lengths = tool_lengths_from(chosen) | dict(tool_lengths)
     model, found = machine_named(chosen.machine if machine is None else machine)
     program, told = read_part_program(Path(file), replace(_said(reading, chosen), lengths=lengths))
     faults = [fault for fault in told if fault.code != _ASKED_FOR]
+    strangers = misfits(given, {source_of(Path(file))})
+    faults += [Diagnostic("L442", Place(str(file)), each) for each in strangers]
     if program is not None:
         faults += [*_replaced(program, lengths), *_unknown(program, lengths)]
         program = _with_lengths(program, lengths)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Commands of services and of other locales: streams that are missing or cannot show a name, and Ctrl-C."""
 
+import json
 import os
 import signal
 import subprocess
@@ -75,6 +76,48 @@ def test_a_name_that_is_no_unicode_is_posted_as_it_is_checked(tmp_path):
         ran = run(*arguments)
         assert (ran.returncode, b"Traceback" in ran.stderr) == (0, False)
     assert (tmp_path / "out" / ODD).with_suffix(".pmc").exists()
+
+
+ODD_NAMES = {
+    0: [
+        "check a@.ngc", "reach a@.ngc +", "reach --json a@.ngc +", "convert a@.ngc --to gcode:vector --out o@.nc",
+        "post a@.ngc + --out o@ --also csv,halstreamer,linuxcnc", "post a@.ngc b.ngc + --out o@ --jobs 2",
+        "post a@.ngc + --out o@ --machine machine@.toml", "verify m@.pmc --against m@.pkmt",
+        "machine check machine@.toml",
+    ],
+    1: [
+        "check --json a@.ngc bad@.ngc", "check bad@.ngc", "reach bad@.ngc +", "post bad@.ngc + --out o@",
+        "convert bad@.ngc --to gcode:BC --out o@/b.nc", "post b.ngc + --out o@ --part none@.stl",
+        "post b.ngc + --out o@ --machine bad@.ngc", "post b.ngc + --out a@.ngc", "verify a@.ngc --against m@.pkmt",
+        "verify none@.pmc --against a@.ngc", "machine check bad@.ngc",
+    ],
+    2: ["post a@.ngc a@.cls + --out o@"],
+}  # fmt: skip
+"""By exit code, commands with a byte that is no UTF-8 for each @, and what posting needs for +."""
+
+
+@needs_any_name
+@pytest.mark.parametrize(("code", "words"), [(code, each) for code in ODD_NAMES for each in ODD_NAMES[code]])
+def test_no_name_is_a_traceback(tmp_path, code, words):
+    contents = {"a@.ngc": PART, "b.ngc": PART, "bad@.ngc": "G0 X1..2\nM2\n", "a@.cls": PART}
+    contents["machine@.toml"] = (ADDON / "resources/machines/example_6tps.toml").read_text(encoding="utf-8")
+    for name, text in contents.items():
+        (tmp_path / odd(name)).write_text(text, encoding="utf-8")
+    if words.startswith("verify"):
+        assert run("post", odd("a@.ngc"), *TOOL, cwd=tmp_path).returncode == 0
+        for end in (".pmc", ".pkmt"):
+            (tmp_path / odd(f"a@{end}")).rename(tmp_path / odd(f"m@{end}"))
+    ran = run(*odd(words.replace("+", " ".join(TOOL))).split(), cwd=tmp_path)
+    assert (ran.returncode, b"Traceback" in ran.stderr) == (code, False), ran.stderr
+    if "--json" in words:
+        json.loads(ran.stdout)
+    for program in tmp_path.glob("o*/*.pmc"):
+        program.read_bytes().decode("ascii")
+
+
+def odd(text):
+    """A text with a byte that is no UTF-8 in the place of each @."""
+    return os.fsdecode(text.encode().replace(b"@", b"\xe9"))
 
 
 @pytest.mark.parametrize("jobs", [1, 2])

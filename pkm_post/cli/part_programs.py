@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pkm_post.cli.reading import add_reading, one_of, part_program, reading_from
+from pkm_post.cli.reading import add_reading, misplaced, one_of, part_program, reading_from
 from pkm_post.options import add_part_program
 
 
@@ -39,9 +39,19 @@ def _target(text: str) -> str:
     return one_of(TARGETS, text)
 
 
+def _tell_misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> bool:
+    """Print what options mean nothing for the files; whether there are some."""
+    faults = misplaced(namespace, files)
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    return bool(faults)
+
+
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post import check
 
+    if _tell_misplaced(namespace, namespace.files):
+        return 2
     results = [check.check(file, reading_from(namespace)) for file in namespace.files]
     print(check.as_json(results) if namespace.json else check.as_text(results))
     return 0 if all(result.is_clean for result in results) else 1
@@ -51,6 +61,8 @@ def _convert(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.convert import convert
     from pkm_post.model.diagnostics import errors
 
+    if _tell_misplaced(namespace, [namespace.file]):
+        return 2
     reading = reading_from(namespace)
     diagnostics = convert(namespace.file, namespace.to, namespace.out, reading, inch=namespace.inch)
     for diagnostic in diagnostics:

@@ -18,9 +18,9 @@ from pkm_post.argument_types import count, whole_from
 from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside, told
 from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
-from pkm_post.cli.reading import add_reading, reading_from
+from pkm_post.cli.reading import add_reading, misplaced, reading_from
 from pkm_post.document_file import Damaged, Job, read_document
-from pkm_post.options import add_options, given_in, solid_files
+from pkm_post.options import Source, add_options, fitting, given_in, solid_files, source_of
 from pkm_post.out_of_memory import memory_or_refused
 from pkm_post.result_names import Item, job_stem, lost_results, lost_sources, missing_results
 
@@ -86,7 +86,7 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
         return [f"argument {_ONLY}: expected a number below {len(files)}, got {namespace.only}"]
     items = [item for file in files for item in _items(file, namespace.job, namespace.also)]
     lost = [*lost_results(items), *lost_sources(files, items, namespace.out)]
-    return [f"{each}: post to different folders" for each in lost]
+    return [*misplaced(namespace, files), *(f"{each}: post to different folders" for each in lost)]
 
 
 def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[Item]:
@@ -141,7 +141,7 @@ def _part_program(file: Path, namespace: argparse.Namespace, line: ProgressLine)
     posted = post_file(
         file,
         out=namespace.out,
-        arguments=given_in(namespace),
+        arguments=fitting(given_in(namespace), source_of(file)),
         reading=reading_from(namespace),
         log=line.print,
         progress=line.show,
@@ -155,7 +155,7 @@ def _document(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> 
     return post_document(
         file,
         out=namespace.out,
-        arguments=given_in(namespace),
+        arguments=fitting(given_in(namespace), Source.JOB),
         job_name=namespace.job,
         log=line.print,
         progress=line.show,

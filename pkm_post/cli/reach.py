@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.inside_freecad import needs_freecad, run_inside
-from pkm_post.cli.reading import add_reading, reading_from
-from pkm_post.options import add_options, given_in, solid_files
+from pkm_post.cli.reading import add_reading, misplaced, reading_from
+from pkm_post.options import add_options, fitting, given_in, solid_files, source_of
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
@@ -46,6 +46,10 @@ def _freedoms(text: str) -> str:
 
 
 def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    faults = misplaced(namespace, namespace.files)
+    if faults:
+        print(*faults, sep="\n", file=sys.stderr)
+        return 2
     if needs_freecad(namespace.files, solid_files(namespace)):
         return run_inside(arguments)
     from pkm_post.model import Refused
@@ -79,7 +83,7 @@ def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]:
     from pkm_post.post_file import prepared_file
     from pkm_post.sources import is_part_program
 
-    given = given_in(namespace)
+    given = fitting(given_in(namespace), source_of(file))
     if is_part_program(file):
         yield prepared_file(file, reading=reading_from(namespace), arguments=given)
     else:

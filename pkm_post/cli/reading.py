@@ -5,18 +5,21 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.options import part_program_from
+from pkm_post.options import given_in, misfits, part_program_from, source_of
 
 if TYPE_CHECKING:
     from pkm_post.sources import Reading
 
 NO_AXIS_WORDS = "none"
 """The default: the tool stands upright."""
+_BESIDE = {"axis_words": NO_AXIS_WORDS, "dwell_unit": "s", "job": None}
+"""Arguments that are for some files alone and not among ``options``, with their defaults."""
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:
@@ -41,6 +44,18 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
 def reading_from(namespace: argparse.Namespace) -> Reading:
     """What the user said of the part programs."""
     return replace(part_program_from(namespace, namespace.axis_words), dwell_unit=namespace.dwell_unit)
+
+
+def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]:
+    """The options that mean nothing for any of the files, as diagnostics."""
+    if find_spec("numpy") is None:  # then this command runs itself inside FreeCAD, and looks there
+        return []
+    from pkm_post.model import Diagnostic, Place
+
+    beside = (name for name, default in _BESIDE.items() if getattr(namespace, name, default) != default)
+    place = Place(str(files[0]) if len(files) == 1 else "arguments")
+    strangers = misfits((*given_in(namespace), *beside), {source_of(file) for file in files})
+    return [str(Diagnostic("L442", place, each)) for each in strangers]
 
 
 def part_program(text: str) -> Path:

@@ -17,7 +17,7 @@ import Path.Preferences
 from pkm_post.freecad_app.job import document_name
 from pkm_post.gcode import Form
 from pkm_post.model import Diagnostic, Place, Refused
-from pkm_post.options import Given, TextParser, given_in, text_parser, typed
+from pkm_post.options import Given, Source, TextParser, given_in, misfits, text_parser, typed
 
 PMAC, TRAJECTORY, LINUXCNC, GCODE = "hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"
 
@@ -68,10 +68,9 @@ def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.N
     """
     place = Place(document_name(job.Document), job.Label)
     chosen = parsed(text, place, post_processor)
-    if chosen.tools:
-        raise Refused(
-            [Diagnostic("J117", place, "--tool is for part programs, a tool bit says what its cutter measures")]
-        )
+    strangers = misfits(given_in(chosen), {Source.JOB})
+    if strangers:
+        raise Refused([Diagnostic("J117", place, each) for each in strangers])
     return chosen
 
 

@@ -25,9 +25,11 @@ from pkm_post.options import (
     NOTHING_GIVEN,
     Given,
     Override,
+    Source,
     flag_of,
     given_in,
     layered,
+    misfits,
     options_from,
     overrides,
     said_by,
@@ -84,6 +86,7 @@ def settings_of(
     chosen = layered(_placed(job, own), given)
     lengths = tool_lengths_from(chosen)
     found = (
+        *_without_meaning(job, given),
         *_replaced(job, given_in(own), given, options, selection),
         *_replaced_lengths(job, lengths),
         *_unknown_tools(job, given_in(own), ()),
@@ -125,6 +128,12 @@ def _placed(job: Any, own: argparse.Namespace) -> argparse.Namespace:
 
 _FILES = ("machine", "part", "stock", "fixture")
 """Options with the names of files; a machine may be one that comes with PKM Post instead."""
+
+
+def _without_meaning(job: Any, given: Given) -> Iterator[Diagnostic]:
+    """L442 for each option that is for part programs."""
+    for each in misfits(given, {Source.JOB}):
+        yield Diagnostic("L442", Place(document_name(job.Document), job.Label), each)
 
 
 def _replaced(

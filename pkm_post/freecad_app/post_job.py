@@ -194,6 +194,9 @@ def _opened(file: FilePath) -> Iterator[Any]:
     content, open_before = intact(file), set(App.listDocuments())
     try:
         document = App.openDocument(str(file))
+    except UnicodeEncodeError as fault:
+        found = "FreeCAD opens files alone whose names are Unicode"
+        raise Refused([Diagnostic("J101", Place(str(file)), found)]) from fault
     except OSError as fault:
         raise Refused([Diagnostic("J101", Place(str(file)), str(fault))]) from fault
     try:

@@ -37,6 +37,8 @@ def read_step(path: Path, name: str) -> Any:
         return None, (Diagnostic("F103", Place(name), str(fault)),)
     try:
         shape.read(str(path))
+    except UnicodeEncodeError:
+        return None, (Diagnostic("F103", Place(name), "FreeCAD reads files alone whose names are Unicode"),)
     except (OSError, RuntimeError, Part.OCCError):
         return None, (Diagnostic("K138", Place(name), "OpenCASCADE cannot read it as STEP"),)
     return mesh_of_triangles(mesh_of(shape), name)

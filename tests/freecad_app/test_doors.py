@@ -28,6 +28,7 @@ from pkm_post.freecad_app.post_job import post_as_the_job_says
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.freecad_app.reach_job import study_job
 from pkm_post.machine_file import find_machine, machine_named
+from pkm_post.model import Refused
 from pkm_post.options import given_in, options_from, tool_lengths_from, typed
 
 CUT = ["G0 X0 Y0 Z30 I0 J0 K1", "G1 X0 Y0 Z25 I0 J0.28 K0.96 F20", "G1 X4 Y2 Z25 I0.28 J0 K0.96 F25", "G0 Z30 I0 J0 K1"]
@@ -37,7 +38,8 @@ NO_EFFECT_HERE = {"--corners", "--leads", "--swallowed"}
 """They are for contours with the tool beside them, which this job has not."""
 MESHES = {"far": -5000.0, "farther": -6000.0}
 """Files with a triangle so far below the part that nothing touches it, and its height, mm."""
-FOR_PART_PROGRAMS = {"--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values"}
+FOR_PART_PROGRAMS = {"--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values",
+                     "--allow-open-end"}  # fmt: skip
 """What G-code and CL data do not say; a job has nothing to be read so."""
 NORMALS = "--actual-tool"
 """Only a path with surface normals can be posted with it."""
@@ -130,6 +132,22 @@ def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
         where
     ]
     assert (f"warning J125: an option stands in for what the job or the program says: {flag} " in told) == replaced
+
+
+@pytest.mark.parametrize("flag", sorted(FOR_PART_PROGRAMS))
+def test_what_is_for_part_programs_is_refused_at_every_door(job, tmp_path, flag, capsys):
+    out = made(tmp_path / "out")
+    says(job, ALWAYS["--work-offset"])
+    for door in (by_macro, by_macro_with_the_file):
+        with pytest.raises(Refused) as refused:
+            door(job, words(flag, 0), out)
+        assert [each.code for each in refused.value.diagnostics if each.code != "J125"] == ["L442"]
+    assert main(["post", job.Document.FileName, "--out", str(out), *words(flag, 0)]) == 2
+    assert f"error L442: an option means nothing for what is read: {flag} is for" in capsys.readouterr().err
+    says(job, shlex.join(words(flag, 0)))
+    with pytest.raises(Refused, match=f"J117: .* {flag} is for"):
+        prepared_job(job, settings_of(job))
+    assert contents(out) == {}
 
 
 SAID_BY_EVERY_JOB = {"--work-offset", "--tool-length"}

@@ -2,7 +2,9 @@
 """Jobs and documents are posted or refused as a whole, from Python and by CAM's own post command."""
 
 import dataclasses
+import os
 import re
+from pathlib import Path as FilePath
 
 import FreeCAD as App
 import Path.Main.Job
@@ -167,6 +169,9 @@ def test_file_that_is_no_document(tmp_path):
     (tmp_path / "text.FCStd").write_text("no document")
     assert refusal(post_document, tmp_path / "text.FCStd", MACHINE, tmp_path) == ["J101"]
     assert refusal(post_document, tmp_path / "missing.FCStd", MACHINE, tmp_path) == ["J101"]
+    odd = tmp_path / os.fsdecode(b"odd\xe9.FCStd")
+    odd.write_bytes((FilePath(__file__).parents[1] / "data" / "saved" / "pkm_post-0.1.0.FCStd").read_bytes())
+    assert refusal(post_document, odd, MACHINE, tmp_path) == ["J101"]
 
 
 def test_document_without_a_job(document):

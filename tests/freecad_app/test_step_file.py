@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """STEP files of part, stock and fixtures, as OpenCASCADE reads them: the same solids as in STL, the same findings."""
 
+import os
+
 import FreeCAD as App
 import numpy as np
 import Part
@@ -69,6 +71,12 @@ def test_what_is_no_step_file_is_refused(tmp_path, content):
 def test_a_file_that_is_not_there(tmp_path):
     mesh, faults = read_mesh(tmp_path / "none.stp")
     assert mesh is None and [fault.code for fault in faults] == ["F103"]
+
+
+def test_a_name_that_is_no_unicode(tmp_path):
+    file = stored(tmp_path / "wall.step", WALL).rename(tmp_path / os.fsdecode(b"wall\xe9.step"))
+    mesh, faults = read_mesh(file)
+    assert mesh is None and [(fault.code, "Unicode" in fault.found) for fault in faults] == [("F103", True)]
 
 
 def test_a_holder_in_the_part_is_refused_as_with_stl(tmp_path, capsys):

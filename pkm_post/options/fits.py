@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fits: which options mean something for what is read. One that means nothing is refused: it was typed for a reason.
+
+Names of attributes and kinds of files enter; what does not fit leaves, in words, and options without it.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Collection, Iterable
+from pathlib import Path
+
+from pkm_post.options.layers import Given, flag_of
+
+
+class Source(enum.Enum):
+    """What options are given for."""
+
+    GCODE = "G-code"
+    CLDATA = "CL data"
+    JOB = "CAM jobs"
+
+
+_PART_PROGRAMS = (Source.GCODE, Source.CLDATA)
+_FOR: dict[str, tuple[Source, ...]] = {
+    "axis_words": (Source.GCODE,),
+    "dwell_unit": (Source.GCODE,),
+    "contour_data": (Source.CLDATA,),
+    "cl_dialect": (Source.CLDATA,),
+    "cycle_values": (Source.CLDATA,),
+    "tools": _PART_PROGRAMS,
+    "unit": _PART_PROGRAMS,
+    "allow_open_end": _PART_PROGRAMS,
+    "wear": _PART_PROGRAMS,  # L432 says to whom gives it for G-code what to give instead
+    "job": (Source.JOB,),
+}
+"""By attribute, what an option is for; all others are for everything."""
+
+
+def source_of(file: Path) -> Source:
+    """What a file is, by the end of its name; what is no part program is a document with jobs."""
+    from pkm_post.sources import SUFFIXES, is_part_program
+
+    if not is_part_program(file):
+        return Source.JOB
+    return Source.GCODE if SUFFIXES[file.suffix.lower()] is SUFFIXES[".ngc"] else Source.CLDATA
+
+
+def misfits(names: Iterable[str], sources: Collection[Source]) -> list[str]:
+    """The options that mean nothing for any of the sources, in words."""
+    return [
+        f"{flag_of(name)} is for {' and '.join(each.value for each in _FOR[name])}"
+        for name in names
+        if name in _FOR and not set(_FOR[name]) & set(sources)
+    ]
+
+
+def fitting(given: Given, source: Source) -> Given:
+    """The options that mean something for a source: of several files each option may be for some of them."""
+    return {name: value for name, value in given.items() if source in _FOR.get(name, Source)}
