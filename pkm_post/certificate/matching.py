@@ -26,6 +26,8 @@ _LOOKS = 4
 """Instants of each interval that are looked at."""
 _REACHES = (12, 4, 48, 8, 192, 16, 768, 24)
 """How many instants on either side of where a joint ought to be are looked at, in turn, for those not found yet."""
+_NEAR = 24
+"""Farther away only joints are looked for that were not found at all."""
 _FITS = 1.5
 """Deviations by tolerance within which a joint counts as found; the certificate allows 1."""
 _WELL = 0.6
@@ -72,9 +74,9 @@ def joint_times(
     time, fit = np.full((2, len(trajectory)), np.nan)
     time[joints], fit[joints] = course.time[knots], 0.0
     for reach in _REACHES:
-        rows = np.flatnonzero(~(fit <= _WELL))
+        rows = np.flatnonzero(~(fit <= (_WELL if reach <= _NEAR else _FITS)))
         if not len(rows):
-            break
+            continue
         found, by = search.look(rows, search.guess(rows, time), reach)
         better = (by <= _FITS) & ~(fit[rows] <= by)
         time[rows[better]], fit[rows[better]] = found[better], by[better]
