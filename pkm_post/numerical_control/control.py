@@ -90,6 +90,7 @@ class NumericalControl:
         self._session, self._machine, self._settings, self._number = session, machine, settings, number
         self._watch: HomingWatch | None = None
         self._blocks: tuple[Blocks, int] | None = None
+        self._block: Shown | None = None
         self._last = State(None, None)
         self._may_move = False
         self._watchdog: Watchdog | None = None
@@ -131,7 +132,7 @@ class NumericalControl:
             return self._last
         except PmacError as fault:
             self._last = State(
-                self._last.status, self._last.pose, str(fault), self._emergency(), self._last.homing, self._block()
+                self._last.status, self._last.pose, str(fault), self._emergency(), self._last.homing, self._block
             )
             return self._last
         self._may_move = False
@@ -141,7 +142,7 @@ class NumericalControl:
             self._watch = None
         elif homing is None:
             homing = self._last.homing
-        self._last = State(status, self._readout.pose(status), homing=homing, block=self._block())
+        self._last = State(status, self._readout.pose(status), homing=homing, block=self._block)
         return self._last
 
     def plan_jog(self, jog: moves.Jog, feed: float) -> tuple[Plan | None, Findings]:
@@ -184,7 +185,7 @@ class NumericalControl:
         else:
             status = self._owning("run", lambda: execution.execute(*order, near))
         if plan.block and self._blocks is not None:
-            self._blocks = self._blocks[0], plan.block + 1
+            self._take_block(self._blocks[0], plan.block + 1)
         return status
 
     @property
@@ -232,7 +233,7 @@ class NumericalControl:
         """
         if not 1 <= at <= len(blocks):
             raise ValueError(f"at: expected a block from 1 to {len(blocks)}, got {at}")
-        self._blocks = blocks, at
+        self._take_block(blocks, at)
         return len(blocks)
 
     def plan_step(self) -> tuple[Plan | None, Findings]:
@@ -276,8 +277,9 @@ class NumericalControl:
         if not status.running:
             self._watchdog = None
 
-    def _block(self) -> Shown | None:
-        return None if self._blocks is None else self._blocks[0].shown(self._blocks[1])
+    def _take_block(self, blocks: Blocks, number: int) -> None:
+        """Have a block come next."""
+        self._blocks, self._block = (blocks, number), blocks.shown(number)
 
     def _emergency(self) -> tuple[str, ...]:
         """What to do now that the link is lost; nothing when there never was one."""

@@ -14,6 +14,7 @@ of it.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -33,6 +34,16 @@ _MOST_SOURCE = 1 << 28
 """Bytes of a source that is read for its lines."""
 
 
+_COOLANT = {0: "M9", 1: "M8", 2: "M7"}
+_CODES: dict[EventKind, Callable[[float], str]] = {
+    EventKind.TOOL_CHANGE: "T{:g} M6".format,
+    EventKind.SPINDLE: lambda speed: f"S{abs(speed):g} M{3 if speed > 0 else 4}" if speed else "M5",
+    EventKind.COOLANT: lambda value: _COOLANT[int(value)],
+    EventKind.DWELL: "G4 P{:g}".format,
+}
+"""What takes place between moves, as people write it, dwells in seconds; stops are left out."""
+
+
 @dataclass(frozen=True)
 class Shown:
     """What to show of the block that comes next.
@@ -42,7 +53,8 @@ class Shown:
         count: of the blocks.
         operation: of the job, empty where the source has none.
         line: in the source, or number of the command in its operation.
-        text: that line, or where it leads to in the work frame where the source is not at hand.
+        text: that line, or where it leads to in the work frame where the source is not at hand; with the codes that are
+            carried out before and after it, by strokes.
     """
 
     number: int
@@ -82,10 +94,13 @@ class Blocks:
         """What to show of a block, numbered from 1; one behind the last is the end."""
         if number > len(self):
             return Shown(number, len(self))
-        place = self.trajectory.place(self._rows(number)[0])
+        first, end = self._rows(number)
+        place = self.trajectory.place(first)
         known = 0 < place.line <= len(self.lines)
-        text = self.lines[place.line - 1].strip() if known else self._target(number)
-        return Shown(number, len(self), place.operation, place.line, text)
+        text = self.lines[place.line - 1].strip() if known else self._target(end - 1)
+        behind = self._codes(end) if end == len(self.trajectory) else ""
+        texts = " | ".join(filter(None, (self._codes(first), text, behind)))
+        return Shown(number, len(self), place.operation, place.line, texts)
 
     def block(self, number: int) -> Trajectory:
         """A block as a trajectory from rest to rest.
@@ -124,8 +139,13 @@ class Blocks:
         first, *behind = self.begins[number - 1 : number + 1].tolist()
         return first, behind[0] if behind else len(self.trajectory)
 
-    def _target(self, number: int) -> str:
-        machine_from_work, tip = self.trajectory.machine_from_work, self.trajectory.tip[self._rows(number)[1] - 1]
+    def _codes(self, row: int) -> str:
+        """What takes place in front of a segment, as codes."""
+        events = (each for each in self.trajectory.events if each.row == row and each.kind in _CODES)
+        return " ".join(_CODES[each.kind](each.value) for each in events)
+
+    def _target(self, row: int) -> str:
+        machine_from_work, tip = self.trajectory.machine_from_work, self.trajectory.tip[row]
         x, y, z = machine_from_work[:3, :3].T @ (tip - machine_from_work[:3, 3]) + 0.0
         return f"-> X{x:.3f} Y{y:.3f} Z{z:.3f}"
 

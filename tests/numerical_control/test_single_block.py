@@ -74,7 +74,9 @@ def test_the_posted_program_rests_seldom_and_has_a_block_for_each_line_that_move
     lines = SOURCE.splitlines()
     shown = [blocks.shown(number) for number in range(1, len(blocks) + 1)]
     assert [each.line for each in shown] == list(ENDS)
-    assert [each.text for each in shown] == [lines[line - 1] for line in ENDS]
+    codes = {3: ("S1000 M3 | ", ""), 10: ("M8 | ", ""), 16: ("", " | M5 M9")}
+    texts = [lines[line - 1].join(codes.get(line, ("", ""))) for line in ENDS]
+    assert [each.text for each in shown] == texts
     assert str(shown[1]) == "block 2 of 10, line 4: G1 X2 F1200"
     assert blocks.shown(11).is_over and not blocks.shown(10).is_over
 
@@ -135,6 +137,8 @@ def test_a_tool_change_ends_a_block(tmp_path):
     blocks = blocks_in(tmp_path)
     shown = [blocks.shown(number).line for number in range(1, len(blocks) + 1)]
     assert sorted(set(shown)) == [3, 4, 5]
+    texts = [blocks.shown(number).text for number in range(1, len(blocks) + 1)]
+    assert texts[0].startswith("T1 M6 | G0 X1") and any(text.startswith("T2 M6 | ") for text in texts)
     changes = [[each.value for each in blocks.block(number).events] for number in range(1, len(shown) + 1)]
     assert changes[0] == [1.0] and [2.0] in changes
     for number in range(1, len(shown) + 1):
@@ -181,7 +185,7 @@ def test_a_source_that_is_not_the_one_that_was_posted_is_not_shown(tmp_path):
     (tmp_path / "part.ngc").write_text(SOURCE.replace("X2", "X3"))
     assert blocks_in(tmp_path).shown(2).text == "-> X2.000 Y0.000 Z300.000"
     (tmp_path / "part.ngc").unlink()
-    assert str(blocks_in(tmp_path).shown(1)) == "block 1 of 10, line 3: -> X1.000 Y0.000 Z300.000"
+    assert str(blocks_in(tmp_path).shown(1)) == "block 1 of 10, line 3: S1000 M3 | -> X1.000 Y0.000 Z300.000"
 
 
 def refused(folder, machine=MACHINE):
