@@ -17,9 +17,12 @@ import numpy as np
 from pkm_post.controllers import CONTROLLERS, TABLES, Table, part_names
 from pkm_post.gcode import Form, write
 from pkm_post.model import Diagnostic, Kind, Place, Program, StrutMotion, Trajectory
+from pkm_post.model.columns import pieces
 
 Findings = tuple[Diagnostic, ...]
 
+_CHARACTERS_AT_ONCE = 1 << 20
+"""Of a text that is written: it need not be there a second time as bytes."""
 _FOR_LINUXCNC = "-linuxcnc.ngc"
 _SETUPS = tuple(controller.SETUP_SUFFIX for controller in CONTROLLERS.values())
 
@@ -52,7 +55,8 @@ def write_parts(path: Path, texts: tuple[str, ...]) -> list[str]:
     """Write the parts of a file; their names."""
     names = part_names(path.name, len(texts))
     for name, text in zip(names, texts, strict=True):
-        path.with_name(name).write_text(text, encoding="ascii", newline="\n")
+        with path.with_name(name).open("w", encoding="ascii", newline="\n") as file:
+            file.writelines(text[rows] for rows in pieces(len(text), _CHARACTERS_AT_ONCE))
     return names
 
 

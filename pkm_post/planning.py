@@ -35,6 +35,7 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import Way, reach_faults, strut_rates
 from pkm_post.model import Diagnostic, Event, Machine, Motion, StrutMotion, Trajectory
 from pkm_post.model.certificate import Tolerances
+from pkm_post.model.columns import in_pieces, locked
 from pkm_post.speed_limits import below_feed, bent, bounded_by, feed_at, limits_at, rough_feed, roughly_bounded
 from pkm_post.workers import workers
 
@@ -46,8 +47,10 @@ _MOST_ROUNDS = 8
 """How often a motion is planned once more, slower, for its controller; the certificate refuses what is left."""
 _STATIONS_AT_ONCE = 4096
 """Stations in one pass: what is computed for them stays in the processor's cache."""
-_MARKS_AT_ONCE = 2048
-"""Marks of a stretch of the motion, some four minutes, whose points are looked for by themselves."""
+_KNOTS_AT_ONCE = 4096
+"""Knots whose poses are computed in one pass: their derivatives take more memory than what is kept."""
+_MARKS_AT_ONCE = 512
+"""Marks of a stretch of the motion, about a minute, whose points are looked for by themselves."""
 
 
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
@@ -86,19 +89,18 @@ def _schedule(path: ToolPath, machine: Machine, most: PathBounds) -> Schedule:
     rough = rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
     close = below_feed(path, *rough)
     marks = stations(path, close)
-    square, along = limits_at(path, marks, close, rough, machine)
-    profile = speed_profile(marks.s, square, along)
+    profile = speed_profile(marks.s, *limits_at(path, marks, close, rough, machine))
     return Schedule.of(marks, marks.s, marks.rest, profile, shortest_ms=machine.shortest_interval)
 
 
 def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
     """The way through stations, straight from one to the next; and the segments they lie on."""
-    parts = []
-    for first in range(0, len(marks.s), _STATIONS_AT_ONCE):
-        rows = slice(first, first + _STATIONS_AT_ONCE)
-        seen = glimpse_within(path, marks.segment[rows], marks.u[rows])
-        parts.append((seen.tip, seen.axis, seen.spin, seen.tool_length))
-    return Way.straight(*(np.concatenate(columns) for columns in zip(*parts, strict=True))), marks.segment
+
+    def seen(rows: slice) -> tuple[Array, ...]:
+        found = glimpse_within(path, marks.segment[rows], marks.u[rows])
+        return found.tip, found.axis, found.spin, found.tool_length
+
+    return Way.straight(*in_pieces(len(marks.s), _STATIONS_AT_ONCE, seen)), marks.segment
 
 
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
@@ -160,18 +162,26 @@ def _interpolated(
         return found[:-1], _too_coarse(found, cubics, shortest)
 
     times, coarse = zip(*workers().map(knots_of, stretches), strict=True)
-    time_ms = np.concatenate([*times, marks[-1:]])
-    poses = poses_at(path, schedule, time_ms)
+    time_ms = locked(np.concatenate([*times, marks[-1:]]))
+
+    def columns(rows: slice) -> tuple[Array, ...]:
+        poses = poses_at(path, schedule, time_ms[rows])
+        of_tool = poses.tip, poses.axis, poses.spin, poses.tip_1, poses.axis_1, poses.spin_1
+        return *of_tool, poses.tool_length, poses.segment.astype(np.int32)
+
+    tip, axis, spin, tip_rate, axis_rate, spin_rate, tool_length, segment = in_pieces(
+        len(time_ms), _KNOTS_AT_ONCE, columns
+    )
     motion = Motion(
         time_ms=time_ms,
-        tip=poses.tip,
-        axis=poses.axis,
-        spin=poses.spin,
-        tip_rate=poses.tip_1,
-        axis_rate=poses.axis_1,
-        spin_rate=poses.spin_1,
-        tool_length=poses.tool_length,
-        segment=poses.segment,
+        tip=tip,
+        axis=axis,
+        spin=spin,
+        tip_rate=tip_rate,
+        axis_rate=axis_rate,
+        spin_rate=spin_rate,
+        tool_length=tool_length,
+        segment=segment,
         joint_time=schedule.joint_time,
         events=_by_knot(events, schedule, time_ms),
     )
@@ -207,5 +217,5 @@ def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> t
 
 def strut_motion(motion: Motion, machine: Machine) -> StrutMotion:
     """Strut lengths and speeds of a motion."""
-    length, speed, _ = strut_rates(machine, motion.poses())
+    length, speed = in_pieces(len(motion), _KNOTS_AT_ONCE, lambda rows: strut_rates(machine, motion.poses(rows))[:2])
     return StrutMotion(motion.time_ms, length, speed, motion.events)

@@ -148,7 +148,7 @@ def reach(
 def way_of(trajectory: Trajectory) -> tuple[Way, Array, Array]:
     """The way of a trajectory, the segment of each of its rows (N,), and the time at the feed of each cell (N,)."""
     segments, tool_length = Segments.of(trajectory), trajectory.tool_length()
-    turn = np.maximum(np.maximum(norm(segments.axis_rate), segments.turn), np.abs(segments.spin_rate))
+    turn = np.maximum(segments.turn(), np.abs(segments.spin_rate))
     widest = np.maximum(segments.extent / _LONGEST_CELL, segments.extent * turn / _WIDEST_CELL)
     cells = np.maximum(1, np.ceil(widest)).astype(np.int64)
     width = segments.extent / cells
@@ -183,8 +183,9 @@ def way_of(trajectory: Trajectory) -> tuple[Way, Array, Array]:
 
 def _motion_of_tip(segments: Segments) -> tuple[Array, Array]:
     """Bounds of the first and of the second derivative of the tip by path length, (S,) each."""
-    growth = np.abs(segments.growth)
-    radius = norm(segments.radius)
-    largest = radius * (1 + growth * segments.extent)
-    first = np.hypot(norm(segments.tangent), largest * segments.turn) + growth * radius
-    return first, 2 * growth * radius * segments.turn + largest * segments.turn**2
+    first, second, arcs = norm(segments.tangent), np.zeros(len(segments)), segments.arcs
+    growth, radius, turn = np.abs(arcs.growth), norm(arcs.radius), arcs.turn
+    largest = radius * (1 + growth * segments.extent[arcs.row])
+    first[arcs.row] = np.hypot(first[arcs.row], largest * turn) + growth * radius
+    second[arcs.row] = 2 * growth * radius * turn + largest * turn**2
+    return first, second

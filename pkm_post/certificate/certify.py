@@ -15,7 +15,6 @@ from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.fault_causes import fault_causes
 from pkm_post.certificate.findings import figures, findings
 from pkm_post.certificate.joints import pass_joints
-from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.playback import play
 from pkm_post.certificate.structure import structure_faults
 from pkm_post.certificate.tool_at import Task
@@ -60,15 +59,14 @@ def certify(
     if faults:
         return None, faults
     ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
-    knots = Knots.of(machine, motion)
 
     def measured(struts: StrutMotion) -> Certificate:
-        course = ToolCourse.of(machine, struts, motion, knots)
+        course, knots = ToolCourse.of(machine, struts, motion)
         task = Task(struts, machine, ruler, motion, knots, course, ceiling, spin_off)
         return _certificate(task, trajectory, tolerances, collisions)
 
     certificate = measured(struts)
-    return certificate, fault_causes(certificate, struts, machine, knots, measured)
+    return certificate, fault_causes(certificate, struts, machine, motion, measured)
 
 
 def _certificate(

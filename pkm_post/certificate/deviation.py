@@ -17,6 +17,7 @@ from pkm_post.geometry.gather import among, taken
 from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Kind, Trajectory
 from pkm_post.model.certificate import Tolerances
+from pkm_post.model.columns import both_by_row, uniform
 
 _NEARLY_CLOSED = 4.0
 """Tolerances of the tip: an arc that leaves no more open than these may have a pose near both of its ends."""
@@ -36,7 +37,7 @@ class TrajectoryRuler:
         self.tip_tolerance = trajectory.tip_tolerances(tolerances.tip)
         self._tip_before = trajectory.tip_before()
         self._axis_before = trajectory.axis_before()
-        self._axis_turn = towards(self._axis_before, trajectory.axis)
+        self._axis_turn = both_by_row(towards, self._axis_before, trajectory.axis)
         self._bend = _bends(trajectory, self._tip_before)
 
     def bend(self, segment: Array) -> Array:
@@ -153,7 +154,8 @@ class TrajectoryRuler:
 
 def _bends(trajectory: Trajectory, before: Array) -> Array:
     """Curvature of each segment, (N,) 1/mm: of a helix no more than that of its circle."""
-    bend, arcs = np.zeros(len(trajectory)), np.flatnonzero(trajectory.kind == Kind.ARC)
+    arcs = np.flatnonzero(trajectory.kind == Kind.ARC)
+    bend = np.zeros(len(trajectory)) if len(arcs) else uniform(0.0, len(trajectory))
     if len(arcs):
         turn, centre = trajectory.arc_axis[arcs], trajectory.arc_centre[arcs]
         ends = (norm(across(point[arcs] - centre, turn)) for point in (before, trajectory.tip))

@@ -21,6 +21,7 @@ from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_at import Task
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds
 from pkm_post.geometry.vectors import Array, length_of
+from pkm_post.model import StrutMotion
 
 _STANDING = 1e-9
 """mm/s: below it the tip has no way that anything could be across."""
@@ -39,7 +40,7 @@ def count_at_tip(task: Task, counts_per_mm: float) -> Array:
     """
     largest = np.zeros(len(task.struts))
     rows = slice(None, None, -(-len(largest) // _MOST_KNOTS))
-    moved = task.knots.inverse[rows, :3] @ _SIGNS
+    moved = task.knots.tip_inverse[rows] @ _SIGNS
     largest[rows] = np.sqrt(np.square(moved).sum(axis=1)).max(axis=1)
     return _MICROMETRES / counts_per_mm * largest
 
@@ -52,29 +53,43 @@ def contour_error(task: Task, gain: Array) -> Array:
         gain: (6,) velocity gains, 1/s.
     """
     struts, delay = task.struts, float((1 / gain).mean())
-    actual = struts.length[1:] - _lags(cubics(struts, np.arange(len(struts) - 1)), gain)
+    actual, rounds = np.empty((len(struts) - 1, 6)), _rounds(struts, gain)
+    for strut in range(6):  # one by one: there are many columns on the way to a lag
+        actual[:, strut] = struts.length[1:, strut] - _lag(struts, strut, gain[strut], rounds)
     time = np.maximum(struts.time_ms[1:] / 1000 - delay, 0.0)
     return _MICROMETRES * _across(task, time, actual)
 
 
-def _lags(cubic: tuple[Array, Array, Array, Array, Array], gain: Array) -> Array:
-    """Lags of loops that follow K cubics from rest, (K, 6) mm at the end of each."""
-    duration = cubic[-1][:, None]
-    begin, end = hermite_accelerations(*cubic)
+def _lag(struts: StrutMotion, strut: int, gain: float, rounds: int) -> Array:
+    """Lag of a loop that follows the K cubics of a strut from rest, (K,) mm at the end of each."""
+    length, speed, duration = struts.length[:, strut, None], struts.speed[:, strut, None], _durations(struts)
+    begin, end = hermite_accelerations(length[:-1], speed[:-1], length[1:], speed[1:], duration)
+    duration = duration[:, None]
     bend = (end - begin) / duration / gain**3
-    first, last = (speed / gain - rate / gain**2 + bend for speed, rate in ((cubic[1], begin), (cubic[3], end)))
+    first, last = (rate / gain - bent / gain**2 + bend for rate, bent in ((speed[:-1], begin), (speed[1:], end)))
     kept = np.exp(-gain * duration)
-    return _summed(last - first * kept, kept)
+    return _summed(last - first * kept, kept, rounds)[:, 0]
 
 
-def _summed(added: Array, kept: Array) -> Array:
-    """x_i = kept_i x_(i - 1) + added_i, (K, 6), for all i at once: over 1, 2, 4 ... rows, until little is kept."""
-    total, part, step = added.copy(), kept.copy(), 1
-    while step < len(total) and part[step:].max() > _FORGOTTEN:
-        total[step:] += part[step:] * total[:-step]
+def _durations(struts: StrutMotion) -> Array:
+    return np.asarray(np.diff(struts.time_ms) / 1000)
+
+
+def _rounds(struts: StrutMotion, gain: Array) -> int:
+    """How often to double the rows that are summed, until little is kept by the slowest loop."""
+    part, rounds = np.exp(-gain.min() * _durations(struts)), 0
+    while (1 << rounds) < len(part) and part[1 << rounds :].max() > _FORGOTTEN:
+        part[1 << rounds :] *= part[: -(1 << rounds)].copy()
+        rounds += 1
+    return rounds
+
+
+def _summed(added: Array, part: Array, rounds: int) -> Array:
+    """x_i = part_i x_(i - 1) + added_i, (K, C), for all i at once: over 1, 2, 4 ... rows. Both are overwritten."""
+    for step in (1 << number for number in range(rounds)):
+        added[step:] += part[step:] * added[:-step]
         part[step:] *= part[:-step].copy()
-        step *= 2
-    return total
+    return added
 
 
 def _across(task: Task, time: Array, actual: Array) -> Array:
@@ -87,7 +102,7 @@ def _across(task: Task, time: Array, actual: Array) -> Array:
         share = ((time[rows] - struts.time_ms[knot[rows]] / 1000) / cubic[-1])[:, None]
         # the difference is small: the Jacobian of a knot nearby carries it
         columns = np.stack([actual[rows] - hermite_lengths(*cubic, share)[:, 0], hermite_speeds(*cubic, share)[:, 0]])
-        off, way = (task.knots.inverse[knot[rows], :3] @ columns.transpose(1, 2, 0)).transpose(2, 1, 0)
+        off, way = (task.knots.tip_inverse[knot[rows]] @ columns.transpose(1, 2, 0)).transpose(2, 1, 0)
         along = (off * way).sum(axis=0) / np.maximum(np.square(way).sum(axis=0), _STANDING**2)
         error[rows] = length_of(*(off - along * way))
     return error

@@ -13,10 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.certificate.knots import Knots
 from pkm_post.geometry.vectors import Array
-from pkm_post.model import Diagnostic, Machine, StrutMotion
+from pkm_post.kinematics import moving
+from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion
 from pkm_post.model.certificate import Certificate, Finding
+from pkm_post.model.columns import in_pieces
 
 Decimals = tuple[int, int]
 """Of lengths and of speeds."""
@@ -32,10 +33,11 @@ _OF_KNOTS = ("V101", "V102", "V103", "V104", "V108", "V110", "V113", "V114")
 """What more knots would mend."""
 _LITTLE = 0.01
 """Part of a value that makes no difference worth a word."""
+_AT_ONCE = 2048
 
 
 def fault_causes(
-    certificate: Certificate, struts: StrutMotion, machine: Machine, knots: Knots, measured: Measured
+    certificate: Certificate, struts: StrutMotion, machine: Machine, motion: Motion, measured: Measured
 ) -> tuple[Diagnostic, ...]:
     """A diagnostic for each finding that does not hold.
 
@@ -43,12 +45,13 @@ def fault_causes(
         certificate: of the program.
         struts: the program, read back.
         machine: states the decimals.
-        knots: lengths and speeds as planned.
+        motion: the plan.
         measured: plays another program with the same knots.
     """
     if certificate.holds:
         return ()
-    exact = StrutMotion(struts.time_ms, knots.length, knots.speed, struts.events)
+    length, speed = in_pieces(len(motion), _AT_ONCE, lambda rows: moving(machine, motion.poses(rows))[:2])
+    exact = StrutMotion(struts.time_ms, length, speed, struts.events)
     decimals = _as_printed(struts, exact, machine)
     if decimals is None:
         return tuple(row.diagnostic() for row in certificate.findings if not row.holds)

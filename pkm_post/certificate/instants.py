@@ -8,7 +8,7 @@ its course, where what it can be off that is told with what hides, or closely, b
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
@@ -50,11 +50,6 @@ class Seen:
     def nothing(cls, count: int) -> Seen:
         """Of intervals that were not looked at: anything can be there."""
         return cls(np.ones(count, dtype=bool), np.zeros((3, count)), np.full((3, count), np.inf), np.ones(count))
-
-    @classmethod
-    def joined(cls, parts: list[Seen]) -> Seen:
-        """One after the other."""
-        return cls(*(np.concatenate([getattr(part, of.name) for part in parts], axis=-1) for of in fields(cls)))
 
 
 @dataclass(frozen=True)

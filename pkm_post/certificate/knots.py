@@ -7,17 +7,16 @@ Jacobian stays so much alike that the mean of both inverses may stand for that o
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry.vectors import Array
 from pkm_post.kinematics import moving
-from pkm_post.model import Machine, Motion, Poses
+from pkm_post.model import Machine, Motion
 
 _MOST_CHANGE = 0.02
 """Part by which the Jacobian may change in an interval; the mean of the inverses is then off by some 1e-4 of itself."""
-_AT_ONCE = 2048
 
 
 @dataclass(frozen=True)
@@ -27,32 +26,40 @@ class Knots:
     Attributes:
         length: (K + 1, 6) planned strut lengths, mm.
         speed: (K + 1, 6) mm/s.
-        inverse: (K + 1, 6, 6) inverse Jacobians of the tip.
+        tip_inverse: (K + 1, 3, 6) upper halves of the inverse Jacobians: what struts do to the tip.
         alike: (K,) whether the Jacobian changes little from one knot to the next, with one and the same tool.
     """
 
     length: Array
     speed: Array
-    inverse: Array
+    tip_inverse: Array
     alike: Array
 
     @classmethod
-    def of(cls, machine: Machine, motion: Motion) -> Knots:
-        """Those of a plan."""
-        poses, count = motion.poses(), len(motion)
-        length, speed, inverse = np.empty((count, 6)), np.empty((count, 6)), np.empty((count, 6, 6))
-        alike = np.diff(motion.tool_length) == 0
-        for first in range(0, count, _AT_ONCE):
-            rows = slice(max(first - 1, 0), first + _AT_ONCE)  # with the knot before, to compare with
-            length[rows], speed[rows], jacobian = moving(machine, _part(poses, rows))
-            inverse[rows] = _inverted(jacobian)
-            between = slice(rows.start, min(rows.stop, count) - 1)
-            alike[between] &= _change(inverse[rows][:-1], jacobian[1:], machine) < _MOST_CHANGE
-        return cls(length, speed, inverse, alike)
+    def room(cls, motion: Motion) -> Knots:
+        """Columns for the knots of a plan, to be filled piece by piece."""
+        length, speed = np.empty((2, len(motion), 6))
+        return cls(length, speed, np.empty((len(motion), 3, 6)), np.diff(motion.tool_length) == 0)
+
+    def fill(self, machine: Machine, motion: Motion, rows: slice) -> Array:
+        """Fill in some knots and the intervals between them; their inverse Jacobians of the tip, (N, 6, 6).
+
+        Whole inverses are needed on the way only, and would be most of what a long program takes.
+        """
+        self.length[rows], self.speed[rows], jacobian = moving(machine, motion.poses(rows))
+        inverse = _inverted(jacobian)
+        self.tip_inverse[rows] = inverse[:, :3]
+        between = slice(rows.start, rows.stop - 1)
+        self.alike[between] &= _change(inverse[:-1], jacobian[1:], machine) < _MOST_CHANGE
+        return inverse
 
 
-def _part(poses: Poses, rows: slice) -> Poses:
-    return Poses(**{field.name: getattr(poses, field.name)[rows] for field in fields(poses)})
+def inverses_at(machine: Machine, motion: Motion, rows: Array) -> tuple[Array, Array]:
+    """Inverse Jacobians of the tip at both ends of the intervals that begin at some knots, (N, 6, 6) each."""
+    knots, row = np.unique(np.concatenate([rows, rows + 1]), return_inverse=True)
+    begin, end = np.split(row, 2)
+    inverse = _inverted(moving(machine, motion.poses(knots))[2])
+    return inverse[begin], inverse[end]
 
 
 def _inverted(jacobian: Array) -> Array:

@@ -98,7 +98,13 @@ def _look_again(task: Task, seen: Seen, peaks: _Peaks, rows: Array, instants: in
     if not len(rows):
         return
     blocks = _blocks(rows, _AT_ONCE // instants)
-    again = Seen.joined(list(workers().map(lambda some: look(task, some, instants, closely), blocks)))
+    played = workers().map(lambda some: look(task, some, instants, closely), blocks)
+    for some, again in zip(blocks, played, strict=True):
+        _keep(seen, peaks, some, again)
+
+
+def _keep(seen: Seen, peaks: _Peaks, rows: Array, again: Seen) -> None:
+    """Replace what is known of some intervals, with what is known of their joints."""
     at_joint = np.flatnonzero(peaks.off[0, rows] > again.worst[0])
     again.tip_tolerance[at_joint] = peaks.tip_tolerance[rows[at_joint]]
     seen.worst[:, rows] = np.concatenate([np.maximum(again.worst[:2], peaks.off[:, rows]), again.worst[2:]])

@@ -13,6 +13,10 @@ from pkm_post.certificate.knots import Knots
 from pkm_post.geometry import hermite_accelerations
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import StrutMotion
+from pkm_post.model.columns import in_pieces, pieces
+
+_AT_ONCE = 4096
+"""Knots in one pass: the working arrays of one pass stay in the processor's cache."""
 
 
 def cubics(struts: StrutMotion, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
@@ -65,8 +69,13 @@ def off_plan(struts: StrutMotion, knots: Knots) -> Array:
     """
     interval = np.diff(struts.time_ms / 1000)
     longest = np.maximum(np.append(interval, 0.0), np.append(0.0, interval))[:, None]
-    wrong = np.abs(struts.length - knots.length) + 4 / 27 * longest * np.abs(struts.speed - knots.speed)
-    return np.asarray(wrong.max(axis=1))
+
+    def wrong(rows: slice) -> tuple[Array]:
+        off = np.abs(struts.length[rows] - knots.length[rows])
+        off += 4 / 27 * longest[rows] * np.abs(struts.speed[rows] - knots.speed[rows])
+        return (off.max(axis=1),)
+
+    return in_pieces(len(struts), _AT_ONCE, wrong)[0]
 
 
 def strut_jerk(struts: StrutMotion) -> Array:
@@ -101,9 +110,13 @@ def acceleration_steps(struts: StrutMotion) -> Array:
 
     Cubics with given lengths and speeds meet with the same speed, not with the same acceleration.
     """
-    begin, end = hermite_accelerations(*cubics(struts, np.arange(len(struts) - 1)))
-    still = np.zeros((1, 6))
-    return np.asarray(np.abs(np.concatenate([begin, still]) - np.concatenate([still, end])).max(axis=1))
+    steps, before = np.empty(len(struts)), np.zeros((1, 6))
+    for piece in pieces(len(struts) - 1, _AT_ONCE):
+        begin, end = hermite_accelerations(*cubics(struts, np.arange(piece.start, piece.stop)))
+        ends = np.concatenate([before, end])
+        steps[piece], before = np.abs(begin - ends[:-1]).max(axis=1), ends[-1:]
+    steps[-1] = np.abs(before).max()
+    return steps
 
 
 def blocks_in_a_second(time_ms: Array) -> Array:

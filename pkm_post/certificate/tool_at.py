@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.knots import Knots
+from pkm_post.certificate.knots import Knots, inverses_at
 from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import hermite_columns, hermite_lengths, hermite_speeds
@@ -82,13 +82,13 @@ def by_kinematics(task: Task, rows: Array, shares: Array) -> ToolAt:
     """Where the tool is at shares of any intervals."""
     cubic = cubics(task.struts, rows)
     length, speed = hermite_lengths(*cubic, shares), hermite_speeds(*cubic, shares)
-    machine, motion, knots = task.machine, task.motion, task.knots
+    machine, motion = task.machine, task.motion
     tool_length = np.repeat(motion.tool_length[rows + 1], len(shares))
-    inverses = knots.inverse[rows], knots.inverse[rows + 1]
+    inverses = inverses_at(machine, motion, rows)
     pose, found = near_poses(machine, length, _planned(motion, rows, cubic[-1], shares), tool_length, inverses, shares)
     tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
     velocity = np.array(carried(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
-    odd = np.flatnonzero(~(found & np.repeat(knots.alike[rows], len(shares))))
+    odd = np.flatnonzero(~(found & np.repeat(task.knots.alike[rows], len(shares))))
     if len(odd):
         knot, lengths, speeds = rows[odd // len(shares)], length.reshape(-1, 6)[odd], speed.reshape(-1, 6)[odd]
         tip[:, odd], axis[:, odd], velocity[:, odd], found[odd] = _by_newton(

@@ -19,6 +19,7 @@ from pkm_post.geometry import hermite_accelerations, hermite_column_speeds, herm
 from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.kinematics import NearPoses, attitude_rates, carried, moved, strut_lengths
 from pkm_post.model import Machine, Motion, StrutMotion
+from pkm_post.model.columns import pieces
 
 _LOOKS = np.array([[0.25], [0.5], [0.75]])
 """Shares of an interval at which the difference is measured."""
@@ -59,17 +60,25 @@ class ToolCourse:
     missed: Array
 
     @classmethod
-    def of(cls, machine: Machine, struts: StrutMotion, motion: Motion, knots: Knots) -> ToolCourse:
-        """That of a strut motion with the knots of a planned one."""
-        place, rate, near = _at_knots(struts, motion, knots)
-        course = cls(place, rate, np.diff(struts.time_ms) / 1000, np.full((3, len(struts) - 1), np.inf))
-        swing = length_of(*rate[3:6])
-        turn = np.maximum(swing[:-1], swing[1:]) * course.duration
-        told = np.flatnonzero(knots.alike & near[:-1] & near[1:] & (turn < _SMALL_TURN))
-        for first in range(0, len(told), _AT_ONCE):
-            rows = told[first : first + _AT_ONCE]
-            course.missed[:, rows] = course._missed(machine, struts, motion, knots, rows)
-        return course
+    def of(cls, machine: Machine, struts: StrutMotion, motion: Motion) -> tuple[ToolCourse, Knots]:
+        """That of a strut motion with the knots of a planned one; and what the machine is like at these."""
+        knots, count = Knots.room(motion), len(struts) - 1
+        place, rate = np.empty((2, 7, len(struts)))
+        course = cls(place, rate, np.diff(struts.time_ms) / 1000, np.full((3, count), np.inf))
+        for piece in pieces(count, _AT_ONCE):
+            rows = slice(piece.start, piece.stop + 1)  # with the knot at which its last interval ends
+            inverse = knots.fill(machine, motion, rows)
+            course.place[:, rows], course.rate[:, rows], near = _at_knots(struts, motion, knots, rows, inverse)
+            told = course._told(knots, near, piece)
+            ends = inverse[told - piece.start], inverse[told - piece.start + 1]
+            course.missed[:, told] = course._missed(machine, struts, motion, ends, told)
+        return course, knots
+
+    def _told(self, knots: Knots, near: Array, piece: slice) -> Array:
+        """The intervals of a piece of which something can be said; ``near`` is of their knots, one more."""
+        swing = length_of(*self.rate[3:6, piece.start : piece.stop + 1])
+        turn = np.maximum(swing[:-1], swing[1:]) * self.duration[piece]
+        return piece.start + np.flatnonzero(knots.alike[piece] & near[:-1] & near[1:] & (turn < _SMALL_TURN))
 
     def at(self, rows: Array, share: Array) -> tuple[Array, Array, Array]:
         """Tip, tool axis and spin on the cubics of N intervals.
@@ -89,18 +98,18 @@ class ToolCourse:
         p0, v0, p1, v1, duration = self._ends(rows)
         return hermite_column_speeds(p0[:3], v0[:3], p1[:3], v1[:3], duration, share)
 
-    def rates(self) -> tuple[Array, Array]:
-        """Turning rate of the tool axis, rad/s, and acceleration of the tip, mm/s^2, of the K intervals.
+    def rates(self, rows: Array) -> tuple[Array, Array]:
+        """Turning rate of the tool axis, rad/s, and acceleration of the tip, mm/s^2, of N intervals.
 
         The acceleration of a cubic is largest at an end, its speed no more than the largest of its Bezier coefficients.
         The cubic of the axis is in the hull of its control points, so with a turn of g it is no shorter than
         cos(g / 2) - g^2 / 6 > 1 - 0.3 g^2, and the axis turns faster than it by no more than that.
 
         Returns:
-            What is found at the knots, and by how much more there can be at any moment, (2, K) each; the latter is
+            What is found at the knots, and by how much more there can be at any moment, (2, N) each; the latter is
             infinite where nothing is known.
         """
-        begin, begin_rate, end, end_rate, duration = self._ends(np.arange(len(self.duration)))
+        begin, begin_rate, end, end_rate, duration = self._ends(rows)
         both = hermite_accelerations(begin[:3].T, begin_rate[:3].T, end[:3].T, end_rate[:3].T, duration)
         acceleration = np.maximum(*(length_of(*one.T) for one in both))
         first, last = begin_rate[3:6], end_rate[3:6]
@@ -108,25 +117,30 @@ class ToolCourse:
         at_knots = np.maximum(length_of(*first), length_of(*last))
         hull = np.maximum(at_knots, length_of(*middle))
         turn = hull * duration
-        off_tip, off_axis, _ = (self.missed - _STEP_MISSES) / [[_MOST], [_MOST], [_FASTEST]]
+        missed = self.missed[:, rows]
+        off_tip, off_axis, _ = (missed - _STEP_MISSES) / [[_MOST], [_MOST], [_FASTEST]]
         step = 12 * _STEP_MISSES[0] / duration**2 + 6 * _STEP_MISSES[2] / duration
         more = (
             hull / np.maximum(1 - 0.3 * turn**2, 0.5) - at_knots + _FASTEST * off_axis / duration + _TURN_MISSES,
             _BENDS * off_tip / duration**2 + step,
         )
-        return np.stack([at_knots, acceleration]), np.where(np.isfinite(self.missed[0]), np.stack(more), np.inf)
+        return np.stack([at_knots, acceleration]), np.where(np.isfinite(missed[0]), np.stack(more), np.inf)
 
     def _ends(self, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
         after, place, rate = rows + 1, self.place, self.rate
         return place[:, rows], rate[:, rows], place[:, after], rate[:, after], self.duration[rows]
 
-    def _missed(self, machine: Machine, struts: StrutMotion, motion: Motion, knots: Knots, rows: Array) -> Array:
-        """What of N intervals is in ``missed``, (3, N)."""
+    def _missed(
+        self, machine: Machine, struts: StrutMotion, motion: Motion, inverses: tuple[Array, Array], rows: Array
+    ) -> Array:
+        """What of N intervals is in ``missed``, (3, N), with the inverse Jacobians at both ends of each."""
+        if not len(rows):
+            return np.empty((3, 0))
         tip, axis, spin = (columns.reshape(-1, _LOOKS.size * len(rows)) for columns in self.at(rows, _LOOKS))
         tool_length = np.tile(motion.tool_length[rows + 1], _LOOKS.size)
         needed = strut_lengths(machine, tip.T, axis.T, spin[0], tool_length).reshape(_LOOKS.size, -1, 6)
         residual = hermite_lengths(*cubics(struts, rows), _LOOKS.ravel()) - needed.transpose(1, 0, 2)
-        twist = carried(knots.inverse[rows], knots.inverse[rows + 1], residual, _LOOKS.ravel())
+        twist = carried(*inverses, residual, _LOOKS.ravel())
         way, turn = (part.transpose(0, 2, 1).reshape(3, -1) for part in (twist[:3], twist[3:]))
         swing, _ = attitude_rates(axis.T, turn.T)
         off_tip, off_axis = (length_of(*part).reshape(_LOOKS.size, -1).max(axis=0) for part in (way, swing.T))
@@ -134,11 +148,13 @@ class ToolCourse:
         return np.where(np.abs(residual).max(axis=(1, 2)) < _NEAR_CUBIC, missed, np.inf)
 
 
-def _at_knots(struts: StrutMotion, motion: Motion, knots: Knots) -> tuple[Array, Array, Array]:
-    """Places and rates at the knots, and where one linear step from the plan tells them."""
-    residual = struts.length - knots.length
+def _at_knots(
+    struts: StrutMotion, motion: Motion, knots: Knots, rows: slice, inverse: Array
+) -> tuple[Array, Array, Array]:
+    """Places and rates at some knots, and where one linear step from the plan tells them."""
+    residual = struts.length[rows] - knots.length[rows]
     near = np.abs(residual).max(axis=1) < _NEAR_PLAN
-    step, twist = (knots.inverse @ np.stack([residual, struts.speed], axis=2)).transpose(2, 1, 0)
-    pose = moved(NearPoses(motion.tip, motion.axis, motion.spin), np.where(near, step, 0.0))
+    step, twist = (inverse @ np.stack([residual, struts.speed[rows]], axis=2)).transpose(2, 1, 0)
+    pose = moved(NearPoses(motion.tip[rows], motion.axis[rows], motion.spin[rows]), np.where(near, step, 0.0))
     swing, spun = attitude_rates(pose.axis, twist[3:].T)
     return np.vstack([pose.tip.T, pose.axis.T, pose.spin]), np.vstack([twist[:3], swing.T, spun]), near

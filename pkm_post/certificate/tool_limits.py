@@ -17,6 +17,7 @@ from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_sp
 from pkm_post.geometry.vectors import Array, cross, length_of
 from pkm_post.kinematics import forward
 from pkm_post.kinematics.tool_rates import tool_rates
+from pkm_post.model.columns import pieces
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
 """Instants of an interval that is looked at closely; each time half as far apart."""
@@ -33,7 +34,10 @@ _SPEED_BY_RESIDUAL = 10.0
 def tool_limits(task: Task) -> tuple[Array, Array]:
     """Turning rate of the tool axis, rad/s, and acceleration of the tip, mm/s^2, that K intervals do not exceed."""
     limits = np.array([[task.machine.axis_speed], [task.machine.tip_acceleration]])
-    found, hidden = (part / limits for part in task.course.rates())
+    found, hidden = np.empty((2, 2, len(task.struts) - 1))
+    for piece in pieces(found.shape[1], _AT_ONCE):
+        rows = np.arange(piece.start, piece.stop)
+        found[:, piece], hidden[:, piece] = (part / limits for part in task.course.rates(rows))
     for instants in _INSTANTS:
         rows = _unsettled(found, hidden)
         for first in range(0, len(rows), _AT_ONCE // instants):

@@ -78,9 +78,9 @@ def glimpse_within(path: ToolPath, segment: Array, u: Array) -> Glimpse:
     else:
         axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
     seen = Glimpse(tip.T, axis, spin, way.T, tool_length, segment)
-    curved = seg.arc[segment] | seg.arc[other]
-    if curved.any():
-        _overwrite(seen, np.flatnonzero(curved), path, u)
+    curved = np.union1d(*(seg.arcs.among(one)[0] for one in (segment, other)))
+    if len(curved):
+        _overwrite(seen, curved, path, u)
     return seen
 
 

@@ -63,10 +63,10 @@ class PathBounds:
 
 def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array]:
     """In a blend, what the prolonged segments bend away from each other adds to the change of the tangent."""
-    rise, radius = norm(seg.tangent), norm(seg.radius)
-    scale = 1 + np.abs(seg.growth) * _BEYOND * seg.extent
-    first = np.hypot(rise, np.hypot(seg.growth * radius, seg.turn * radius * scale))
-    bend = radius * np.hypot(2 * seg.growth * seg.turn, scale * seg.turn**2)
+    first, bend, arcs = norm(seg.tangent), np.zeros(len(seg)), seg.arcs
+    radius, scale = norm(arcs.radius), 1 + np.abs(arcs.growth) * _BEYOND * seg.extent[arcs.row]
+    first[arcs.row] = np.hypot(first[arcs.row], np.hypot(arcs.growth * radius, arcs.turn * radius * scale))
+    bend[arcs.row] = radius * np.hypot(2 * arcs.growth * arcs.turn, scale * arcs.turn**2)
     before = np.arange(len(seg) - 1)
     tangents = seg.tip_at(before, seg.extent[:-1])[1], seg.tip_at(before + 1, 0 * width)[1]
     corner = norm(tangents[1] - tangents[0])

@@ -11,9 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry.vectors import Array
+from pkm_post.model.columns import pieces
 
 _ROUNDING = 4 * np.finfo(np.float64).eps
 """Of sums of slopes and ceilings."""
+_AT_ONCE = 1 << 14
 
 
 def cell_times(s: Array, square: Array) -> Array:
@@ -23,8 +25,9 @@ def cell_times(s: Array, square: Array) -> Array:
         s: (M,) path lengths, not decreasing.
         square: (M,) speed squared.
     """
-    speed = np.sqrt(square)
-    times: Array = 2 * np.diff(s) / (speed[1:] + speed[:-1])
+    speed, times = np.sqrt(square), np.diff(s)
+    times *= 2
+    times /= speed[1:] + speed[:-1]
     return times
 
 
@@ -36,10 +39,18 @@ def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
         ceiling: (M,) highest speed squared; 0 where the motion rests.
         acceleration: (M,) highest acceleration along the path.
     """
-    in_cell = np.minimum(acceleration[1:], acceleration[:-1])
-    climb = np.concatenate([[0.0], np.cumsum(2 * in_cell * np.diff(s))])
-    forward = np.minimum.accumulate(ceiling - climb) + climb
-    backward = np.minimum.accumulate((forward + climb)[::-1])[::-1] - climb
+    climb, square = np.zeros(len(s)), np.empty(len(s))  # these two alone are as long as the path
+    rise = np.minimum(acceleration[1:], acceleration[:-1], out=climb[1:])
+    rise *= 2
+    for rows in pieces(len(rise), _AT_ONCE):
+        rise[rows] *= np.diff(s[rows.start : rows.stop + 1])
+    np.cumsum(rise, out=rise)
+    np.subtract(ceiling, climb, out=square)
+    np.minimum.accumulate(square, out=square)
+    square += climb
+    square += climb
+    np.minimum.accumulate(square[::-1], out=square[::-1])
+    square -= climb
     # what a difference of sums has lost by rounding is not standstill
-    least = np.minimum(ceiling, _ROUNDING * (climb[-1] + ceiling.max()))
-    return np.clip(backward, least, ceiling)
+    least = np.minimum(ceiling, _ROUNDING * (climb[-1] + ceiling.max()), out=climb)
+    return np.clip(square, least, ceiling, out=square)

@@ -18,9 +18,12 @@ from pkm_post.feed.profile import cell_times
 from pkm_post.feed.stations import Stations
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Poses
+from pkm_post.model.columns import in_pieces, pieces
 
 _HALVINGS = 50
 """Of a window, to find when a place is passed."""
+_AT_ONCE = 1 << 14
+"""Places in one pass: what is computed for them takes more memory than what is kept."""
 
 
 @dataclass(frozen=True)
@@ -64,16 +67,23 @@ class Schedule:
         joint_time = course.time[np.searchsorted(s, joint)]
         if window_ms:
             course = course.standing(rests, window)
-        edge_time = course.when(stations.edges)
-        if window_ms:
-            joint_time[under_way] = _when_passed(course, window, joint[under_way], joint_time[under_way])
-            edge_time = _when_passed(course, window, stations.edges, edge_time)
+
+        def passed(s: Array, time: Array) -> Array:
+            return _when_passed(course, window, s, time) if window_ms else time
+
+        joint_time[under_way] = passed(joint[under_way], joint_time[under_way])
+
+        def whole_ms(rows: slice) -> tuple[Array]:
+            edges = stations.edges[rows]
+            return (np.rint(1000 * passed(edges, course.when(edges))).astype(np.int64),)
+
+        (edges_ms,) = in_pieces(len(stations.edges), _AT_ONCE, whole_ms)
         return cls(
             course=course,
             window=window,
             rests_ms=rests_ms,
             rest_joints=np.append(stations.segment[np.flatnonzero(stations.rest)[:-1] + 1], stations.segment[-1] + 1),
-            edges_ms=_whole_ms(edge_time),
+            edges_ms=_each_once(edges_ms),
             joint_time=joint_time,
         )
 
@@ -89,26 +99,30 @@ class Schedule:
 def _stretched(s: Array, rest: Array, square: Array, window_ms: int, shortest_ms: int) -> tuple[Course, Array]:
     """The course from rest to rest in whole milliseconds, with a window of time at each rest; and the rests."""
     speed, duration = np.sqrt(square), cell_times(s, square)
-    run = np.cumsum(rest)[:-1] - 1
-    elapsed = np.bincount(run, duration)
+    run = np.cumsum(rest) - 1
+    elapsed = np.bincount(run[:-1], duration)
     whole_ms = np.maximum(np.ceil(1000 * elapsed).astype(np.int64), shortest_ms)
     stretch = whole_ms / (1000 * elapsed)
     rests_ms = np.concatenate([[0], np.cumsum(whole_ms + window_ms)])
 
-    duration *= stretch[run]
-    since_start = np.concatenate([[0.0], np.cumsum(duration)])
-    rests = np.flatnonzero(rest)
-    of_row = np.append(run, run[-1])
-    time = since_start - since_start[rests[of_row]] + (rests_ms[of_row] + window_ms / 2) / 1000
-    time[rests] = rests_ms / 1000
-    speed[:-1] /= stretch[run]
+    time, rests = np.zeros(len(s)), np.flatnonzero(rest)
+    np.cumsum(np.multiply(duration, stretch[run[:-1]], out=duration), out=time[1:])
+    run[-1] = len(elapsed) - 1
+    since_start, begin = time[rests], (rests_ms + window_ms / 2) / 1000
+    for rows in pieces(len(s), _AT_ONCE):
+        time[rows] -= since_start[run[rows]]
+        time[rows] += begin[run[rows]]
+        speed[rows] /= stretch[run[rows]]
+    time[rests], speed[-1] = rests_ms / 1000, np.sqrt(square[-1])
     return Course(s, time, speed), rests_ms
 
 
-def _whole_ms(time: Array) -> Array:
-    """Whole milliseconds nearest to increasing times, each of them once."""
-    ms = np.maximum.accumulate(np.rint(1000 * time).astype(np.int64))
-    return ms[np.flatnonzero(np.diff(ms, prepend=-1))]
+def _each_once(ms: Array) -> Array:
+    """Whole milliseconds from 0 on, increasing but for roundings, each of them once."""
+    ms = np.maximum.accumulate(ms)
+    other = np.ones(len(ms), dtype=np.bool_)
+    np.not_equal(ms[1:], ms[:-1], out=other[1:])
+    return ms[other]
 
 
 def _when_passed(course: Course, window: float, s: Array, time: Array) -> Array:

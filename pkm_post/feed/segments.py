@@ -16,25 +16,63 @@ from pkm_post.geometry import along_rates, norm, towards
 from pkm_post.geometry.arcs import across
 from pkm_post.geometry.vectors import Array, cross, dot
 from pkm_post.model import Kind, Trajectory
+from pkm_post.model.columns import both_by_row, by_row, is_uniform, rows_of
 
 _TURNING_IN_PLACE = 0.01
 """mm of tip way per degree of axis turn below which a segment counts as a turn in place."""
 
 
 @dataclass(frozen=True)
+class Arcs:
+    """Columns of A segments whose tips run on arcs.
+
+    Attributes:
+        row: (A,) which segments they are, ascending.
+        radius: (A, 3) from the point of the arc's axis at the height of the start to the start.
+        quarter: (A, 3) the radius turned by 90 degrees.
+        turn: (A,) angle of the arc by path length.
+        growth: (A,) relative growth of the radius by path length: ends that do not quite fit one circle are met.
+    """
+
+    row: Array
+    radius: Array
+    quarter: Array
+    turn: Array
+    growth: Array
+
+    @classmethod
+    def of(cls, trajectory: Trajectory, start: Array, extent: Array) -> Arcs:
+        """Those of a trajectory, with the starts of all of its segments and their path lengths."""
+        row = np.flatnonzero(trajectory.kind == Kind.ARC)
+        centre, turn_axis = trajectory.arc_centre[row], trajectory.arc_axis[row]
+        radius = across(start[row] - centre, turn_axis)
+        end_radius = norm(across(trajectory.tip[row] - centre, turn_axis))
+        return cls(
+            row=row,
+            radius=radius,
+            quarter=cross(turn_axis, radius),
+            turn=trajectory.sweep[row] / extent[row],
+            growth=(end_radius / norm(radius) - 1) / extent[row],
+        )
+
+    def among(self, segment: Array) -> tuple[Array, Array]:
+        """Which of the segments named, (M,), are arcs, and the rows here that they have, (K,) each."""
+        if not len(self.row):
+            return self.row, self.row
+        at = np.minimum(np.searchsorted(self.row, segment), len(self.row) - 1)
+        named = np.flatnonzero(self.row[at] == segment)
+        return named, at[named]
+
+
+@dataclass(frozen=True)
 class Segments:
-    """Columns of N segments as their evaluation wants them.
+    """Columns of N segments as their evaluation wants them; one row stands for all that are alike.
 
     Attributes:
         extent: (N,) path length.
         start: (N, 3) tip at the start.
         tangent: (N, 3) derivative of the tip on a line; on an arc only the rise along its axis.
-        arc: (N,) whether the tip runs on an arc.
-        centre: (N, 3) point of the arc's axis at the height of the start; 0 on lines.
-        radius: (N, 3) from that point to the start; 0 on lines.
-        quarter: (N, 3) the radius turned by 90 degrees; 0 on lines.
-        turn: (N,) angle of the arc by path length.
-        growth: (N,) relative growth of the radius by path length: ends that do not quite fit one circle are met.
+        arcs: what those segments need that are arcs.
         axis: (N, 3) tool axis at the start.
         axis_rate: (N, 3) tangent of its great circle there, rad by path length.
         spin: (N,) spin at the start.
@@ -44,12 +82,7 @@ class Segments:
     extent: Array
     start: Array
     tangent: Array
-    arc: np.ndarray[tuple[int], np.dtype[np.bool_]]
-    centre: Array
-    radius: Array
-    quarter: Array
-    turn: Array
-    growth: Array
+    arcs: Arcs
     axis: Array
     axis_rate: Array
     spin: Array
@@ -61,33 +94,30 @@ class Segments:
         start, axis, spin = trajectory.tip_before(), trajectory.axis_before(), trajectory.spin_before()
         degrees = np.degrees(np.maximum(trajectory.angle, np.abs(trajectory.spin - spin)))
         extent = np.where(trajectory.length > _TURNING_IN_PLACE * degrees, trajectory.length, degrees)
-        arc = trajectory.kind == Kind.ARC
-        turn_axis = np.where(arc[:, None], trajectory.arc_axis, 0.0)
-        radius = np.where(
-            arc[:, None], across(start - np.where(arc[:, None], trajectory.arc_centre, start), turn_axis), 0
-        )
-        end_radius = norm(across(np.where(arc[:, None], trajectory.tip - trajectory.arc_centre, 0.0), turn_axis))
-        ratio = np.divide(end_radius, norm(radius), out=np.ones(len(arc)), where=arc)
-        chord = trajectory.tip - start
-        way = np.where(arc[:, None], dot(chord, turn_axis)[:, None] * turn_axis, chord)
+        arcs = Arcs.of(trajectory, start, extent)
+        way = trajectory.tip - start
+        turn_axis = trajectory.arc_axis[arcs.row]
+        way[arcs.row] = dot(way[arcs.row], turn_axis)[:, None] * turn_axis
+        way /= extent[:, None]
         return cls(
             extent=extent,
             start=start,
-            tangent=way / extent[:, None],
-            arc=arc,
-            centre=start - radius,
-            radius=radius,
-            quarter=cross(turn_axis, radius),
-            turn=trajectory.sweep / extent,
-            growth=(ratio - 1) / extent,
+            tangent=way,
+            arcs=arcs,
             axis=axis,
-            axis_rate=towards(axis, trajectory.axis) / extent[:, None],
+            axis_rate=_by_length(both_by_row(towards, axis, trajectory.axis), extent[:, None]),
             spin=spin,
-            spin_rate=(trajectory.spin - spin) / extent,
+            spin_rate=_by_length(both_by_row(np.subtract, trajectory.spin, spin), extent),
         )
 
     def __len__(self) -> int:
         return len(self.extent)
+
+    def turn(self) -> Array:
+        """By how much tool axis or arc turn at most, by path length, (N,)."""
+        turn = np.array(by_row(norm, self.axis_rate))
+        turn[self.arcs.row] = np.maximum(turn[self.arcs.row], self.arcs.turn)
+        return turn
 
     def tip_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
         """Tip with first and second derivative, (M, 3) each, at path lengths u of the segments named."""
@@ -95,17 +125,18 @@ class Segments:
         tip = u[:, None] * tangent
         tip += np.take(self.start, segment, axis=0)
         first, second = tangent.copy(), np.zeros_like(tangent)
-        rows = np.flatnonzero(self.arc[segment])
+        rows, arcs = self.arcs.among(segment)
         if len(rows):
-            turned = self._turned(segment[rows], u[rows])
+            turned = self._turned(arcs, u[rows])
             for value, addition in zip((tip, first, second), turned, strict=True):
                 value[rows] += addition
         return tip, first, second
 
-    def _turned(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
+    def _turned(self, arc: Array, u: Array) -> tuple[Array, Array, Array]:
         """What turning about the arc's axis adds to the straight rise."""
-        radius, quarter = self.radius[segment], self.quarter[segment]
-        turn, growth = self.turn[segment][:, None], self.growth[segment][:, None]
+        arcs = self.arcs
+        radius, quarter = arcs.radius[arc], arcs.quarter[arc]
+        turn, growth = arcs.turn[arc][:, None], arcs.growth[arc][:, None]
         angle, scale = turn * u[:, None], 1 + growth * u[:, None]
         outward = np.cos(angle) * radius + np.sin(angle) * quarter
         forward = turn * (np.cos(angle) * quarter - np.sin(angle) * radius)
@@ -117,7 +148,12 @@ class Segments:
 
     def axis_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
         """Tool axis with first and second derivative, (M, 3) each."""
-        axis, rate = np.take(self.axis, segment, axis=0), np.take(self.axis_rate, segment, axis=0)
+        axis, rate = rows_of(self.axis, segment), rows_of(self.axis_rate, segment)
         if not rate.any():  # as in all work with three axes
             return axis, rate, np.zeros_like(rate)
         return along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))
+
+
+def _by_length(change: Array, extent: Array) -> Array:
+    """Changes over a segment by its path length; where there are none, one row of zeros stands for all."""
+    return change if is_uniform(change) and not change.any() else change / extent

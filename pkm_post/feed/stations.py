@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.feed.tool_path import ToolPath
-from pkm_post.geometry import norm
 from pkm_post.geometry.gather import numbered
 from pkm_post.geometry.vectors import Array
 
@@ -54,7 +53,7 @@ def stations(path: ToolPath, close: Array | None = None) -> Stations:
     close = np.ones(len(extent), dtype=bool) if close is None else close
     entry, leave = np.where(close, path.blend[:-1], 0.0), np.where(close, path.blend[1:], 0.0)
     middle = extent - entry - leave
-    turn = np.maximum(norm(path.segments.axis_rate), path.segments.turn) * middle
+    turn = path.segments.turn() * middle
     cells = np.column_stack(
         [
             np.where(entry > 0, _CELLS_IN_HALF_BLEND, 0),

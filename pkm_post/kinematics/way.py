@@ -19,6 +19,7 @@ import numpy as np
 from pkm_post.geometry.great_circle import along, angle_between, towards
 from pkm_post.geometry.torsion import tilt, turn_by_tilt
 from pkm_post.geometry.vectors import Array, norm
+from pkm_post.model.columns import both_by_row, shifted, uniform
 
 Pose = tuple[Array, Array, Array, Array]
 """Tips (N, 3), unit tool axes (N, 3), spins (N,), gauge lengths (N,): the arguments of ``inverse``."""
@@ -56,30 +57,29 @@ class Way:
 
         Where the gauge length changes, the platform stands still, and the tip of the new tool starts elsewhere.
         """
-        tip_before, axis_before, spin_before, length_before = (
-            np.concatenate([column[:1], column[:-1]]) for column in (tip, axis, spin, tool_length)
+        start, axis_before, spin_before, length_before = (
+            shifted(column[0], column) for column in (tip, axis, spin, tool_length)
         )
-        start = tip_before - (tool_length - length_before)[:, None] * axis_before
-        chord, change = tip - start, spin - spin_before
-        x, y, z = (axis != axis_before).T
-        turns = x | y | z
-        angle = np.zeros(len(tip))
-        angle[turns] = angle_between(axis_before[turns], axis[turns])
+        change = both_by_row(np.subtract, spin, spin_before)
+        longer = both_by_row(np.subtract, tool_length, length_before)
+        if longer.any():
+            start, changes = np.array(start, order="C"), np.flatnonzero(longer)
+            start[changes] -= longer[changes, None] * axis_before[changes]
 
         def inside(cell: Array, share: Array) -> Pose:
             beginning, part = axis_before[cell], share[:, None]
             turned = along(beginning, part * towards(beginning, axis[cell]))
-            shifted = start[cell] + part * chord[cell]
-            return shifted, turned, spin_before[cell] + share * change[cell], tool_length[cell]
+            tips = start[cell] + part * (tip[cell] - start[cell])
+            return tips, turned, spin_before[cell] + share * change[cell], tool_length[cell]
 
         return cls(
             tip=tip,
             axis=axis,
             spin=spin,
             tool_length=tool_length,
-            travel=norm(chord),
-            bend=np.zeros(len(tip)),
-            angle=angle,
+            travel=norm(tip - start),
+            bend=uniform(0.0, len(tip)),
+            angle=both_by_row(_angles, axis_before, axis),
             spin_change=change,
             inside=inside,
         )
@@ -101,6 +101,15 @@ class Way:
         if not self.angle.any():
             return np.abs(self.spin_change)
         return np.hypot(self.angle, np.abs(self.spin_change) + self.half_tilt() * self.angle)
+
+
+def _angles(before: Array, after: Array) -> Array:
+    """Angles between unit axes, exactly 0 where they are the same."""
+    x, y, z = (after != before).T
+    turns = x | y | z
+    angle = np.zeros(len(after))
+    angle[turns] = angle_between(before[turns], after[turns])
+    return angle
 
 
 def turn_between(start: Array, end: Array, spin_change: Array) -> Array:

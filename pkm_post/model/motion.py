@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model.columns import RowType, freeze
+from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.event import Event
 from pkm_post.model.poses import Poses
 from pkm_post.model.program import Array
@@ -62,19 +62,20 @@ class Motion:
     def __len__(self) -> int:
         return len(self.time_ms)
 
-    def poses(self) -> Poses:
-        """The poses at the knots with their rates; second derivatives are not known here and are zero."""
-        unknown = np.zeros((len(self), 3))
+    def poses(self, rows: slice | Array = slice(None)) -> Poses:
+        """The poses at the knots, or at some, with their rates; second derivatives are not known here and are zero."""
+        tip = self.tip[rows]
+        unknown = uniform([0.0] * 3, len(tip))
         return Poses(
-            tip=self.tip,
-            tip_1=self.tip_rate,
+            tip=tip,
+            tip_1=self.tip_rate[rows],
             tip_2=unknown,
-            axis=self.axis,
-            axis_1=self.axis_rate,
+            axis=self.axis[rows],
+            axis_1=self.axis_rate[rows],
             axis_2=unknown,
-            spin=self.spin,
-            spin_1=self.spin_rate,
+            spin=self.spin[rows],
+            spin_1=self.spin_rate[rows],
             spin_2=unknown[:, 0],
-            tool_length=self.tool_length,
-            segment=self.segment,
+            tool_length=self.tool_length[rows],
+            segment=self.segment[rows],
         )

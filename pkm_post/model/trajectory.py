@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.model.certificate import Tolerances
-from pkm_post.model.columns import RowType, by_row, freeze, uniform
+from pkm_post.model.columns import RowType, by_row, freeze, is_uniform, shifted, uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.event import Event
 from pkm_post.model.program import MOTION_COLUMNS, Array
@@ -115,7 +115,7 @@ class Trajectory:
 
     def tool_length(self) -> Array:
         """Gauge length of the tool in use, (N,) in mm."""
-        return lengths_of(self.tools, self.tool)
+        return by_row(lambda tool: lengths_of(self.tools, tool), self.tool)
 
     def tip_tolerances(self, asked: float) -> Array:
         """How far the tip may leave each segment, (N,) in mm: as the program says, else as was asked for."""
@@ -126,13 +126,16 @@ class Trajectory:
 
         At a tool change the platform stands still: the tip of the new tool is where its own length puts it.
         """
-        before = np.vstack([self.start_tip, self.tip[:-1]])
-        longer = np.diff(self.tool_length(), prepend=self.tool_length()[:1])
-        return before - longer[:, None] * self.axis_before()
+        before, length = np.vstack([self.start_tip, self.tip[:-1]]), self.tool_length()
+        if not is_uniform(length):
+            longer = np.diff(length, prepend=length[:1])
+            changes = np.flatnonzero(longer)
+            before[changes] -= longer[changes, None] * self.axis_before()[changes]
+        return before
 
     def axis_before(self) -> Array:
         """Tool axis at the start of each segment, (N, 3)."""
-        return np.vstack([self.start_axis, self.axis[:-1]])
+        return shifted(self.start_axis, self.axis)
 
     def axis_at(self, rows: Sequence[int]) -> Array:
         """Tool axis where events at these rows take place, (M, 3); row N is the end of all."""
@@ -147,4 +150,4 @@ class Trajectory:
 
     def spin_before(self) -> Array:
         """Spin at the start of each segment, (N,)."""
-        return np.concatenate([[self.start_spin], self.spin[:-1]])
+        return shifted(self.start_spin, self.spin)

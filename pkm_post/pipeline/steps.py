@@ -118,10 +118,7 @@ def _all_steps(
     """The steps in their order; the names of the parts of the program, and the content of the report."""
     frame = Frame(path, machine, *run.value(controller_settings(machine)), options)
     trajectory = _stored_trajectory(run, frame, program)
-    tool_path, schedule = _feed_plan(run, frame, trajectory)
-    covered = _collisions(run, frame, trajectory, setup)
-    motion, struts = _interpolation(run, frame, trajectory, tool_path, schedule)
-    names = _motion_program(run, frame, trajectory, struts)
+    motion, names, covered = _written_program(run, frame, trajectory, setup)
     played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
     report = _report(run, frame, trajectory, motion, played, certificate, program.reading, files)
     for name in options.also:
@@ -136,12 +133,37 @@ def _trajectory_hash(frame: Frame) -> str:
 def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
     """The trajectory as its file says it: what is planned is what was stored."""
     with run.step(_TRAJECTORY) as told:
-        placed = run.value(trajectory_of(program, frame.machine, frame.options))
-        stored = frame.beside(".pkmt")
-        trajectory_file.write(replace(placed, tolerances=frame.tolerances), stored)
-        trajectory = run.value(trajectory_file.read(stored))
+        trajectory = run.value(trajectory_file.read(_store(run, frame, program)))
         told.append(f"{len(trajectory)} segments")
     return trajectory
+
+
+def _store(run: Run, frame: Frame, program: Program) -> Path:
+    """Place a program and write its trajectory; the path of the file."""
+    placed = run.value(trajectory_of(program, frame.machine, frame.options))
+    stored = frame.beside(".pkmt")
+    trajectory_file.write(replace(placed, tolerances=frame.tolerances), stored)
+    return stored
+
+
+def _written_program(
+    run: Run, frame: Frame, trajectory: Trajectory, setup: Setup
+) -> tuple[Motion, list[str], tuple[Coverage, ...]]:
+    """The plan, the names of the parts of the program, and what was checked.
+
+    What the plan is made from and the struts are gone when the program is read back: a long one needs the memory.
+    """
+    motion, struts, covered = _planned(run, frame, trajectory, setup)
+    return motion, _motion_program(run, frame, trajectory, struts), covered
+
+
+def _planned(
+    run: Run, frame: Frame, trajectory: Trajectory, setup: Setup
+) -> tuple[Motion, StrutMotion, tuple[Coverage, ...]]:
+    """Tool poses and strut lengths by time, and what was checked."""
+    tool_path, schedule = _feed_plan(run, frame, trajectory)
+    covered = _collisions(run, frame, trajectory, setup)
+    return *_interpolation(run, frame, trajectory, tool_path, schedule), covered
 
 
 def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath, Schedule]:
@@ -182,8 +204,8 @@ def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: Stru
     with run.step(_PROGRAM) as told:
         controller, settings, machine = frame.controller, frame.settings, frame.machine
         records = program_seal.record_lines(_trajectory_hash(frame), machine.fingerprint)
-        unsealed = controller.program_parts(struts, settings, [*summary.heading(trajectory), *records])
-        parts = tuple(map(program_seal.sealed, unsealed))
+        heading = [*summary.heading(trajectory), *records]
+        parts = tuple(map(program_seal.sealed, controller.program_parts(struts, settings, heading)))
         names = outputs.write_parts(frame.path, parts)
         setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
         if setup is not None:
@@ -197,13 +219,19 @@ def _certificate(
 ) -> tuple[StrutMotion, Certificate, dict[str, Any]]:
     """The program read back from its text, what it does, and what the report says of the bytes of both files."""
     with run.step(_CERTIFICATE) as told:
-        texts = run.value(read_texts(frame.path, frame.controller))
-        played = run.value(frame.controller.read_parts(texts, frame.settings))
+        played, digests = _read_back(run, frame)
         measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
         certificate = run.value(measured)
         told.append(f"{certificate.instants} instants")
-        files = summary.hashes([program_seal.digest(text) for _, text in texts], _trajectory_hash(frame))
+        files = summary.hashes(digests, _trajectory_hash(frame))
     return played, certificate, files
+
+
+def _read_back(run: Run, frame: Frame) -> tuple[StrutMotion, list[str]]:
+    """The motion of the program and the hashes of its parts; the texts are gone when it is measured."""
+    texts = run.value(read_texts(frame.path, frame.controller))
+    played = run.value(frame.controller.read_parts(texts, frame.settings))
+    return played, [program_seal.digest(text) for _, text in texts]
 
 
 def _report(

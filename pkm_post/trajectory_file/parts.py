@@ -33,9 +33,9 @@ def _start(trajectory: Trajectory, row: int) -> dict[str, Any]:
         return {}
     last = row - 1
     longer = _tool_length(trajectory, row) - _tool_length(trajectory, last)
-    axis = trajectory.axis[last]
+    tip, axis = trajectory.tip[last], trajectory.axis[last]
     return {
-        "start_tip": trajectory.tip[last] - longer * axis,
+        "start_tip": tip - longer * axis if longer else tip,
         "start_axis": axis,
         "start_spin": float(trajectory.spin[last]),
     }

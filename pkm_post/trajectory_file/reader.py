@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.model import Diagnostic, Event, EventKind, Place, Tool, Trajectory
 from pkm_post.model.certificate import Tolerances
-from pkm_post.model.columns import locked, uniform
+from pkm_post.model.columns import Filled
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
 from pkm_post.trajectory_file.container import Content, DamageError, bytes_of, opened
 from pkm_post.trajectory_file.interpolation import blocks, strayed
@@ -119,18 +119,19 @@ def _strings(places: Records, text: Records) -> list[str]:
 
 
 def _columns(segments: Records) -> dict[str, Any]:
-    """The columns of a trajectory, part by part, as a record is fetched from memory as a whole."""
-    columns = {name: np.empty((len(segments), *row), dtype) for name, (dtype, row) in TRAJECTORY_COLUMNS.items()}
-    for begin in range(0, len(segments), SEGMENTS):
+    """The columns of a trajectory, part by part, as a record is fetched from memory as a whole.
+
+    A column whose rows are all alike, as that of the axis of work with three axes, takes the memory of one.
+    """
+    columns = {name: Filled(len(segments)) for name in TRAJECTORY_COLUMNS}
+    for begin in range(0, max(len(segments), 1), SEGMENTS):
         part = segments[begin : begin + SEGMENTS]
-        for name, column in columns.items():
-            if column.dtype == np.bool_ and np.any(part[name] > 1):
+        for name, (dtype, _) in TRAJECTORY_COLUMNS.items():
+            if dtype == np.bool_ and np.any(part[name] > 1):
                 row = int(np.argmax(part[name] > 1))
                 raise DamageError(f"segment {begin + row}: the flag {name} is {part[name][row]}")
-            column[begin : begin + len(part)] = part[name]
-    if not columns["tip_tolerance"].any():  # as in most programs: one zero stands for all, as it was before
-        columns["tip_tolerance"] = uniform(0.0, len(segments))
-    return {name: locked(column) for name, column in columns.items()}
+            columns[name].put(begin, part[name].astype(dtype))
+    return {name: column.whole() for name, column in columns.items()}
 
 
 def _events(instructions: Records) -> tuple[Event, ...]:

@@ -11,7 +11,7 @@ from posted_jobs import of, preset
 from programs import program, random_job
 
 from pkm_post.certificate.drives import contour_error
-from pkm_post.certificate.knots import Knots
+from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import hermite_lengths, norm
 from pkm_post.kinematics import forward
 
@@ -67,7 +67,7 @@ def off_path(path, points):
 
 def steady(machine, motion, struts):
     """Contour errors of a motion where it runs steadily, in micrometres."""
-    task = SimpleNamespace(struts=struts, knots=Knots.of(machine, motion))
+    task = SimpleNamespace(struts=struts, knots=ToolCourse.of(machine, struts, motion)[1])
     begin, end = np.searchsorted(struts.time_ms, [part * struts.time_ms[-1] for part in STEADY])
     return contour_error(task, machine.velocity_gain)[begin:end]
 

@@ -8,12 +8,11 @@ from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
 from pkm_post import planning
-from pkm_post.certificate import joints, playback
-from pkm_post.certificate import knots as knots_module
+from pkm_post.certificate import joints, playback, tool_course
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.instants import look
 from pkm_post.certificate.joints import pass_joints
-from pkm_post.certificate.knots import Knots
+from pkm_post.certificate.knots import inverses_at
 from pkm_post.certificate.playback import play
 from pkm_post.certificate.struts import off_plan
 from pkm_post.certificate.tool_at import Task
@@ -54,15 +53,20 @@ def planned(job):
     return machine, trajectory, motion, printed
 
 
-def by_newton(knots):
-    """The same knots, and no Jacobian trusted beyond its own pose."""
-    return dataclasses.replace(knots, alike=np.zeros_like(knots.alike))
+def knots_of(job):
+    machine, _, motion, printed = planned(job)
+    return ToolCourse.of(machine, printed, motion)[1]
 
 
-def task_of(job, knots=None, struts=None):
+def by_newton(task):
+    """The same task with no Jacobian trusted beyond its own pose."""
+    return dataclasses.replace(task, knots=dataclasses.replace(task.knots, alike=np.zeros_like(task.knots.alike)))
+
+
+def task_of(job, struts=None):
     machine, trajectory, motion, printed = planned(job)
-    struts, knots, ceiling = struts or printed, knots or Knots.of(machine, motion), np.full(len(printed) - 1, FEED)
-    course = ToolCourse.of(machine, struts, motion, knots)
+    struts, ceiling = struts or printed, np.full(len(printed) - 1, FEED)
+    course, knots = ToolCourse.of(machine, struts, motion)
     return Task(struts, machine, TrajectoryRuler(trajectory, TOLERANCES), motion, knots, course, ceiling)
 
 
@@ -85,7 +89,8 @@ def assert_alike(one, other):
 def test_linear_steps_and_newtons_method_agree(job):
     one = task_of(job)
     assert one.knots.alike.mean() > 0.9
-    other = task_of(job, by_newton(one.knots))
+    other = by_newton(task_of(job))
+    other.course.missed[:] = np.inf
     assert_alike(seen(one), seen(other))
     np.testing.assert_allclose(seen(one).worst[2], seen(other).worst[2], rtol=SPEED_MISSED, atol=1e-9)
     for name, tolerance in (("tip", TOLERANCES.tip), ("axis", TOLERANCES.axis)):
@@ -98,7 +103,7 @@ def test_they_agree_on_a_program_that_is_far_off_its_plan_as_well():
     _, _, _, struts = planned("lines that turn")
     length = struts.length + np.random.default_rng(5).normal(scale=0.3, size=struts.length.shape)
     one = task_of("lines that turn", struts=StrutMotion(struts.time_ms, length, struts.speed, struts.events))
-    other = dataclasses.replace(one, knots=by_newton(one.knots))
+    other = by_newton(one)
     assert seen(other).worst[0].min() * TOLERANCES.tip > 0.01
     assert_alike(seen(one), seen(other))
 
@@ -126,26 +131,35 @@ def test_passes_of_other_sizes_find_the_same(monkeypatch, at_once):
         )
 
 
-@pytest.mark.parametrize("at_once", [1, 7])
+@pytest.mark.parametrize("at_once", [1, 7, 1000])
 def test_knots_of_other_sizes_of_passes_are_the_same(monkeypatch, at_once):
+    machine, _, motion, struts = planned("another tool")
+    course, knots = ToolCourse.of(machine, struts, motion)
+    monkeypatch.setattr(tool_course, "_AT_ONCE", at_once)
+    course_in_pieces, knots_in_pieces = ToolCourse.of(machine, struts, motion)
+    for one, other in ((course_in_pieces, course), (knots_in_pieces, knots)):
+        for field in dataclasses.fields(one):
+            found, expected = getattr(one, field.name), getattr(other, field.name)
+            np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12, err_msg=field.name)
+
+
+def test_inverse_jacobians_of_some_knots_are_those_of_all():
     machine, _, motion, _ = planned("another tool")
-    whole = Knots.of(machine, motion)
-    monkeypatch.setattr(knots_module, "_AT_ONCE", at_once)
-    parts = Knots.of(machine, motion)
-    np.testing.assert_allclose(parts.inverse, whole.inverse, rtol=1e-9, atol=1e-12)
-    np.testing.assert_array_equal(parts.alike, whole.alike)
+    knots, rows = knots_of("another tool"), np.array([7, 3, 4, 20])
+    for found, expected in zip(inverses_at(machine, motion, rows), (rows, rows + 1), strict=True):
+        np.testing.assert_allclose(found[:, :3], knots.tip_inverse[expected], rtol=1e-9, atol=1e-12)
 
 
 def test_a_jacobian_is_not_alike_across_a_change_of_tools():
-    machine, _, motion, _ = planned("another tool")
+    _, _, motion, _ = planned("another tool")
     changes = np.flatnonzero(np.diff(motion.tool_length))
     assert len(changes) == 1
-    assert not Knots.of(machine, motion).alike[changes].any()
+    assert not knots_of("another tool").alike[changes].any()
 
 
 def test_the_plan_at_the_knots_is_that_of_the_struts():
     machine, _, motion, struts = planned("lines that turn")
-    knots = Knots.of(machine, motion)
+    knots = knots_of("lines that turn")
     length, speed, _ = strut_rates(machine, motion.poses())
     np.testing.assert_allclose(knots.length, length, atol=1e-9)
     np.testing.assert_allclose(knots.speed, speed, atol=1e-9)

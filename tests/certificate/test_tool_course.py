@@ -8,7 +8,6 @@ import pytest
 from test_nothing_exceeds import certified
 
 from pkm_post.certificate import tool_course as course_module
-from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import hermite_lengths, hermite_speeds
@@ -29,7 +28,7 @@ def course_of(job, struts=None):
         pytest.skip("beyond the reach of the machine")
     machine, _, motion, printed, _ = certified(job)
     struts = struts or printed
-    return machine, motion, struts, ToolCourse.of(machine, struts, motion, Knots.of(machine, motion))
+    return machine, motion, struts, ToolCourse.of(machine, struts, motion)[0]
 
 
 def by_newton(machine, motion, struts, rows, tip, axis, spin):

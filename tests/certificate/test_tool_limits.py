@@ -54,7 +54,7 @@ def test_jobs_are_posted_within_the_limits(name, seed, tolerances, decimals):
 
 def test_where_the_course_says_nothing_the_figures_are_those_of_newtons_method(monkeypatch):
     *_, told, _ = posted("example_6tps", 6, NARROW)
-    blind = lambda course: (np.zeros((2, len(course.duration))), np.full((2, len(course.duration)), np.inf))  # noqa: E731
+    blind = lambda _, rows: (np.zeros((2, len(rows))), np.full((2, len(rows)), np.inf))  # noqa: E731
     monkeypatch.setattr(ToolCourse, "rates", blind)
     *_, closely, _ = of(preset("example_6tps"), random_job(np.random.default_rng(6)), NARROW)
     for row in ("turning rate of the tool axis", "tip acceleration"):

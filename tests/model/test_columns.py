@@ -6,7 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from pkm_post.model.columns import by_row, freeze, is_uniform, locked, uniform
+from pkm_post.model.columns import (
+    Filled,
+    both_by_row,
+    by_row,
+    freeze,
+    in_pieces,
+    is_uniform,
+    locked,
+    pieces,
+    rows_of,
+    shifted,
+    uniform,
+)
 
 
 @dataclass(frozen=True)
@@ -76,3 +88,63 @@ def test_a_function_of_rows_is_the_same_of_uniform_ones(rows):
 def test_another_shape_is_refused():
     with pytest.raises(ValueError, match=r"Table.point: expected \(3, 2\), got \(3, 3\)"):
         Table([1, 2, 3], np.zeros((3, 3)))
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 1000, 1001])
+def test_pieces_cover_all_rows_in_order(at_once):
+    found = [np.arange(1000)[rows] for rows in pieces(1000, at_once)]
+    assert max(map(len, found)) == min(at_once, 1000)
+    assert np.concatenate(found).tolist() == list(range(1000))
+    assert [(rows.start, rows.stop) for rows in pieces(0, at_once)] == [(0, 0)]
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 1000, 1001])
+def test_columns_in_pieces_are_those_of_all_rows(at_once):
+    numbers = np.random.default_rng(1).normal(size=(1000, 3))
+
+    def of(rows):
+        some = numbers[rows]
+        return some**2, np.ones(len(some)), np.full((len(some), 3), np.nan)
+
+    square, same, missing = in_pieces(1000, at_once, of)
+    np.testing.assert_array_equal(square, numbers**2)
+    assert square.flags.c_contiguous and not is_uniform(square)
+    np.testing.assert_array_equal(same, np.ones(1000))
+    np.testing.assert_array_equal(missing, np.full((1000, 3), np.nan))
+    assert is_uniform(same) and is_uniform(missing)
+    assert not any(column.flags.writeable for column in (square, same, missing))
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 1000])
+@pytest.mark.parametrize("row", [0, 6, 7, 999])
+def test_one_other_row_is_kept_wherever_it_is(at_once, row):
+    column = np.zeros(1000)
+    column[row] = -0.0
+    (found,) = in_pieces(1000, at_once, lambda rows: (column[rows],))
+    assert found.tobytes() == column.tobytes()
+
+
+def test_no_rows_are_a_column_without_rows():
+    (found,) = in_pieces(0, 7, lambda rows: (np.ones((4, 3))[rows],))
+    assert found.shape == (0, 3)
+    with pytest.raises(ValueError, match="at least one piece"):
+        Filled(3).whole()
+
+
+def test_rows_of_a_uniform_column_take_no_memory():
+    few = rows_of(uniform([1.0, 2.0], 10**9), np.array([5, 7, 9]))
+    assert few.tolist() == [[1.0, 2.0]] * 3 and is_uniform(few)
+    assert rows_of(POINT, np.array([2, 0])).tolist() == POINT[[2, 0]].tolist()
+
+
+def test_a_shifted_column_begins_with_the_row_before():
+    assert shifted([7.0, 8.0], POINT).tolist() == [[7.0, 8.0], [0.0, 1.0], [2.0, 3.0]]
+    same = uniform([7.0, 8.0], 10**9)
+    assert shifted([7.0, 8.0], same) is same
+    assert shifted([9.0, 8.0], uniform([7.0, 8.0], 3)).tolist() == [[9.0, 8.0], [7.0, 8.0], [7.0, 8.0]]
+
+
+def test_functions_of_two_uniform_columns_are_computed_once():
+    long = uniform(2.0, 10**9)
+    assert is_uniform(both_by_row(np.subtract, long, long))
+    assert both_by_row(np.subtract, uniform(2.0, 3), np.arange(3.0)).tolist() == [2.0, 1.0, 0.0]

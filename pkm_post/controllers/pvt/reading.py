@@ -15,6 +15,7 @@ import numpy as np
 from pkm_post.controllers.pvt.moves import Lines, lines_of
 from pkm_post.controllers.pvt.syntax import EFFECTS, FINISHED, START, Grammar, effect, state_after
 from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
+from pkm_post.model.columns import locked
 from pkm_post.model.program import Array
 
 MOST_FAULTS = 20
@@ -39,7 +40,8 @@ class Reading:
         }
         self._grammar, self._file = grammar, file
         self._state = START
-        self._values: list[Array] = []
+        self._lengths: list[Array] = []
+        self._speeds: list[Array] = []
         self._knots = self._interval = 0
         self._intervals: list[Array] = []
         self._halts: list[tuple[int, int]] = []
@@ -83,9 +85,8 @@ class Reading:
         return None if self.faults else motion
 
     def _motion(self) -> StrutMotion:
-        values = np.concatenate(self._values)
         time_ms = np.cumsum(np.concatenate([[0], *self._intervals]))
-        return StrutMotion(time_ms, values[:, :, 0], values[:, :, 1], tuple(self._events))
+        return StrutMotion(locked(time_ms), _joined(self._lengths), _joined(self._speeds), tuple(self._events))
 
     def _check_rest(self, motion: StrutMotion) -> None:
         """Every interruption must find the struts at rest; whether the end does is a matter of the whole motion."""
@@ -114,7 +115,8 @@ class Reading:
             self._fault(number, 0, line, f"the numbers {expected}")
 
     def _approach(self, number: int, line: str, numbers: Sequence[str]) -> None:
-        self._values.append(np.array([[[float(length), 0.0] for length in numbers]]))
+        self._lengths.append(np.array([[float(length) for length in numbers]]))
+        self._speeds.append(np.zeros((1, 6)))
         self._knots += 1
 
     def _move(self, number: int, line: str, numbers: Sequence[str]) -> None:
@@ -122,7 +124,8 @@ class Reading:
 
     def _moves(self, values: Array, intervals: Array) -> None:
         """Take moves: their lengths and speeds, (M, 6, 2), and the time that each takes in ms, (M,)."""
-        self._values.append(values)
+        self._lengths.append(values[:, :, 0].copy())
+        self._speeds.append(values[:, :, 1].copy())
         self._intervals.append(intervals)
         self._knots += len(values)
         self._interval = int(intervals[-1])
@@ -160,6 +163,13 @@ class Reading:
         shown = repr(line[position : position + _SHOWN]) if line[position:] else "the end"
         place = Place(self._file, line=number, column=position + 1)
         self.faults.append(Diagnostic("C101", place, f"{shown}, expected {expected}"))
+
+
+def _joined(pieces: list[Array]) -> Array:
+    """Pieces as one column, in which they end: a long program does not fit twice."""
+    column = np.concatenate(pieces)
+    pieces.clear()
+    return locked(column)
 
 
 def _kind(name: str) -> str:

@@ -65,14 +65,16 @@ def _stretches(motion: StrutMotion, settings: Settings, words: Words) -> list[st
     intervals = _interval_lines(motion, words.interval)
     ends = np.zeros(len(motion), dtype=np.uint8)
     ends[_resting_knots(motion)] = ord(_END_OF_STRETCH)
-    text = bytearray()
+    stretches: list[list[str]] = [[]]
     for start in range(1, len(motion), _ROWS_PER_CHUNK):
         rows = slice(start, start + _ROWS_PER_CHUNK)
         length = printed(motion.length[rows], settings.length_decimals)
         speed = printed(motion.speed[rows], settings.speed_decimals)
         lines = _lines(intervals[rows], settings.letters, length, speed, ends[rows])
-        text += lines.tobytes().translate(None, BLANK)
-    return text.decode("ascii").split(_END_OF_STRETCH)[:-1]
+        first, *others = lines.tobytes().translate(None, BLANK).decode("ascii").split(_END_OF_STRETCH)
+        stretches[-1].append(first)
+        stretches += [[text] for text in others]
+    return ["".join(texts) for texts in stretches[:-1]]
 
 
 def _lines(intervals: Array, letters: Sequence[str], length: Array, speed: Array, ends: Array) -> Array:
