@@ -32,10 +32,15 @@ def a_program_is_loaded_held_and_resumed():
     face, console = panel.face, panel.console
     face.pages.setCurrentWidget(face.program)
     lengths = newest().status.commanded
+    before = len(messages())
+    face.program.read(program_file("two.pmc"))
+    until(lambda: len(messages()) > before and not console.waits)
+    not_certified = [messages()[before:], console.job is None, face.program.load.isEnabled()]
     face.program.read(program_file("two.pmc"), uncertified=True)
     until(lambda: console.job is not None and not console.waits)
     settle()
     found = {
+        "not certified": not_certified,
         "name": face.program.name.text(),
         "near": float(np.abs(lengths - HOME_MM).max()),
         "start before": face.program.start.isEnabled(),

@@ -97,6 +97,8 @@ def test_the_machine_of_the_document_shows_its_own_pose_again(session):
 
 def test_a_program_is_loaded_held_and_resumed(programs):
     found = programs["a_program_is_loaded_held_and_resumed"]
+    told, no_job, can_load = found["not certified"]
+    assert "error C110" in "".join(told) and no_job and not can_load
     assert (found["name"], found["start before"]) == ("two.pmc, 2.0 s", False)
     assert found["loaded"].startswith("Program 10:") and found["loaded"].endswith("listed back as sent")
     assert found["bar"] and found["override"] == 40.0
