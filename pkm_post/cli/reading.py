@@ -7,7 +7,6 @@ import argparse
 import os
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,9 +47,10 @@ def reading_from(namespace: argparse.Namespace) -> Reading:
 
 def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]:
     """The options that mean nothing for any of the files, as diagnostics."""
-    if find_spec("numpy") is None:  # then this command runs itself inside FreeCAD, and looks there
+    try:
+        from pkm_post.model import Diagnostic, Place
+    except ImportError:  # no NumPy, or one for another Python: this command runs itself inside FreeCAD, and looks there
         return []
-    from pkm_post.model import Diagnostic, Place
 
     beside = (name for name, default in _BESIDE.items() if getattr(namespace, name, default) != default)
     place = Place(str(files[0]) if len(files) == 1 else "arguments")
