@@ -63,7 +63,7 @@ fuzz: $(FUZZ_VENV)/made ## feed the readers of part programs with bytes (FUZZ_SE
 	@PYTHONPATH=. $(FUZZ_VENV)/bin/python fuzz/part_programs.py -max_total_time=$(FUZZ_SECONDS) \
 		-timeout=20 -rss_limit_mb=2048 -print_final_stats=1
 
-soak: $(VENV)/made ## download over faulty links, kill posting processes (SOAK_DOWNLOADS=10000 SOAK_KILLS=1000)
+soak: $(VENV)/made ## sessions and downloads over faulty links, killed posts (SOAK_DOWNLOADS=10000 SOAK_KILLS=1000)
 	@folder=$$(mktemp -d); trap 'rm -rf "$$folder"' EXIT; \
 	PYTHONPATH=. $(VENV)/bin/python tests/files/killed_posts.py "$$folder" $(SOAK_KILLS)
 	@PYTHONPATH=. $(VENV)/bin/python tests/pmac_link/soak.py $(SOAK_DOWNLOADS)

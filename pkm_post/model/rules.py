@@ -548,6 +548,10 @@ RULES: dict[str, Rule] = {
         "a program buffer is open that this port cannot close",
         "close it where it was opened, or disconnect what loads a program there",
     ),
+    "C215": _error(
+        "the file with the known host keys cannot be read",
+        "correct or remove that line, or name another file with --known-hosts",
+    ),
     # V1: the certificate
     "V101": _error("the tool tip leaves the programmed path", "ask for a wider tolerance, or report this as a fault"),
     "V102": _error("the tool axis leaves the programmed axis", "ask for a wider tolerance, or report this as a fault"),

@@ -78,7 +78,7 @@ class SocketLink(abc.ABC):
             data = bytes(connection.recv(CHUNK))
         except TimeoutError:
             return b""
-        except OSError as fault:
+        except (OSError, EOFError) as fault:  # paramiko: a peer that has gone is an EOFError
             raise LinkLostError(f"{self.host}: {fault}") from fault
         if not data:
             raise LinkLostError(f"{self.host} closed the connection")
@@ -90,7 +90,7 @@ class SocketLink(abc.ABC):
         connection.settimeout(self.timeout)
         try:
             self.send_all(connection, data)
-        except OSError as fault:
+        except (OSError, EOFError) as fault:
             raise LinkLostError(f"{self.host}: {fault}") from fault
 
     def send_all(self, connection: Any, data: bytes) -> None:

@@ -153,8 +153,8 @@ class Ownership:
 
     def _see(self) -> None:
         there = read_record(self._session)
-        if not there.owner and free_words(self._session) >= 0:
-            self._session.ask(_swap(0, self._owner))  # a controller that was reset has forgotten it
+        if not there.owner and not there.since and free_words(self._session) >= 0:
+            self._session.ask(_swap(0, self._owner))  # a controller that was reset has forgotten all of it
             there = read_record(self._session)
         if there.owner != self._owner:
             raise NotOwnerError(_diagnostic(self._session, "C211", str(there)), there.action)

@@ -73,7 +73,8 @@ def status_of(told: tuple[str, ...], settings: Settings) -> Status:
     bits = hexadecimal(told[18], PowerSystemBits.DIGITS)
     for place, value in enumerate(told[20:], start=_STATUS_BITS):
         bits |= int(float(value) != 0) << place
-    return Status(motors, PowerSystemBits(bits), float(told[19]), *lengths_and_errors(told, settings))
+    length, error = lengths_and_errors(told, settings)
+    return Status(motors, PowerSystemBits(bits), float(told[19]), length, error, slows_in_a_hold=False)
 
 
 def _motor(value: int) -> PowerMotorBits:

@@ -21,7 +21,8 @@ from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.start_pose import start_faults
 from pkm_post.pmac_link.status import MOTORS, Array, Status
 
-_DEFINITION = re.compile(r"([-+]?[\d.]+)?([A-Z])([-+][\d.]+)?")
+_UNSIGNED = r"(?:\d+\.?\d*|\.\d+)"
+_DEFINITION = re.compile(rf"([-+]?{_UNSIGNED})?([A-Z])([-+]{_UNSIGNED})?")
 _REAL = r"[-+]?\d+(?:\.\d*)?"
 _ROTARY = "ABC"
 

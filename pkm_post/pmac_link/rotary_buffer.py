@@ -10,6 +10,7 @@ Enters: a session, the lines, the size of the buffer in 48-bit words. Leaves: li
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Sequence
 from itertools import accumulate
 
@@ -54,7 +55,7 @@ class RotaryBuffer:
     def ahead(self) -> int:
         """Lines in it that were not begun."""
         told = self._session.ask(f"{self._system}PR")
-        if len(told) != 1 or not told[0].strip().isdecimal():
+        if len(told) != 1 or not re.fullmatch(r"\d{1,9}", told[0].strip()):
             raise LinkLostError(f"PR: expected a number of lines, got {told}")
         return int(told[0])
 

@@ -126,13 +126,19 @@ class SshLink(SocketLink):
                 )
 
         client.set_missing_host_key_policy(Refuse())
-        if self._known_hosts is None:
-            client.load_system_host_keys()
-            return
+        from pkm_post.model import Diagnostic, Place
+
+        file = self._known_hosts or Path("~/.ssh/known_hosts").expanduser()
         try:
-            client.load_system_host_keys(str(self._known_hosts))
+            ssh.HostKeys(str(file)).lookup(host)  # some lines are only found faulty when one is looked for
+            client.load_system_host_keys(str(file))
         except OSError as fault:
-            raise NoAccessError(f"{self._known_hosts}: {fault.strerror}") from fault
+            if self._known_hosts is not None:
+                raise NoAccessError(f"{file}: {fault.strerror}") from fault
+        except (ssh.hostkeys.InvalidHostKey, ssh.SSHException, ValueError) as fault:
+            raise NoAccessError(
+                str(Diagnostic("C215", Place(str(file), line=_bad_line(file, ssh)), str(fault)))
+            ) from fault
 
     def _asked_password(self) -> bool:
         """Ask the user once for a password; whether there is one to try now."""
@@ -140,6 +146,16 @@ class SshLink(SocketLink):
             return False
         self._password = getpass.getpass(f"password of {self._user} at {self.host}: ")
         return True
+
+
+def _bad_line(file: Path, ssh: ModuleType) -> int:
+    """The first line that is no host key; 0 when each of them is one by itself."""
+    for number, line in enumerate(file.read_bytes().splitlines(), 1):
+        try:
+            ssh.hostkeys.HostKeyEntry.from_line(line.decode(), number)
+        except (ssh.hostkeys.InvalidHostKey, ssh.SSHException, ValueError):
+            return number
+    return 0
 
 
 class _Socket(socket.socket):

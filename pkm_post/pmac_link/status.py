@@ -99,6 +99,8 @@ class Status:
         override: time base in %; 0 while held.
         length: (6,) strut lengths, mm.
         following_error: (6,) commanded less actual length, mm.
+        slows_in_a_hold: whether the override tells how far a hold has slowed the program down; a Power PMAC tells that
+            which is set.
     """
 
     motors: tuple[MotorBits, ...]
@@ -106,6 +108,7 @@ class Status:
     override: float
     length: Array
     following_error: Array
+    slows_in_a_hold: bool = True
 
     @property
     def commanded(self) -> Array:

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from pkm_post.controllers.pmac import Settings
 from pkm_post.controllers.power_pmac import Settings as PowerSettings
 from pkm_post.pmac_link.faults import CancelledError, NoAccessError, PmacError
+from pkm_post.pmac_link.ownership import read_record
 from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import MOTORS, Status, read_status
 
@@ -26,6 +27,8 @@ AnySettings = Settings | PowerSettings
 SHOWN_S = 0.5
 """Seconds in which the state has to show that a stop was taken; then it is sent again."""
 POLL_S = 0.02
+NEXT_SEGMENT_S = 1.0
+"""Seconds in which a stream lets its next segment go when its link is well."""
 _log = logging.getLogger(__name__)
 
 
@@ -66,6 +69,11 @@ def _is_held(status: Status) -> bool:
     return status.held
 
 
+def _is_held_or_ended(status: Status) -> bool:
+    """Held means that time stands still: while it slows down, struts that turn round stand for a moment."""
+    return not status.running or (status.held and (status.override == 0 or not status.slows_in_a_hold))
+
+
 def _is_ended(status: Status) -> bool:
     return not status.running
 
@@ -92,8 +100,7 @@ def hold(session: Session, settings: AnySettings) -> Status:
         CancelledError: another stop waits.
         NoAccessError: the controller's computer does not let this user in.
     """
-    ladder = _ladder(settings)
-    return _climb(session, settings, ladder, lambda status: status.held or not status.running)
+    return _climb(session, settings, _ladder(settings), _is_held_or_ended)
 
 
 def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Status:
@@ -112,7 +119,7 @@ def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Sta
     if not at_once:
         try:
             with session.in_a_hurry():
-                _try(session, settings, HOLD, lambda status: status.held or not status.running)
+                _try(session, settings, HOLD, _is_held_or_ended)
         except CancelledError:
             _log.warning("aborted without coming to rest before: another stop waits")
     return _climb(session, settings, tuple(rungs), _is_ended)
@@ -132,10 +139,40 @@ def _climb(
             if not rung.blindly and (seen is None or seen.standing):
                 continue
             seen = _try(session, settings, rung, is_stopped)
+            if seen is not None and _rests(seen, is_stopped) and _goes_on(session, settings, seen):
+                seen = _try(session, settings, rungs[0], is_stopped)
             if seen is not None and _rests(seen, is_stopped):
                 return seen
             _log.warning("the machine is not seen at rest after: %s", rung.name)
     raise AssertionError("the ladder has no end")
+
+
+def _goes_on(session: Session, settings: AnySettings, status: Status) -> bool:
+    """Whether another client's stream lets its next segment go: between two of them the machine rests by itself."""
+    if status.held or session.keeper is not None or not _is_streamed(session):
+        return False
+    until = session.now() + NEXT_SEGMENT_S
+    while session.now() < until:
+        seen = _read(session, settings)
+        if seen is not None and seen.running:
+            return True
+        session.give_way()
+        session.sleep(POLL_S)
+    return False
+
+
+def _is_streamed(session: Session) -> bool:
+    """Whether a stream has the machine, or that cannot be seen."""
+    if not session.has_handshake:
+        return False
+    try:
+        record = read_record(session)
+    except (CancelledError, NoAccessError):
+        raise
+    except PmacError as fault:
+        _log.warning("whether a program is streamed is not known: %s", fault)
+        return True
+    return bool(record.owner) and record.action == "stream"
 
 
 def _without_end(rungs: tuple[Rung, ...]) -> Iterator[Rung]:

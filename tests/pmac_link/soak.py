@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Thousands of downloads with faults, and a stream for every 50 of them: ``make soak``. Seeds give the same faults.
+"""Thousands of sessions and downloads with faults, and a stream for every 50: ``make soak``. A seed gives the same.
 
-python3 tests/pmac_link/soak.py [FAULTS [FIRST_SEED]]
+python3 tests/pmac_link/soak.py [HOW_MANY [FIRST_SEED]]
 """
 
 import logging
@@ -11,6 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+import sessions  # noqa: E402
 import streams  # noqa: E402
 from link_faults import by_chance, reference_of, small_program  # noqa: E402
 
@@ -27,6 +28,8 @@ def main(count=10_000, first=0):
         fault, outcome = by_chance(seed, program, reference)
         return fault, outcome.what
 
+    _tell(sessions.by_chance, count, first)
+    print(f"{count} sessions: the machine rested, or moved as was certified")
     _tell(downloaded, count, first)
     print(f"{count} downloads: each ended in the program as it was sent, or in an error that says what is left")
     _tell(streams.by_chance, count // DOWNLOADS_PER_STREAM, first)
@@ -41,8 +44,8 @@ def _tell(tried, count, first):
         except BaseException:
             print(f"seed {seed}", file=sys.stderr)
             raise
-    for (fault, what), times in sorted(ends.items()):
-        print(f"{fault:14} {what:12} {times:6}")
+    for (what, end), times in sorted(ends.items()):
+        print(f"{what:16} {end:20} {times:6}")
 
 
 if __name__ == "__main__":

@@ -226,7 +226,7 @@ def test_a_machine_that_is_not_ready_is_sent_nothing():
 @pytest.mark.parametrize("leftover", [Leftover.STOP, Leftover.LEAVE])
 def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, leftover):
     wire = wired(kind)
-    other = Wire(wire.controller, kind, line=wire.line)
+    other = Wire(wire.controller, kind, line=wire.line, moves=True)
 
     def progress(done, sent, total):
         if not other.sent and wire.controller.runs_program() and wire.controller.memory.rotaries[1].lines:

@@ -90,6 +90,30 @@ def test_a_file_of_host_keys_that_is_not_there(port, tmp_path):
         link.restart()
 
 
+@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize(
+    "line",
+    [
+        b"\xff\xfe\x00",
+        b"a b c d e f",
+        b"host ssh-rsa AAAAB3NzaC1yc2E=",
+        b"|1|bad ssh-ed25519 AAAAC3NzaC1lZDI1NTE5AAAAI",
+        b"|1|a|b ssh-ed25519 AAAAC3NzaC1lZDI1NTE5AAAAIJdD7y3aLq454yWBdwLWbieU1ebz9/cu7/QEXn9OIeZJ",
+    ],
+)
+def test_a_file_of_host_keys_that_is_damaged_is_named_with_its_line(server, port, tmp_path, line, named, capsys):
+    file = port.known_hosts if named else tmp_path / ".ssh" / "known_hosts"
+    file.parent.mkdir(exist_ok=True)
+    file.write_bytes(server.known_hosts(tmp_path / "good").read_bytes() + line + b"\n")
+    name = f"ssh:{USER}@127.0.0.1:{server.number}"
+    arguments = ["--known-hosts", str(file)] if named else []
+    assert main(["pmac", "probe", "--port", name, *arguments]) == 1
+    told = capsys.readouterr().err
+    assert f"{file}: " in told and "error C215: the file with the known host keys cannot be read" in told
+    assert "line 2: error" in told or line.startswith(b"|1|a|b")
+    assert server.tried == []
+
+
 def test_a_link_that_is_cut(server, port, monkeypatch):
     monkeypatch.setenv(ssh_link.PASSWORD, PASSWORD)
     link = port.link()
