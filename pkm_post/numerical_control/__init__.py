@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numerical control: the machine looked at, jogged, homed, and its program started, stepped, slowed, held and ended."""
+"""Numerical control: monitor, jog and home the machine; start, step, override, hold and abort its program."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Connection: a port and a machine file become a worker that operates the machine, and what has to be closed again.
+"""Connection: turn a port and a machine file into a worker that operates the machine, and into what must be closed.
 
-Enters: the name of a port and that of a machine, or a machine alone for a simulated one. Leaves: a connection, or what
-is wrong with the names. To connect takes as long as the controller takes to answer: windows do it beside themselves.
+Enters: the name of a port and of a machine, or a machine alone for simulation. Leaves: a connection, or what is wrong
+with the names. Connecting blocks until the controller answers, so windows connect in a thread.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from pkm_post.pmac_link.session import Leftover, Session
 
 @dataclass(frozen=True)
 class Target:
-    """What is to be connected to.
+    """Where to connect.
 
     Attributes:
-        port: where the controller is; None for a simulated one.
+        port: of the controller; None for a simulated one.
         machine: the machine.
-        settings: of its controller, those of a Turbo PMAC or, over ssh, of a Power PMAC.
+        settings: of its controller: a Turbo PMAC or, over ssh, a Power PMAC.
     """
 
     port: Port | None
@@ -37,17 +37,17 @@ class Target:
 
     @property
     def watch_only(self) -> bool:
-        """Whether the controller is one that is watched and stopped alone."""
+        """Whether this controller can only be monitored and stopped."""
         return self.port is not None and self.port.is_power
 
 
 @dataclass(frozen=True)
 class Connection:
-    """A machine that answered.
+    """A machine that responded.
 
     Attributes:
-        target: what was connected to.
-        worker: takes orders.
+        target: where the connection leads.
+        worker: executes orders.
     """
 
     target: Target
@@ -57,14 +57,14 @@ class Connection:
 
     @property
     def simulated(self) -> bool:
-        """Whether there is no machine."""
+        """Whether the machine is simulated."""
         return self._training is not None
 
     def close(self) -> None:
-        """End worker, link and simulation; nothing is stopped.
+        """Close worker, link and simulation; the machine is not stopped.
 
         Raises:
-            RuntimeError: the worker does not end, or it had ended by a fault.
+            RuntimeError: the worker does not end, or has crashed.
         """
         try:
             self.worker.close()
@@ -75,14 +75,14 @@ class Connection:
 
 
 def target_of(port: str | None, machine: str) -> tuple[Target | None, tuple[Diagnostic, ...]]:
-    """What two names mean.
+    """Resolve the names of a port and a machine.
 
     Args:
-        port: as ``ports.port_named`` takes it; None for a simulated machine.
+        port: a name for ``ports.port_named``; None for a simulated machine.
         machine: name or path of a machine file.
 
     Raises:
-        ValueError: the name of the port has no known form.
+        ValueError: the port name has no known form.
     """
     found = None if port is None else port_named(port)
     model, told = machine_named(machine)
@@ -94,16 +94,16 @@ def target_of(port: str | None, machine: str) -> tuple[Target | None, tuple[Diag
 
 
 def connect(target: Target, tool_length: float, simulated_speed: float = 1.0) -> Connection:
-    """Call the controller, and begin to read its state.
+    """Connect to the controller and start polling its state.
 
     Args:
-        target: what to connect to.
+        target: where to connect.
         tool_length: gauge length of the tool in the spindle, mm.
-        simulated_speed: of a simulated machine, simulated seconds in a second.
+        simulated_speed: simulated seconds per real second.
 
     Raises:
-        PmacError: no controller answers, or it lets nobody in.
-        ValueError: the length is not above zero.
+        PmacError: no controller answers, or it denies access.
+        ValueError: the length is not positive.
     """
     training, port = None, target.port
     if port is None:
@@ -123,5 +123,5 @@ def connect(target: Target, tool_length: float, simulated_speed: float = 1.0) ->
 
 
 def _own_number(of_jobs: int) -> int:
-    """A number for moves by hand that is not that of the jobs."""
+    """A program number for manual moves that differs from that of the jobs."""
     return OWN_PROGRAM if of_jobs != OWN_PROGRAM else OWN_PROGRAM - 1

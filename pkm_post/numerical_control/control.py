@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Control: one machine behind one session, for the command line and for a panel.
 
-Every method talks to the controller, waits no longer than its deadlines say, and belongs to one thread; ``worker`` runs
-it in one of its own. Plans are made first and executed after that: what the checks refuse never becomes a plan.
+Every method talks to the controller, returns within its deadlines, and must be called from one thread; ``worker``
+provides a dedicated one. Plans are made first and executed later: a move that fails its checks never becomes a plan.
 
-Enters: a session, a machine and what is in its spindle. Leaves: states and plans, frozen.
+Enters: a session, a machine and its gauge length. Leaves: states and plans, frozen.
 """
 
 from __future__ import annotations
@@ -43,20 +43,20 @@ Done = TypeVar("Done")
 _log = logging.getLogger(__name__)
 
 TOLERANCES = Tolerances(1e-3, math.radians(1e-3))
-"""Of moves by hand: those that posting has unless the user says otherwise."""
+"""Tolerances of manual moves: the posting defaults."""
 
 
 @dataclass(frozen=True)
 class State:
-    """What there is to show; one reading.
+    """A snapshot for display.
 
     Attributes:
-        status: of struts and program; the last one that was read when the link is lost, None before the first.
-        pose: of the tool by the actual lengths; None when there is none, or no strut was ever read.
-        lost: why there is no link; empty while there is one.
-        emergency: what a person has to do, when the link was lost while the machine may move.
-        homing: of a homing that was started here; None when none was.
-        block: the block that comes next; None without single block.
+        status: of struts and program; the last one read when the link is lost, None before the first reading.
+        pose: of the tool at the actual strut lengths; None if no pose fits, or before the first reading.
+        lost: why the link is lost; empty while it is up.
+        emergency: instructions for the operator when the link was lost while the machine may move.
+        homing: of a homing started here; None otherwise.
+        block: the next block; None outside single block mode.
     """
 
     status: Status | None
@@ -68,7 +68,7 @@ class State:
 
 
 class NumericalControl:
-    """A machine to look at and to operate."""
+    """Monitors and operates a machine."""
 
     def __init__(
         self,
@@ -78,14 +78,14 @@ class NumericalControl:
         tool_length: float,
         number: int = defaults.OWN_PROGRAM,
     ) -> None:
-        """Make it; the session connects by itself when it is not open.
+        """Create the control; the session connects on first use if it is not open.
 
         Args:
             session: to the controller.
             machine: the machine.
             settings: of its controller.
-            tool_length: gauge length of the tool in the spindle, mm; ``tool_length`` may be changed at any time.
-            number: of the program of moves by hand and of single blocks, and of the variable P of their watchdogs.
+            tool_length: gauge length of the tool in the spindle, mm; ``tool_length`` can be set at any time.
+            number: program number of manual moves and single blocks, and number of the P-variable of their watchdogs.
         """
         self._session, self._machine, self._settings, self._number = session, machine, settings, number
         self._watch: HomingWatch | None = None
@@ -98,11 +98,11 @@ class NumericalControl:
         self.tool_length = tool_length
 
     def give_way_when(self, is_waited_for: Callable[[], bool]) -> None:
-        """From now on leave what takes long, and start nothing, while ``is_waited_for`` says that a stop waits."""
+        """Abandon long operations and start none while ``is_waited_for`` reports a waiting stop."""
         self._session.give_way_when(is_waited_for)
 
     def attended_while(self, is_attended: Callable[[], bool]) -> None:
-        """From now on renew the watchdog of a jog only while ``is_attended`` says that somebody looks on."""
+        """Renew the watchdog of a jog only while ``is_attended`` reports that the operator is watching."""
         self._is_attended = is_attended
 
     @property
@@ -118,13 +118,13 @@ class NumericalControl:
         self._readout = Readout(self._machine, length)
 
     def poll(self) -> State:
-        """Read everything once, and renew the watchdog of a jog; a lost link is a state, not an error."""
+        """Read the state once and renew the watchdog of a jog; a lost link is a state, not an error."""
         try:
             status = read_status(self._session, self._settings)
             self._end_watch(status)
             self.renew()
         except CancelledError:
-            return self._last  # a stop is in a hurry; the next reading tells
+            return self._last  # a stop has priority; the next reading catches up
         except NotOwnerError as fault:
             _log.warning("%s", fault)
             if self._session.keeper is not None:
@@ -146,28 +146,28 @@ class NumericalControl:
         return self._last
 
     def plan_jog(self, jog: moves.Jog, feed: float) -> tuple[Plan | None, Findings]:
-        """Plan a jog from where the machine stands; ``feed`` in mm/s, of a turn in place in degrees per second.
+        """Plan a jog from the current pose; ``feed`` in mm/s, for a turn in place in degrees per second.
 
         Raises:
-            NotReadyError: nobody knows where the tool is, or it moves.
+            NotReadyError: the tool pose is unknown, or the machine moves.
         """
         here = self._here()
         plan, told = self._planned(*moves.trajectory_of(jog, self._machine, here, self.tool_length, feed))
         return (None if plan is None else replace(plan, is_jog=True)), told
 
     def plan_line(self, line: str, reading: mdi.Reading | None = None) -> tuple[Plan | None, Findings]:
-        """Plan a line of G-code from where the machine stands.
+        """Plan a line of G-code from the current pose.
 
         Raises:
-            NotReadyError: nobody knows where the tool is, or it moves.
+            NotReadyError: the tool pose is unknown, or the machine moves.
         """
         return self._planned(*mdi.line_trajectory(line, self._machine, self._here(), self.tool_length, reading))
 
     def plan_approach(self, job: Job, feed: float = defaults.APPROACH_MM_S) -> tuple[Plan | None, Findings]:
-        """Plan the way from where the machine stands to the start of a program; as ``moves.approach``.
+        """Plan the approach from the current pose to the start of a program; as ``moves.approach``.
 
         Raises:
-            NotReadyError: nobody knows where the tool is, or it moves; or no pose belongs to the start.
+            NotReadyError: the tool pose is unknown, the machine moves, or the start has no pose.
         """
         here, start = self._here(), standing_pose(self._machine, job.first, self.tool_length)
         if start is None:
@@ -175,9 +175,9 @@ class NumericalControl:
         return self._planned(*moves.approach(self._machine, here, start, self.tool_length, feed))
 
     def execute(self, plan: Plan, near: float = NEAR_MM) -> Status:
-        """Load a plan, list it back and start it; as ``execute.execute``.
+        """Load a plan, verify its listing and start it; as ``execute.execute``.
 
-        The controller holds a jog by itself when nobody calls ``poll``, ``renew`` or ``wait_for_rest`` any more.
+        The controller holds a jog by itself once ``poll``, ``renew`` and ``wait_for_rest`` are no longer called.
         """
         order = self._session, self._machine, self._settings, plan.job
         if plan.is_jog:
@@ -190,43 +190,43 @@ class NumericalControl:
 
     @property
     def silence_s(self) -> float | None:
-        """After how many seconds of silence the struts stand, at most, at 100 %; None when no jog is under way."""
+        """Longest time from silence to standstill at 100 %, s; None when no jog is active."""
         return None if self._watchdog is None else self._watchdog.silence_s
 
     def renew(self) -> None:
-        """Renew the watchdog of a jog, if one is under way and somebody looks on; several times a second."""
+        """Renew the watchdog of an active jog while the operator is watching; call several times a second."""
         if self._watchdog is not None and self._is_attended():
             self._watchdog.renew(self._session)
 
     def wait_for_rest(self, seconds: float) -> Status:
-        """Watch until the machine rests, and renew the watchdog of a jog; as ``execute.wait_for_rest``."""
+        """Poll until the machine rests, and renew the watchdog of a jog; as ``execute.wait_for_rest``."""
         status = execution.wait_for_rest(self._session, self._settings, seconds, self.renew)
         self._end_watch(status)
         return status
 
     def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
-        """Load a program and list it back, when the controller is set up for the machine; as ``download.download``.
+        """Check the controller's setup, load a program and verify its listing; as ``download.download``.
 
-        A stop that waits ends it as ``is_cancelled`` does.
+        A waiting stop ends the download as ``is_cancelled`` does.
         """
         check_setup(self._session, self._settings, self._machine.strut_stroke)
         return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.is_waited_for())
 
     def start(self, job: Job, near: float = NEAR_MM) -> Status:
-        """Start a program that is loaded, from its beginning; as ``operate.run``."""
+        """Start a loaded program from its beginning; as ``operate.run``."""
         order = self._session, self._settings, job.program, job.first, near, self._machine
         return self._owning("run", lambda: operate.run(*order))
 
     def go_on(self, job: Job, stop: int, near: float = NEAR_MM) -> Status:
-        """Go on behind a stop (M0, M1) of a program, numbered from 1, at which it stands; as ``stops.go_on``."""
+        """Continue a program behind the stop (M0, M1) at which it stands, numbered from 1; as ``stops.go_on``."""
         return self._owning("run", lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
 
     def open_blocks(self, blocks: Blocks, at: int = 1) -> int:
-        """Take a program for single block; how many blocks it has.
+        """Open a program in single block mode; return its number of blocks.
 
         Args:
             blocks: of the program.
-            at: the block that comes next, from 1.
+            at: the next block, from 1.
 
         Raises:
             ValueError: there is no such block.
@@ -237,10 +237,10 @@ class NumericalControl:
         return len(blocks)
 
     def plan_step(self) -> tuple[Plan | None, Findings]:
-        """Plan the block that comes next, from where it begins; when it is executed, the one behind it comes next.
+        """Plan the next block from its start; executing it advances to the block behind it.
 
         Raises:
-            ValueError: no program was taken for single block, or all its blocks have run.
+            ValueError: no program is open in single block mode, or all its blocks have run.
         """
         if self._blocks is None or self._blocks[1] > len(self._blocks[0]):
             raise ValueError("plan_step: expected a block that comes next, got none")
@@ -250,61 +250,61 @@ class NumericalControl:
         return (None if plan is None else replace(plan, block=number)), told
 
     def hold(self) -> Status:
-        """Slow down to rest on the path."""
+        """Feed hold: slow down to rest on the path."""
         return stopping.hold(self._session, self._settings)
 
     def resume(self) -> Status:
-        """Go on after a hold; a jog whose watchdog had ended it goes on as well."""
+        """Resume after a hold; a jog held by its watchdog resumes as well."""
         self.renew()
         return self._moving(lambda: operate.resume(self._session, self._settings))
 
     def abort(self, at_once: bool = False) -> Status:
-        """End the program: held first unless at once; a homing is no longer watched."""
+        """Abort the program, after a hold unless ``at_once``, and stop watching a homing."""
         self._watch, self._last = None, replace(self._last, homing=None)
         return stopping.abort(self._session, self._settings, at_once)
 
     def override(self, percent: float) -> Status:
-        """Set the override, above 0 and up to 100 %."""
+        """Set the feed override, above 0 and up to 100 %."""
         return operate.override(self._session, self._settings, percent, self.renew)
 
     def home(self, trigger: str) -> None:
-        """Send the line that starts the homing of the machine; ``poll`` watches it then."""
+        """Send the line that starts the homing of the machine; ``poll`` then watches it."""
         check_trigger(trigger)
         self._watch = self._owning("home", lambda: start_homing(self._session, self._settings, trigger))
 
     def _end_watch(self, status: Status) -> None:
-        """A program that has ended needs its watchdog no more."""
+        """Drop the watchdog of a program that has ended."""
         if not status.running:
             self._watchdog = None
 
     def _take_block(self, blocks: Blocks, number: int) -> None:
-        """Have a block come next."""
+        """Make a block the next one."""
         self._blocks, self._block = (blocks, number), blocks.shown(number)
 
     def _emergency(self) -> tuple[str, ...]:
-        """What to do now that the link is lost; nothing when there never was one."""
+        """Instructions after the link is lost; none if it was never up."""
         if self._may_move:
             return emergency_text(None)
         return () if self._last.status is None else emergency_text(self._last.status)
 
     def _owning(self, what: str, order: Callable[[], Done]) -> Done:
-        """Carry out what sets the machine in motion; the right to do so is kept until it is seen at rest."""
+        """Execute an order that moves the machine; keep ownership until the machine is seen at rest."""
         keeper = self._session.keeper or take(self._session, what)
         try:
             return self._moving(order)
         except LinkLostError:
-            raise  # it may move
+            raise  # the machine may move
         except BaseException:
             keeper.release()
             raise
 
     def _give_back(self, status: Status) -> None:
-        """Let others move a machine that rests."""
+        """Release ownership once the machine rests."""
         if self._session.keeper is not None and self._watch is None and status.standing and not status.running:
             self._session.keeper.release()
 
     def _moving(self, order: Callable[[], Done]) -> Done:
-        """Carry out what may set the machine in motion; until the next reading it may move."""
+        """Execute an order that may move the machine; until the next reading it may be moving."""
         try:
             done = order()
         except LinkLostError:
@@ -314,7 +314,7 @@ class NumericalControl:
         return done
 
     def _here(self) -> Pose:
-        """The pose that the controller wants, of a machine that stands."""
+        """The commanded pose of a machine at standstill."""
         status = settled_status(self._session, self._settings)
         reasons = [f"strut {strut}: not homed" for strut in missing_homes(status)]
         reasons += ["a program runs, or is held"] if status.running else []

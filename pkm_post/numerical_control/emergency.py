@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Emergency: what a person must do, and in which order, when the link is lost while a program may be running.
+"""Emergency: instructions for the operator, in order, when the link is lost while a program may be running.
 
-Enters: the state that was seen last. Leaves: lines for people. A computer that is cut off stops nothing.
+Enters: the last state read. Leaves: lines of text. A computer without a link stops nothing.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ STEPS = (
     "6. If the power was off or the emergency stop was pressed: home the machine before anything else.",
     "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",
 )
-"""In this order: people first, then the machine, then the link, then the part."""
+"""In order of priority: people, machine, link, workpiece."""
 
 
 ADVICE_S = 2.0
-"""Seconds after a stop in which the machine has to be seen at rest, or people are called."""
+"""Seconds after a stop within which the machine must be seen at rest, or the operator is alerted."""
 NOT_AT_REST = (
     "THE MACHINE IS NOT SEEN AT REST. This computer goes on trying to stop it; do not wait for that.",
     *STEPS[1:],
 )
-"""The same where a stop was sent and rest was not confirmed in time."""
+"""The same after a stop that was sent but not confirmed in time."""
 
 
 def emergency_text(last: Status | None) -> tuple[str, ...]:
-    """What to do, or nothing when the state that was seen last shows a machine at rest without program.
+    """The instructions, or nothing if the last state read shows a machine at rest without a program.
 
     Args:
-        last: None when nothing was ever seen.
+        last: None if no state was ever read.
     """
     if last is not None and not last.running and last.standing:
         return ()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Execute: a plan goes into the controller under its own number, is listed back, and is started from where it begins.
+"""Execute: load a plan under its own program number, verify its listing, and start it from its first point.
 
-Enters: a session and a plan, which nothing but the checks of planning makes. Leaves: the state after the start.
+Enters: a session and a plan; only planning with its checks creates one. Leaves: the state after the start.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ def execute(session: Session, machine: Machine, settings: Settings, job: Job, ne
         session: an open session.
         machine: the machine.
         settings: of its controller.
-        job: of a plan, or a block of a program.
-        near: how far each strut may be from its first point, mm.
+        job: of a plan, or a single block of a program.
+        near: largest distance of each strut from its first point, mm.
 
     Raises:
-        NotReadyError: set-up or machine are not as they have to be; nothing was loaded, or nothing was started.
-        DownloadError: it could not be loaded; nothing was started.
+        NotReadyError: setup or machine are not ready; nothing was loaded, or nothing was started.
+        DownloadError: the download failed; nothing was started.
         CancelledError: a stop came first; nothing was started.
-        NotOwnerError: another client has the machine; nothing was loaded.
+        NotOwnerError: another client owns the machine; nothing was loaded.
     """
     with owned(session, "jog"):
         check_start(read_status(session, settings), job.first, near, machine)
@@ -51,7 +51,7 @@ def execute(session: Session, machine: Machine, settings: Settings, job: Job, ne
 
 
 def execute_watched(session: Session, machine: Machine, settings: Settings, job: Job) -> tuple[Status, Watchdog]:
-    """Load a program with a watchdog and start it: it is held when its watchdog is not renewed; as ``execute``."""
+    """Load a program with a watchdog and start it; unless renewed, the watchdog holds it. Otherwise as ``execute``."""
     dog = watchdog_of(session, settings, job.program)
     return execute(session, machine, settings, replace(job, program=dog.program)), dog
 
@@ -59,16 +59,16 @@ def execute_watched(session: Session, machine: Machine, settings: Settings, job:
 def wait_for_rest(
     session: Session, settings: Settings, seconds: float, meanwhile: Callable[[], None] = lambda: None
 ) -> Status:
-    """Watch until no program runs and the struts stand.
+    """Poll until no program runs and the struts stand.
 
     Args:
         session: an open session.
         settings: of the controller.
-        seconds: how long that may take; a program that waits in a hold ends the waiting as well.
-        meanwhile: is called after each reading.
+        seconds: timeout; a program at rest in a feed hold also ends the wait.
+        meanwhile: called after each reading.
 
     Raises:
-        PmacError: it takes longer.
+        PmacError: timeout.
     """
     until = session.now() + seconds
     while True:
@@ -84,10 +84,10 @@ def wait_for_rest(
 
 
 def off_target(status: Status, lengths: Array) -> float:
-    """By how much the commanded length of a strut misses where it was to go, at most, mm.
+    """Largest deviation of a commanded strut length from its target, mm.
 
     Args:
-        status: of struts that stand.
-        lengths: (6,) the last ones of a program, mm.
+        status: of struts at standstill.
+        lengths: (6,) final lengths of a program, mm.
     """
     return float(np.abs(status.commanded - lengths).max())

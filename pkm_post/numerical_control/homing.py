@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Homing: triggered here, done by the machine, watched here.
+"""Homing: triggered here, carried out by the machine, monitored here.
 
-In which order struts may look for their homes, and how far each may go with the platform on it, the builder of the
-machine knows. So homing is a program of the controller, mostly a PLC, and nothing here knows how to do it. What is sent
-is the line that the builder says starts it, when it has one of the forms below. Then the home-complete bits of all six
-struts are watched, with a deadline.
+Only the machine builder knows in which order the struts may search for their homes, and how far each may travel with
+the platform attached. Homing is therefore a program in the controller, usually a PLC program. This module sends the
+line that the builder specifies, if it has one of the forms below, and then watches the home-complete bits of all six
+struts, with a deadline.
 
-Enters: the line, states of the controller and the time in s. Leaves: how far it is.
+Enters: the line, states of the controller and the time in s. Leaves: the progress of the homing.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ _FORMS = {
     "&nBnR": re.compile(r"&\d{1,2} ?B\d{1,5} ?R", re.IGNORECASE),
     "#nHM": re.compile(r"#[1-6](?:HM|HOME)(?: #[1-6](?:HM|HOME))*", re.IGNORECASE),
 }
-"""What may start the homing of a machine: a PLC program, a variable that one waits for, a motion program, motors."""
+"""What may start a homing: a PLC program, a variable that one polls, a motion program, motors."""
 HOMING_S = 600.0
-"""Seconds in which all struts have to find their homes."""
+"""Seconds within which all struts must find their homes."""
 _NOTHING_S = 5.0
-"""Seconds in which something has to be seen of it."""
+"""Seconds within which the homing must show in the state."""
 _QUIET_S = 2.0
-"""Seconds for which all has to be at rest: a PLC may make pauses between the struts."""
+"""Seconds of rest that count as the end: a PLC program may pause between struts."""
 _STOPS_IT = ("amplifier_fault", "fatal_following_error")
 
 
 class Phase(enum.Enum):
-    """How far a homing is."""
+    """Phase of a homing."""
 
     SEARCHING = "the struts look for their homes"
     DONE = "all struts have found their homes"
@@ -50,12 +50,12 @@ class Phase(enum.Enum):
 
 @dataclass(frozen=True)
 class Homing:
-    """What is seen of a homing.
+    """Observed state of a homing.
 
     Attributes:
-        phase: how far it is.
-        missing: struts that have no home yet, from 1.
-        words: what is wrong, in words.
+        phase: its phase.
+        missing: struts that are not homed yet, from 1.
+        words: faults in plain text.
     """
 
     phase: Phase
@@ -68,10 +68,10 @@ class Homing:
 
 
 def check_trigger(trigger: str) -> None:
-    """Check that a line may be one that starts a homing.
+    """Check that a line has a form that may start a homing.
 
     Raises:
-        ValueError: it has none of the forms.
+        ValueError: it has none of these forms.
     """
     if not any(form.fullmatch(trigger) for form in _FORMS.values()):
         raise ValueError(f"trigger: expected {' or '.join(_FORMS)}, got {trigger!r}")
@@ -81,10 +81,10 @@ def start_homing(session: Session, settings: Settings, trigger: str) -> HomingWa
     """Send the line that starts the homing of the machine.
 
     Raises:
-        ValueError: the line has none of the forms.
+        ValueError: the line has none of the accepted forms.
         NotReadyError: a program runs, a strut moves, or a motor has a fault; nothing was sent.
-        OutcomeUnknownError: nobody knows whether it was carried out; the machine may move.
-        NotOwnerError: another client has the machine; nothing was sent.
+        OutcomeUnknownError: the controller may or may not have executed it; the machine may move.
+        NotOwnerError: another client owns the machine; nothing was sent.
     """
     check_trigger(trigger)
     with owned(session, "home"):
@@ -104,26 +104,26 @@ def _check_rest(status: Status) -> None:
 
 
 def missing_homes(status: Status) -> tuple[int, ...]:
-    """The struts without home, from 1."""
+    """The struts that are not homed, from 1."""
     return tuple(motor for motor, homed in zip(MOTORS, status.homed, strict=True) if not homed)
 
 
 class HomingWatch:
-    """Looks on."""
+    """Monitors a homing."""
 
     def __init__(self, began: float, seconds: float = HOMING_S) -> None:
-        """Begin to watch.
+        """Start monitoring.
 
         Args:
-            began: the time when it was triggered, s.
-            seconds: how long it may take.
+            began: time of the trigger, s.
+            seconds: timeout.
         """
         self._began, self._until = began, began + seconds
         self._seen = False
         self._quiet_since: float | None = None
 
     def see(self, status: Status, now: float) -> Homing:
-        """What a state at a time means."""
+        """Evaluate a state read at time ``now``."""
         missing = missing_homes(status)
         searching = any(motor.has("homing") for motor in status.motors)
         busy = searching or not status.standing or status.running
@@ -142,7 +142,7 @@ class HomingWatch:
 
 
 def _faults(status: Status) -> tuple[str, ...]:
-    """Faults that no homing goes on with; limits are not among them, for homes may be there."""
+    """Faults that end a homing; limits are not among them, as homes may lie there."""
     return tuple(
         f"strut {number}: {motor.TOLD[name]}"
         for number, motor in zip(MOTORS, status.motors, strict=True)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""MDI: one line of G-code typed by hand, as a trajectory from where the tool is.
+"""MDI: one line of G-code typed by the operator, as a trajectory from the current pose.
 
-Each line stands by itself: nothing that an earlier line switched on holds, and a cutting move says its own feed. What
-the line does not say of the tool axis stays as it is. A line may move nothing and switch spindle or coolant.
+Each line is independent: no modal state carries over from earlier lines, and a cutting move states its own feed. The
+tool axis stays as it is unless the line states it. A line may also switch spindle or coolant without a move.
 
-Enters: text in mm or inch as it says, the pose of the tool in {M}. Leaves: a trajectory in {M}, or what is wrong with
-the line.
+Enters: text in mm or inch, as it states, and the pose of the tool in {M}. Leaves: a trajectory in {M}, or what is wrong
+with the line.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from pkm_post.spin import Policy, Rule
 SOURCE = "MDI"
 _SAYS_THE_SPIN = "RPY"
 _EMPTY, _NO_MOVE = "G420", "J103"
-"""What reading and placing tell of a program that moves nothing; the cures speak of files and of CAM."""
+"""Codes that reading and placing report for a program without moves; their cures refer to files and CAM."""
 _STAY = "G90 G21 G94 G1 X{:.6f} Y{:.6f} Z{:.6f} F60"
-"""Behind a line that moves nothing, so that what it switches takes place before a move to where the tool is."""
+"""Appended to a line without moves, so that its switching codes precede a move to the current position."""
 
 Findings = tuple[Diagnostic, ...]
 
 
 @dataclass(frozen=True)
 class Reading:
-    """How a line is read.
+    """How to read a line.
 
     Attributes:
-        work_offset: name of a work offset of the machine file: the frame of the coordinates.
-        axis_words: how the line says the tool axis, a key of ``gcode.options.AXIS_WORDS``; with ``"none"`` the axis
+        work_offset: name of a work offset in the machine file: the frame of the coordinates.
+        axis_words: how the line states the tool axis, a key of ``gcode.options.AXIS_WORDS``; with ``"none"`` the axis
             stays as it is.
     """
 
@@ -51,17 +51,17 @@ class Reading:
 def line_trajectory(
     line: str, machine: Machine, here: Pose, tool_length: float, reading: Reading | None = None
 ) -> tuple[Trajectory | None, Findings]:
-    """The way that a line of G-code describes.
+    """The trajectory of a line of G-code.
 
     Args:
         line: one line of text.
-        machine: its work offsets and limits.
-        here: where the tool is.
+        machine: its work offsets and limits apply.
+        here: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
-        reading: how the line is read.
+        reading: how to read the line.
 
     Raises:
-        ValueError: the text is more than one line.
+        ValueError: the text has more than one line.
     """
     if len(line.splitlines()) > 1:
         raise ValueError(f"line: expected one line, got {len(line.splitlines())}")
@@ -76,9 +76,10 @@ def line_trajectory(
     told += faults
     if program is None or errors(told):
         return None, told
-    # A trajectory begins at the home of its machine: here that is where the tool is. A line goes straight from there.
+    # A trajectory starts at the home of its machine. Here that is the current pose, so that the line leads straight
+    # from it.
     standing = replace(machine, home_tip=here.tip, home_axis=here.axis, home_spin=here.spin, tool_change=None)
-    standing = replace(standing, largest_tool_diameter=math.inf)  # that of the tool in the spindle is not known here
+    standing = replace(standing, largest_tool_diameter=math.inf)  # diameter of the tool in the spindle is unknown
     trajectory, faults = trajectory_of(program, standing, options)
     told += tuple(replace(fault, code="C201") if fault.code == _NO_MOVE else fault for fault in faults)
     if trajectory is None or reading.axis_words == _SAYS_THE_SPIN:
@@ -89,7 +90,7 @@ def line_trajectory(
 def _standing(
     line: str, machine: Machine, here: Pose, machine_from_work: Array, tool_length: float, reading: Reading
 ) -> tuple[Trajectory | None, Findings]:
-    """A line without a move: what it switches, while the machine stands."""
+    """A line without a move: switching codes at standstill."""
     stay = _STAY.format(*_in_work(here, machine_from_work))
     program, told = _read(f"{line}\n{stay}", here, machine_from_work, tool_length, reading)
     if program is not None and program.events and not errors(told):
@@ -110,7 +111,7 @@ def _read(
     line: str, here: Pose, machine_from_work: Array, tool_length: float, reading: Reading
 ) -> tuple[Program | None, Findings]:
     """The line as a program in {C}."""
-    # A diameter that is no number shows where cutter compensation used it.
+    # A NaN diameter reveals cutter compensation.
     tool = Tool(0, "in the spindle", math.nan, 0.0, tool_length)
     options = gcode.ReadOptions(
         default_tool=tool, start=_in_work(here, machine_from_work), axis_words=reading.axis_words

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Moves: what a jog asks for, as a trajectory from where the tool is.
+"""Moves: manual jogs as trajectories from the current pose.
 
-A Cartesian jog is one straight segment: the tip runs along a line, the tool axis along a great circle, the spin evenly.
-A jog of one strut moves all six degrees of freedom: the poses on its way are those that forward kinematics gives for
-lengths of which one grows. Units: mm, rad, mm/s; directions are those of {M}.
+A Cartesian jog is one straight segment: the tip moves along a line, the tool axis along a great circle, the spin
+linearly. A jog of one strut moves all six degrees of freedom: forward kinematics gives its poses while one strut length
+grows. Units: mm, rad, mm/s; directions are those of {M}.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from pkm_post.pmac_link.readout import Pose, spin_of
 
 SOURCE = "jog"
 _STEP_MM = 0.5
-"""Of one strut, between the poses of its way: what is straight between them bends by less than a micron."""
+"""Step of a single-strut jog between poses: straight segments deviate from its path by less than a micron."""
 _NO_MOVE = 1e-9
 _MEASURABLE = 1e-6
-"""mm: a code of the machine alone would give the plan no way to go, so the tip rises by this, a hundredth of what an
-encoder counts."""
+"""mm: a machine code alone would give the plan an empty path, so the tip rises by this much, a hundredth of an encoder
+count."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Cartesian:
     """A jog of the tool.
 
     Attributes:
-        shift: (3,) of the tip in {M}, mm.
-        tilt: (2,) turn of the tool axis about X, then about Y of {M}, with the tip standing, rad.
-        spin: turn of the platform about the tool axis, rad.
+        shift: (3,) displacement of the tip in {M}, mm.
+        tilt: (2,) rotation of the tool axis about X, then about Y of {M}, with the tip fixed, rad.
+        spin: rotation of the platform about the tool axis, rad.
     """
 
     shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -51,7 +51,7 @@ class OneStrut:
 
     Attributes:
         strut: from 1 to 6.
-        by: how much longer it becomes, mm.
+        by: change of its length, mm.
     """
 
     strut: int
@@ -68,17 +68,17 @@ Jog = Cartesian | OneStrut
 def trajectory_of(
     jog: Jog, machine: Machine, here: Pose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
-    """The way of a jog, or why there is none.
+    """The trajectory of a jog, or why there is none.
 
     Args:
-        jog: what is asked for.
-        machine: the geometry and the highest feed.
-        here: where the tool is.
+        jog: the move requested.
+        machine: its geometry and highest feed.
+        here: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
-        feed: of the tip, mm/s; where it stands, degrees per second, as for programs.
+        feed: of the tip, mm/s; while the tip stands, degrees per second, as in programs.
 
     Raises:
-        ValueError: a number is not finite, or the feed is not above zero.
+        ValueError: a number is not finite, or the feed is not positive.
     """
     if not (np.isfinite(feed) and feed > 0):
         raise ValueError(f"feed: expected a number above zero, got {feed}")
@@ -94,16 +94,16 @@ def trajectory_of(
 def approach(
     machine: Machine, here: Pose, start: Pose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
-    """The safe way to where a program starts: up along the tool axis, across, down along the axis of the start.
+    """The safe approach to the start of a program: up along the tool axis, across, down along the axis of the start.
 
-    It crosses at the height of the start, or at the safe height of the machine file if that is higher.
+    It crosses at the height of the start, or at the machine file's safe height if that is higher.
 
     Args:
-        machine: the geometry, the safe height and the highest feed.
-        here: where the tool is.
-        start: where it is to go.
+        machine: its geometry, safe height and highest feed.
+        here: current pose of the tool.
+        start: target pose.
         tool_length: gauge length of the tool in the spindle, mm.
-        feed: of the tip, mm/s; where it stands, degrees per second.
+        feed: of the tip, mm/s; while the tip stands, degrees per second.
     """
     height = float(start.tip[2])
     if machine.tool_change is not None:
@@ -120,13 +120,13 @@ def approach(
 
 
 def standing(machine: Machine, here: Pose, tool_length: float, events: tuple[Event, ...]) -> Trajectory:
-    """What takes place while the machine stands; it needs a way to be planned along.
+    """Events at standstill, with the minimal path that planning needs.
 
     Args:
-        machine: the geometry and the highest feed.
-        here: where the tool is.
+        machine: its geometry and highest feed.
+        here: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
-        events: what takes place, each at row 0.
+        events: each at row 0.
     """
     tip = (here.tip + _MEASURABLE * here.axis)[None]
     poses = tip, here.axis[None], np.array([here.spin])
@@ -145,7 +145,7 @@ def _of_tool(jog: Cartesian, here: Pose) -> tuple[Array, Array, Array]:
 
 
 def _about(coordinate: int, angle: float) -> Array:
-    """The rotation about X (0) or Y (1), (3, 3)."""
+    """Rotation matrix about X (0) or Y (1), (3, 3)."""
     turn = np.eye(3)
     first, second = ((1, 2), (2, 0))[coordinate]
     turn[first, first] = turn[second, second] = np.cos(angle)
@@ -173,7 +173,7 @@ def _lengths(machine: Machine, here: Pose, tool_length: float) -> Array:
 def _through(
     machine: Machine, here: Pose, poses: tuple[Array, Array, Array], tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
-    """Straight segments from here through poses, to rest."""
+    """Straight segments from the current pose through poses, to rest."""
     tip, axis, spin = poses
     length = norm(np.diff(tip, axis=0, prepend=here.tip[None]))
     axis_before = np.vstack([here.axis, axis[:-1]])
@@ -202,7 +202,7 @@ def _through(
 
 
 def _straight(count: int, feed: float) -> dict[str, Any]:
-    """The columns in which straight segments are alike, but that the last one ends at rest."""
+    """The columns common to all straight segments; only the last one ends at rest."""
     nowhere, zero = np.full((count, 3), np.nan), np.zeros(count)
     return {
         "kind": np.full(count, Kind.LINE),

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Permissions: which orders make sense in which state, and why the others do not.
 
-Enters: the state of a machine and what a panel knows besides. Leaves: for each order what stands against it, first the
-reason that matters most. This spares a person orders that would be refused; what may move the machine is decided by the
-checks of the control and of the controller alone.
+Enters: the state of a machine and what a panel knows in addition. Leaves: for each order the obstacles, the most
+important first. This only saves the operator orders that would be refused; the checks of the control and the controller
+alone decide what may move the machine.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pkm_post.numerical_control.homing import Phase
 
 
 class Order(enum.Enum):
-    """What a person can have done."""
+    """Orders an operator can give."""
 
     HOME = "home"
     JOG = "jog"
@@ -34,7 +34,7 @@ class Order(enum.Enum):
 
 
 class Why(enum.Enum):
-    """What stands against an order."""
+    """Obstacles to an order."""
 
     NOT_CONNECTED = "there is no connection"
     WATCH_ONLY = "a Power PMAC can be watched, held and aborted alone"
@@ -70,22 +70,22 @@ AGAINST: dict[Order, tuple[Why, ...]] = {
     Order.ABORT: (Why.NOT_CONNECTED,),
     Order.OVERRIDE: (*_ORDERS, Why.BUSY, Why.HELD),
 }
-"""A stop is never held back by what was read last: that may be old."""
+"""The last reading never blocks a stop: it may be stale."""
 
 
 @dataclass(frozen=True)
 class Desk:
-    """What a panel knows besides the state of the machine.
+    """What a panel knows besides the machine state.
 
     Attributes:
-        connected: whether there is somebody to give orders to.
-        watch_only: whether the controller takes stops alone.
-        busy: whether an order is being carried out.
-        has_job: whether a program was opened.
-        loaded: whether it is in the controller, as far as is known here.
-        has_stops: whether it has stops (M0, M1) to go on behind.
-        stepping: whether its blocks were taken for single block.
-        homing: whether a homing that was started here is watched.
+        connected: whether a connection is open.
+        watch_only: whether the controller accepts stops only.
+        busy: whether an order is in progress.
+        has_job: whether a program is open.
+        loaded: whether it is in the controller, as far as known here.
+        has_stops: whether it has stops (M0, M1) to continue behind.
+        stepping: whether its blocks are open in single block mode.
+        homing: whether a homing started here is being monitored.
     """
 
     connected: bool = False
@@ -99,7 +99,7 @@ class Desk:
 
 
 def facts(state: State, desk: Desk) -> frozenset[Why]:
-    """Everything that may stand against an order."""
+    """All obstacles in this state."""
     status = state.status
     answers = status is not None and not state.lost
     held = status is not None and status.held
@@ -123,12 +123,12 @@ def facts(state: State, desk: Desk) -> frozenset[Why]:
 
 
 def refusal(order: Order, found: frozenset[Why]) -> Why | None:
-    """What stands against an order first; None when nothing does."""
+    """The first obstacle to an order; None if it is allowed."""
     return next((why for why in AGAINST[order] if why in found), None)
 
 
 def may_move(state: State) -> bool:
-    """Whether the machine moves, or may move as far as is known: nobody should walk away then."""
+    """Whether the machine moves, or may move as far as known: it must not be left unattended then."""
     if state.emergency:
         return True
     status = state.status

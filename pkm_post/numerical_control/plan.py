@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plan: from the trajectory of a move by hand to a program that was certified and whose end was looked at.
+"""Plan: turn the trajectory of a manual move into a certified program whose end pose is verified.
 
-The steps are those of posting, in their order, without files: feed plan with the checks of the reach, interpolation,
-program text, read back, certificate. Then once more from the lengths alone: forward kinematics follows the cubics of
-the program from where the tool is, and the poses found go through the checks of the reach again. What comes out is all
-that may be sent.
+The steps are those of posting, in the same order, without files: feed planning with the reach checks, interpolation,
+program text, reading back, certificate. Then a second check from the strut lengths alone: forward kinematics follows
+the program's cubics from the current pose, and the resulting poses pass the reach checks again. Only the result may be
+sent.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ _SHARES = np.linspace(0.0, 1.0, 9)[1:]
 
 @dataclass(frozen=True)
 class Plan:
-    """A move that may be sent.
+    """A move that is cleared to be sent.
 
     Attributes:
         job: its program and motion, as read back.
-        certificate: what was measured.
-        end: where the tool will be, by forward kinematics of the last lengths.
-        is_jog: whether it may only go on while somebody looks on.
-        block: which block of a program it is, from 1; 0 for other moves.
+        certificate: its measurements.
+        end: final pose of the tool, by forward kinematics of the last lengths.
+        is_jog: whether it may continue only while the operator is watching.
+        block: number of its block in a program, from 1; 0 for other moves.
     """
 
     job: Job
@@ -52,12 +52,12 @@ class Plan:
 
     @property
     def lengths(self) -> Array:
-        """(6,) the last lengths, mm."""
+        """(6,) final strut lengths, mm."""
         return self.job.motion.length[-1]
 
     @property
     def seconds(self) -> float:
-        """How long it moves at 100 %."""
+        """Duration at 100 %."""
         return self.certificate.duration
 
 
@@ -68,17 +68,17 @@ def planned(
     tolerances: Tolerances,
     number: int = OWN_PROGRAM,
 ) -> tuple[Plan | None, Findings]:
-    """The plan of a trajectory, or everything that stands against it.
+    """Plan a trajectory, or return every obstacle.
 
     Args:
-        trajectory: from where the tool is.
-        machine: geometry and limits.
+        trajectory: from the current pose.
+        machine: its geometry and limits.
         settings: of its controller.
-        tolerances: what the certificate has to show.
+        tolerances: limits for the certificate.
         number: of the program.
 
     Raises:
-        ValueError: the number is that of the jobs, or no number of a program.
+        ValueError: the number belongs to the jobs, or is no program number.
     """
     if number == settings.program:
         raise ValueError(f"number: expected another one than that of the jobs, got {number}")
@@ -119,7 +119,7 @@ def _program(
 
 
 def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[Pose | None, Findings]:
-    """Where the lengths lead to from where the tool is, when all of the way is within reach."""
+    """The end pose of the lengths, followed from the start pose, if the whole path is within reach."""
     lengths = _lengths(played)
     tool = np.full(len(lengths), trajectory.tool_length()[0])
     rotation = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
@@ -133,7 +133,7 @@ def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> 
 
 
 def _lengths(played: StrutMotion) -> Array:
-    """Lengths at the knots and at instants between them, in order, (N, 6)."""
+    """Strut lengths at the knots and at instants between them, in order, (N, 6)."""
     cubics = played.cubics(np.arange(len(played) - 1))
     return np.vstack([played.length[:1], hermite_lengths(*cubics, _SHARES).reshape(-1, 6)])
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Single block: a posted program, line by line of the source that people see, each line to rest.
+"""Single block: run a posted program line by line of its source, each line to rest.
 
-A posted motion program rounds corners and runs through the ends of lines, and the controller's own single step ends
-after one PVT move, at speed. So what is stepped through is not the motion program but the trajectory that was posted
-with it: the segments of one line are planned by themselves, from rest to rest, and certified as any move by hand is.
-What takes place between two lines that move belongs to the second. A tool change ends a block as well. The stops of the
-program (M0, M1) are left out: each block ends at rest anyway.
+A posted motion program blends corners and runs through line ends at speed, and the controller's own single step ends
+after one PVT move, at speed. Single block therefore steps through the trajectory posted with the program: the segments
+of one line are planned separately, from rest to rest, and certified like any manual move. Events between two lines that
+move belong to the second. A tool change also ends a block. The program's stops (M0, M1) are left out: each block ends
+at rest anyway.
 
-Enters: a motion program beside the other results of its posting. Leaves: a trajectory for each block, and what to show
-of it.
+Enters: a motion program with the other results of its posting. Leaves: a trajectory for each block, and its text for
+display.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Findings = tuple[Diagnostic, ...]
 
 _TRAJECTORY = ".pkmt"
 _MOST_SOURCE = 1 << 28
-"""Bytes of a source that is read for its lines."""
+"""Most bytes read of a source."""
 
 
 _COOLANT = {0: "M9", 1: "M8", 2: "M7"}
@@ -41,20 +41,20 @@ _CODES: dict[EventKind, Callable[[float], str]] = {
     EventKind.COOLANT: lambda value: _COOLANT[int(value)],
     EventKind.DWELL: "G4 P{:g}".format,
 }
-"""What takes place between moves, as people write it, dwells in seconds; stops are left out."""
+"""Events between moves as G-code, dwells in seconds; stops are left out."""
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What to show of the block that comes next.
+    """The next block, for display.
 
     Attributes:
-        number: of the block, from 1; one more than ``count`` when all have run.
-        count: of the blocks.
-        operation: of the job, empty where the source has none.
-        line: in the source, or number of the command in its operation.
-        text: that line, or where it leads to in the work frame where the source is not at hand; with the codes that are
-            carried out before and after it, by strokes.
+        number: of the block, from 1; ``count`` + 1 when all have run.
+        count: number of blocks.
+        operation: of the job; empty if the source has none.
+        line: in the source, or the number of the command in its operation.
+        text: that line, or its target in the work frame if the source is unavailable; with the codes executed before
+            and after it, separated by bars.
     """
 
     number: int
@@ -65,7 +65,7 @@ class Shown:
 
     @property
     def is_over(self) -> bool:
-        """Whether no block comes next."""
+        """Whether all blocks have run."""
         return self.number > self.count
 
     def __str__(self) -> str:
@@ -78,9 +78,9 @@ class Blocks:
     """The blocks of a program.
 
     Attributes:
-        trajectory: of the whole.
-        lines: of its source, none where that is not at hand.
-        begins: (B,) the first segment of each block.
+        trajectory: of the whole program.
+        lines: of its source; empty if unavailable.
+        begins: (B,) first segment of each block.
     """
 
     trajectory: Trajectory
@@ -91,7 +91,7 @@ class Blocks:
         return len(self.begins)
 
     def shown(self, number: int) -> Shown:
-        """What to show of a block, numbered from 1; one behind the last is the end."""
+        """A block for display, numbered from 1; one past the last is the end."""
         if number > len(self):
             return Shown(number, len(self))
         first, end = self._rows(number)
@@ -117,7 +117,7 @@ class Blocks:
         with_before, at = self._segments(max(first - 1, 0), end), int(first > 0)
         block = self._segments(first, end)
         last = np.arange(len(block)) == len(block) - 1
-        behind = end + (end == len(whole))  # what takes place behind the last segment belongs to it
+        behind = end + (end == len(whole))  # events behind the last segment belong to it
         events = (each for each in whole.events if first <= each.row < behind and each.kind is not EventKind.STOP)
         return replace(
             block,
@@ -130,17 +130,17 @@ class Blocks:
         )
 
     def _segments(self, first: int, end: int) -> Trajectory:
-        """Some segments; their start is that of the whole."""
+        """A range of segments; their start is that of the whole."""
         columns = {name: getattr(self.trajectory, name)[first:end] for name in TRAJECTORY_COLUMNS}
         return replace(self.trajectory, **columns, events=())
 
     def _rows(self, number: int) -> tuple[int, int]:
-        """The first segment of a block, and the one behind its last."""
+        """The first segment of a block, and the end of its range."""
         first, *behind = self.begins[number - 1 : number + 1].tolist()
         return first, behind[0] if behind else len(self.trajectory)
 
     def _codes(self, row: int) -> str:
-        """What takes place in front of a segment, as codes."""
+        """Events in front of a segment, as codes."""
         events = (each for each in self.trajectory.events if each.row == row and each.kind in _CODES)
         return " ".join(_CODES[each.kind](each.value) for each in events)
 
@@ -151,7 +151,7 @@ class Blocks:
 
 
 def blocks_of(trajectory: Trajectory, lines: tuple[str, ...] = ()) -> Blocks:
-    """The blocks of a trajectory: its segments with one operation and line, between two tool changes."""
+    """The blocks of a trajectory: segments with the same operation and line, split at tool changes."""
     begins = np.ones(len(trajectory), dtype=np.bool_)
     begins[1:] = (np.diff(trajectory.line) != 0) | (np.diff(trajectory.operation) != 0)
     changes = [each.row for each in trajectory.events if each.kind is EventKind.TOOL_CHANGE]
@@ -160,11 +160,11 @@ def blocks_of(trajectory: Trajectory, lines: tuple[str, ...] = ()) -> Blocks:
 
 
 def blocks_of_program(program: Path, machine: Machine) -> tuple[Blocks | None, Findings]:
-    """The blocks of a motion program, by the trajectory that was posted with it.
+    """The blocks of a motion program, from the trajectory posted with it.
 
     Args:
-        program: the motion program, or a part of it; the other results of its posting lie beside it.
-        machine: the machine it is for.
+        program: the motion program, or a part of it, beside the other results of its posting.
+        machine: the target machine.
     """
     posted, faults = manifest.check(program)
     if errors(faults):
@@ -183,7 +183,7 @@ def blocks_of_program(program: Path, machine: Machine) -> tuple[Blocks | None, F
 
 
 def _lines_of_source(trajectory: Trajectory, folder: Path) -> tuple[str, ...]:
-    """The lines of the part program, where it lies as it was posted: under its name, or beside the results."""
+    """Lines of the part program if it is unchanged since posting: under its name, or beside the results."""
     source = Path(trajectory.source)
     if not is_part_program(source):
         return ()
@@ -199,4 +199,4 @@ def _content(file: Path) -> bytes:
         with file.open("rb") as stream:
             return stream.read(_MOST_SOURCE)
     except OSError:
-        return b""  # a source that is not at hand is not shown
+        return b""  # an unavailable source is not shown

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stops: going on behind an M0 or M1, where the program ends until somebody starts it again.
+"""Stops: continue behind an M0 or M1, where the program ends until the operator starts it again.
 
-The controller shows a program at a stop as it shows one that has ended or was aborted: none runs. ``R`` would go on
-from wherever it is, and behind an abort that is in the middle of a move. So nothing is resumed: what stands behind the
-stop is loaded as a program of its own, under the number of the job, and started as any other, when the struts stand
-where the program stopped. What takes place at that knot before the stop was carried out, and is left out.
+The controller's state is the same at a stop as after the end or an abort: no program runs. ``R`` would continue from
+wherever the program is, and after an abort that is in the middle of a move. So nothing is resumed: the part behind the
+stop is loaded as a separate program, under the job's number, and started like any other if the struts stand where the
+program stopped. Events at that knot before the stop were already carried out and are left out.
 
-Enters: the program, and which of its stops. Leaves: a job that begins behind it, and the state after the start.
+Enters: the program and the number of a stop. Leaves: a job that begins behind it, and the state after the start.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Stop:
 
     Attributes:
         number: of the stop in its program, from 1.
-        event: its place among the events of the motion.
+        event: index among the events of the motion.
         length: (6,) strut lengths at it, mm.
     """
 
@@ -42,14 +42,14 @@ class Stop:
 
 
 def stops_of(job: Job) -> tuple[Stop, ...]:
-    """The stops of a program; one at its very end is none, for nothing moves behind it."""
+    """The stops of a program; one at its very end does not count, as no move follows."""
     events, last = job.motion.events, len(job.motion) - 1
     places = [index for index, each in enumerate(events) if each.kind is EventKind.STOP and each.row < last]
     return tuple(Stop(number, index, job.motion.length[events[index].row]) for number, index in enumerate(places, 1))
 
 
 def job_behind(job: Job, stop: Stop, settings: Settings) -> Job:
-    """What stands behind a stop, as a program with the number of the job.
+    """The part of a program behind a stop, under the number of the job.
 
     Args:
         job: the program.
@@ -63,15 +63,15 @@ def job_behind(job: Job, stop: Stop, settings: Settings) -> Job:
 
 
 def job_of(motion: StrutMotion, settings: Settings, name: str) -> Job:
-    """A piece of a program as a program.
+    """Turn part of a program into a program.
 
     Args:
-        motion: of the piece.
-        settings: of the controller, with the number it runs under.
-        name: what it is.
+        motion: of the part.
+        settings: of the controller, with its program number.
+        name: for diagnostics.
 
     Raises:
-        ValueError: its text does not give its motion back.
+        ValueError: its text does not reproduce its motion.
     """
     job, faults = read_job(program_text(motion, settings, [name]), settings, name)
     if job is None or not same(job.motion, motion):
@@ -80,7 +80,7 @@ def job_of(motion: StrutMotion, settings: Settings, name: str) -> Job:
 
 
 def same(one: StrutMotion, other: StrutMotion) -> bool:
-    """Whether two motions are one, to the last digit."""
+    """Whether two motions are identical to the last digit."""
     return one.events == other.events and all(
         np.array_equal(getattr(one, name), getattr(other, name)) for name in ("time_ms", "length", "speed")
     )
@@ -89,20 +89,20 @@ def same(one: StrutMotion, other: StrutMotion) -> bool:
 def go_on(
     session: Session, machine: Machine, settings: Settings, job: Job, number: int, near: float = NEAR_MM
 ) -> Status:
-    """Load what stands behind a stop and start it.
+    """Load the part of a program behind a stop and start it.
 
     Args:
         session: an open session.
         machine: the machine.
         settings: of its controller.
         job: the program that has stopped.
-        number: of the stop, from 1. It is said, and not found by where the struts stand: several stops may be at one
-            place, and a program that was never started may begin there.
-        near: how far each strut may be from it, mm.
+        number: of the stop, from 1. It is stated, not inferred from the strut lengths: several stops may share a
+            position, and a program that was never started may begin there.
+        near: largest distance of each strut from it, mm.
 
     Raises:
-        NotReadyError: there is no such stop, or the struts do not stand at it; or as ``execute.execute``.
-        DownloadError: it could not be loaded; nothing was started.
+        NotReadyError: the stop does not exist, or the struts do not stand at it; or as ``execute.execute``.
+        DownloadError: the download failed; nothing was started.
     """
     stops = stops_of(job)
     if not 1 <= number <= len(stops):

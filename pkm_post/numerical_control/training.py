@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Training: a simulated machine in a thread of its own, to operate before a real one is at hand.
+"""Training: a simulated machine in its own thread, to practise without a real one.
 
-Enters: a machine, the settings of its controller, the tool in its spindle. Leaves: the name of a port of this computer.
-Behind it a simulated Turbo PMAC is set up as posting would set up that of the machine, with its loops closed and
-without homes, as after the power came on. When all struts have found their homes, it takes them to the pose of the
-machine at home, as PLC programs of machines do: where struts are counted from, they may be at the end of their stroke.
+Enters: a machine, the settings of its controller, its gauge length. Leaves: the name of a port on this computer. A
+simulated Turbo PMAC serves it, set up as posting sets up the machine's controller, with closed loops and unhomed, as
+after power-up. Once all struts are homed, it moves them to the machine's home pose, as PLC programs of real machines
+do: the encoder zeros may lie at the end of the stroke.
 """
 
 from __future__ import annotations
@@ -21,34 +21,34 @@ from pkm_post.pmac_simulator import Settings as SimulatorSettings
 from pkm_post.pmac_simulator.serve import LOOPBACK
 
 HOMING = " ".join(f"#{motor}HM" for motor in range(1, 7))
-"""The line that homes a simulated machine: its motors find their homes in any order."""
+"""The line that homes a simulated machine; the order of its motors does not matter."""
 
 _TICK_MS = 4.0
-"""Coarser than the simulator's own: it shares its processor with a window."""
+"""Coarser than the simulator's default: it shares the processor with a window."""
 _FLAG_MM = 5.0
-"""From where a motor stands to its flag."""
+"""Distance from a motor's position at power-up to its flag."""
 _DRIVES = "I{0}11={1:.0f} I{0}15={2:.6f} I{0}16={3:.6f} I{0}17={4:.6f} I{0}19={5:.6f} I{0}22={6:.6f} I{0}23={7:.6f}"
 _PER_COUNT = (32.0, 0.001, 0.2, 0.002, 0.0005, 0.05, 0.005)
-"""Of one count/mm: following error of 2 mm in 16ths, then what mm/s and mm/s^2 are in counts and ms: aborts at 1000
-mm/s^2, up to 200 mm/s and 2000 mm/s^2 in programs, 500 mm/s^2, 50 mm/s by themselves and 5 mm/s towards the flags."""
+"""Per count/mm: following error of 2 mm in 16ths, then mm/s and mm/s^2 in counts and ms: aborts at 1000 mm/s^2,
+programs up to 200 mm/s and 2000 mm/s^2, jogs at 500 mm/s^2 and 50 mm/s, homing at 5 mm/s towards the flags."""
 _END_S = 10.0
 
 
 class Training:
-    """The machine.
+    """The simulated machine.
 
     Attributes:
-        port: where it is, as ``ports.port_named`` takes it.
+        port: its name for ``ports.port_named``.
     """
 
     def __init__(self, machine: Machine, settings: Settings, tool_length: float, speed: float = 1.0) -> None:
-        """Begin to serve.
+        """Start serving.
 
         Args:
             machine: the machine.
             settings: of its controller.
             tool_length: gauge length of the tool in the spindle, mm.
-            speed: simulated seconds in a second.
+            speed: simulated seconds per real second.
         """
         self._controller, self._is_home = _controller(settings, machine.strut_stroke), False
         self._go_home = _way_home(machine, settings, tool_length)
@@ -59,10 +59,10 @@ class Training:
         self._thread.start()
 
     def close(self) -> None:
-        """End it; whoever is connected loses the link.
+        """Shut down; connected clients lose the link.
 
         Raises:
-            RuntimeError: it does not end.
+            RuntimeError: the thread does not end.
         """
         self._over.set()
         self._thread.join(_END_S)
@@ -76,7 +76,7 @@ class Training:
             self._server.close()
 
     def _turn(self) -> bool:
-        """Called by the server, in its thread, as a controller calls its PLC programs; whether to end."""
+        """The server thread calls this as a controller runs its PLC programs; return whether to end."""
         motors = self._controller.motors
         if not motors.homed.all():
             self._is_home = False
@@ -87,7 +87,7 @@ class Training:
 
 
 def _way_home(machine: Machine, settings: Settings, tool_length: float) -> list[str]:
-    """Lines that take the struts to the home of the machine; none when that is out of their stroke."""
+    """Lines that move the struts to the machine's home; none if that exceeds their stroke."""
     pose = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin]), np.array([tool_length])
     length = strut_lengths(machine, *pose)[0]
     shortest, longest = machine.strut_stroke
@@ -98,7 +98,7 @@ def _way_home(machine: Machine, settings: Settings, tool_length: float) -> list[
 
 
 def _controller(settings: Settings, stroke: tuple[float, float]) -> Controller:
-    """A controller with the set-up of the machine and drives that are fast enough for it."""
+    """A controller set up for the machine, with drives that are fast enough."""
     scale = settings.counts_per_mm
     made = Controller(SimulatorSettings(tick_ms=_TICK_MS, home_flag=_FLAG_MM * scale))
     made.load(setup_text(settings, "training", stroke).splitlines())

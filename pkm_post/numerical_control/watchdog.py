@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Watchdog: a program that the controller holds by itself when the computer that started it falls silent.
+"""Watchdog: lets the controller hold a program by itself when the computer that started it falls silent.
 
-The program counts a variable of the controller down by the milliseconds of its next moves, in front of these moves, and
-holds its coordinate system when the variable falls below zero. Whoever watches the machine sets the variable up again,
-several times a second. A computer that is switched off, a process that is killed, a window that hangs and a cable that
-is cut all look alike to it: nothing comes. The hold is the controller's own, so the struts stay on the certified path.
+Ahead of its moves, the program decrements a variable of the controller by their duration in milliseconds and holds its
+coordinate system when the variable falls below zero. The client that monitors the machine resets the variable several
+times a second. A computer switched off, a killed process, a frozen window and a cut cable have the same effect: no
+reset arrives. The controller itself performs the hold, so the struts stay on the certified path.
 
-Enters: the lines of a certified program. Leaves: the same lines with those of the watchdog between them.
+Enters: the lines of a certified program. Leaves: the same lines interleaved with those of the watchdog.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from pkm_post.pmac_link.ready import number_of
 from pkm_post.pmac_link.session import Session
 
 CREDIT_MS = 600
-"""For how long a program may go on after it was renewed: several readings over a serial line."""
+"""Time a program may run after a renewal: several readings over a serial line."""
 _AHEAD_MS = 2 * LONGEST_MS
-"""The moves that a controller computes ahead, and those that a line of the watchdog stands for, are let go already."""
+"""Moves beyond the credit: those the controller computes ahead, and those that one watchdog line covers."""
 _FULL_SLEW = 1644.0
-"""Isx95 with which a hold takes a second [TurboPMAC, Isx95]."""
+"""Isx95 at which a hold takes one second [TurboPMAC, Isx95]."""
 _INTERVAL, _MOVE = re.compile(r"PVT(\d+)"), re.compile(r"[A-Z]\S+:\S+ .*")
 
 
@@ -36,9 +36,9 @@ class Watchdog:
     """The watchdog of a program.
 
     Attributes:
-        program: with its lines.
-        variable: number of the variable P that counts down.
-        silence_s: after how many seconds of silence the struts stand, at most, at an override of 100 %.
+        program: with the watchdog lines.
+        variable: number of the P-variable that counts down.
+        silence_s: longest time from silence to standstill, s, at an override of 100 %.
     """
 
     program: Program
@@ -46,16 +46,16 @@ class Watchdog:
     silence_s: float
 
     def renew(self, session: Session) -> None:
-        """Let the program go on; asked again when the link fails, for it may arrive twice.
+        """Let the program continue; retried when the link fails, as a repeated renewal does no harm.
 
         Raises:
-            PmacError: the controller cannot be reached, or refuses it.
+            PmacError: the controller is unreachable, or refuses.
         """
         session.ask(_credit(self.variable))
 
 
 def watchdog_of(session: Session, settings: Settings, program: Program) -> Watchdog:
-    """Put a watchdog into a program; its variable P has the number of the program.
+    """Insert a watchdog into a program; its P-variable has the number of the program.
 
     Args:
         session: an open session.
@@ -63,7 +63,7 @@ def watchdog_of(session: Session, settings: Settings, program: Program) -> Watch
         program: as it was certified.
 
     Raises:
-        NotReadyError: a hold would never come to its end on this controller.
+        NotReadyError: a hold would never finish on this controller.
     """
     name = f"I{50 + settings.coordinate_system}95"
     slew = abs(number_of(session, name))
@@ -75,12 +75,12 @@ def watchdog_of(session: Session, settings: Settings, program: Program) -> Watch
 
 
 def watched(lines: Sequence[str], variable: int, coordinate_system: int) -> tuple[str, ...]:
-    """The lines of a program with those of a watchdog.
+    """Insert the lines of a watchdog into those of a program.
 
     Args:
-        lines: of a program whose moves take no longer than ``feed.knots.LONGEST_MS``.
-        variable: number of the variable P.
-        coordinate_system: that is held.
+        lines: of a program whose moves are no longer than ``feed.knots.LONGEST_MS``.
+        variable: number of the P-variable.
+        coordinate_system: to hold.
     """
     guard = f'IF(P{variable}<0)COMMAND"&{coordinate_system}H"'
     made = [_credit(variable)]
@@ -95,7 +95,7 @@ def _credit(variable: int) -> str:
 
 
 def _groups(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
-    """The lines in groups whose moves take no longer than the longest single one may, with the ms they take."""
+    """Groups of lines with their total ms, none longer than the longest single move may be."""
     interval, total, group = 0, 0, list[str]()
     for line in lines:
         stated = _INTERVAL.fullmatch(line)

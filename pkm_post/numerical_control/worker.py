@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Worker: a thread that alone talks to the controller, for windows that must not wait.
+"""Worker: the one thread that talks to the controller, for windows that must not block.
 
-Orders go in as functions of the control, states and results come out. A stop goes before everything that waits, and
-what is being done gives way to it: a download between its lines, an answer that takes long, a wait. Between orders the
-state is read, ten times a second. Whoever looks on takes the newest state; it is replaced as a whole.
+Orders are functions of the control; states and results come back. A stop precedes all waiting orders and preempts the
+current one: a download between its lines, a slow answer, a wait. Between orders the worker reads the state, ten times a
+second. Observers take the latest state, which is replaced as a whole.
 """
 
 from __future__ import annotations
@@ -25,25 +25,25 @@ Order = tuple[Future[Any], Callable[[NumericalControl], Any]]
 
 POLL_S = 0.1
 ATTENDED_S = 0.5
-"""Seconds for which somebody who has looked on counts as looking on: a window that hangs does not."""
+"""Seconds for which ``attend`` counts as attendance: a frozen window does not attend."""
 _CLOSE_S = 30.0
-"""Seconds in which the order that is carried out has to end; it gives way, and each has deadlines of its own."""
+"""Seconds for the current order to end; it gives way, and every order has its own deadlines."""
 
 
 class Worker:
-    """Carries out orders one after the other.
+    """Executes orders one after the other.
 
     Attributes:
-        failure: why the thread has ended by itself, a fault of this program; None while it has not.
+        failure: the exception that ended the thread, a bug in this program; None otherwise.
     """
 
     def __init__(self, control: NumericalControl, period: float = POLL_S, attended: float = ATTENDED_S) -> None:
         """Start the thread.
 
         Args:
-            control: from now on the thread's alone.
-            period: seconds from one reading to the next.
-            attended: seconds for which somebody who has looked on counts as looking on.
+            control: from now on used by this thread only.
+            period: seconds between readings.
+            attended: seconds for which ``attend`` counts as attendance.
         """
         self._control, self._period = control, period
         self._stops: deque[Order] = deque()
@@ -60,25 +60,25 @@ class Worker:
 
     @property
     def state(self) -> State:
-        """The newest; nothing before the first reading. A stop that is not confirmed in time is an emergency."""
+        """The latest state, empty before the first reading; a stop not confirmed in time is an emergency."""
         if self._is_stop_overdue() and not self._state.emergency:
             return replace(self._state, emergency=NOT_AT_REST)
         return self._state
 
     def attend(self) -> None:
-        """Somebody looks on: a jog, which is held when nobody does, goes on for half a second."""
+        """Report that the operator is watching: a jog continues for half a second; without attendance it is held."""
         self._attended_at = time.monotonic()
 
     def submit(self, order: Callable[[NumericalControl], Done], urgent: bool = False) -> Future[Done]:
-        """Have something done; returns at once.
+        """Queue an order; return at once.
 
         Args:
-            order: is called with the control, in the thread.
-            urgent: a stop, hold or abort: what waits and is no stop is cancelled, what is being done gives way, and it
+            order: called with the control, in the thread.
+            urgent: a stop, hold or abort: it cancels waiting orders other than stops, preempts the current one, and
                 comes next.
 
         Returns:
-            What will hold the result, or the exception.
+            A future for the result or the exception.
 
         Raises:
             RuntimeError: the worker has ended.
@@ -95,10 +95,10 @@ class Worker:
         return future
 
     def close(self) -> None:
-        """End the thread when the order that is carried out has ended; what waits is cancelled. Nothing is stopped.
+        """End the thread after the current order; cancel waiting orders. The machine is not stopped.
 
         Raises:
-            RuntimeError: it does not end, or it had ended by a fault.
+            RuntimeError: the thread does not end, or has crashed.
         """
         with self._change:
             self._ended = True
@@ -113,7 +113,7 @@ class Worker:
         return time.monotonic() - self._attended_at < self._attended
 
     def _is_waited_for(self) -> bool:
-        """Whether a stop waits, or the end; the end waits for a stop that is being done, but not for ever."""
+        """Whether a stop or the shutdown waits; the shutdown waits for a stop in progress, but not for ever."""
         return bool(self._stops) or (self._ended and (not self._stopping or self._is_stop_overdue()))
 
     def _is_stop_overdue(self) -> bool:
@@ -127,7 +127,7 @@ class Worker:
                     self._state = self._control.poll()
                     due = time.monotonic() + self._period
                 self._carry_out_next(due)
-        except BaseException as failure:  # told by ``submit`` and ``close``: a thread has nobody to tell it to
+        except BaseException as failure:  # ``submit`` and ``close`` raise it: a thread has no caller
             self.failure = failure
         with self._change:
             self._ended = True
