@@ -59,9 +59,10 @@ translations: $(TRANSLATIONS_VENV)/made ## gather the texts that users see, and 
 		$(TRANSLATIONS_VENV)/bin/pyside6-lrelease "$$texts"; \
 	done
 
-fuzz: $(FUZZ_VENV)/made ## feed the readers of part programs with bytes (FUZZ_SECONDS=120)
+fuzz: $(FUZZ_VENV)/made ## feed the readers with bytes, and verify with trajectories that lie (FUZZ_SECONDS=120)
 	@PYTHONPATH=. $(FUZZ_VENV)/bin/python fuzz/part_programs.py -max_total_time=$(FUZZ_SECONDS) \
 		-timeout=20 -rss_limit_mb=2048 -print_final_stats=1
+	@PYTHONPATH=. $(FUZZ_VENV)/bin/python tests/lying_trajectories.py $(FUZZ_SECONDS)
 
 soak: $(VENV)/made ## sessions and downloads over faulty links, killed posts (SOAK_DOWNLOADS=10000 SOAK_KILLS=1000)
 	@folder=$$(mktemp -d); trap 'rm -rf "$$folder"' EXIT; \

@@ -43,6 +43,8 @@ _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
 _WINDOWS_MS = (4, 8, 16, 32, 64, 128)
 """Windows of time that are tried for a plan with a limit of jerk; the one with the shortest motion is taken."""
+LONGEST_MOTION = 7 * 86_400.0
+"""s: a week, which has five million points and more."""
 _MOST_ROUNDS = 8
 """How often a motion is planned once more, slower, for its controller; the certificate refuses what is left."""
 _STATIONS_AT_ONCE = 4096
@@ -69,8 +71,10 @@ def _for_corners(trajectory: Trajectory, asked: float) -> Array:
     return _FOR_CORNERS * tight + (allowed - tight)
 
 
-def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple[Schedule, tuple[Diagnostic, ...]]:
-    """When the tool is where on the path; and what of the path the machine cannot reach.
+def plan_feed(
+    path: ToolPath, trajectory: Trajectory, machine: Machine
+) -> tuple[Schedule | None, tuple[Diagnostic, ...]]:
+    """When the tool is where on the path, None if that takes too long; and what of the path the machine cannot reach.
 
     Args:
         path: the path with rounded corners.
@@ -79,18 +83,46 @@ def plan_feed(path: ToolPath, trajectory: Trajectory, machine: Machine) -> tuple
     """
     most = PathBounds.of(path)
     faults = reach_faults(machine, trajectory, *_way(path, stations(path, bent(path, most))))
-    return _schedule(path, machine, most), faults
+    try:
+        return _schedule(path, machine, most), faults
+    except _TooLongError as fault:
+        found = f"{fault.seconds:.6g} s, at most {LONGEST_MOTION:g} s"
+        return None, (*faults, Diagnostic("K145", trajectory.place(fault.segment), found))
+
+
+class _TooLongError(Exception):
+    """A motion takes longer than can be planned: how long, and the segment that takes the most of it."""
+
+    def __init__(self, seconds: float, segment: int) -> None:
+        self.seconds, self.segment = seconds, segment
+        super().__init__(f"{seconds} s")
 
 
 def _schedule(path: ToolPath, machine: Machine, most: PathBounds) -> Schedule:
-    """When the tool is where on a path with these bounds."""
+    """When the tool is where on a path with these bounds.
+
+    Raises:
+        _TooLongError: the points that its motion needs are more than there is memory for.
+    """
     if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
         return _without_jumps(path, machine)
     rough = rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
     close = below_feed(path, *rough)
     marks = stations(path, close)
     profile = speed_profile(marks.s, *limits_at(path, marks, close, rough, machine))
+    _check_duration(marks.s, profile, marks)
     return Schedule.of(marks, marks.s, marks.rest, profile, shortest_ms=machine.shortest_interval)
+
+
+def _check_duration(s: Array, square: Array, marks: Stations) -> None:
+    """Refuse a motion that takes too long, before anything as long as it is made."""
+    with np.errstate(divide="ignore", over="ignore"):  # a speed squared may be too small for a number
+        times = cell_times(s, square)
+        seconds = float(times.sum())
+    if not seconds <= LONGEST_MOTION:
+        cell = int(np.argmax(times))
+        segment = marks.segment[min(int(np.searchsorted(marks.s, s[cell], side="right")), len(marks.segment) - 1)]
+        raise _TooLongError(seconds, int(segment))
 
 
 def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
@@ -114,6 +146,8 @@ def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
     _, window_ms, course = min(
         (_averaged(for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS), key=lambda tried: tried[0]
     )
+    s, _, slowest = course
+    _check_duration(s, slowest, marks)
     return Schedule.of(marks, *course, window_ms, machine.shortest_interval)
 
 
@@ -144,7 +178,10 @@ def interpolate(
         if (factor == 1).all():
             break
         path = replace(path, feed=slower_feed(path.feed, path.segments.extent, schedule.joint_time, factor))
-        schedule = _schedule(path, machine, PathBounds.of(path))
+        try:
+            schedule = _schedule(path, machine, PathBounds.of(path))
+        except _TooLongError:
+            break
         motion, factor = _interpolated(path, schedule, events, machine, tolerances)
     return motion
 

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from pkm_post import manifest, trajectory_file
-from pkm_post.certificate import certify, recovered
+from pkm_post.certificate import beyond_machine, certify, machine_fault, recovered
 from pkm_post.controllers import controller_settings, program_seal, read_texts
 from pkm_post.kinematics import reach_faults
-from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion
+from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory
 from pkm_post.model.diagnostics import errors
 from pkm_post.report import summary
 
@@ -75,6 +75,7 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
     tolerances = planned.tolerances
     if tolerances is None:
         raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
+    _refuse_for_machine(planned, machine, program.name)
     found, faults = recovered(struts, program.name, planned, machine, tolerances)
     if found is None:
         raise Refused(faults)
@@ -86,6 +87,16 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
         raise Refused(faults)
     files = summary.hashes([program_seal.digest(text) for _, text in texts], manifest.fingerprint_of_file(trajectory))
     return summary.report(planned, machine, certificate, tolerances, struts, found.motion, files=files)
+
+
+def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> None:
+    """Refuse a trajectory of another machine, or one that its machine cannot have been posted for."""
+    another = machine_fault(planned, machine, name)
+    if another:
+        raise Refused([another])
+    beyond = [Diagnostic("T107", place, found) for place, found in beyond_machine(planned, machine)]
+    if beyond:
+        raise Refused(beyond)
 
 
 def _played(texts: Texts, machine: Machine) -> StrutMotion:

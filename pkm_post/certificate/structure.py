@@ -30,9 +30,7 @@ def structure_faults(
         machine: the machine that the program is checked on.
         motion: the plan.
     """
-    found = []
-    if trajectory.machine_fingerprint != machine.fingerprint:
-        found.append(("T104", f"made for {trajectory.machine}, checked on {machine.name}"))
+    another, found = machine_fault(trajectory, machine, program_name), []
     if not np.array_equal(struts.time_ms, motion.time_ms):
         times = struts.time_ms.tolist(), motion.time_ms.tolist()
         found.append(("V110", _first_difference("knot", *times, "{} ms".format)))
@@ -41,7 +39,21 @@ def structure_faults(
     for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):
         if speed.any():
             found.append(("V105", f"{which} speeds {speed.tolist()} mm/s"))
-    return tuple(Diagnostic(code, Place(program_name), text) for code, text in found)
+    told = (Diagnostic(code, Place(program_name), text) for code, text in found)
+    return (another, *told) if another else tuple(told)
+
+
+def machine_fault(trajectory: Trajectory, machine: Machine, name: str) -> Diagnostic | None:
+    """T104 for a trajectory that was made for another machine.
+
+    Args:
+        trajectory: what was programmed.
+        machine: that it is to run on.
+        name: names the program in the diagnostic.
+    """
+    if trajectory.machine_fingerprint == machine.fingerprint:
+        return None
+    return Diagnostic("T104", Place(name), f"made for {trajectory.machine}, checked on {machine.name}")
 
 
 def event_fault(found: Sequence[Event], planned: Sequence[Event]) -> str:

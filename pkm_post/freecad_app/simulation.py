@@ -19,7 +19,7 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.simulated_motion import Problem, Simulation
 from pkm_post.geometry.vectors import norm
 from pkm_post.kinematics import ReachFinding
-from pkm_post.model import RULES
+from pkm_post.model import RULES, Refused
 from pkm_post.model.diagnostics import Severity
 from pkm_post.reach import Reach, reach
 
@@ -51,7 +51,9 @@ def simulation_of(placed: JobOnMachine) -> Simulation:
     with Progress(translate("PKM_Simulate", "Simulation"), 4) as bar:
         path = planning.tool_path(trajectory, tolerances)
         bar.step()
-        schedule, _ = planning.plan_feed(path, trajectory, machine)  # its faults are those of the reach, less precise
+        schedule, faults = planning.plan_feed(path, trajectory, machine)
+        if schedule is None:  # other faults are those of the reach, less precise
+            raise Refused(faults)
         bar.step()
         motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
         bar.step()

@@ -408,6 +408,12 @@ RULES: dict[str, Rule] = {
         "the diameter of a tool is unknown, and whether the spindle takes it is not checked",
         "say the diameter: --tool NUMBER=D for G-code, the tool of the CAM job, or the tool statement of CL data",
     ),
+    "K145": _error(
+        "the motion takes longer than can be planned",
+        "raise the feeds, or the speeds and accelerations of the machine file; or post fewer operations at a time",
+    ),
+    "K146": _error("the tolerance of a move is too small", "raise P of its G64, or leave P out"),
+    "K147": _error("the platform is turned too far about the tool axis", "write the spin within a few turns"),
     # N1: surface normals, and compensation with them
     "N101": _error("a contact point, normal or tool axis is no number or has no direction", "regenerate the path"),
     "N102": _error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),
@@ -491,6 +497,8 @@ RULES: dict[str, Rule] = {
         "the trajectory was made for another machine", "name that machine, as by --machine, or post again for this one"
     ),
     "T105": _error("the trajectory file does not say what tolerances were asked for", "post the job again"),
+    "T106": _error("the trajectory file contradicts itself", "make it again from its source"),
+    "T107": _error("the trajectory asks for more than its machine can do", "post the job again for this machine"),
     # C1: the controller's program
     "C101": _error("the program has a line that is not understood", "post the job again; do not edit the program"),
     "C102": _error(

@@ -20,6 +20,11 @@ from pkm_post.model.event import Event
 from pkm_post.model.program import MOTION_COLUMNS, Array
 from pkm_post.model.tool import Tool, lengths_of
 
+MOST_SPIN = 1e6
+"""rad: a platform turns by less than a turn; of a larger number too few digits are left to plan with."""
+LEAST_TOLERANCE = 1e-9
+"""mm and rad: a smaller tolerance than a thousandth of a nanometre is a slip, and nothing is planned to it."""
+
 TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
     "tip": (np.float64, (3,)),
     "axis": (np.float64, (3,)),

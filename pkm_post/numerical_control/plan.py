@@ -104,7 +104,7 @@ def _program(
 ) -> tuple[str | None, Motion | None, Findings]:
     path = planning.tool_path(trajectory, tolerances)
     schedule, told = planning.plan_feed(path, trajectory, machine)
-    if errors(told):
+    if schedule is None or errors(told):
         return None, None, told
     motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
     struts = planning.strut_motion(motion, machine)

@@ -173,7 +173,7 @@ def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath
         schedule, faults = planning.plan_feed(tool_path, trajectory, frame.machine)
         if errors(faults):  # where the machine cannot even stand at home, moving the part is no cure
             faults = (*home_faults(frame.machine, frame.machine.name), *faults)
-        run.accept(faults)
+        schedule = run.value((schedule, faults))
         told.append(f"{schedule.rests_ms[-1] / 1000:.1f} s of motion")
     return tool_path, schedule
 

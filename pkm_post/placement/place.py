@@ -19,6 +19,7 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Trajectory
 from pkm_post.model.diagnostics import errors
 from pkm_post.model.tool import lengths_of
+from pkm_post.model.trajectory import LEAST_TOLERANCE, MOST_SPIN
 from pkm_post.placement.smoothness import corners, smooth
 from pkm_post.placement.spindle_waits import with_spindle_waits
 from pkm_post.placement.symmetry import mirrors, transform
@@ -167,11 +168,13 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
     angle, arc = way["angle"], way["kind"] == Kind.ARC
     away = norm(way["tip"] - machine.base_joints.mean(axis=0))
     longest = _BEYOND_REACH * machine.strut_stroke[1]
-    seconds = way["length"] / way["feed"]
+    seconds, asked = way["length"] / way["feed"], program.tip_tolerance
     for code, wrong, values, told in (
         ("K106", angle > _HALF_TURN, np.degrees(angle), "{:.3f} degrees"),
         ("K102", ~(away < longest), away, "{:.6g} mm from the middle of the base"),
         ("K126", arc & (np.abs(way["longer"]) > _NO_MOVE), way["longer"], "{:.6g} mm longer"),
+        ("K146", (asked > 0) & (asked < LEAST_TOLERANCE), asked, "{:.3g} mm"),
+        ("K147", np.abs(way["spin"]) > MOST_SPIN, way["spin"], "{:.6g} rad"),
         ("K127", (seconds > _DAY) & (away < longest), seconds / 3600, "{:.6g} hours"),
     ):
         for row in _first_of_each(program.operation, wrong):

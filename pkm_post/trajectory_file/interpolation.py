@@ -82,7 +82,8 @@ def strayed(trajectory: Trajectory, segments: Records) -> dict[str, Array]:
     columns = interpolation(trajectory)
     # What a column counts for in the pose: a tiny turn, for one, has no sure direction.
     radius = np.where(trajectory.kind == Kind.ARC, norm(columns["radius"]), 1.0)
-    weights = {"growth": radius, "axis_quarter": trajectory.angle}
+    turns = np.where(trajectory.angle > 0, trajectory.angle, 1.0)
+    weights = {"growth": radius, "axis_quarter": turns}
     with np.errstate(all="ignore"):  # the numbers in the file may be anything
         found = {name: _apart(segments[name], column, weights.get(name, 1.0)) for name, column in columns.items()}
     return found | missed(trajectory, columns)
@@ -92,16 +93,17 @@ def missed(trajectory: Trajectory, columns: dict[str, Array]) -> dict[str, Array
     """Segments that a player would not end where they say, (N,), by what is elsewhere: a wrong sweep or angle does it.
 
     A line ends where its shift takes it, and that is how the shift was computed: only arcs and turns can end elsewhere.
-    But how fast a player goes along it follows from the length it says.
+    But how fast a player goes follows from the length that a segment says.
 
     Args:
         trajectory: N segments that keep their promises.
         columns: what ``interpolation`` makes of them.
     """
     off = {name: np.zeros(len(trajectory), dtype=np.bool_) for name in ("tip", "axis")}
-    arc = trajectory.kind == Kind.ARC
-    off["length"] = _apart(trajectory.length, np.where(arc, trajectory.length, norm(columns["shift"])), 1.0)
-    arcs = np.flatnonzero(arc)
+    arcs = np.flatnonzero(trajectory.kind == Kind.ARC)
+    length = norm(columns["shift"])
+    length[arcs] = _arc_length(trajectory, arcs, columns)
+    off["length"] = _apart(trajectory.length, length, 1.0)
     start, shift, radius, quarter, growth = (
         columns[name][arcs] for name in ("start_tip", "shift", "radius", "quarter", "growth")
     )
@@ -113,6 +115,13 @@ def missed(trajectory: Trajectory, columns: dict[str, Array]) -> dict[str, Array
     axis = _turned(trajectory.angle[turns], before[turns], columns["axis_quarter"][turns])
     off["axis"][turns] = _apart(axis, trajectory.axis[turns], 1.0)
     return off
+
+
+def _arc_length(trajectory: Trajectory, rows: Array, columns: dict[str, Array]) -> Array:
+    """Lengths of arcs and helices, (M,) mm, with the mean of their radii at start and end."""
+    last = norm(across(trajectory.tip[rows] - trajectory.arc_centre[rows], trajectory.arc_axis[rows]))
+    radius = (norm(columns["radius"][rows]) + last) / 2
+    return np.hypot(radius * trajectory.sweep[rows], norm(columns["shift"][rows]))
 
 
 def _turned(angle: Array, start: Array, quarter: Array) -> Array:

@@ -17,6 +17,7 @@ import numpy as np
 from pkm_post.geometry import norm
 from pkm_post.geometry.vectors import Array
 from pkm_post.model import Event, EventKind, Kind, Tool, Trajectory
+from pkm_post.model.trajectory import LEAST_TOLERANCE, MOST_SPIN
 from pkm_post.trajectory_file.parts import parts
 
 UNIT_TOLERANCE = 1e-5
@@ -25,6 +26,8 @@ FULL_TURN = 2 * math.pi + 1e-8
 """rad; a full turn may come out longer by the angle below which two directions count as the same."""
 FARTHEST = 1e9
 """mm: a coordinate beyond it is none of a machine, and its square would leave no digits for the rest."""
+LONGEST = 86_400.0
+"""s that one segment may take; a lower feed is a slip, and its motion has more points than memory has room for."""
 _LARGEST_NUMBER = 2**31 - 1
 _FINGERPRINT = re.compile(r"[0-9a-f]{64}")
 
@@ -62,8 +65,8 @@ def _of_start(trajectory: Trajectory) -> Iterator[str]:
         yield f"the start tip is not finite, or farther than {FARTHEST:g} mm"
     if not _is_unit(trajectory.start_axis):
         yield "the start axis is not of unit length"
-    if not math.isfinite(trajectory.start_spin):
-        yield "the start spin is not finite"
+    if not abs(trajectory.start_spin) <= MOST_SPIN:
+        yield f"the start spin is not finite, or beyond {MOST_SPIN:g} rad"
     if not _is_rigid(trajectory.machine_from_work):
         yield "the work offset is not a rotation and a shift"
 
@@ -74,8 +77,10 @@ def _of_origin(trajectory: Trajectory) -> Iterator[str]:
     source, tolerances = trajectory.source_fingerprint, trajectory.tolerances
     if source and (not re.fullmatch(_FINGERPRINT, source) or not source.strip("0")):
         yield f"the fingerprint {source!r} of the source is not 64 digits of 0-9 and a-f, or all are 0"
-    if tolerances and not (0 < tolerances.tip < math.inf and 0 < tolerances.axis < math.inf):
-        yield f"the tolerances {tolerances.tip} mm and {tolerances.axis} rad are not both above 0"
+    if tolerances and not (
+        LEAST_TOLERANCE <= tolerances.tip <= FARTHEST and LEAST_TOLERANCE <= tolerances.axis <= math.pi
+    ):
+        yield f"the tolerances {tolerances.tip} mm and {tolerances.axis} rad are not both at least {LEAST_TOLERANCE:g}"
 
 
 def _of_tools(tools: dict[int, Tool]) -> Iterator[str]:
@@ -117,12 +122,13 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
     """For each rule, in words, the segments that break it, (N,)."""
     arc = trajectory.kind == Kind.ARC
     sweep, length, angle = trajectory.sweep, trajectory.length, trajectory.angle
+    asked = trajectory.tip_tolerance
     stands = (length == 0) & (angle == 0) & (trajectory.spin == trajectory.spin_before())
     return {
         "kind is unknown": ~np.isin(trajectory.kind, list(Kind)),
         f"tip is not finite, or farther than {FARTHEST:g} mm": ~_is_near(trajectory.tip),
         "axis is not of unit length": ~_is_unit(trajectory.axis),
-        "spin is not finite": ~np.isfinite(trajectory.spin),
+        f"spin is not finite, or beyond {MOST_SPIN:g} rad": ~(np.abs(trajectory.spin) <= MOST_SPIN),
         "feed is not a finite number above 0": ~(np.isfinite(trajectory.feed) & (trajectory.feed > 0)),
         f"arc centre is not finite, or farther than {FARTHEST:g} mm": _at(arc, ~_is_near(trajectory.arc_centre[arc])),
         "arc centre is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_centre),
@@ -133,7 +139,10 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
         "length is not a finite number of at least 0": ~(np.isfinite(length) & (length >= 0)),
         "angle is not between 0 and pi": ~_within(angle, 0, np.pi),
         "tip, the axis and the spin all stand": stands,
-        "tip tolerance is not a finite number of at least 0": ~_within(trajectory.tip_tolerance, 0, FARTHEST),
+        f"tip tolerance is not 0, nor a finite number of at least {LEAST_TOLERANCE:g} mm": ~(
+            (asked == 0) | _within(asked, LEAST_TOLERANCE, FARTHEST)
+        ),
+        "feed is so low that the segment takes more than a day": length > LONGEST * trajectory.feed,
         "tool is not in the table": ~np.isin(trajectory.tool, list(trajectory.tools)),
         "operation is not in the table": ~_within(trajectory.operation, 0, len(trajectory.operations) - 1),
         "line is negative": trajectory.line < 0,

@@ -19,6 +19,7 @@ from pkm_post.model.certificate import Tolerances
 from pkm_post.model.columns import Filled
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
 from pkm_post.trajectory_file.container import Content, DamageError, bytes_of, opened
+from pkm_post.trajectory_file.contradictions import contradictions
 from pkm_post.trajectory_file.interpolation import blocks, strayed
 from pkm_post.trajectory_file.layout import TOOL_COLUMNS, UNITS, Records
 from pkm_post.trajectory_file.parts import SEGMENTS, parts
@@ -33,7 +34,7 @@ def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
 
     Returns:
         The trajectory, or None when the file has a fault; and the faults found: T101 for a file of another kind,
-        T102 for an unknown version, T103 for damage.
+        T102 for an unknown version, T103 for damage, T106 for content that contradicts itself.
     """
     try:
         content = bytes_of(path)
@@ -58,6 +59,9 @@ def decode(content: Content, file: str) -> tuple[Trajectory | None, tuple[Diagno
     broken = broken_promises(trajectory) or [*_broken_advance(trajectory, tables)]
     if broken:
         return None, tuple(Diagnostic("T103", place, words) for words in broken)
+    against_itself = contradictions(trajectory)
+    if against_itself:
+        return None, tuple(Diagnostic("T106", place, words) for words in against_itself)
     return trajectory, ()
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from pkm_post.files import staged
 from pkm_post.model import Event, Tool, Trajectory
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
+from pkm_post.trajectory_file.contradictions import contradictions
 from pkm_post.trajectory_file.interpolation import blocks, interpolation, missed
 from pkm_post.trajectory_file.layout import (
     HEADER,
@@ -47,10 +48,11 @@ def write(trajectory: Trajectory, path: Path) -> None:
         path: the file; its folder is made when it is missing, a file that is there is replaced.
 
     Raises:
-        ValueError: the trajectory does not keep the promises of a trajectory, or has a text that is not Unicode.
+        ValueError: the trajectory does not keep the promises of a trajectory, contradicts itself, or has a text that is
+            not Unicode.
         OSError: the file cannot be written.
     """
-    broken = broken_promises(trajectory)
+    broken = broken_promises(trajectory) or contradictions(trajectory)
     if broken:
         raise ValueError(f"expected a trajectory that can be read back, got {'; '.join(broken)}")
     strings = _Strings.of(trajectory)

@@ -13,6 +13,7 @@ from trajectories import everything, random_trajectory
 
 from pkm_post.model import Kind
 from pkm_post.trajectory_file import decode, read, write
+from pkm_post.trajectory_file.contradictions import contradictions
 from pkm_post.trajectory_file.layout import HEADER, MAGIC, MINOR, SEGMENT, STRING, TABLES, offset_of
 from pkm_post.trajectory_file.promises import broken_promises
 
@@ -210,7 +211,10 @@ BAD_VALUES = [
     ("segments", "tool", "<i", 5, "segment 2: the tool is not in the table"),
     ("segments", "operation", "<i", 3, "segment 2: the operation is not in the table"),
     ("segments", "feed", "<d", -1.0, "segment 2: the feed is not"),
-    ("segments", "tip_tolerance", "<d", -1.0, "segment 2: the tip tolerance is not a finite number of at least 0"),
+    ("segments", "tip_tolerance", "<d", -1.0, "segment 2: the tip tolerance is not 0, nor a finite number"),
+    ("segments", "tip_tolerance", "<d", 1e-300, "segment 2: the tip tolerance is not 0, nor a finite number"),
+    ("segments", "feed", "<d", 1e-300, "segment 2: the feed is so low that the segment takes more than a day"),
+    ("segments", "spin", "<d", 1e300, "segment 2: the spin is not finite, or beyond 1e+06 rad"),
     ("segments", "tip_tolerance", "<d", float("nan"), "segment 2: the tip tolerance is not"),
     ("segments", "axis", "<d", 2.0, "segment 2: the axis is not of unit length"),
     ("segments", "tip", "<d", float("nan"), "segment 2: the tip is not finite"),
@@ -242,8 +246,9 @@ def test_values_without_sense_are_told(path, sound, table, field, form, value, f
 
 
 @pytest.mark.parametrize("more", [-0.4, -1e-5, 1e-5, 40.0])
-def test_a_line_is_as_long_as_its_shift(path, sound, more):
-    row = int(np.flatnonzero(TRAJECTORY.kind != Kind.ARC)[-1])
+@pytest.mark.parametrize("is_arc", [False, True])
+def test_a_segment_is_as_long_as_its_way(path, sound, more, is_arc):
+    row = int(np.flatnonzero((TRAJECTORY.kind == Kind.ARC) == is_arc)[-1])
     length = TRAJECTORY.length[row]
     found = refusal(path, sealed(changed(sound, in_table(sound, "segments", "length", row), "<d", length + more)))
     assert found == f"T103 segment {row}: the length does not follow from the rest"
@@ -324,11 +329,11 @@ def test_thousands_of_damaged_files_of_each_sort_are_told_or_sound(path, sound, 
         trajectory, diagnostics = decode(content, "damaged.pkmt")
         if trajectory is None:
             assert diagnostics
-            assert {diagnostic.code for diagnostic in diagnostics} <= {"T101", "T102", "T103"}
+            assert {diagnostic.code for diagnostic in diagnostics} <= {"T101", "T102", "T103", "T106"}
         else:
             assert diagnostics == ()
             assert seal
-            assert broken_promises(trajectory) == []
+            assert broken_promises(trajectory) == contradictions(trajectory) == []
             if turn % 25 == 0:
                 write(trajectory, path)
         outcomes.append(trajectory is None)

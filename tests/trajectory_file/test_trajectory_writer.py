@@ -9,7 +9,7 @@ from machines import example
 from programs import ON_PALLET, cone, square_with_arc
 from trajectories import everything, fitted, random_trajectory
 
-from pkm_post.model import Event, EventKind, Tool
+from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.model.certificate import Tolerances
 from pkm_post.placement import place
 from pkm_post.trajectory_file import read, write
@@ -153,17 +153,18 @@ def test_a_file_that_could_not_be_read_is_not_written(tmp_path, found, change):
 @pytest.mark.parametrize("moving", ["length", "angle", "spin", None])
 def test_a_segment_moves_tip_axis_or_spin(tmp_path, moving):
     trajectory = random_trajectory(9)
+    row = int(np.flatnonzero(trajectory.kind[1:] != Kind.ARC)[0]) + 1
     for name, column, value in (
-        ("length", "length", 0),
-        ("angle", "axis", trajectory.axis[3]),
-        ("spin", "spin", trajectory.spin[3]),
+        ("angle", "axis", trajectory.axis[row - 1]),
+        ("spin", "spin", trajectory.spin[row - 1]),
+        ("length", "tip", trajectory.tip_before()[row]),
     ):
         if name != moving:
-            trajectory = fitted(with_row(trajectory, column, 4, value))
+            trajectory = fitted(with_row(trajectory, column, row, value))
     if moving:
         assert everything(read_back(trajectory, tmp_path / "part.pkmt")) == everything(trajectory)
     else:
-        with pytest.raises(ValueError, match="segment 4: the tip, the axis and the spin all stand"):
+        with pytest.raises(ValueError, match=f"segment {row}: the tip, the axis and the spin all stand"):
             write(trajectory, tmp_path / "part.pkmt")
 
 

@@ -8,6 +8,7 @@ from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.geometry import angle_between, arc_sweep, norm, unit
+from pkm_post.geometry.arcs import arc_length
 from pkm_post.model import Event, EventKind, Kind, Tool, Trajectory
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
@@ -49,15 +50,15 @@ def random_columns(rng, count, tools, operations):
         "tip": rng.choice([-0.0, 5e-324, 1e3], (count, 3)) * rng.normal(size=(count, 3)),
         "axis": directions(rng, count),
         "spin": rng.normal(size=count),
-        "feed": rng.uniform(1e-3, 500, count),
+        "feed": rng.uniform(0.1, 500, count),
         "arc_centre": np.where(arc[:, None], rng.normal(size=(count, 3)), nan),
         "arc_axis": np.where(arc[:, None], directions(rng, count), nan),
         "sweep": np.where(arc, rng.uniform(1e-6, 2 * np.pi, count), 0.0),
         "length": rng.uniform(1e-6, 100, count),
         "angle": rng.uniform(0, np.pi, count),
-        "smooth": rng.random(count) < 0.5,
+        "smooth": np.zeros(count),
         "exact_stop": rng.random(count) < 0.5,
-        "tip_tolerance": rng.choice([0.0, 5e-324, 0.05, 2.54], count),
+        "tip_tolerance": rng.choice([0.0, 1e-9, 0.05, 2.54], count),
         "tool": rng.choice(tools, count) if count else [],
         "operation": rng.integers(0, operations, count),
         "line": rng.integers(0, 2**31 - 1, count),
@@ -69,38 +70,59 @@ def random_tool(rng, number, name):
 
 
 def random_trajectory(seed, count=20, events=6) -> Trajectory:
-    """Not a way that a machine could go: it leaps, and arcs have any length. But segments end where they say."""
+    """Not a way that a machine could go: it leaps. But segments end where they say."""
     rng = np.random.default_rng(seed)
     numbers = rng.permutation([0, 3, 12, 2**31 - 1]).tolist()
     names = iter(NAMES[index] for index in rng.integers(len(NAMES), size=9))
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = rotation(rng), rng.normal(size=3)
     return fitted(
-        Trajectory(
-            **random_columns(rng, count, numbers, 3),
-            start_tip=rng.normal(size=3),
-            start_axis=directions(rng, 1)[0],
-            start_spin=float(rng.normal()),
-            events=random_events(rng, count, events),
-            operations=(next(names), next(names), next(names)),
-            tools={number: random_tool(rng, number, next(names)) for number in numbers},
-            machine_from_work=pose,
-            machine=next(names),
-            machine_fingerprint=rng.bytes(32).hex(),
-            source=next(names),
-            source_fingerprint=rng.bytes(32).hex() if seed % 3 else "",
-            tolerances=Tolerances(*rng.uniform(1e-4, 1, 2).tolist()) if seed % 2 else None,
+        agreeing(
+            Trajectory(
+                **random_columns(rng, count, numbers, 3),
+                start_tip=rng.normal(size=3),
+                start_axis=directions(rng, 1)[0],
+                start_spin=float(rng.normal()),
+                events=random_events(rng, count, events),
+                operations=(next(names), next(names), next(names)),
+                tools={number: random_tool(rng, number, next(names)) for number in numbers},
+                machine_from_work=pose,
+                machine=next(names),
+                machine_fingerprint=rng.bytes(32).hex(),
+                source=next(names),
+                source_fingerprint=rng.bytes(32).hex() if seed % 3 else "",
+                tolerances=Tolerances(*rng.uniform(1e-4, 1, 2).tolist()) if seed % 2 else None,
+            )
         )
     )
 
 
+def agreeing(trajectory) -> Trajectory:
+    """The same with the tools that the instructions say, and at rest at each of them and at the end."""
+    count = len(trajectory)
+    rows = [event.row for event in trajectory.events]
+    rests = trajectory.exact_stop.copy()
+    rests[[row - 1 for row in (*rows, count) if row]] = True
+    if not count:
+        return trajectory
+    changes = [event for event in trajectory.events if event.kind is EventKind.TOOL_CHANGE]
+    numbers = sorted(trajectory.tools)
+    tool, events = np.full(count, numbers[0]), list(trajectory.events)
+    for turn, change in enumerate(changes):
+        number = numbers[turn % len(numbers)]
+        events[events.index(change)] = Event(change.row, change.kind, float(number))
+        tool[(change.row if turn else 0) :] = number
+    return dataclasses.replace(trajectory, exact_stop=rests, tool=tool, events=tuple(events))
+
+
 def fitted(trajectory) -> Trajectory:
-    """The same with the sweeps and angles that lead to the ends, and with the lengths of lines."""
+    """The same with the sweeps and angles that lead to the ends, and with the lengths of lines and arcs."""
     start, arc, sweep = trajectory.tip_before(), trajectory.kind == Kind.ARC, np.zeros(len(trajectory))
     way = start[arc], trajectory.tip[arc], trajectory.arc_centre[arc], trajectory.arc_axis[arc]
     sweep[arc] = arc_sweep(*way)
     angle = angle_between(trajectory.axis_before(), trajectory.axis)
-    length = np.where(arc, trajectory.length, norm(trajectory.tip - start))
+    length = norm(trajectory.tip - start)
+    length[arc] = arc_length(*way)
     return dataclasses.replace(trajectory, sweep=sweep, angle=angle, length=length)
 
 
