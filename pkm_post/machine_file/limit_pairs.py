@@ -9,9 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from pkm_post.machine_file.rest_pose import Check, Values
 
 _STRUTS = 6
+_BEYOND_REACH = 10
+"""Longest struts."""
 
 
 def _fast_approach(values: Values) -> Iterator[tuple[str, str]]:
@@ -32,11 +36,24 @@ def _short_lines(values: Values) -> Iterator[tuple[str, str]]:
         yield "controller.line_limit", found
 
 
+def _far(entry: str) -> Check:
+    """The check that a place is not beyond all reach: the way to it would be planned, step by step."""
+
+    def check(values: Values) -> Iterator[tuple[str, str]]:
+        away = float(np.linalg.norm(values[entry] - values["base.joints"].mean(axis=0)))
+        most = _BEYOND_REACH * values["struts.stroke"][1]
+        if away > most:
+            yield entry, f"{away:.4f} mm from the middle of the base joints, no strut reaches beyond {most:.4f} mm"
+
+    return check
+
+
 CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
     (("controller.approach_speed", "struts.speed"), _fast_approach),
     (
         ("controller.line_limit", "controller.length_decimals", "controller.speed_decimals", "struts.stroke"),
         _short_lines,
     ),
+    *(((entry, "base.joints", "struts.stroke"), _far(entry)) for entry in ("tool_path.home_tip", "tool_change.nose")),
 )
 """Each check with the entries it needs."""

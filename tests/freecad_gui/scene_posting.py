@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from pathlib import Path
+from unittest import mock
 
 import FreeCAD
 import FreeCADGui
@@ -153,6 +154,30 @@ def refused_job_is_told_and_leaves_nothing():
     found = {"files": names_in(folder), "told": panel.rows(), "clicked": place, "drawn": picture("refused.png")}
     close()
     return found
+
+
+def lacking(*_, **__):
+    raise MemoryError("Unable to allocate 7 GiB")
+
+
+@step
+def lack_of_memory_is_told_and_leaves_nothing():
+    from pkm_post import planning
+    from pkm_post.freecad_gui import command, post_panel
+
+    document, folder = saved("lacking")
+    panel, told, boxes = open_panel(document), [], []
+    with mock.patch.object(post_panel, "prepared_job", lacking):  # in the thread of the window
+        panel.post()
+    told.append(panel.rows())
+    with mock.patch.object(planning, "tool_path", lacking):  # beside it
+        panel.post()
+    told.append(panel.rows())
+    close()
+    shown = mock.patch.object(command.QtWidgets.QMessageBox, "warning", lambda *what: boxes.append(what[2]))
+    with shown, command.memory_or_told("Mirror"):
+        lacking()
+    return {"files": names_in(folder), "told": told, "boxes": boxes}
 
 
 @step

@@ -49,6 +49,16 @@ def test_refused_job_is_told_and_leaves_nothing(session):
     assert told.startswith("Cut, 4: G1")
 
 
+def test_lack_of_memory_is_told_and_leaves_nothing(session):
+    found = session["lack_of_memory_is_told_and_leaves_nothing"]
+    assert found["files"] == ["lacking.FCStd"]
+    (in_the_window,), (beside_it,) = found["told"]
+    assert "F130" in in_the_window
+    assert "in the step reach and feed plan" in beside_it
+    (box,) = found["boxes"]
+    assert box.startswith("Mirror: error F130: ")
+
+
 def test_arguments_without_a_meaning_are_told_and_not_kept(session):
     found = session["arguments_without_a_meaning_are_told"]
     assert found["files"] == ["meaningless.FCStd"]

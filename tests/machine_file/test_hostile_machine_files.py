@@ -175,3 +175,12 @@ def test_sizes_without_sense_are_named_with_those_that_make_sense(entry, key, va
     assert found.code == "M104"
     assert found.found.startswith(f"{entry}: expected a number above 0, got {float(value)!r}; ")
     assert re.search(r"; sizes from \S+ to \S+ [^ ]+ make sense$", found.found)
+
+
+def test_a_home_beyond_all_reach_is_refused():
+    """The way from there would be planned and looked at step by step."""
+    text = re.sub(r"^home_tip = .*$", "home_tip = [1e6, 0.0, 300.0]", PRESET, flags=re.MULTILINE)
+    found = refusal(text)
+    assert found.code == "M106"
+    assert found.found.startswith("tool_path.home_tip: 1000000.")
+    assert found.place.line == PRESET[: PRESET.index("\nhome_tip = ")].count("\n") + 2
