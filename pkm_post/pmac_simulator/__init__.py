@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A Turbo PMAC with six motors that exists in this computer alone, to test and to train with.
+"""A simulated Turbo PMAC with six motors, for tests and training.
 
-It is written from the manuals and imports no other room: what it says of a program must not rest on the code that wrote
+It is written from the manuals and imports no other room: its verdict on a program must not rest on the code that wrote
 the program.
 """
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Axes: which motor is which axis of a coordinate system: ``#1->10000A-5000000``.
+"""Axes: the axis definitions that assign motors to the axes of a coordinate system: ``#1->10000A-5000000``.
 
     counts = scale * axis position + offset
 
-One motor follows one axis; definitions that mix several axes are refused.
+One motor follows one axis; definitions that combine several axes are refused.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ class Definition:
     offset: float
 
     def text(self) -> str:
-        """The definition as it is reported."""
+        """The definition as reported."""
         scale = "" if self.scale == 1 else printed(self.scale)
         offset = f"{'+' if self.offset > 0 else ''}{printed(self.offset)}" if self.offset else ""
         return f"{scale}{self.letter}{offset}"
 
 
 def definition_of(scanner: Scanner) -> Definition | None:
-    """Read what follows ``#n->``; None for ``0``, which takes the motor out of its coordinate system.
+    """Read what follows ``#n->``; None for ``0``, which removes the motor from its coordinate system.
 
     Raises:
-        CommandError: it is no definition of one axis.
+        CommandError: it does not define a single axis.
     """
     if scanner.take(r"0+(?![0-9.]| *[A-CU-Z])"):
         return None
@@ -62,17 +62,17 @@ class Axes:
         self.definitions: dict[int, Definition] = {}
 
     def define(self, motor: int, definition: Definition | None) -> None:
-        """Give a motor its axis, or take it away."""
+        """Assign an axis to a motor, or remove it."""
         self.definitions.pop(motor, None)
         if definition is not None:
             self.definitions[motor] = definition
 
     def indices(self) -> list[int]:
-        """The simulated motors that belong to this coordinate system, counted from zero."""
+        """The simulated motors of this coordinate system, counted from zero."""
         return [motor - 1 for motor in sorted(self.definitions) if motor <= SIMULATED_MOTORS]
 
     def counts(self, position: Array) -> Array:
-        """Motor positions (6,) for axis positions (9,); NaN for motors that are in no axis."""
+        """Motor positions (6,) for axis positions (9,); NaN for motors without an axis."""
         counts = np.full(SIMULATED_MOTORS, np.nan)
         for index in self.indices():
             definition = self.definitions[index + 1]
@@ -80,7 +80,7 @@ class Axes:
         return counts
 
     def position(self, counts: Array) -> Array:
-        """Axis positions (9,) for motor positions (6,); zero for axes without motor."""
+        """Axis positions (9,) for motor positions (6,); zero for axes without a motor."""
         position = np.zeros(len(LETTERS))
         for index in self.indices():
             definition = self.definitions[index + 1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Control characters: what they do, for all motors and coordinate systems at once [TurboPMAC, control characters]."""
+"""Control characters: their actions on all motors and coordinate systems at once [TurboPMAC, control characters]."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pkm_post.pmac_simulator.status import global_status, motor_status, system_s
 from pkm_post.pmac_simulator.variables import SIMULATED_MOTORS, SYSTEMS
 
 Control = Callable[[Session], list[str] | None]
-"""What a control character does; None when nothing is answered."""
+"""The action of a control character; None if it has no answer."""
 
 
 def _abort_all(session: Session) -> None:
-    """Programs end; every motor stops by itself, and open loops are closed."""
+    """End all programs; stop each motor on its own ramp, and close open loops."""
     for system in session.controller.systems:
         system.forget()
     for index in range(SIMULATED_MOTORS):
@@ -47,7 +47,7 @@ def _step_all(session: Session) -> None:
 
 
 def _start_all(session: Session, step: bool) -> None:
-    """Coordinate systems without a program are passed over; what hinders one of the others is told."""
+    """Start every coordinate system that has a program; the first refusal is raised at the end."""
     refusals = []
     for system in session.controller.systems:
         if system.axes.definitions and system.interpreter.counter.pointer is not None:
@@ -74,7 +74,7 @@ def _no_plc(session: Session) -> None:
 
 
 def _bank(session: Session) -> range:
-    """The eight motors of the bank that ``##n`` addressed."""
+    """The eight motors of the bank addressed by ``##n``."""
     return range(8 * session.bank + 1, 8 * session.bank + 9)
 
 
@@ -119,4 +119,4 @@ CONTROLS: dict[int, Control] = {
         "V": _of_motors("V"),
     }.items()
 }
-"""Actions by character code. ^H, ^M, ^N and ^X belong to the line; others do nothing."""
+"""Actions by character code. The line handles ^H, ^M, ^N and ^X; others do nothing."""

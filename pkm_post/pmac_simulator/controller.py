@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Controller: a Turbo PMAC with six motors, in a time that its owner lets pass.
+"""Controller: a Turbo PMAC with six motors, whose time is advanced by its owner.
 
-Enters: commands by way of ports, and milliseconds. Leaves: motor positions in counts, and what ports have to say. No
-clock is read here: the same commands at the same times give the same positions.
+Enters: commands through ports, and milliseconds. Leaves: motor positions in counts, and the output of ports. It reads
+no clock: the same commands at the same times give the same positions.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ Listener = Callable[[str | CommandError], None]
 
 
 class Controller:
-    """The state of a whole controller.
+    """The state of a controller.
 
     Attributes:
-        settings: what it is.
-        time: ms since it was made.
+        settings: its configuration.
+        time: ms since creation.
         variables: I, P, Q and M.
-        memory: program buffers.
+        memory: its program buffers.
         motors: the six simulated motors.
         systems: coordinate systems, from 1.
-        unlocked: whether the password was given.
-        listeners: ports that take what programs have to say.
+        unlocked: whether the password was entered.
+        listeners: ports that receive the output of programs.
     """
 
     def __init__(self, settings: Settings | None = None) -> None:
@@ -47,7 +47,7 @@ class Controller:
         self.initialize()
 
     def initialize(self) -> None:
-        """Reset with the settings of the factory: ``$$$***``."""
+        """Reset to factory defaults: ``$$$***``."""
         self._start(Variables(), Memory(self.settings.memory_words))
         self.unlocked = True
         self.load(self.settings.machine_codes)
@@ -55,12 +55,12 @@ class Controller:
         self.save()
 
     def save(self) -> None:
-        """Keep variables, programs and axis definitions for the next reset: ``SAVE``."""
+        """Save variables, programs and axis definitions for the next reset: ``SAVE``."""
         definitions = [dict(system.axes.definitions) for system in self.systems]
         self._kept = copy.deepcopy((self.variables, self.memory.programs, definitions))
 
     def reset(self) -> None:
-        """Reset with what was saved: ``$$$``. Motors lose their positions, rotary buffers are gone."""
+        """Reset to the saved state: ``$$$``. Motors lose their positions, and rotary buffers are deleted."""
         variables, programs, definitions = copy.deepcopy(self._kept)
         memory = Memory(self.settings.memory_words)
         memory.programs = programs
@@ -69,17 +69,17 @@ class Controller:
             system.axes.definitions = kept
 
     def load(self, lines: list[str] | tuple[str, ...]) -> None:
-        """Carry out lines as if they came in by a port.
+        """Execute lines as if they came in through a port.
 
         Raises:
-            CommandError: a line is refused; those before it were carried out.
+            CommandError: a line is refused; those before it were executed.
         """
         session = Session(self)
         for line in lines:
             execute(session, line)
 
     def advance(self, ms: float) -> None:
-        """Let time pass, in whole ticks; what is left over is kept for the next time."""
+        """Advance time in whole ticks; the remainder is kept for the next call."""
         tick = self.settings.tick_ms
         self._owed_ms += ms
         count = math.floor(self._owed_ms / tick + 1e-9)
@@ -88,7 +88,7 @@ class Controller:
             self._tick(tick)
 
     def system_of(self, motor: int) -> CoordinateSystem | None:
-        """The coordinate system that a motor belongs to."""
+        """The coordinate system of a motor."""
         return next((system for system in self.systems if motor in system.axes.definitions), None)
 
     def runs_program(self) -> bool:
@@ -96,17 +96,17 @@ class Controller:
         return any(system.running for system in self.systems)
 
     def rotary_full(self, system: int) -> bool:
-        """Whether a rotary buffer asks for no more lines: I17 lines ahead, until fewer than I16 are."""
+        """Whether a rotary buffer requests no more lines: from I17 lines ahead until fewer than I16 are left."""
         self._watch_rotaries()
         return self._full[system - 1]
 
     def forget_pointers(self) -> None:
-        """A fixed buffer was opened: every coordinate system has to be pointed to its program again."""
+        """Clear all program pointers, as a fixed buffer was opened."""
         for system in self.systems:
             system.interpreter.point(None)
 
     def kill(self, index: int) -> None:
-        """Kill one motor, and the program of its coordinate system."""
+        """Kill a motor and the program of its coordinate system."""
         system = self.system_of(index + 1)
         if system is not None:
             system.forget()
@@ -127,8 +127,8 @@ class Controller:
         self._full = [False] * SYSTEMS
 
     def _said_by(self, number: int) -> Callable[[str, str], None]:
-        """What a program of this coordinate system says to ports, or asks for as if by a port."""
-        return partial(self._say, Session(self, system=number))  # no closure: it goes along with a copy of this
+        """A callback for what a program of this coordinate system sends to ports, or commands as if by a port."""
+        return partial(self._say, Session(self, system=number))  # no closure: it is copied along with the controller
 
     def _say(self, session: Session, kind: str, text: str) -> None:
         try:
@@ -151,7 +151,7 @@ class Controller:
         self.time += ms
 
     def _guard(self) -> None:
-        """Stop what has gone wrong, and all that moves together with it."""
+        """Stop motors that have failed, and all motors that move together with them."""
         self.motors.fatal |= guards.exceeded(self.motors)
         tripped = self.motors.closed & (self.motors.fatal | self.motors.amplifier_fault)
         for index in np.flatnonzero(tripped).tolist():

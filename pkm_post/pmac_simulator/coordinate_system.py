@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coordinate system: a program that runs, in a time of its own that an override may slow down or stop.
+"""Coordinate system: a running program, with a time base that an override slows down or stops.
 
-Enters: R, S, H, Q, A, an override in per cent, and the passing of time in ms. Leaves: commanded positions of its motors
-in counts. One move is computed ahead: what stands between two moves is carried out when the first of them begins, but
-for a DWELL, which is waited for.
+Enters: R, S, H, Q, A, an override in per cent, and elapsed time in ms. Leaves: commanded motor positions in counts. One
+move is computed ahead: statements between two moves are executed when the first of them begins, except that a DWELL is
+waited for.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from pkm_post.pmac_simulator.path import Path
 from pkm_post.pmac_simulator.variables import SIMULATED_MOTORS, Array, SystemScope, Variables
 
 FULL_SLEW = 1644.0
-"""Isx94 and Isx95: this value changes the override by 100 % in a second [TurboPMAC, Isx94]."""
+"""Isx94 and Isx95: at this value the override changes by 100 % in a second [TurboPMAC, Isx94]."""
 HIGHEST_OVERRIDE = 225.0
 """%; the servo rate in kHz times 100 %."""
 MOVES_AT_ONCE = 1000
 SAME_PLACE = 0.5
-"""counts: a motor that is farther from where its program stopped was moved away."""
+"""counts: beyond this, a motor counts as moved away from where its program stopped."""
 
 NO_COMMAND = np.full(SIMULATED_MOTORS, np.nan)
 
@@ -38,13 +38,13 @@ class CoordinateSystem:
         number: from 1.
         axes: its axis definitions.
         interpreter: of its program.
-        running: whether a program runs; also while it is held or waits for lines.
-        stepping: whether it stops behind the next move.
-        holding: whether a feed hold was asked for.
-        override: of the time now, 1 is 100 %.
-        override_wanted: where it goes when nothing is held, 1 is 100 %.
+        running: whether a program runs; true also while it is held or waits for lines.
+        stepping: whether it stops after the next move.
+        holding: whether a feed hold is active.
+        override: of the current time base; 1 is 100 %.
+        override_wanted: target override when not held; 1 is 100 %.
         path: the moves of the program.
-        runtime_error: whether the last program ended by a fault.
+        runtime_error: whether the last program ended with an error.
     """
 
     def __init__(self, number: int, memory: Memory, variables: Variables, motors: Motors, outside: Outside) -> None:
@@ -58,7 +58,7 @@ class CoordinateSystem:
         self._no_more = self._resuming = False
 
     def run(self, step: bool = False) -> None:
-        """R or S: begin, or go on behind H, Q, S or STOP.
+        """R or S: start, or continue after H, Q, S or STOP.
 
         Raises:
             CommandError: the motors or the program are not ready.
@@ -75,21 +75,21 @@ class CoordinateSystem:
             self._begin()
 
     def hold(self) -> None:
-        """H: slow the time down to nothing; the motors stay on their path."""
+        """H: slow the time base down to zero; the motors stay on their path."""
         self.holding = self.running
 
     def quit(self) -> None:
-        """Q: end behind the moves that are computed."""
+        """Q: end after the moves already computed."""
         self._no_more = True
 
     def abort(self) -> None:
-        """A: end the program and stop each motor by itself."""
+        """A: end the program and stop each motor on its own ramp."""
         for index in self.axes.indices():
             self._motors.abort(index)
         self.forget()
 
     def forget(self) -> None:
-        """End the program at once, without a word to the motors."""
+        """End the program at once, without a command to the motors."""
         self.running = self.holding = self.stepping = False
         self._stopped_at = None
         self.path.clear()
@@ -105,9 +105,9 @@ class CoordinateSystem:
         self.override_wanted = percent / 100
 
     def advance(self, ms: float) -> None:
-        """Let time pass."""
+        """Advance time."""
         if not self.running:
-            self.path.clear()  # the last move stayed for one tick, so that the motors arrive exactly
+            self.path.clear()  # the last move stays for one tick, so that the motors reach its end exactly
         self._slew(ms)
         for _ in range(MOVES_AT_ONCE):
             if self.running:
@@ -117,7 +117,7 @@ class CoordinateSystem:
                 return
 
     def commanded(self) -> Array:
-        """Where the motors are to be, counts, (6,); NaN where the program has no say."""
+        """Commanded motor positions, counts, (6,); NaN where no program commands them."""
         position = None if self.holding and self.override == 0 else self.path.position()
         return NO_COMMAND if position is None else self.axes.counts(position)
 
@@ -145,7 +145,7 @@ class CoordinateSystem:
             raise CommandError(errors.MOVING)
 
     def _check_place(self) -> None:
-        """A program that is not sound, or motors that are not where it stopped."""
+        """Refuse an unsound program, and motors that are not where it stopped."""
         program = self.interpreter.counter.program()
         if program is not None and not program.sound:
             raise CommandError(errors.BAD_PROGRAM)
@@ -154,7 +154,7 @@ class CoordinateSystem:
             raise CommandError(errors.DISPLACED)
 
     def _slew(self, ms: float) -> None:
-        """Isx95 is for a hold and for going on after it, Isx94 for all else [TurboPMAC, Isx95]."""
+        """Slew the override: Isx95 for a hold and the resume after it, Isx94 otherwise [TurboPMAC, Isx95]."""
         which = 95 if self.holding or self._resuming else 94
         change = abs(self._variables.of_system(self.number, which)) / FULL_SLEW * ms / 1000
         wanted = 0.0 if self.holding else self.override_wanted
@@ -162,7 +162,7 @@ class CoordinateSystem:
         self._resuming = self._resuming and self.override != wanted
 
     def _standing(self) -> Array:
-        """Where the program wants the motors, or has left them, counts, (6,)."""
+        """Where the program commands the motors, or has left them, counts, (6,)."""
         position = self.path.position()
         return self._motors.commanded.copy() if position is None else self.axes.counts(position)
 

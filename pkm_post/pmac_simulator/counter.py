@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Counter: which statement of which program comes next.
+"""Counter: the next statement to execute, and its program.
 
-Enters: jumps, calls and returns. Leaves: statements, one after the other; those of a rotary buffer leave it.
+Enters: jumps, calls and returns. Leaves: statements in order; a rotary buffer drops those that it has delivered.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ from pkm_post.pmac_simulator.programs import Program, Rotary
 from pkm_post.pmac_simulator.statements import Statement
 
 ROTARY = 0
-"""What stands for the rotary buffer in place of the number of a program."""
+"""Stands for the rotary buffer in place of a program number."""
 DEEPEST_CALLS = 15
 
 
 class ProgramError(Exception):
-    """A program cannot go on: a label or program that is not there, a value that is no number, a time of zero."""
+    """A program cannot continue: a missing label or program, a value that is not finite, a time of zero."""
 
 
 class Counter:
     """The program counter of one coordinate system.
 
     Attributes:
-        pointer: number of the program that B pointed to; None when there is none.
-        place: number of the program that is carried out, which may be a called one, and of the statement in it.
+        pointer: number of the program that B selected; None without one.
+        place: number of the executing program, which may be a called one, and index of its next statement.
     """
 
     def __init__(self, system: int, memory: Memory) -> None:
@@ -33,7 +33,7 @@ class Counter:
         self.point(None)
 
     def point(self, program: int | None, label: int = 0) -> None:
-        """Point to a label of a program; the label 0 is its beginning, and so is one that is not there."""
+        """Point to a label of a program; label 0 is its beginning, and so is a missing label."""
         self.pointer: int | None = program
         there = self._memory.programs.get(program or ROTARY)
         self.place = (program or ROTARY, there.labels.get(label, 0) if there and label else 0)
@@ -41,7 +41,7 @@ class Counter:
         self._line: list[Statement] = []
 
     def check(self) -> None:
-        """Refuse to run without a program.
+        """Check that there is a program to run.
 
         Raises:
             CommandError: there is no program to run.
@@ -51,7 +51,7 @@ class Counter:
             raise CommandError(NO_PROGRAM)
 
     def program(self) -> Program | None:
-        """The fixed program that is pointed to."""
+        """The fixed program pointed to."""
         return self._memory.programs.get(self.pointer or ROTARY)
 
     def rotary(self) -> Rotary | None:
@@ -59,14 +59,14 @@ class Counter:
         return self._memory.rotaries.get(self._system)
 
     def at_beginning(self) -> bool:
-        """Whether nothing of the program was carried out."""
+        """Whether nothing of the program has been executed."""
         return self.place[1] == 0 and not self._calls and not self._line
 
     def fetch(self) -> Statement | None:
-        """The next statement; None when a rotary buffer is empty.
+        """The next statement; None if the rotary buffer is empty.
 
         Raises:
-            ProgramError: the program has gone.
+            ProgramError: the program no longer exists.
         """
         if self.pointer == ROTARY and not self._calls:
             return self._fetch_rotary()
@@ -78,10 +78,10 @@ class Counter:
         return there.statements[index]
 
     def call(self, program: int, label: int) -> None:
-        """Go to a label of a program, to come back later.
+        """Call a label of a program.
 
         Raises:
-            ProgramError: it is not there, or too many calls wait for their return.
+            ProgramError: it does not exist, or calls are nested too deeply.
         """
         if len(self._calls) >= DEEPEST_CALLS:
             raise ProgramError
@@ -89,22 +89,22 @@ class Counter:
         self.place = (program, self._index(program, label))
 
     def go_to(self, label: int) -> None:
-        """Go to a label of this program.
+        """Jump to a label of this program.
 
         Raises:
-            ProgramError: it is not there.
+            ProgramError: it does not exist.
         """
         self.place = (self.place[0], self._index(self.place[0], label))
 
     def come_back(self) -> bool:
-        """Go on behind the last call; False when there was none."""
+        """Return from the last call; False if there was none."""
         if self._calls:
             self.place = self._calls.pop()
             return True
         return False
 
     def jump(self) -> None:
-        """Go where the structure of the program leads to from the statement that was fetched last."""
+        """Follow the jump of the statement fetched last."""
         program, index = self.place
         self.place = (program, self._memory.programs[program].jumps.get(index - 1, index))
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Errors: the numbers by which a PMAC refuses a command, and what they mean [TurboPMAC, PMAC error table].
+"""Errors: the numbers with which a PMAC refuses commands, and their meanings [TurboPMAC, PMAC error table].
 
-A refusal is an ordinary answer of the controller, so it is an exception inside this room alone: the port turns it
-into ``BEL ERRnnn``.
+A refusal is a normal answer of the controller, so it is an exception inside this room only: the port turns it into
+``BEL ERRnnn``.
 """
 
 from __future__ import annotations

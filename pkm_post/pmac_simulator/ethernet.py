@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Ethernet: packets of the Turbo PMAC's Ethernet protocol to commands, and answers to bytes.
 
-Enters and leaves: bytes of a TCP stream, in pieces of any size. A packet has a head of eight bytes (type, request,
-value, index, length; words with the high byte first) and, when it goes to the controller, as many bytes of data as the
-head says [UMACEthernet]. Requests that are unknown or have no sense are passed over in silence.
+Enters and leaves: bytes of a TCP stream, in pieces of any size. A packet has a header of eight bytes (type, request,
+value, index, length; words in big-endian order), followed, on the way to the controller, by as many bytes of data as
+the header states [UMACEthernet]. Unknown or invalid requests are ignored.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ FAILED = 0x80
 
 
 class Packets:
-    """One connection to the Ethernet port; the port behind it is the same for all of them."""
+    """One connection to the Ethernet port; all connections share the port behind it."""
 
     def __init__(self, line: Line) -> None:
         self.line = line
@@ -31,7 +31,7 @@ class Packets:
         self._waiting = bytearray()
 
     def receive(self, data: bytes) -> bytes:
-        """Take bytes in and give those out that answer the packets they complete."""
+        """Take received bytes; return the answers to the packets that they complete."""
         self._received += data
         answer = b""
         while (packet := self._packet()) is not None:
@@ -39,12 +39,12 @@ class Packets:
         return answer
 
     def _packet(self) -> bytes | None:
-        """Answer the packet in front; None when it is not complete."""
+        """Answer the first packet; None if it is incomplete."""
         if len(self._received) < HEAD.size:
             return None
         kind, request, value, _, length = HEAD.unpack_from(self._received)
         if kind not in (DOWNLOAD, UPLOAD) or (kind == DOWNLOAD and length > LONGEST_DATA):
-            self._received.clear()  # no packet: where the next one begins nobody can tell
+            self._received.clear()  # not a packet: the start of the next one is unknown
             return None
         size = HEAD.size + (length if kind == DOWNLOAD else 0)
         if len(self._received) < size:
@@ -66,7 +66,7 @@ class Packets:
         return DONE
 
     def _get_line(self, data: bytes, value: int, length: int) -> bytes:
-        """Up to the first character that ends a line, and this."""
+        """Up to and including the first line terminator."""
         ends = [self._waiting.find(end) for end in (CR, ACK, LF)]
         found = [end for end in ends if end >= 0]
         return self._taken(min(length, min(found) + 1) if found else length) or NOTHING
@@ -82,7 +82,7 @@ class Packets:
         return self.line.control(value & 0xFF)[:LONGEST_ANSWER]
 
     def _write_buffer(self, data: bytes, value: int, length: int) -> bytes:
-        """Lines with a zero between them. The first that is refused is told by its place, counted from one."""
+        """Lines separated by zero bytes; the answer gives the position of the first refused one, counted from one."""
         for place, text in enumerate(data.rstrip(b"\0").split(b"\0"), start=1):
             number = self.line.refusal(_decoded(text))
             if number:
@@ -90,7 +90,7 @@ class Packets:
         return bytes(4)
 
     def _carried_out(self, data: bytes) -> bytes:
-        """The answer to a line of text; a carriage return at its end is not asked for, and does no harm."""
+        """The answer to a line of text; a carriage return at its end is optional."""
         if any(code > 127 for code in data):
             return self.line.refused(CHARACTER)
         return self.line.command(_decoded(data.rstrip(b"\r\n\0")))

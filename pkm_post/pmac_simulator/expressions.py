@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Expressions: constants, variables, operators and functions as programs and on-line commands have them.
+"""Expressions: constants, variables, operators and functions of programs and on-line commands.
 
-Enters: a scanner. Leaves: an expression that knows its text for a listing, its size, and its value in a given
-coordinate system. ``* / % &`` bind closer than ``+ - | ^``. Angles are in degrees.
+Enters: a scanner. Leaves: an expression with its text for a listing, its size, and its value in a given coordinate
+system. ``* / % &`` bind tighter than ``+ - | ^``. Angles are in degrees.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ DEEPEST_NESTING = 15
 
 
 class Scope(Protocol):
-    """Where variables are read from and written to."""
+    """Read and write access to variables."""
 
     def read(self, letter: str, number: int) -> float:
         """The value of a variable."""
 
     def write(self, letter: str, number: int, value: float) -> None:
-        """Give a variable a value."""
+        """Assign a value to a variable."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +42,10 @@ class Expression:
     """A value that may depend on variables.
 
     Attributes:
-        text: as it is listed.
-        words: its size in the memory of the controller.
+        text: as listed.
+        words: size in the controller's memory.
         value: the value in a scope.
-        constant: whether it is one number.
+        constant: whether it is a single number.
     """
 
     text: str
@@ -54,7 +54,7 @@ class Expression:
     constant: bool = False
 
     def bracketed(self) -> str:
-        """The text behind a letter: a constant as it is, else in brackets."""
+        """The text behind a letter: a constant as it is, anything else in brackets."""
         return self.text if self.constant else f"({self.text})"
 
 
@@ -62,7 +62,7 @@ def expression(scanner: Scanner, depth: int = 0) -> Expression:
     """Read an expression.
 
     Raises:
-        CommandError: the line has none here, or one that is nested too deeply.
+        CommandError: the line has no expression here, or one that is nested too deeply.
     """
     if depth > DEEPEST_NESTING:
         raise CommandError(DATA)
@@ -73,14 +73,14 @@ def expression(scanner: Scanner, depth: int = 0) -> Expression:
 
 
 def argument(scanner: Scanner) -> Expression:
-    """Read what follows the letter of a word: a number with or without sign, or an expression in brackets."""
+    """Read what follows the letter of a word: a signed or unsigned number, or an expression in brackets."""
     if scanner.take(r"\("):
         return _closed(scanner, 0)
     return constant(scanner.expect(rf"(?P<number>[+-]?(?:{CONSTANT}))")["number"])
 
 
 def constant(text: str) -> Expression:
-    """The expression of one number."""
+    """The expression of a single number."""
     sign = -1.0 if text.startswith("-") else 1.0
     number = sign * number_of(text.lstrip("+-"))
     return Expression(printed(number), 1, lambda scope: number, constant=True)
@@ -130,7 +130,7 @@ def _factor(scanner: Scanner, depth: int) -> Expression:
 
 
 def expression_factor(scanner: Scanner, depth: int) -> Expression:
-    """Read what a minus sign stands before."""
+    """Read the operand of a minus sign."""
     if depth >= DEEPEST_NESTING:
         raise CommandError(DATA)
     return _factor(scanner, depth + 1)
@@ -151,7 +151,7 @@ def _variable(scanner: Scanner, depth: int) -> Expression:
 
 
 def variable_number(scanner: Scanner, depth: int = 0) -> Expression:
-    """Read the number behind the letter of a variable: digits, or an expression in brackets."""
+    """Read the number behind a variable's letter: digits, or an expression in brackets."""
     if scanner.take(r"\("):
         return _closed(scanner, depth)
     return constant(scanner.expect(r"(?P<digits>[0-9]{1,5})")["digits"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Guards: what of the motors is out of bounds: limits, switches, following errors, amplifiers.
+"""Guards: motors out of bounds: limits, switches, following errors, amplifiers.
 
 Enters: the motors. Leaves: columns (6,) of booleans.
 """
@@ -12,11 +12,11 @@ from pkm_post.pmac_simulator.motors import Motors
 from pkm_post.pmac_simulator.variables import Array
 
 LIMITS_DISABLED, WORD = 0x20000, 1 << 24
-"""A bit of Ixx24, which is a word of 24 bits."""
+"""LIMITS_DISABLED is a bit of Ixx24, which is a word of 24 bits."""
 
 
 def beyond_limits(motors: Motors) -> Array:
-    """Which motors move on where a limit or a switch forbids it, (6,)."""
+    """Which motors move further beyond a limit or into a switch, (6,)."""
     high, low = at_limits(motors)
     searching = np.array([jog is not None and jog.homing for jog in motors.jogs])
     outside = (motors.high_switch | high & ~searching) & (motors.speed > 0)
@@ -24,20 +24,20 @@ def beyond_limits(motors: Motors) -> Array:
 
 
 def at_limits(motors: Motors) -> tuple[Array, Array]:
-    """Which motors are beyond Ixx13, and which beyond Ixx14; 0 is no limit, and a bit of Ixx24 takes all away."""
+    """Which motors are beyond Ixx13, and which beyond Ixx14; 0 means no limit, and a bit of Ixx24 disables all."""
     high, low = motors.variables.column(13), motors.variables.column(14)
     heeded = (np.abs(motors.variables.column(24)) % WORD).astype(np.int64) & LIMITS_DISABLED == 0
     return heeded & (high != 0) & (motors.actual > high), heeded & (low != 0) & (motors.actual < low)
 
 
 def exceeded(motors: Motors) -> Array:
-    """Which closed motors have more following error than Ixx11, (6,)."""
+    """Which closed-loop motors have a following error above Ixx11, (6,)."""
     limit = motors.variables.column(11) / 16
     return motors.closed & (limit > 0) & (np.abs(motors.following_error) > limit)
 
 
 def warned(motors: Motors) -> Array:
-    """Which motors have more following error than Ixx12, (6,)."""
+    """Which motors have a following error above Ixx12, (6,)."""
     limit = motors.variables.column(12) / 16
     return (limit > 0) & (np.abs(motors.following_error) > limit)
 

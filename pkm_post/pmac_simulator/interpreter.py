@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Interpreter: a coordinate system carries out the statements of its program until there is a move to make.
+"""Interpreter: executes the statements of a coordinate system's program up to the next move.
 
-Enters: a program, variables, the position where the moves so far lead. Leaves: the next move. Codes G, M, T and D call
-programs 1000 to 1003 at the label of their number [TurboPMAC, motion programs]; S puts its value into Q127.
+Enters: a program, variables, the end position of the moves so far. Leaves: the next move. Codes G, M, T and D call
+programs 1000 to 1003 at the label of their number [TurboPMAC, motion programs]; S writes its value to Q127.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pkm_post.pmac_simulator.statements import Statement
 from pkm_post.pmac_simulator.variables import SystemScope
 
 STATEMENTS_AT_ONCE = 1000
-"""So many without a move, and the rest of the controller gets its turn."""
+"""Most statements without a move before the rest of the controller gets its turn."""
 CODE_PROGRAMS = {"G": 1000, "M": 1001, "T": 1002, "D": 1003}
 SPEED_OF_S_CODE = 127
 
@@ -33,13 +33,13 @@ Outside = Callable[[str, str], None]
 
 
 class Interpreter:
-    """Where a coordinate system is in its program.
+    """The program state of a coordinate system.
 
     Attributes:
-        modes: what the moves depend on.
-        counter: which statement comes next.
-        finished: whether the program has come to its end.
-        halted: whether it has come to a STOP.
+        modes: the modal state of its moves.
+        counter: its program counter.
+        finished: whether the program has reached its end.
+        halted: whether it has reached a STOP.
     """
 
     def __init__(self, number: int, memory: Memory, scope: SystemScope, axes: Axes, outside: Outside) -> None:
@@ -50,32 +50,33 @@ class Interpreter:
         self.finished = self.halted = self.in_block = False
 
     def point(self, program: int | None, label: int = 0) -> None:
-        """Point to a label of a program; the label 0 is its beginning."""
+        """Point to a label of a program; label 0 is its beginning."""
         self.counter.point(program, label)
         self.finished = self.halted = self.in_block = False
         self._pending = []
 
     def ended(self) -> bool:
-        """Whether nothing follows: the program is at its end, or at a STOP."""
+        """Whether nothing follows: the program is at its end or at a STOP."""
         return self.finished or self.halted
 
     def taken_pending(self) -> list[Pending]:
-        """The synchronous assignments in front of the move that was computed last."""
+        """The synchronous assignments ahead of the last computed move."""
         pending, self._pending = self._pending, []
         return pending
 
     def next(self, after: Move | None, now: float) -> Move | None:
-        """Carry out statements until there is a move.
+        """Execute statements up to the next move.
 
         Args:
-            after: the move before, which may still run.
-            now: the time of the program, ms.
+            after: the previous move, which may still run.
+            now: program time, ms.
 
         Returns:
-            The move; None at the end, at a STOP, when a rotary buffer is empty, or when it is the turn of others.
+            The move; None at the end, at a STOP, when a rotary buffer is empty, or after too many statements without a
+            move.
 
         Raises:
-            ProgramError: the program cannot go on.
+            ProgramError: the program cannot continue.
         """
         try:
             for _ in range(STATEMENTS_AT_ONCE):
@@ -112,7 +113,7 @@ class Interpreter:
         return expression.value(self._scope)
 
     def _code(self, letter: str, value: float) -> None:
-        # M123.4 is label 23400 of program 1011: hundreds count up the program.
+        # M123.4 is label 23400 of program 1011: the hundreds select the program.
         hundreds = int(value // 100)
         self.counter.call(CODE_PROGRAMS[letter] + 10 * hundreds, round((value - 100 * hundreds) * 1000))
 
@@ -146,7 +147,7 @@ class Interpreter:
         self._scope.write(letter, int(self._value(number)), self._value(value))
 
     def _synchronous(self, arguments: tuple[Any, ...]) -> None:
-        """The value is computed now and written when the next move begins."""
+        """Compute the value now and write it when the next move begins."""
         letter, number, sign, expression = arguments
         index, value = int(self._value(number)), self._value(expression)
         self._scope.read(letter, index)

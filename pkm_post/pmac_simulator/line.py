@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Line: bytes of a serial port to commands, and answers to bytes.
 
-Enters and leaves: bytes, in pieces of any size. I3 decides how an answer is framed, I4 whether sums are added, I6 how
-an error is told [TurboPMAC, I3, I4, I6]. Control characters act at once, also inside a line.
+Enters and leaves: bytes, in pieces of any size. I3 selects the framing of answers, I4 enables checksums, I6 selects the
+error format [TurboPMAC, I3, I4, I6]. Control characters act at once, even inside a line.
 """
 
 from __future__ import annotations
@@ -18,10 +18,9 @@ LAST_CHARACTER = 127
 
 
 class Line:
-    """One port: what came of a line so far, and the addresses that its commands are for.
+    """One port: the line received so far, and the addresses for its commands.
 
-    A port of the controller does not notice that nobody is connected to it any more: a buffer stays open, a motor
-    addressed.
+    A controller's port does not detect a disconnect: a buffer stays open, a motor addressed.
     """
 
     def __init__(self, controller: Controller) -> None:
@@ -32,30 +31,30 @@ class Line:
         self._unasked = bytearray()
 
     def attend(self) -> None:
-        """Take also what programs say (SEND), for ``receive`` to hand out."""
+        """Also receive the output of programs (SEND), for ``receive`` to return."""
         self.controller.listeners.append(self._listen)
 
     def receive(self, data: bytes) -> bytes:
-        """Take bytes in and give those out that answer them, after what programs said meanwhile."""
+        """Take received bytes; return the output of programs since the last call, then the answers."""
         answer = self.said()
         for code in data:
             answer += self._take(code)
         return answer + self.said()
 
     def said(self) -> bytes:
-        """What programs said since the last time."""
+        """The output of programs since the last call."""
         said, self._unasked = bytes(self._unasked), bytearray()
         return said
 
     def command(self, text: str) -> bytes:
-        """Carry out a line and frame its answer."""
+        """Execute a line and frame its answer."""
         try:
             return self._framed(self._carry_out(text), text)
         except CommandError as error:
             return self.refused(error.number)
 
     def refusal(self, text: str) -> int:
-        """Carry out a line whose answer nobody waits for; the number of its error, or 0."""
+        """Execute a line without its answer; return the number of its error, or 0."""
         try:
             self._carry_out(text)
         except CommandError as error:
@@ -63,11 +62,11 @@ class Line:
         return 0
 
     def refused(self, number: int) -> bytes:
-        """What tells an error."""
+        """The framed report of an error."""
         return self._error_text(number, BEL)
 
     def control(self, code: int) -> bytes:
-        """Carry out a control character; those that ask for data are answered as a line is."""
+        """Execute a control character; queries are answered like a line."""
         act = CONTROLS.get(code)
         if act is None:
             return b""
@@ -92,7 +91,7 @@ class Line:
         elif code == CANCEL:
             return self._cancel()
         elif code < 0x20:
-            return self.control(code)  # LF is none of them
+            return self.control(code)  # LF has no action
         elif code > LAST_CHARACTER:
             self._error = CHARACTER
         elif len(self._text) >= self.controller.settings.line_limit:
@@ -102,7 +101,7 @@ class Line:
         return b""
 
     def _end_of_line(self) -> bytes:
-        """A line in which a character was faulty is not carried out, whatever I4 says of the time to tell it."""
+        """A line with a faulty character is not executed, whenever I4 would have the error reported."""
         text, error = self._text.decode("ascii"), self._error
         self._text, self._error = bytearray(), 0
         return self.refused(error) if error else self.command(text)
@@ -128,7 +127,7 @@ class Line:
         return bell + (CR if form == 3 else b"") + feed + f"ERR{number:03d}".encode("ascii") + CR
 
     def _listen(self, said: str | CommandError) -> None:
-        """I64 marks what nobody asked for; I6 = 2 keeps errors of programs silent."""
+        """Queue unsolicited output: I64 marks it; I6 = 2 suppresses errors of programs."""
         variables = self.controller.variables
         if isinstance(said, CommandError):
             if variables.setting(6) != 2:

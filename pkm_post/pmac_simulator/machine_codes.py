@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine codes: the programs that a machine builder puts behind the codes G, M, T and D, for a machine of air.
+"""Machine codes: the programs that a machine builder supplies for codes G, M, T and D, for a machine without hardware.
 
-M3, M4 and M5 leave 1, -1 and 0 in P7001, M8, M7 and M9 leave 1, 2 and 0 in P7002; M0 and M1 stop until R; T takes any
-tool from 0 to 99 and M6 changes it in no time.
+M3, M4 and M5 write 1, -1 and 0 to P7001, M8, M7 and M9 write 1, 2 and 0 to P7002; M0 and M1 stop until R; T accepts any
+tool from 0 to 99, and M6 changes it instantly.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Memory: the program buffers of the controller, which one is open and who opened it.
+"""Memory: the controller's program buffers, the open one and its owner.
 
-Enters: lines of programs. Leaves: programs, rotary buffers, and the words that are free. One buffer is open at a time;
-what was opened by one port is filled and closed by that port.
+Enters: lines of programs. Leaves: programs, rotary buffers, and the number of free words. One buffer is open at a time;
+only the port that opened it fills and closes it.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from pkm_post.pmac_simulator.statements import Statement, statements_of
 HIGHEST_PROGRAM = 32_767
 MOST_PROGRAMS = 224
 BRANCHES = {"N", "GOTO", "GOSUB", "CALL", "RETURN", "IF", "ELSE", "ENDIF", "WHILE", "ENDWHILE"}
-"""What a rotary buffer does not take, for it forgets the lines behind it [TurboPMAC, rotary buffers]."""
+"""What a rotary buffer refuses, as it discards executed lines [TurboPMAC, rotary buffers]."""
 
 
 @dataclass(frozen=True)
 class Opened:
-    """The buffer that is open: a program by its number, or all rotary buffers; and the port that opened it."""
+    """The open buffer: a program number, or None for all rotary buffers; and the port that opened it."""
 
     program: int | None
     port: object
@@ -31,10 +31,10 @@ class Memory:
     """All buffers of a controller.
 
     Attributes:
-        size: words for all of them.
+        size: total words.
         programs: fixed programs by number.
         rotaries: rotary buffers by coordinate system.
-        gather: words set aside for gathered data.
+        gather: words reserved for gathered data.
         opened: the open buffer.
     """
 
@@ -46,15 +46,15 @@ class Memory:
         self.opened: Opened | None = None
 
     def free(self) -> int:
-        """Words that are free."""
+        """Number of free words."""
         used = sum(program.words for program in self.programs.values())
         return self.size - self.gather - used - sum(rotary.size for rotary in self.rotaries.values())
 
     def open_program(self, number: int, port: object) -> None:
-        """Open a fixed program; what stands in it stays.
+        """Open a fixed program; its contents stay.
 
         Raises:
-            CommandError: another buffer is open, or there can be no such program.
+            CommandError: another buffer is open, or the program number is invalid.
         """
         if self.opened is not None:
             raise CommandError(IN_USE)
@@ -76,14 +76,14 @@ class Memory:
         self.opened = Opened(None, port)
 
     def is_open_by(self, port: object) -> bool:
-        """Whether lines of this port go into a buffer."""
+        """Whether lines from this port go into a buffer."""
         return self.opened is not None and self.opened.port is port
 
     def close(self, port: object) -> None:
-        """Close the buffer that this port opened; nothing when there is none.
+        """Close the buffer that this port opened, if any.
 
         Raises:
-            CommandError: the program that is closed has no sound structure. It is closed nevertheless.
+            CommandError: the program has a faulty structure; it is closed nevertheless.
         """
         if not self.is_open_by(port):
             return
@@ -98,7 +98,7 @@ class Memory:
         """Empty the open program, or the rotary buffer of a coordinate system.
 
         Raises:
-            CommandError: this port has no buffer open.
+            CommandError: this port has no open buffer.
         """
         if not self.is_open_by(port):
             raise CommandError(NOT_OPEN)
@@ -109,10 +109,10 @@ class Memory:
             self.rotaries[system] = Rotary(self.rotaries[system].size)
 
     def add(self, text: str, system: int) -> None:
-        """Put a line into the open buffer.
+        """Append a line to the open buffer.
 
         Raises:
-            CommandError: the line is no line of a program, or there is no room for it.
+            CommandError: the line is not a program line, or there is no room for it.
         """
         line = statements_of(text)
         if not line:
@@ -124,7 +124,7 @@ class Memory:
             self._add_to_rotary(system, line)
 
     def define_rotary(self, system: int, words: int) -> None:
-        """Make the rotary buffer of a coordinate system.
+        """Define the rotary buffer of a coordinate system.
 
         Raises:
             CommandError: a buffer is open, or there is no room.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Modes: what the moves of a program depend on, and the moves that follow from it.
+"""Modes: the modal state of a program, and the moves that follow from it.
 
 Enters: statements that set a mode, and axis words. Leaves: moves. Positions are in axis units, speeds in axis units per
 Isx90 ms, times in ms.
@@ -19,23 +19,23 @@ from pkm_post.pmac_simulator.statements import LETTERS
 from pkm_post.pmac_simulator.variables import Array, SystemScope
 
 LONGEST_INTERVAL_MS = 4095 + 4095 / 4096
-"""24 bits, of which 12 stand behind the point [TurboPMAC, PVT]."""
+"""24 bits, of which 12 are fractional [TurboPMAC, PVT]."""
 INTERVALS_PER_MS = 4096
 DEFAULT_FEED_AXES = frozenset("XYZ")
 FAR_TOO_SLOW = 1e-9
-"""counts/ms: a limit of zero in an I-variable would never let a move end."""
+"""counts/ms: lower bound of limits; at a limit of zero a move would never end."""
 FARTHEST = 2.0**47
-"""axis units: registers of positions have 48 bits."""
+"""axis units: position registers have 48 bits."""
 
 Words = tuple[tuple[str, Expression, Expression | None], ...]
 
 
 class Modes:
-    """The modes of a program.
+    """The modal state of a program.
 
     Attributes:
         mode: LINEAR, RAPID or PVT.
-        target: where the moves so far lead, (9,).
+        target: end position of the moves so far, (9,).
         last_speed: at the end of the last PVT move, axis units per ms, (9,).
     """
 
@@ -45,7 +45,7 @@ class Modes:
         self.reset(self.target)
 
     def reset(self, position: Array) -> None:
-        """Take the modes that a program begins with, at a position (9,)."""
+        """Set the initial modes of a program, at a position (9,)."""
         variables, system = self._scope.variables, self._scope.system
         self.mode = "LINEAR"
         self._incremental: frozenset[str] = frozenset()
@@ -56,19 +56,19 @@ class Modes:
         self.resume(position)
 
     def resume(self, position: Array) -> None:
-        """Go on from rest at a position (9,), in the modes of before."""
+        """Continue from rest at a position (9,), in the previous modes."""
         self.target = np.array(position)
         self.rest()
 
     def rest(self) -> None:
-        """The axes come to rest: the next PVT move begins at no speed."""
+        """Bring the axes to rest: the next PVT move starts at zero speed."""
         self.last_speed = np.zeros(len(LETTERS))
 
     def change(self, kind: str, arguments: tuple[Any, ...]) -> None:
-        """Carry out a statement that sets a mode.
+        """Execute a statement that sets a mode.
 
         Raises:
-            CommandError: its value makes no sense.
+            CommandError: its value is invalid.
         """
         if kind in ("LINEAR", "RAPID"):
             self.mode = kind
@@ -97,15 +97,15 @@ class Modes:
             self._feed = value
 
     def move(self, words: Words, after: Move | None, now: float) -> Move:
-        """The move of a line of axis words.
+        """The move for a line of axis words.
 
         Args:
             words: letter, position or distance, and speed in PVT mode.
-            after: the move before, which may still run.
-            now: the time of the program, ms.
+            after: the previous move, which may still run.
+            now: program time, ms.
 
         Raises:
-            CommandError: a value is no number, or a time or feed is not above zero.
+            CommandError: a value is not finite or out of range, or a time or feed is not positive.
         """
         origin, target, speed = self.target, self.target.copy(), np.zeros(len(LETTERS))
         time_unit = self._scope.variables.of_system(self._scope.system, 90)
@@ -143,7 +143,7 @@ class Modes:
         return max(after.end, now)
 
     def _times(self, distance: Array, counts: Array) -> tuple[float, tuple[float, ...]]:
-        """Distance by speed, and the ramps, within Ixx16 and Ixx17 of every motor."""
+        """Move time at the programmed feed, and the ramps, within Ixx16 and Ixx17 of every motor."""
         variables = self._scope.variables
         speed_limit = np.maximum(np.abs(variables.column(16)), FAR_TOO_SLOW)
         acceleration_limit = np.maximum(np.abs(variables.column(17)), FAR_TOO_SLOW)
@@ -153,7 +153,7 @@ class Modes:
         return max(duration, ramp), ramps_of(ramp, self._curve)
 
     def _asked_for(self, distance: Array) -> float:
-        """What TM, or F along the feed axes, asks for, ms; nothing in RAPID mode."""
+        """The time that TM, or F along the feed axes, requests, ms; 0 in RAPID mode."""
         if self.mode == "RAPID":
             return 0.0
         if self._feed is None:
@@ -165,7 +165,7 @@ class Modes:
 
 
 def _interval(value: float, whole_ms: bool) -> float:
-    """A time of PVT as the controller keeps it: in whole ms or in 1/4096 ms."""
+    """A PVT time as the controller stores it: in whole ms or in 1/4096 ms."""
     if not 0 <= value <= LONGEST_INTERVAL_MS:
         raise CommandError(DATA)
     return float(round(value)) if whole_ms else round(value * INTERVALS_PER_MS) / INTERVALS_PER_MS

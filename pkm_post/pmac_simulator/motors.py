@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motors: six simulated motors in columns, with their servo loops, limits, jogs and searches for home.
+"""Motors: six simulated motors in columns, with their servo loops, limits, jogs and homing moves.
 
-Enters: commanded positions in counts, and the passing of time in ms. Leaves: actual positions, and what went wrong.
-The actual position follows the commanded one as a first-order lag, so at a constant speed the following error is speed
-times ``lag_ms``. A motor that is open-loop stays where it is, and its commanded position with it.
+Enters: commanded positions in counts, and elapsed time in ms. Leaves: actual positions and faults. The actual position
+follows the commanded one with a first-order lag, so at constant speed the following error is speed times ``lag_ms``. An
+open-loop motor stands still, and its commanded position with it.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from pkm_post.pmac_simulator.profiles import Profile, endless, go_to, stop
 from pkm_post.pmac_simulator.variables import SIMULATED_MOTORS, Array, Variables
 
 SLOWEST = 1e-6
-"""counts/ms or counts/ms^2; a zero in an I-variable would never end a move."""
+"""counts/ms or counts/ms^2: lower bound of I-variables; at zero a move would never end."""
 
 
 @dataclass
 class Jog:
-    """A move of one motor by itself, and since when it runs; a search for home has more to do at its end."""
+    """A move of a single motor and its elapsed time; a homing move continues after its profile."""
 
     profile: Profile
     time: float = 0.0
@@ -33,20 +33,20 @@ class Motors:
     """The state of all motors; columns are (6,), motor n is index n - 1.
 
     Attributes:
-        variables: of the controller.
+        variables: the controller's.
         commanded: counts.
         actual: counts.
         speed: of the commanded position, counts/ms.
         closed: whether the servo loop is closed.
-        enabled: whether the amplifier is.
-        homed: whether home was found.
+        enabled: whether the amplifier is enabled.
+        homed: whether the motor is homed.
         stopped_on_limit: whether a limit stopped it.
-        fatal: whether it tripped by its following error.
-        amplifier_fault: to be set by who simulates one.
-        low_switch, high_switch: overtravel switches, likewise.
-        jammed: whether the motor cannot turn, likewise.
-        jogs: for each motor its own move.
-        before_jog: position that ``J=`` leads back to, counts.
+        fatal: whether it tripped on its following error.
+        amplifier_fault: set by the test or simulation.
+        low_switch, high_switch: overtravel switches, set likewise.
+        jammed: whether the motor is blocked, set likewise.
+        jogs: for each motor its current jog.
+        before_jog: position that ``J=`` returns to, counts.
     """
 
     def __init__(self, variables: Variables, lag_ms: float, home_flag: float) -> None:
@@ -61,7 +61,7 @@ class Motors:
 
     @property
     def following_error(self) -> Array:
-        """Commanded less actual position, counts."""
+        """Commanded minus actual position, counts."""
         return self.commanded - self.actual
 
     @property
@@ -70,28 +70,28 @@ class Motors:
         return self.variables.column(0) != 0
 
     def moving(self) -> Array:
-        """Which motors have a commanded speed."""
+        """Which motors have a commanded speed or a jog."""
         return (self.speed != 0) | np.array([jog is not None for jog in self.jogs])
 
     def jog_to(self, index: int, goal: float) -> None:
-        """Send one motor to a position in counts."""
+        """Jog one motor to a position in counts."""
         self._begin(index, go_to(*self._state(index), goal, self._jog_speed(index), self._jog_acceleration(index)))
 
     def jog_on(self, index: int, sign: int) -> None:
-        """Send one motor off in a direction."""
+        """Jog one motor indefinitely in a direction."""
         wanted = sign * self._jog_speed(index)
         self._begin(index, endless(*self._state(index), wanted, self._jog_acceleration(index)))
 
     def jog_stop(self, index: int) -> None:
-        """Stop one motor, and close its loop."""
+        """Stop one motor and close its loop."""
         self._begin(index, stop(*self._state(index), self._jog_acceleration(index)))
 
     def abort(self, index: int) -> None:
-        """Stop one motor by Ixx15, and close its loop."""
+        """Stop one motor at deceleration Ixx15 and close its loop."""
         self._begin(index, stop(*self._state(index), max(self._value(index, 15), SLOWEST)))
 
     def home(self, index: int) -> None:
-        """Begin to search for the flag of one motor."""
+        """Start the homing move of one motor."""
         self.homed[index] = False
         wanted = self._value(index, 23)
         profile = endless(*self._state(index), wanted, self._jog_acceleration(index))
@@ -99,7 +99,7 @@ class Motors:
         self.jogs[index] = Jog(profile, homing=True)
 
     def home_here(self, index: int) -> None:
-        """Take where the motor stands for its home."""
+        """Make the motor's current position its home."""
         self._shift(index, self.commanded[index] - self._value(index, 26) / 16)
         self.homed[index] = True
 
@@ -114,20 +114,20 @@ class Motors:
         self.enabled[index] = True
 
     def advance(self, ms: float, commanded: Array) -> None:
-        """Let time pass.
+        """Advance time.
 
         Args:
-            ms: how much.
-            commanded: (6,) where programs want the motors at its end, counts; NaN for a motor without a program.
+            ms: elapsed time.
+            commanded: (6,) positions commanded by programs at its end, counts; NaN for a motor without a program.
         """
         wanted = np.where(np.isnan(commanded), self.commanded, commanded)
         for index, jog in enumerate(self.jogs):
             if jog is not None:
                 wanted[index] = self._jogged(index, jog, ms)
         wanted = np.where(self.closed, wanted, self.actual)
-        # Where a search for home has moved the zero, wanted and commanded have moved together.
+        # Where homing has shifted the zero, wanted and commanded have shifted together.
         self.speed = np.where(self.closed, (wanted - self.commanded) / ms, 0.0)
-        # The lag to a ramp: e' = speed - e / lag.
+        # First-order lag behind a ramp: e' = speed - e / lag.
         fading = math.exp(-ms / self._lag_ms)
         error = self.following_error * fading + self.speed * self._lag_ms * (1.0 - fading)
         self.commanded = wanted
@@ -144,7 +144,7 @@ class Motors:
         return position
 
     def _searched(self, index: int, jog: Jog, position: float) -> float:
-        """The flag makes the zero; behind it the motor turns round to its home."""
+        """The flag sets the zero; behind it the motor turns back to its home."""
         flag, before = self.home_flag[index], self.commanded[index]
         if position == before or (before - flag) * (position - flag) > 0:
             return position  # the flag was not passed
@@ -177,7 +177,7 @@ class Motors:
         return max(abs(self._value(index, 22)), SLOWEST)
 
     def _jog_acceleration(self, index: int) -> float:
-        """What the ramp of Ixx20 and Ixx21 asks for, within Ixx19; the S-curve is not simulated."""
+        """The acceleration of the ramp Ixx20 and Ixx21, within Ixx19; the S-curve is not simulated."""
         ramp = max(self._value(index, 20), 2 * self._value(index, 21))
         highest = max(self._value(index, 19), SLOWEST)
         return min(self._jog_speed(index) / ramp, highest) if ramp > 0 else highest

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Moves: where the axes of a coordinate system are, from the beginning of a move to its end.
+"""Moves: the axis positions of a coordinate system over the time of a move.
 
-Enters: ends of moves in axis units, times in ms of the program's time. Leaves: positions of the nine axes. Moves of a
-program that blend overlap: each brings the axes by its own distance, and the contributions add up.
+Enters: end points of moves in axis units, program times in ms. Leaves: positions of the nine axes. Blended moves
+overlap: each adds its own displacement, and the contributions sum.
 """
 
 from __future__ import annotations
@@ -16,33 +16,33 @@ from pkm_post.pmac_simulator.variables import Array
 
 
 class Move(Protocol):
-    """A move in the time of its program.
+    """A move in program time.
 
     Attributes:
-        start: when it begins, ms.
-        end: when it has arrived, ms.
-        target: where it leads, (9,).
+        start: start time, ms.
+        end: arrival time, ms.
+        target: end position, (9,).
     """
 
     @property
     def start(self) -> float:
-        """When it begins, ms."""
+        """Start time, ms."""
 
     @property
     def end(self) -> float:
-        """When it has arrived, ms."""
+        """Arrival time, ms."""
 
     @property
     def target(self) -> Array:
-        """Where it leads, (9,)."""
+        """End position, (9,)."""
 
     def missing(self, time: float) -> Array:
-        """What is still to go at a time, (9,)."""
+        """Remaining distance at a time, (9,)."""
 
 
 @dataclass(frozen=True)
 class Cubic:
-    """A PVT move: the one cubic with the positions and speeds of its ends.
+    """A PVT move: the cubic given by the positions and speeds at its ends.
 
     p(t) = p0 + v0 t + c2 t^2 + c3 t^3 with c2 = (3 d - (2 v0 + v1) T) / T^2 and c3 = ((v0 + v1) T - 2 d) / T^3 where
     d = p1 - p0 [TurboPMAC, PVT mode].
@@ -52,8 +52,8 @@ class Cubic:
         duration: ms, T.
         origin: position at the start, p0.
         target: position at the end, p1.
-        first_speed: at the start in axis units per ms, v0.
-        last_speed: at the end, v1.
+        first_speed: speed at the start in axis units per ms, v0.
+        last_speed: speed at the end, v1.
     """
 
     start: float
@@ -65,11 +65,11 @@ class Cubic:
 
     @property
     def end(self) -> float:
-        """When it has arrived, ms."""
+        """Arrival time, ms."""
         return self.start + self.duration
 
     def missing(self, time: float) -> Array:
-        """What is still to go at a time, (9,)."""
+        """Remaining distance at a time, (9,)."""
         span = self.duration
         t = min(max(time - self.start, 0.0), span)
         distance = self.target - self.origin
@@ -80,18 +80,18 @@ class Cubic:
 
 @dataclass(frozen=True)
 class Blended:
-    """A LINEAR or RAPID move: a constant speed, and ramps at both ends that overlap with those of its neighbours.
+    """A LINEAR or RAPID move: constant speed, with ramps at both ends that blend with those of its neighbours.
 
-    The speed is a box as long as the move at full speed would take, smoothed by boxes as long as the ramps: one for a
-    straight ramp, two for an S-curve. Where the ramps of two moves meet, their sum leads round the corner.
+    The speed profile is a box as wide as the move takes at full speed, convolved with boxes as wide as the ramps: one
+    for a linear ramp, two for an S-curve. Where the ramps of two moves overlap, their sum rounds the corner.
 
     Attributes:
         start: ms.
-        duration: ms, distance by speed.
+        duration: ms, distance over speed.
         ramps: lengths of the ramps, ms.
-        distance: from the end of the move before, (9,).
+        distance: from the end of the previous move, (9,).
         target: position at the end.
-        blends: whether a LINEAR move may begin before this one has ended.
+        blends: whether a LINEAR move may begin before this one ends.
     """
 
     start: float
@@ -103,16 +103,16 @@ class Blended:
 
     @property
     def end(self) -> float:
-        """When it has arrived, ms."""
+        """Arrival time, ms."""
         return self.start + self.duration + sum(self.ramps)
 
     @property
     def hand_over(self) -> float:
-        """When a move that blends with this one begins, ms."""
+        """Start time of a move that blends with this one, ms."""
         return self.start + self.duration
 
     def missing(self, time: float) -> Array:
-        """What is still to go at a time, (9,)."""
+        """Remaining distance at a time, (9,)."""
         return self.distance * (1.0 - share(time - self.start, (self.duration, *self.ramps)))
 
 
@@ -123,8 +123,8 @@ class Rest:
     Attributes:
         start: ms.
         end: ms.
-        target: where the axes stand.
-        fixed: whether it takes the same time at any override, and nothing is computed ahead meanwhile.
+        target: where the axes rest.
+        fixed: whether its duration ignores the override, and nothing is computed ahead meanwhile.
     """
 
     start: float
@@ -133,19 +133,19 @@ class Rest:
     fixed: bool
 
     def missing(self, time: float) -> Array:
-        """Nothing, (9,)."""
+        """Remaining distance: zero, (9,)."""
         return 0.0 * self.target
 
 
 def share(time: float, boxes: tuple[float, ...]) -> float:
-    """The share of a distance that is gone, where the speed is a convolution of boxes.
+    """Fraction of a distance covered when the speed profile is a convolution of boxes.
 
     The integral of the convolution of n boxes of widths w is the sum over all subsets S of
     (-1)^|S| max(t - sum of S, 0)^n / (n! product of w).
 
     Args:
         time: since the start.
-        boxes: widths; those of width zero leave the speed as it is.
+        boxes: widths; a box of width zero has no effect.
     """
     widths = sorted(width for width in boxes if width > 0)
     whole, ramps = sum(widths), sum(widths[:-1])
@@ -153,7 +153,7 @@ def share(time: float, boxes: tuple[float, ...]) -> float:
         return 0.0
     if time >= whole:
         return 1.0
-    if ramps <= time <= whole - ramps:  # at full speed; the sum below would lose digits here
+    if ramps <= time <= whole - ramps:  # at full speed; the sum below would lose precision here
         return (time - ramps / 2) / widths[-1]
     if time > whole / 2:
         return 1.0 - share(whole - time, boxes)
@@ -167,6 +167,6 @@ def share(time: float, boxes: tuple[float, ...]) -> float:
 
 
 def ramps_of(ramp: float, curve: float) -> tuple[float, ...]:
-    """Boxes that smooth the speed: a ramp of ``ramp`` ms with S-curves of ``curve`` ms at both its ends."""
+    """Boxes that smooth the speed: a ramp of ``ramp`` ms with S-curves of ``curve`` ms at both ends."""
     whole = max(ramp, 2 * curve)
     return (whole - curve, curve) if curve > 0 else (whole,)

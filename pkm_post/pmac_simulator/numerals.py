@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numerals: numbers as the controller keeps and prints them.
+"""Numerals: numbers as the controller stores and prints them.
 
-A value is a 48-bit word with a mantissa of 36 bits, of which one is the sign: about 10.5 significant digits. What is
-downloaded and what is listed is rounded to that.
+A value is a 48-bit word with a mantissa of 36 bits, of which one is the sign: about 10.5 significant digits. Downloaded
+and listed values are rounded to that.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ LARGEST_EXPONENT = 1023
 
 
 def kept(value: float) -> float:
-    """A value as it stands in a word of the controller.
+    """A value as stored in a word of the controller.
 
     Raises:
-        CommandError: it is too large for a word, or no number.
+        CommandError: it exceeds the range of a word, or is not finite.
     """
     if not math.isfinite(value) or abs(value) >= 2.0**LARGEST_EXPONENT:
         raise CommandError(DATA)
@@ -29,7 +29,7 @@ def kept(value: float) -> float:
 
 
 def printed(value: float) -> str:
-    """The shortest plain decimal that is kept as the same word; no exponent, a digit before the point."""
+    """The shortest plain decimal stored as the same word; no exponent, a digit before the point."""
     word = kept(value)
     for digits in range(9, 17):
         text = f"{word:.{digits}g}"
@@ -42,7 +42,7 @@ def printed(value: float) -> str:
 
 
 def hexadecimal(*words: int) -> str:
-    """Status words of 24 bits as six digits each."""
+    """Status words of 24 bits, six digits each."""
     return "".join(f"{word & 0xFFFFFF:06X}" for word in words)
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""On-line commands: a line from a port, carried out command by command.
+"""On-line commands: a line from a port, executed command by command.
 
-Enters: a line without its end, and who sent it. Leaves: lines of data, or the error that the line is refused with;
-commands in front of the faulty one were carried out. While a buffer is open, what can be a statement of a program goes
-into it.
+Enters: a line without its terminator, and its sender. Leaves: lines of data, or the error that refuses the line;
+commands ahead of the faulty one were executed. While a buffer is open, everything that parses as a program statement
+goes into it.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ Handler = Callable[["Session", re.Match[str], Scanner], list[str]]
 
 @dataclass(eq=False)
 class Session:
-    """Who sends commands, and which motor and coordinate system they are for.
+    """The sender of commands, and the motor and coordinate system it addresses.
 
     Attributes:
-        controller: that takes them.
+        controller: that executes them.
         motor: addressed by ``#n``.
         system: addressed by ``&n``.
-        bank: of eight motors, addressed by ``##n``.
+        bank: eight motors, addressed by ``##n``.
     """
 
     controller: Controller
@@ -45,10 +45,10 @@ class Session:
 
 
 def execute(session: Session, line: str) -> list[str]:
-    """Carry out a line.
+    """Execute a line.
 
     Raises:
-        CommandError: a command of it is refused.
+        CommandError: one of its commands is refused.
     """
     scanner, told = Scanner(line), []
     while not scanner.at_end():
@@ -76,7 +76,7 @@ def _went_into_buffer(session: Session, scanner: Scanner) -> bool:
     except CommandError as error:
         if error.number != DATA:
             raise
-        return False  # no statement, so it may be an on-line command
+        return False  # not a statement, so it may be an on-line command
     scanner.rest()
     return True
 
@@ -110,7 +110,7 @@ def _within(text: str, least: int, most: int) -> int:
 
 
 def _axis(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """``#n->`` reports an axis definition, ``#n->1000X`` makes one [TurboPMAC, axis definition]."""
+    """``#n->`` reports an axis definition, ``#n->1000X`` sets one [TurboPMAC, axis definition]."""
     controller = session.controller
     motor = session.motor = _within(match["number"], 1, MOTORS)
     axes = controller.systems[session.system - 1].axes
@@ -181,4 +181,4 @@ COMMANDS: tuple[tuple[str, Handler], ...] = (
     *online_memory.COMMANDS,
     *online_motion.COMMANDS,
 )
-"""Patterns of commands with what they do; the first that fits is the one that is meant."""
+"""Command patterns and their handlers; the first match wins."""

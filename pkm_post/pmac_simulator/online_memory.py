@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from pkm_post.pmac_simulator.online import Handler, Session
 
 PROTECTED_FROM = 1000
-"""Programs from this number on may need a password [TurboPMAC, PASSWORD]."""
+"""Programs from this number on can be password-protected [TurboPMAC, PASSWORD]."""
 
 
 def _variable(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """``P1`` reports, ``P1=2`` sets, ``P1..3`` and ``P1..3=0`` do so for several."""
+    """``P1`` reports, ``P1=2`` sets; ``P1..3`` and ``P1..3=0`` do so for a range."""
     letter = match["letter"].upper()
     scope = SystemScope(session.controller.variables, session.system)
     first = int(variable_number(scanner).value(scope))
@@ -45,7 +45,7 @@ def _variable(session: Session, match: re.Match[str], scanner: Scanner) -> list[
 
 
 def _definition(session: Session, number: int, scanner: Scanner) -> list[str]:
-    """``M1->`` reports where an M-variable points, ``M1->*`` points it; the simulator has nothing at any address."""
+    """``M1->`` reports the address of an M-variable, ``M1->*`` sets it; the simulator has no data at addresses."""
     definitions = session.controller.variables.definitions
     if scanner.at_end():
         return [definitions.get(number, "*")]
@@ -54,7 +54,7 @@ def _definition(session: Session, number: int, scanner: Scanner) -> list[str]:
 
 
 def _open_program(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """OPEN PROG: no program may run, and none may be pointed to any more [TurboPMAC, OPEN]."""
+    """OPEN PROG: requires that no program runs, and clears all program pointers [TurboPMAC, OPEN]."""
     controller, number = session.controller, int(match["number"])
     if controller.settings.password and not controller.unlocked and number >= PROTECTED_FROM:
         raise CommandError(PASSWORD)
@@ -68,7 +68,7 @@ def _open_program(session: Session, match: re.Match[str], scanner: Scanner) -> l
 
 
 def open_rotary(session: Session) -> None:
-    """OPEN ROT: a program may run, the rotary one above all."""
+    """OPEN ROT: a program may run, in particular the rotary one."""
     session.controller.memory.open_rotary(session)
 
 
@@ -92,7 +92,7 @@ def _not_open(session: Session, match: re.Match[str], scanner: Scanner) -> list[
 
 
 def _gather(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """DEFINE GATHER takes the words that are asked for, or all; DELETE GATHER gives them back."""
+    """DEFINE GATHER reserves the given number of words, or all; DELETE GATHER releases them."""
     memory = session.controller.memory
     if memory.opened is not None:
         raise CommandError(IN_USE)
@@ -122,7 +122,7 @@ def _lines_ahead(session: Session, match: re.Match[str], scanner: Scanner) -> li
 
 
 def _size(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """Words that are free; negative while a buffer is open [PMAC, SIZE]."""
+    """Number of free words; negative while a buffer is open [PMAC, SIZE]."""
     memory = session.controller.memory
     return [str(memory.free() if memory.opened is None else -memory.free())]
 
@@ -138,7 +138,7 @@ def _list_program(session: Session, match: re.Match[str], scanner: Scanner) -> l
 
 
 def _list_counter(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """LIST PC: the statement that is computed next."""
+    """LIST PC: the next statement to compute."""
     counter = session.controller.systems[session.system - 1].interpreter.counter
     counter.check()
     program, index = counter.place
@@ -150,7 +150,7 @@ def _list_counter(session: Session, match: re.Match[str], scanner: Scanner) -> l
 
 
 def _is_long(session: Session) -> bool:
-    """I9 = 1 or 3: words are listed in full."""
+    """I9 = 1 or 3: keywords are listed in full."""
     return session.controller.variables.setting(9) in (1, 3)
 
 
@@ -176,4 +176,4 @@ COMMANDS: tuple[tuple[str, Handler], ...] = (
 )
 
 OF_OPEN_BUFFER: tuple[tuple[str, Handler], ...] = ((_CLOSE, _close), (_CLEAR, _clear))
-"""What is never taken for a statement while a buffer is open."""
+"""Commands that are never parsed as statements while a buffer is open."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""On-line commands that move, stop and ask for positions."""
+"""On-line commands that move, stop and report positions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pkm_post.pmac_simulator.online import Handler, Session
 
 DECIMALS = 1
-"""Positions are told to a tenth of a count."""
+"""Positions are reported to a tenth of a count."""
 
 
 def position_text(controller: Controller, what: str, motor: int) -> str:
@@ -41,10 +41,10 @@ def _system(session: Session) -> CoordinateSystem:
 
 
 def _free_motor(session: Session) -> int:
-    """The index of the addressed motor, when it may be moved by itself.
+    """The index of the addressed motor, if it may move on its own.
 
     Raises:
-        CommandError: a program moves it, or it is not there.
+        CommandError: a program moves it, or it does not exist.
     """
     if session.motor > SIMULATED_MOTORS or not session.controller.motors.activated[session.motor - 1]:
         raise CommandError(NOT_ACTIVATED)
@@ -55,7 +55,7 @@ def _free_motor(session: Session) -> int:
 
 
 def _jog(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """J/ stops, J+ and J- go on, J= goes back, J=n to a position, J:n and J^n by a distance [TurboPMAC, J]."""
+    """J/ stops, J+ and J- jog, J= returns, J=n goes to a position, J:n and J^n move by a distance [TurboPMAC, J]."""
     motors, index, how = session.controller.motors, _free_motor(session), match["how"]
     if how == "/":
         motors.jog_stop(index)
@@ -80,7 +80,7 @@ def _home(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]
 
 
 def _kill(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """K is refused while a program moves the motor; A comes first [TurboPMAC, K]."""
+    """K is refused while a program moves the motor; it takes an A first [TurboPMAC, K]."""
     system = session.controller.system_of(session.motor)
     if system is not None and system.running:
         raise CommandError(RUNNING)
@@ -90,7 +90,7 @@ def _kill(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]
 
 
 def _open_loop(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """O0 opens the loop; the output itself moves nothing here."""
+    """O0 opens the loop; the output level itself moves nothing here."""
     if abs(constant(match["percent"]).value(SystemScope(session.controller.variables, session.system))) > 100:
         raise CommandError(DATA)
     session.controller.motors.open_loop(_free_motor(session))
@@ -113,7 +113,7 @@ def _run(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
 
 
 def run(controller: Controller, number: int, step: bool) -> None:
-    """R or S in a coordinate system.
+    """Execute R or S in a coordinate system.
 
     Raises:
         CommandError: motors or program are not ready.
@@ -121,12 +121,12 @@ def run(controller: Controller, number: int, step: bool) -> None:
     system = controller.systems[number - 1]
     opened = controller.memory.opened
     if opened is not None and opened.program is not None:
-        system.interpreter.point(None)  # none may run while a fixed buffer is open
+        system.interpreter.point(None)  # no program may run while a fixed buffer is open
     system.run(step)
 
 
 def _hold(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """H; and the quick stop, a backslash, which is the same outside of lookahead."""
+    """H, and the quick stop (backslash), which is equivalent outside look-ahead."""
     _system(session).hold()
     return []
 
@@ -142,7 +142,7 @@ def _abort(session: Session, match: re.Match[str], scanner: Scanner) -> list[str
 
 
 def _point(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """B10 points to a program, B10.5 to its label N50000 [TurboPMAC, B]."""
+    """B10 selects a program, B10.5 its label N50000 [TurboPMAC, B]."""
     system = _system(session)
     if system.running:
         raise CommandError(RUNNING)
@@ -152,7 +152,7 @@ def _point(session: Session, match: re.Match[str], scanner: Scanner) -> list[str
 
 
 def _override(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """%n sets the override, % tells what it is now."""
+    """%n sets the override, % reports its current value."""
     system = _system(session)
     if match["percent"] is None:
         return [printed(round(100 * system.override, 3))]

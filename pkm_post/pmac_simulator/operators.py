@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Operators: what the signs and functions of expressions do. Angles are in degrees; bits are those of whole numbers."""
+"""Operators: the operators and functions of expressions. Angles are in degrees; bitwise operators act on integers."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ COMPARISONS: dict[str, Comparison] = {
 
 
 def safely(compute: Callable[[], float]) -> float:
-    """A result as a word; what has none (a division by zero, a root of less than nothing) is refused."""
+    """A result as a stored word; an undefined one (division by zero, root of a negative number) is refused."""
     try:
         return kept(float(compute()))
     except (ArithmeticError, ValueError):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Path: the moves of a program, one behind the other, in a time that an override may slow down or stop.
+"""Path: the queued moves of a program, in a time base that an override slows down or stops.
 
-Enters: moves with their times in ms of the program. Leaves: positions of the axes. Assignments that wait for a move are
-carried out when it begins.
+Enters: moves with their program times in ms. Leaves: axis positions. Synchronous assignments are executed when their
+move begins.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ Pending = Callable[[], None]
 
 
 class Path:
-    """The moves that are computed and not yet made.
+    """Moves that are computed but not completed.
 
     Attributes:
-        time: of the program, ms.
-        abrupt_stops: how often a PVT move ended at a speed with nothing behind it.
+        time: program time, ms.
+        abrupt_stops: number of PVT moves that ended at nonzero speed with nothing behind them.
     """
 
     def __init__(self) -> None:
@@ -32,21 +32,21 @@ class Path:
         self._pending: list[tuple[Move, list[Pending]]] = []
 
     def clear(self) -> None:
-        """Forget all moves."""
+        """Discard all moves."""
         self._moves, self._pending = [], []
 
     def add(self, move: Move, pending: list[Pending]) -> None:
-        """Add a move that begins now or later, with what waits for its beginning."""
+        """Add a move that begins now or later, with its pending assignments."""
         self._moves.append(move)
         self._pending.append((move, pending))
         self._pass()
 
     def last(self) -> Move | None:
-        """The move behind which the next one comes."""
+        """The last move in the queue."""
         return self._moves[-1] if self._moves else None
 
     def has_enough(self) -> bool:
-        """Whether nothing more is computed now: a move lies ahead, or a dwell has to be waited for."""
+        """Whether to compute no further: a move lies ahead, or a dwell must be waited for."""
         return any(move.start > self.time or self._dwells(move) for move in self._moves)
 
     def done(self) -> bool:
@@ -54,12 +54,12 @@ class Path:
         return all(move.end <= self.time for move in self._moves)
 
     def current(self) -> Move | None:
-        """The move that runs; where two blend, the later one."""
+        """The running move; of two that blend, the later one."""
         running = [move for move in self._moves if move.start <= self.time < move.end]
         return running[-1] if running else None
 
     def position(self) -> Array | None:
-        """Where the axes are, (9,); None when no move has begun."""
+        """Axis positions, (9,); None if no move has begun."""
         begun = [move for move in self._moves if move.start <= self.time]
         if not begun:
             return None
@@ -69,14 +69,14 @@ class Path:
         return position
 
     def go_on(self, ms: float, override: float) -> float:
-        """Let time pass, but not beyond the next beginning or end of a move.
+        """Advance time, but not beyond the next start or end of a move.
 
         Args:
             ms: of real time.
-            override: 1 is 100 %; a dwell heeds none.
+            override: 1 is 100 %; a dwell ignores it.
 
         Returns:
-            The real time that is left.
+            The remaining real time.
         """
         rate = 1.0 if any(map(self._dwells, self._moves)) else override
         times = [time for move in self._moves for time in (move.start, move.end) if time > self.time]
@@ -90,7 +90,7 @@ class Path:
         return max(left, 0.0)
 
     def _pass(self) -> None:
-        """Begin moves and take those out that have ended; the last one stays, for the place where it led to."""
+        """Start due moves and drop completed ones; the last one stays, as it holds the current position."""
         due = [pending for move, pending in self._pending if move.start <= self.time]
         self._pending = self._pending[len(due) :]
         for write in (write for pending in due for write in pending):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Profiles: moves of one motor by itself: jogs, searches for home, stops.
+"""Profiles: moves of a single motor: jogs, homing moves, stops.
 
 Enters: position in counts, speed in counts/ms, limits. Leaves: position as a function of time, in pieces of constant
-acceleration. A new profile begins with the speed that the motor has.
+acceleration. A new profile starts at the motor's current speed.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Piece:
-    """A time of constant acceleration: p + v t + a t^2 / 2 for ``duration`` ms."""
+    """A piece of constant acceleration: p + v t + a t^2 / 2 for ``duration`` ms."""
 
     duration: float
     position: float
@@ -25,18 +25,18 @@ class Piece:
         return self.position + time * (self.speed + 0.5 * self.acceleration * time)
 
     def next(self, duration: float, acceleration: float) -> Piece:
-        """The piece that goes on from the end of this one."""
+        """The piece that continues from the end of this one."""
         speed = self.speed + self.acceleration * self.duration
         return Piece(duration, self.at(self.duration), speed, acceleration)
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A move of one motor.
+    """A move of a single motor.
 
     Attributes:
-        pieces: one after the other; the motor goes on resting or at constant speed behind the last.
-        goal: position where it ends; None when it does not end by itself.
+        pieces: in order; behind the last one the motor rests, or continues at constant speed.
+        goal: end position; None if it does not end by itself.
     """
 
     pieces: tuple[Piece, ...]
@@ -44,7 +44,7 @@ class Profile:
 
     @property
     def duration(self) -> float:
-        """How long the pieces last, ms."""
+        """Total duration of the pieces, ms."""
         return sum(piece.duration for piece in self.pieces)
 
     def at(self, time: float) -> float:
@@ -63,25 +63,25 @@ class Profile:
 
 
 def stop(position: float, speed: float, deceleration: float) -> Profile:
-    """Slow down to rest."""
+    """Decelerate to rest."""
     duration = abs(speed) / deceleration
     braking = Piece(duration, position, speed, -math.copysign(deceleration, speed))
     return Profile((braking,), braking.at(duration))
 
 
 def endless(position: float, speed: float, wanted: float, acceleration: float) -> Profile:
-    """Go on at a speed until something else is asked for."""
+    """Continue at a speed until the next command."""
     change = wanted - speed
     ramp = Piece(abs(change) / acceleration, position, speed, math.copysign(acceleration, change))
     return Profile((ramp, ramp.next(math.inf, 0.0)), None)
 
 
 def go_to(position: float, speed: float, goal: float, limit: float, acceleration: float) -> Profile:
-    """Go to a position: come to rest first when the motor is moving, then the quickest way within both limits.
+    """Move to a position: from a moving start come to rest first, then take the fastest motion within both limits.
 
     Args:
-        position: now, counts.
-        speed: now, counts/ms.
+        position: current, counts.
+        speed: current, counts/ms.
         goal: counts.
         limit: highest speed, counts/ms.
         acceleration: counts/ms^2.

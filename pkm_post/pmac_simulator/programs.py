@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs: what stands in a buffer of the controller, fixed or rotary.
+"""Programs: the contents of the controller's buffers, fixed or rotary.
 
-Enters: lines, one after the other. Leaves: statements by number, the labels and jumps of a fixed program, its listing.
+Enters: lines in order. Leaves: statements by number, the labels and jumps of a fixed program, its listing.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pkm_post.pmac_simulator.errors import STRUCTURE, CommandError
 from pkm_post.pmac_simulator.statements import Statement
 
 IMPLICIT_RETURN = Statement("RETURN", "RETURN", "RET", 1, ("implicit",))
-"""CLOSE puts it at the end of a program [TurboPMAC, CLOSE]."""
+"""CLOSE appends it to a program [TurboPMAC, CLOSE]."""
 
 _PAIRS = {"ENDIF": ("IF", "ELSE"), "ENDWHILE": ("WHILE",)}
 
@@ -27,8 +27,8 @@ class Program:
         line_starts: for each line the number of its first statement.
         words: its size.
         labels: number of the statement behind each label.
-        jumps: for a statement of a branch or loop the number of the statement it may lead to.
-        sound: whether its structure is right.
+        jumps: for each branch or loop statement the number of the statement it may jump to.
+        sound: whether its structure is valid.
     """
 
     statements: list[Statement] = field(default_factory=list)
@@ -45,14 +45,14 @@ class Program:
         self.words += sum(statement.words for statement in line)
 
     def reopen(self) -> None:
-        """Take off the return at the end: more lines may follow."""
+        """Remove the return at the end, so that lines can follow."""
         if self.statements and self.statements[-1] == IMPLICIT_RETURN:
             self.statements.pop()
             self.line_starts.pop()
             self.words -= IMPLICIT_RETURN.words
 
     def close(self) -> None:
-        """Finish the program: its return, labels and jumps.
+        """Complete the program: its return, labels and jumps.
 
         Raises:
             CommandError: a branch or loop has no end, or an end no beginning.
@@ -69,7 +69,7 @@ class Program:
             raise CommandError(STRUCTURE)
 
     def _find_jumps(self) -> bool:
-        """Pair the beginnings and ends of branches and loops; whether all have their partner."""
+        """Match the beginnings and ends of branches and loops; return whether all match."""
         waiting: list[int] = []
         for index, statement in enumerate(self.statements):
             kind = statement.kind
@@ -86,12 +86,12 @@ class Program:
         return not waiting
 
     def listing(self, long: bool, first: int = 0, words: int | None = None) -> list[str]:
-        """The lines as they are listed.
+        """The lines of a listing.
 
         Args:
-            long: whether words are spelled in full.
-            first: word of the program at which the listing starts.
-            words: how many words of the program are listed; None for all.
+            long: whether keywords are spelled in full.
+            first: word offset at which the listing starts.
+            words: how many words to list; None for all.
         """
         ends = [*self.line_starts, len(self.statements)][1:]
         told, place = [], 0
@@ -104,17 +104,17 @@ class Program:
 
 
 def listed(line: list[Statement], long: bool) -> str:
-    """One line as it is listed."""
+    """One line of a listing."""
     return " ".join(filter(None, (statement.long if long else statement.short for statement in line)))
 
 
 @dataclass
 class Rotary:
-    """A rotary buffer: lines leave it when they are carried out.
+    """A rotary buffer: it discards lines as they are executed.
 
     Attributes:
-        size: of the buffer in words.
-        lines: not yet carried out.
+        size: in words.
+        lines: not yet executed.
         words: of these lines.
     """
 
@@ -123,7 +123,7 @@ class Rotary:
     words: int = 0
 
     def append(self, line: tuple[Statement, ...]) -> bool:
-        """Add a line; False when there is no room for it."""
+        """Append a line; False if there is no room."""
         more = sum(statement.words for statement in line)
         if self.words + more > self.size:
             return False
@@ -132,7 +132,7 @@ class Rotary:
         return True
 
     def pop(self) -> tuple[Statement, ...]:
-        """Take the oldest line out."""
+        """Remove and return the oldest line."""
         line = self.lines.popleft()
         self.words -= sum(statement.words for statement in line)
         return line

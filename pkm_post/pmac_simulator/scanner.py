@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Scanner: a line of text that is read from the left, piece by piece."""
+"""Scanner: reads a line of text from the left, token by token."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ def _compiled(pattern: str) -> re.Pattern[str]:
 
 
 class Scanner:
-    """A line and how far it has been read; spaces between pieces are skipped, capitals and small letters are alike."""
+    """A line and the read position; spaces between tokens are skipped, and case is ignored."""
 
     def __init__(self, text: str) -> None:
         self.text = text.replace("\t", " ")
         self.position = 0
 
     def take(self, pattern: str) -> re.Match[str] | None:
-        """Read a piece if the line goes on with it."""
+        """Read a token if it comes next."""
         match = _compiled(pattern).match(self.text, self.position)
         if match is not None:
             self.position = match.end()
         return match
 
     def expect(self, pattern: str) -> re.Match[str]:
-        """Read a piece.
+        """Read a token.
 
         Raises:
-            CommandError: the line goes on otherwise.
+            CommandError: it does not come next.
         """
         match = self.take(pattern)
         if match is None:
@@ -42,10 +42,10 @@ class Scanner:
         return match
 
     def at_end(self) -> bool:
-        """Whether nothing is left but spaces and a comment."""
+        """Whether only spaces and a comment are left."""
         return self.take(r"(?:;.*)?$") is not None
 
     def rest(self) -> str:
-        """All that is left, read by this."""
+        """Read everything that is left."""
         text, self.position = self.text[self.position :], len(self.text)
         return text

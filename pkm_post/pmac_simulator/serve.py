@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Serve: the simulated controller behind a TCP port of this computer or a pseudo terminal, in real or scaled time.
+"""Serve: the simulated controller on a local TCP port or a pseudo terminal, in real or scaled time.
 
-Enters: bytes of clients and the clock of the computer. Leaves: bytes. One thread does all, so that nothing happens to
-the controller at once. Connections from other computers are not taken.
+Enters: bytes from clients and the computer's clock. Leaves: bytes. A single thread does everything, so access to the
+controller is serialized. Connections from other computers are not accepted.
 
-No client keeps the others waiting: each has its share of a turn, and from one that does not read its answers nothing is
-read any more. When the system has no more file descriptors, those who come wait until it has.
+No client blocks the others: each has a share of a turn, and a client that does not read its answers is no longer read
+from. When the system runs out of file descriptors, new connections wait until one is free.
 """
 
 from __future__ import annotations
@@ -24,34 +24,34 @@ from pkm_post.pmac_simulator.line import Line
 
 LOOPBACK = "127.0.0.1"
 WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
-"""FreeCAD leaves SIGPIPE at its default: a client that has gone would end it."""
+"""FreeCAD leaves SIGPIPE at its default: a disconnected client would end the process."""
 PERIOD_S = 0.005
 LONGEST_LAPSE_S = 0.25
-"""A computer that cannot keep up, or slept, does not make the motors jump: simulated time falls behind."""
+"""After a lag or a sleep of the computer the motors do not jump: simulated time falls behind."""
 LONGEST_TURN_S = 0.02
-"""Clients are not kept waiting longer than this while simulated time passes."""
+"""Clients wait no longer than this while simulated time advances."""
 SLICE_MS = 20.0
 PIECE = 4096
 MORSEL = 64
-"""So many bytes of a client are taken in at once; they may ask for much."""
+"""Bytes of a client processed at once, as they may request a lot."""
 SHARE_S = 0.005
-"""Of a turn, for each client."""
+"""Time per client in a turn."""
 MOST_UNSENT = 1 << 20
-"""Bytes that wait for a client to read them; from then on it is not listened to."""
+"""Most bytes waiting for a client to read; beyond this it is no longer read from."""
 NO_DESCRIPTOR_S = 0.1
-"""Seconds until connections are taken again when the system could not take one."""
+"""Seconds until connections are accepted again after the system refused one."""
 
 
 class Stream(Protocol):
     """Bytes in, bytes out."""
 
     def receive(self, data: bytes) -> bytes:
-        """Take bytes in and give those out that answer them."""
+        """Take received bytes and return the answers."""
 
 
 @dataclass
 class Channel:
-    """One client: how its bytes are read and written, what is not taken in yet, and what is not written yet."""
+    """One client: its read and write functions, bytes not yet processed, and bytes not yet sent."""
 
     read: Callable[[int], bytes]
     write: Callable[[bytes], int]
@@ -62,11 +62,11 @@ class Channel:
 
     @property
     def is_heard(self) -> bool:
-        """Whether it reads what it is sent, so that it may say more."""
+        """Whether the client reads its answers, so that it may send more."""
         return len(self.unsent) < MOST_UNSENT
 
     def take(self) -> None:
-        """Take in what it has said, for its share of a turn."""
+        """Process received bytes, for its share of a turn."""
         end = time.monotonic() + SHARE_S
         while self.untaken and self.is_heard and time.monotonic() < end:
             morsel = bytes(self.untaken[:MORSEL])
@@ -75,7 +75,7 @@ class Channel:
 
 
 class Server:
-    """A controller and the doors to it."""
+    """A controller and its ports."""
 
     def __init__(self, controller: Controller, speed: float = 1.0) -> None:
         self._controller, self._speed = controller, speed
@@ -86,7 +86,7 @@ class Server:
         self._serial: list[tuple[Line, Channel]] = []
 
     def add_tcp(self, port: int) -> int:
-        """Listen at a TCP port of this computer; 0 takes a free one.
+        """Listen on a local TCP port; 0 selects a free one.
 
         Returns:
             The port.
@@ -101,10 +101,10 @@ class Server:
         return int(listener.getsockname()[1])
 
     def add_pty(self) -> str:
-        """Make a pseudo terminal.
+        """Open a pseudo terminal.
 
         Returns:
-            The path that clients open as a serial port.
+            The path for clients to open as a serial port.
 
         Raises:
             OSError: the system has none.
@@ -116,7 +116,7 @@ class Server:
         ours, theirs = os.openpty()
         tty.setraw(theirs)
         os.set_blocking(ours, False)
-        # Their end stays open here: without it a client that leaves would look like a broken device.
+        # The client end stays open here: otherwise a client that disconnects would look like a broken device.
         self._closers += [lambda: os.close(ours), lambda: os.close(theirs)]
         line = Line(self._controller)
         line.attend()
@@ -126,7 +126,7 @@ class Server:
         return os.ttyname(theirs)
 
     def run(self, ended: Callable[[], bool]) -> None:
-        """Serve until ``ended`` says so."""
+        """Serve until ``ended`` returns true."""
         before = time.monotonic()
         while not ended():
             ready = self._selector.select(0 if self._has_untaken() else PERIOD_S)
@@ -145,14 +145,14 @@ class Server:
             self._listen_again(now)
 
     def _pass(self, ms: float) -> None:
-        """Let simulated time pass; what does not fit into a turn is lost."""
+        """Advance simulated time; what does not fit into a turn is lost."""
         end = time.monotonic() + LONGEST_TURN_S
         while ms > 0.0 and time.monotonic() < end:
             self._controller.advance(min(ms, SLICE_MS))
             ms -= SLICE_MS
 
     def close(self) -> None:
-        """Close all doors."""
+        """Close all ports."""
         for channel in self._channels.values():
             channel.close()
         for closer in self._closers:
@@ -174,7 +174,7 @@ class Server:
     def _accept(self, listener: socket.socket) -> None:
         try:
             connection, _ = listener.accept()
-        except OSError:  # no descriptor for it, or it has gone again: the others are served meanwhile
+        except OSError:  # out of descriptors, or the client has disconnected: serve the others meanwhile
             self._selector.unregister(listener)
             self._listeners[listener] = time.monotonic() + NO_DESCRIPTOR_S
             return
@@ -191,7 +191,7 @@ class Server:
         self._hear(source, channel)
 
     def _hear(self, source: int | socket.socket, channel: Channel) -> None:
-        """Read from a client as long as it reads itself, and what it said was taken in."""
+        """Read from a client while it reads its answers and its previous bytes are processed."""
         if source not in self._channels:
             return  # it was dropped
         is_watched = source in self._selector.get_map()
@@ -207,7 +207,7 @@ class Server:
         except BlockingIOError:
             return
         except OSError:
-            data = b""  # the client is gone, in whatever way
+            data = b""  # the client has disconnected, one way or another
         if data:
             channel.untaken += data
         else:
@@ -218,7 +218,7 @@ class Server:
             while channel.unsent:
                 del channel.unsent[: channel.write(bytes(channel.unsent[:PIECE]))]
         except BlockingIOError:
-            return  # the rest follows when the client has read
+            return  # the rest follows once the client has read
         except OSError:
             self._drop(source, channel)
 

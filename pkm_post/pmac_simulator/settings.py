@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Settings: what the simulated controller is, and what is wired to it."""
+"""Settings: the configuration of the simulated controller and its motors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pkm_post.pmac_simulator.machine_codes import MACHINE_CODES
 
 LEAST_MEMORY = 1000
-"""words: the machine codes have to fit in."""
+"""words: room for the machine codes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,16 +16,16 @@ class Settings:
     """A controller and its motors.
 
     Attributes:
-        memory_words: for programs, in 48-bit words.
+        memory_words: program memory, in 48-bit words.
         line_limit: longest line, in characters.
-        tick_ms: how often positions are computed.
-        lag_ms: time constant of the servo loops: at a constant speed the following error is the speed times this.
-        home_flag: where the flags for home are after a reset, counts from where the motors stand.
+        tick_ms: period of the position update.
+        lag_ms: time constant of the servo loops: at constant speed the following error is the speed times this.
+        home_flag: position of the home flags after a reset, counts from the motors' positions.
         firmware: answer to VER.
         card: answer to TYPE.
         identity: answer to CID.
-        password: without it programs from 1000 on are closed; empty for none.
-        machine_codes: lines that are loaded at a reset, the programs behind G, M, T and D codes.
+        password: protects programs from 1000 on; empty for none.
+        machine_codes: lines loaded at a reset: the programs behind G, M, T and D codes.
     """
 
     memory_words: int = 237_568

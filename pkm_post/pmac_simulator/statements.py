@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Statements: one line of a motion program taken apart.
+"""Statements: parse one line of a motion program.
 
-Enters: the text of a line. Leaves: its statements in order, each with its size in words and its text for a listing.
-The words are those of the Turbo PMAC, in their long and their short spelling. What the simulator cannot carry out
-(CIRCLE, SPLINE, HOME, PLC words, cutter compensation) is no statement.
+Enters: the text of a line. Leaves: its statements in order, each with its size in words and its text for a listing. The
+keywords are those of the Turbo PMAC, in long and short spelling. What the simulator cannot execute (CIRCLE, SPLINE,
+HOME, PLC words, cutter compensation) does not parse as a statement.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pkm_post.pmac_simulator.expressions import Expression, argument, condition,
 from pkm_post.pmac_simulator.scanner import Scanner
 
 LETTERS = "ABCUVWXYZ"
-"""Axes of a coordinate system, in the order of all columns of axes."""
+"""Axes of a coordinate system, in the order of all axis columns."""
 
 _AXIS_WORD = rf"(?P<letter>[{LETTERS}])(?=[-+0-9.$(])"
 
@@ -27,11 +27,11 @@ class Statement:
     """One statement of a program.
 
     Attributes:
-        kind: what it does.
+        kind: its action.
         long: its text in a full listing.
         short: its text in an abbreviated listing.
         words: its size in 48-bit words.
-        arguments: what it does it with, by its kind.
+        arguments: its arguments, depending on the kind.
     """
 
     kind: str
@@ -41,7 +41,7 @@ class Statement:
     arguments: tuple[Any, ...] = ()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Statement:
-        """Itself: it never changes, and a save and a reset copy all programs."""
+        """Return itself: it is immutable, and each save and reset copies all programs."""
         return self
 
 
@@ -61,10 +61,10 @@ WITH_TEXT = {"COMMAND": "CMD", "SEND": "SEND"}
 
 
 def statements_of(line: str) -> tuple[Statement, ...]:
-    """Take a line apart.
+    """Parse a line.
 
     Raises:
-        CommandError: something in the line is no statement, or a comment has no end.
+        CommandError: part of the line is not a statement, or a comment has no end.
     """
     scanner = Scanner(line)
     found: list[Statement] = []
@@ -74,7 +74,7 @@ def statements_of(line: str) -> tuple[Statement, ...]:
 
 
 def _with_ends(found: tuple[Statement, ...]) -> tuple[Statement, ...]:
-    """A condition with statements behind it on its line ends with the line."""
+    """Close a condition followed by statements at the end of its line."""
     kinds = [statement.kind for statement in found]
     for opening, closing in (("IF", "ENDIF"), ("WHILE", "ENDWHILE")):
         if opening in kinds[:-1] and closing not in kinds:
@@ -83,7 +83,7 @@ def _with_ends(found: tuple[Statement, ...]) -> tuple[Statement, ...]:
 
 
 def _statement(scanner: Scanner) -> Statement:
-    if scanner.take(rf"(?={_AXIS_WORD})"):  # first, for these are nearly all lines of a program
+    if scanner.take(rf"(?={_AXIS_WORD})"):  # first, as nearly all lines of a program are moves
         return _move(scanner)
     if match := scanner.take(r"(?P<letter>[IPQM])(?=[0-9]{1,5} *[-=&|^]?=|\()"):
         return _assignment(scanner, match["letter"].upper())
@@ -95,7 +95,7 @@ def _statement(scanner: Scanner) -> Statement:
 
 
 def _spelling(long: str, short: str) -> str:
-    # A single letter is a word only before a number: X, A and the others are axes.
+    # A single letter is a keyword only before a number: X, A and the others are axes.
     return rf"{long}(?=[-+0-9.$(])" if len(long) == 1 else rf"(?:{long}|{short})"
 
 
@@ -142,7 +142,7 @@ _READERS: tuple[tuple[dict[str, str], Reader], ...] = (
 
 
 def _assignment(scanner: Scanner, letter: str) -> Statement:
-    """``P1=2``; ``M5==1`` and ``M5&=1`` wait for the next move."""
+    """``P1=2`` acts at once; ``M5==1`` and ``M5&=1`` wait for the next move."""
     number = variable_number(scanner)
     sign = scanner.expect(r"(?P<sign>==|&=|\|=|\^=|=)")["sign"]
     if sign != "=" and letter != "M":
@@ -157,7 +157,7 @@ Word = tuple[str, Expression, Expression | None]
 
 
 def _move(scanner: Scanner) -> Statement:
-    """Axis words that stand together: ``X10Y20``, or with speeds ``X10:5 Y20:-5``."""
+    """Consecutive axis words: ``X10Y20``, or with speeds ``X10:5 Y20:-5``."""
     words: list[Word] = []
     while match := scanner.take(_AXIS_WORD):
         position = argument(scanner)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Status: words of 24 bits that tell the state of a motor or a coordinate system.
+"""Status: 24-bit words with the state of a motor or a coordinate system.
 
-The bits are those that clients of the Turbo PMAC rely on [TurboPMAC, #?, ??; EPICSpmac]. All others are zero.
+Only bits that clients of the Turbo PMAC rely on are set [TurboPMAC, #?, ??; EPICSpmac]. All others are zero.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def system_status(controller: Controller, number: int) -> str:
 
 
 def global_status(controller: Controller) -> str:
-    """The answer to ``???``: two words. None of the faults that they tell can happen in a simulation."""
+    """The answer to ``???``: two words. None of the faults they report can occur in a simulation."""
     return hexadecimal(0, 0)
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Variables: I, P, Q and M with the values they have after a reset.
+"""Variables: I, P, Q and M with their values after a reset.
 
 I-variables of motor xx are Ixx00 to Ixx99, those of coordinate system x are I(50+x)00 to I(50+x)99. Defaults and units
-are the manual's [TurboPMAC]; those that the simulator does not use begin at 0. An M-variable has no address behind it:
-it keeps what is written to it.
+follow the manual [TurboPMAC]; those that the simulator does not use start at 0. An M-variable has no address behind it:
+it stores what is written to it.
 """
 
 from __future__ import annotations
@@ -30,23 +30,23 @@ MOTOR_DEFAULTS: dict[int, float] = {
     11: 32_000,  # fatal following error, 1/16 count
     12: 16_000,  # warning following error, 1/16 count
     13: 0,  # positive limit, counts; 0 is none
-    14: 0,  # negative limit
+    14: 0,  # positive limit, counts; 0 means none
     15: 0.25,  # deceleration of an abort, counts/ms^2
     16: 32,  # highest speed in a program, counts/ms
     17: 0.5,  # highest acceleration in a program, counts/ms^2
     19: 0.15625,  # highest acceleration of a jog
-    20: 0,  # time to reach the speed of a jog, ms
+    20: 0,  # time to reach the jog speed, ms
     21: 50,  # half of the S-curve of a jog, ms
     22: 32,  # speed of a jog, counts/ms
-    23: 32,  # speed and direction of the search for home
-    26: 0,  # from the flag to home, 1/16 count
+    23: 32,  # speed and direction of the homing move
+    26: 0,  # home offset from the flag, 1/16 count
     28: 160,  # in-position band, 1/16 count
 }
 
 SYSTEM_DEFAULTS: dict[int, float] = {87: 0, 88: 50, 89: 1000, 90: 1000, 93: 0, 94: 1644, 95: 1644}
 
 CHOICES = {3: 3, 4: 3, 6: 3, 9: 3, 42: 1, 63: 1, 64: 1, 68: 15}
-"""Whole numbers from 0 to this, by I-variable."""
+"""Integers from 0 to this, by I-variable."""
 
 
 ADDRESSES_OF_MOTOR = {2, 3, 4, 5, 10, 24, 25, 81, 82, 83, 84, 91, 95}
@@ -54,7 +54,7 @@ MACRO_ADDRESSES = range(20, 24)
 
 
 def holds_address(number: int) -> bool:
-    """Whether an I-variable is an address or a word of bits, which I9 = 2 and 3 report in hexadecimal."""
+    """Whether an I-variable is an address or a bit field, which I9 = 2 and 3 report in hexadecimal."""
     return number in MACRO_ADDRESSES or (100 <= number < 100 * (MOTORS + 1) and number % 100 in ADDRESSES_OF_MOTOR)
 
 
@@ -69,7 +69,7 @@ def _defaults() -> dict[int, float]:
 
 
 class Variables:
-    """All variables of a controller. Those that were never written are zero, or the default.
+    """All variables of a controller. Those never written are zero, or the default.
 
     Attributes:
         definitions: text behind ``Mn->``, by number.
@@ -85,15 +85,15 @@ class Variables:
         """The value of a variable.
 
         Raises:
-            CommandError: there is no such variable.
+            CommandError: the variable does not exist.
         """
         return self._table(letter, number, system).get(number, 0.0)
 
     def write(self, letter: str, number: int, value: float, system: int = 1) -> None:
-        """Give a variable a value.
+        """Assign a value to a variable.
 
         Raises:
-            CommandError: there is no such variable, or it does not take this value.
+            CommandError: the variable does not exist, or does not accept this value.
         """
         table = self._table(letter, number, system)
         if letter == "I" and number in CHOICES and value not in range(CHOICES[number] + 1):
@@ -103,7 +103,7 @@ class Variables:
             self._columns.clear()
 
     def setting(self, number: int) -> int:
-        """An I-variable that is a whole number."""
+        """The value of an integer I-variable."""
         return int(self._values["I"].get(number, 0))
 
     def of_motor(self, motor: int, which: int) -> float:
@@ -128,7 +128,7 @@ class Variables:
 
 @dataclass(frozen=True)
 class SystemScope:
-    """The variables as one coordinate system sees them: Q belongs to it."""
+    """The variables as seen by one coordinate system: Q-variables belong to it."""
 
     variables: Variables
     system: int
@@ -138,5 +138,5 @@ class SystemScope:
         return self.variables.read(letter, number, self.system)
 
     def write(self, letter: str, number: int, value: float) -> None:
-        """Give a variable a value."""
+        """Assign a value to a variable."""
         self.variables.write(letter, number, value, self.system)
