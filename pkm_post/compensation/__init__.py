@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool compensation: from what is to be touched to where the tool tip has to be."""
+"""Tool compensation: tool tip positions from the surface or contour to be cut."""
 
 from pkm_post.compensation.apply import compensate
 from pkm_post.compensation.contact import tip_from_contact, tip_shift

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Apply: a program with everything compensated that it asks for, and for the cutters that are in the spindle.
+"""Apply: all compensation that a program asks for, with the cutters that are in the spindle.
 
-A program as it was read enters; one whose tips are where the tool has to go leaves. It comes before symmetry and
-placement: a mirror would change the sides.
+Takes a program as read; returns one whose tips are where the tool has to go. Compensation precedes symmetry and
+placement: a mirror would swap left and right.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from pkm_post.model import Diagnostic, Place, Program, Tool
 def compensate(
     program: Program, contours: OffsetOptions, actual: Mapping[int, Tool]
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program with contours offset in 2D, and moved along its surface normals in 3D.
+    """Offset contours in 2D and move tips along their surface normals in 3D.
 
     Args:
         program: with side offsets, normals, or neither.
         contours: how contours are offset.
-        actual: by number, the tools whose cutters are others than those the program was made for.
+        actual: by number, the tools whose cutters differ from those the program was made for.
     """
     told: tuple[Diagnostic, ...] = ()
     moved, faults = offset_contours(program, contours)

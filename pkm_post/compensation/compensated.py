@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Compensated: the program with its contours offset.
 
-A program, its elements and their offsets enter; the new program leaves, with the row of the old one that each of its
-rows comes from. Points that joints add become rows before that of the second element, with its feed, line and
-operation; events of a row stay before the first of them. Rows that were swallowed are gone, and their events are at the
-next row. What does not move in the plane keeps the offset of what came before.
+Takes a program, its elements and their offsets; returns the new program and the source row of each of its rows. Points
+added by joints become rows before that of the second element, with its feed, line and operation; events of that row
+stay before the first of them. Swallowed rows are removed, and their events move to the next row. Rows that do not move
+in the plane keep the offset of the row before.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def compensated(program: Program, elements: Elements, offsets: Offsets) -> tuple
     """The program with its contours offset.
 
     Returns:
-        The program; for each of its rows the row of the old program that it comes from, and whether it was added.
+        The program; for each of its rows the source row in the old program, and whether it was added.
     """
     added = np.zeros(len(program), dtype=np.int64)
     used = ~np.isnan(offsets.between[..., 0]) & offsets.kept[:, None]
@@ -62,7 +62,7 @@ def compensated(program: Program, elements: Elements, offsets: Offsets) -> tuple
 
 
 def _displacements(program: Program, elements: Elements, offsets: Offsets) -> Array:
-    """What is added to the tip at the end of each row, (N, 3), mm."""
+    """Displacement of the tip at the end of each row, (N, 3), mm."""
     indices = np.arange(len(elements))
     # The tip stays where the last element before a swallowed one ended.
     latest = np.maximum.accumulate(np.where(offsets.kept, indices, 0))
@@ -83,7 +83,7 @@ def _shapes(
     """Kind, arc centre and arc axis of the new rows."""
     blank = np.full((len(source), 3), np.nan)
     kind = np.where(extra & (program.kind[source] != Kind.RAPID), Kind.LINE, program.kind[source])
-    # An arc of which nothing is left would be read as a full turn.
+    # An arc of zero length would be read as a full circle.
     vanished = elements.row[(elements.turn != 0) & offsets.kept & (offsets.length < SAME) & (elements.role == Role.CUT)]
     kind = np.where(np.isin(source, vanished) & ~extra, Kind.LINE, kind)
     own = (kind == Kind.ARC)[:, None]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Compensation plane: the plane in which the path of each row is offset.
 
-The plane that a row names and the tool axis enter; unit normals leave, NaN where the axis says no plane. Where the
-axis is normal to the named plane, or lies in it (a ball in G18, as controls have it), the named plane holds. Where the
-axis leans, as in side milling, the plane is the one normal to the axis; left and right are those of the named plane.
+Takes the plane that a row selects and the tool axis; returns unit normals, NaN where the axis defines no plane. Where
+the axis is normal to the selected plane, or lies in it (a ball in G18, as controls allow), the selected plane applies.
+Where the axis is tilted, as in side milling, the plane is normal to the axis; left and right are those of the selected
+plane.
 """
 
 from __future__ import annotations
@@ -14,17 +15,17 @@ from pkm_post.geometry import dot
 from pkm_post.geometry.vectors import Array
 
 PARALLEL = 1e-5
-"""rad below which two directions count as one: axes are written with six decimals, which may be 1e-6 off."""
+"""rad below which two directions count as parallel: axes are written with six decimals, so they may be 1e-6 off."""
 
 _LEAST_COSINE = 0.5
-"""An axis that leans by more than 60 degrees, and does not lie in the plane, does not say what is meant."""
+"""An axis tilted by more than 60 degrees that does not lie in the plane is ambiguous."""
 
 
 def plane_normals(plane: Array, tool_axis: Array) -> Array:
-    """Unit normals of the planes of compensation, (N, 3); NaN where the axis leans too far.
+    """Unit normals of the compensation planes, (N, 3); NaN where the axis is tilted too far.
 
     Args:
-        plane: (N,) the coordinate that the named plane is normal to.
+        plane: (N,) the coordinate that the selected plane is normal to.
         tool_axis: (N, 3) unit tool axes.
     """
     named = np.eye(3)[plane]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contact: the tool tip that makes the corner of a cutter touch a surface, or go on to touch it with another cutter.
+"""Contact: tool tips at which the corner of a cutter touches a surface, and their shift for another cutter.
 
-Two services. Contact points, surface normals and tool axes enter, and tool tips leave; or the normals and axes along
-the path of one cutter, and what has to be added to its tips for another one. One row per block, in one frame, in mm.
-The paper gives the rule for an upright tool and measures to the centre of the corner circle; here the tool may lean,
-and the tip is what a program carries.
+Two functions. One takes contact points, surface normals and tool axes, and returns tool tips. The other takes the
+normals and axes along the path of one cutter, and returns the shift of its tips for another one. One row per block, in
+one frame, in mm. The paper states the formula for an upright tool and the centre of the corner circle; here the tool
+may be tilted, and the result is the tip, which is what a program contains.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ _UNNAMED = Place("contact points")
 def tip_from_contact(
     points: ArrayLike, normals: ArrayLike, axes: ArrayLike, cutter: Cutter, place: Place = _UNNAMED
 ) -> tuple[Array | None, tuple[Diagnostic, ...]]:
-    """Tool tips whose cutter touches the surface at the contact points.
+    """Tool tips at which the cutter touches the surface at the contact points.
 
     tip = P + r n + e m - f k, with m = unit(n - (n.k) k) the direction from the contact to the tool axis. The corner
-    touches where sin b <= n.k <= cos a. Where n is parallel to k the whole bottom touches and m is free: it is
-    carried on from the row before, at the start of the path it is the direction of travel.
+    touches where sin b <= n.k <= cos a. Where n is parallel to k the whole bottom touches and m is free: it is carried
+    over from the row before; at the start of the path it is the direction of travel.
 
     Args:
-        points: (N, 3) contact points P in mm, in the order they are travelled.
+        points: (N, 3) contact points P in mm, in order of travel.
         normals: (N, 3) surface normals n there, towards the tool, of any length.
         axes: (N, 3) tool axes k from the tip towards the spindle, of any length.
         cutter: the cutter.
@@ -61,7 +61,7 @@ def tip_shift(
     points: ArrayLike | None = None,
     place: Place = _UNNAMED,
 ) -> tuple[Array | None, tuple[Diagnostic, ...]]:
-    """What to add to tips that were computed for the nominal cutter, so that the actual one touches the same surface.
+    """Shift of tips computed for the nominal cutter, with which the actual cutter touches the same surface.
 
     tip' - tip = (r2 - r1) n + (e2 - e1) m - (f2 - f1) k, with m as in ``tip_from_contact``.
 
@@ -70,8 +70,8 @@ def tip_shift(
         axes: (N, 3) tool axes, of any length.
         nominal: the cutter the tips were computed for: r1, e1, f1.
         actual: the cutter in the spindle: r2, e2, f2.
-        points: (N, 3) tips or contact points in the order they are travelled, mm; they give the direction of travel
-            where a path begins with n parallel to k.
+        points: (N, 3) tips or contact points in order of travel, mm; they give the direction of travel where a path
+            begins with n parallel to k.
         place: what diagnostics name; the row number, from 1, becomes their line.
 
     Returns:

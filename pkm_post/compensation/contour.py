@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Contour: the rows of a program that 2D compensation moves, as elements in the plane of compensation.
 
-A program enters; its elements leave: of each contour the start-up row, the cutting rows and the cancel row, each with
-what its joints need to know. A contour is a run of rows that move in the plane while compensation is on, and the next
-row that does so when it is off again. Rows that do not move in the plane (plunges, dwells) belong to no element: they
-keep the offset of the one before. mm and rad.
+Takes a program; returns its elements: the start-up row, the cutting rows and the cancel row of each contour, with the
+data that joints need. A contour is a run of rows that move in the plane while compensation is on, and the first such
+row after it is off. Rows that do not move in the plane (plunges, dwells) belong to no element: they keep the offset of
+the element before. mm and rad.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Diagnostic, Kind, Program
 
 _STANDS = 1e-6
-"""mm in the plane below which a row does not move: shorter ones have no direction worth the name."""
+"""mm in the plane below which a row counts as standing still: shorter moves have no reliable direction."""
 
 
 class Role(enum.IntEnum):
-    """What a row is to its contour."""
+    """Role of a row in its contour."""
 
     START = 0
     CUT = 1
@@ -44,7 +44,7 @@ class Elements:
         end: (M, 3) programmed tip after it.
         normal: (M, 2, 3) unit normal of the plane at both ends.
         tangent: (M, 2, 3) unit direction of travel in that plane at both ends.
-        offset: (M,) signed distance to the left of the path; of a cancel row that of the row before it.
+        offset: (M,) signed distance to the left of the path; a cancel row has that of the row before it.
         spoke: (M, 2, 3) from the centre to both ends, across the normal; NaN for lines.
         turn: (M,) 1 for arcs that turn to the left, -1 to the right, 0 for lines.
         sweep: (M,) angle of the arc, 0 for lines.
@@ -71,12 +71,12 @@ class Elements:
 
     @property
     def radius_left(self) -> Array:
-        """Radius of the offset arcs at both ends, (M, 2), mm: below zero where the tool is too large; NaN for lines."""
+        """Radius of the offset arcs at both ends, (M, 2), mm: negative where the tool is too large; NaN for lines."""
         return norm(self.spoke) - (self.turn * self.offset)[:, None]
 
 
 def elements_of(program: Program) -> tuple[Elements, tuple[Diagnostic, ...]]:
-    """The elements of all contours of a program, and what is wrong with them."""
+    """The elements of all contours of a program, and their diagnostics."""
     rows, roles = _rows(program)
     contour = np.cumsum(roles == Role.START) - 1
     # Offset and plane of a cancel row are those of the element before it.
@@ -111,11 +111,11 @@ def elements_of(program: Program) -> tuple[Elements, tuple[Diagnostic, ...]]:
 
 
 def moves_in_plane(program: Program) -> Array:
-    """Which rows move in the plane of the compensation that is or was in force, (N,); row 0 never does."""
+    """Rows that move in the plane of the current or most recent compensation, (N,); row 0 never does."""
     count = len(program)
     last_on = np.maximum.accumulate(np.where(program.side_offset != 0.0, np.arange(count), 0))
     normal = plane_normals(program.plane[last_on], program.tool_axis)
-    # Where the axis says no plane the row counts as moving, so that the fault is seen.
+    # Where the axis defines no plane the row counts as moving, so the fault is reported.
     normal = np.where(np.isnan(normal), 0.0, normal)
     step = np.diff(program.position, axis=0, prepend=program.position[:1])
     moving = (norm(across(step, normal)) > _STANDS) | (program.kind == Kind.ARC)
@@ -139,13 +139,13 @@ def _normals(program: Program, rows: Array, plane: Array) -> Array:
 
 
 def _faults(program: Program, elements: Elements, on_row: Array) -> tuple[Diagnostic, ...]:
-    """What keeps elements from having a place in a contour, by row."""
+    """Faults of elements that keep them out of a contour, by row."""
     arc = program.kind[elements.row] == Kind.ARC
     lead = elements.role != Role.CUT
     follows = np.append(False, elements.contour[1:] == elements.contour[:-1])[: len(elements)]
     plane = program.plane[on_row]
     replaned = follows & (plane != np.roll(plane, 1))
-    # A lead is not offset along its way: only where it meets the contour does its plane count.
+    # A lead is not offset along its length: its plane matters only where it meets the contour.
     counts = np.stack([elements.role != Role.START, elements.role != Role.CANCEL], axis=1)
     leaning = (np.isnan(elements.normal[..., 0]) & counts).any(axis=1)
     turned = follows & _apart(elements.normal[:, 0], np.roll(elements.normal[:, 1], 1, axis=0))
@@ -167,5 +167,5 @@ def _faults(program: Program, elements: Elements, on_row: Array) -> tuple[Diagno
 
 
 def _apart(left: Array, right: Array) -> Array:
-    """Where unit vectors are not parallel, (M,); False where one is NaN."""
+    """Flags of unit vectors that are not parallel, (M,); False where one is NaN."""
     return norm(cross(left, right)) > PARALLEL

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Corners: where one element of a contour ends and another begins, before anything is said of a joint.
+"""Corners: geometry where one element of a contour ends and the next begins, before the joint is chosen.
 
-Pairs of elements enter; directions, the turn from one to the other and the radius vectors leave. A radius vector is
-r = d n x t, with n the normal of the plane, t the direction of travel and d the signed offset [paper eq. 10, 11]. mm.
+Takes pairs of elements; returns directions, the turn between them and the radius vectors. A radius vector is r = d n x
+t, with n the normal of the plane, t the direction of travel and d the signed offset [paper eq. 10, 11]. mm.
 """
 
 from __future__ import annotations
@@ -19,19 +19,20 @@ from pkm_post.geometry.vectors import Array, cross
 
 @dataclass(frozen=True)
 class Corners:
-    """What there is at J joints.
+    """Geometry at J joints.
 
     Attributes:
         normal: (J, 3) normal of the plane.
         tangent_first: (J, 3) direction of the first element at its end.
         tangent_second: (J, 3) direction of the second at its start.
-        sine: (J,) of the turn from one to the other, positive to the left.
-        cosine: (J,) of it.
-        gap: (J, 3) from the end of the first to the start of the second in the plane; zero but for removed elements.
+        sine: (J,) sine of the turn from first to second, positive to the left.
+        cosine: (J,) cosine of that turn.
+        gap: (J, 3) from the end of the first to the start of the second in the plane; zero unless elements were
+            removed.
         beside_first: (J, 3) radius vector of the first element.
         beside_second: (J, 3) radius vector of the second.
         stepped: (J, 3) radius vector of the first element with the offset of the second.
-        resized: (J,) whether the offset changes its size.
+        resized: (J,) whether the offset changes in size.
     """
 
     normal: Array
@@ -46,7 +47,7 @@ class Corners:
     resized: Array
 
     def rows(self, chosen: Array) -> Corners:
-        """Some of the rows."""
+        """The chosen rows."""
         return Corners(**{name: column[chosen] for name, column in vars(self).items()})
 
 

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contour gouge: whether the tool on the offset path comes nearer to any part of the programmed contour than it may.
+"""Contour gouge: places where the tool on the offset path cuts into the programmed contour.
 
-The program, the compensated one and where its rows come from enter; diagnostics leave. Every row of a contour is
-measured against every cutting row of the same contour, not its neighbours alone. What lies lower than the tip is not
-touched, and the way of a larger tool bounds no part. Where the path closes, what comes before and after the closed part
-leads to and from it, and is no wall. mm.
+Takes the program, the compensated program and its source rows; returns diagnostics. Every row of a contour is checked
+against every cutting row of the same contour, not only its neighbours. Rows below the tip are not touched, and the path
+of a larger tool bounds no part. Where the path closes, rows before and after the closed part are leads, not walls. mm.
 """
 
 from __future__ import annotations
@@ -23,16 +22,16 @@ from pkm_post.geometry.vectors import Array, cross
 from pkm_post.model import Diagnostic, Kind, Program
 
 _CHORD_SHARE = 0.2
-"""Share of the tolerance that chords may leave the arcs they stand for, of path and wall each."""
+"""Chord error of arcs as a share of the tolerance, for path and wall each."""
 
 
 @dataclass(frozen=True)
 class _View:
-    """How each contour is looked at, by number of the contour.
+    """View direction of each contour, by number of the contour.
 
     Attributes:
-        normal: (C, 3) normal of the plane that it is projected into; zero where the axis turns along the contour.
-        upward: (C,) 1 where the tool comes from the side of the normal, -1 from the other, 0 where neither.
+        normal: (C, 3) normal of the projection plane; zero where the axis turns along the contour.
+        upward: (C,) 1 where the tool is on the side of the normal, -1 on the other, 0 where neither.
     """
 
     normal: Array
@@ -45,24 +44,24 @@ def gouges(
     """Where the compensated path cuts into the programmed contour.
 
     Args:
-        program: the program as it was.
+        program: the program before compensation.
         elements: its elements.
         moved: the compensated program.
-        source: (K,) row of the program that each of its rows comes from.
-        leads: (K,) rows on which the contour is not cut yet, or not any more.
+        source: (K,) source row in the program of each of its rows.
+        leads: (K,) rows before the contour is cut, or after it.
         tolerance: mm.
     """
     view = _view(program, elements)
     contour, clearance = _by_row(program, elements)
     rows = np.flatnonzero(contour[source] >= 0)
     rows = rows[rows > 0]
-    # What a joint adds lies between two offsets, where these differ.
+    # Where two offsets differ, points added by a joint lie between them.
     added = np.append(source[1:] == source[:-1], False)
     smaller = np.where(added, np.minimum(clearance[source], clearance[source - 1]), clearance[source])
     paths, path_row = _segments(moved, rows, contour[source], smaller, view, tolerance)
     walls, wall_row = _segments(program, elements.row[cutting(elements)], contour, clearance, view, tolerance)
     path, wall, lacking = too_near(paths, walls, tolerance)
-    # What bounds the part is asked where something is too near, which is seldom.
+    # Walls are computed only for contours with a near pair, which is rare.
     owner = np.searchsorted(elements.row, wall_row)
     bounds = walls_of(elements, walls, owner, np.unique(walls.first[wall]))[owner[wall]]
     bounds &= ~program.smaller_tool[wall_row[wall]]
@@ -74,7 +73,7 @@ def gouges(
 
 
 def _worst(code: str, program: Program, contour: Array, path: Array, wall: Array, lacking: Array) -> list[Diagnostic]:
-    """One diagnostic for each contour: its worst place, and how many rows there are."""
+    """One diagnostic per contour: its worst place and the number of rows."""
     found = []
     order = np.lexsort((path, -lacking, contour[path]))
     of = contour[path[order]]
@@ -101,14 +100,14 @@ def _view(program: Program, elements: Elements) -> _View:
 
 
 def _by_row(program: Program, elements: Elements) -> tuple[Array, Array]:
-    """Number of the contour of each row, -1 outside, and the radius of its tool, (N,) each."""
+    """Contour number of each row, -1 outside, and the radius of its tool, (N,) each."""
     contour = np.full(len(program), -1)
     radius = np.zeros(len(program))
     number = np.full(len(program), -1)
     number[elements.row] = np.arange(len(elements))
     latest = np.maximum.accumulate(number)
     inside = latest >= 0
-    # Rows that stand still in the plane between two elements are of the contour too.
+    # Rows that stand still in the plane between two elements belong to the contour too.
     ended = (elements.role[latest] == Role.CANCEL) & (number < 0)
     inside &= ~ended
     contour[inside] = elements.contour[latest[inside]]
@@ -119,7 +118,7 @@ def _by_row(program: Program, elements: Elements) -> tuple[Array, Array]:
 def _segments(
     program: Program, rows: Array, contour: Array, clearance: Array, view: _View, tolerance: float
 ) -> tuple[Segments, Array]:
-    """Rows as straight segments in the planes of their contours, and the row of each segment."""
+    """Straight segments of rows in the planes of their contours, and the row of each segment."""
     start, end, row = _chords(program, rows, _CHORD_SHARE * tolerance)
     number = contour[row]
     normal, upward = view.normal[number], view.upward[number]
@@ -138,7 +137,7 @@ def _segments(
 
 
 def _chords(program: Program, rows: Array, error: float) -> tuple[Array, Array, Array]:
-    """Start and end points of straight segments within an error of rows, and the row of each."""
+    """Start and end points of chords within an error of the rows, and the row of each."""
     start, end = program.position[rows - 1], program.position[rows]
     centre, axis = program.arc_centre[rows], program.arc_axis[rows]
     arc = program.kind[rows] == Kind.ARC
@@ -151,7 +150,7 @@ def _chords(program: Program, rows: Array, error: float) -> tuple[Array, Array, 
     count[arc] = np.ceil(sweep[arc] / span).astype(np.int64)
     of = np.repeat(np.arange(len(rows)), count)
     part = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
-    # Where the radii at both ends differ a little, the arc drifts from the one to the other.
+    # Where the radii at both ends differ slightly, the arc radius changes linearly between them.
     drift = np.zeros((len(rows), 3))
     drift[arc] = end[arc] - arc_points(start[arc], centre[arc], axis[arc], sweep[arc], rise[arc])
     points = []

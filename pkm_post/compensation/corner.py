@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Corner: how far the tip of a cutter moves when the sizes of its corner change while it stays in contact.
+"""Corner: shift of the tip of a cutter when the sizes of its corner change while it stays in contact.
 
-Tip and contact point P are apart by r n + e m - f k, so that a change of the sizes by (r, e, f) moves the tip by the
-same formula, and the whole of it is the change from a cutter of no size. Normals n, tool axes k and the points of the
-path enter, one row per block; the shifts in mm leave, or what is wrong, row by row.
+The tip is at P + r n + e m - f k, with P the contact point. A change of the sizes by (r, e, f) shifts the tip by the
+same formula; the full offset is the change from a cutter of zero size. Takes normals n, tool axes k and the points of
+the path, one row per block; returns the shifts in mm, or diagnostics by row.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from pkm_post.geometry import dot, norm
 from pkm_post.model import Diagnostic, Place
 
 _ROUNDED = 1e-6
-"""A cosine this far out of the range of the corner is still in it: normals come with six decimals."""
+"""Tolerance of the cosine at the limits of the corner: normals have six decimals."""
 
 _SHOWN = 50
-"""Rows told one by one for each fault; of further ones the number is told."""
+"""Rows reported individually per fault; further ones are only counted."""
 
 LARGEST_JUMP = 0.1
-"""Jump of the tip, in mm from one row to the next, above which a free direction m is told."""
+"""Jump of the tip, in mm from one row to the next, above which a free direction m is reported."""
 
 Sizes = tuple[float, float, float]
 
@@ -39,14 +39,14 @@ def corner_shift(
     cutters: tuple[Cutter, ...],
     place_of: Callable[[int], Place],
 ) -> tuple[Array | None, tuple[Diagnostic, ...]]:
-    """Shifts r n + e m - f k.
+    """Tip shifts r n + e m - f k.
 
     Args:
         points: (N, 3) points in the order of travel, mm.
         normals: (N, 3) surface normals, of any length.
         axes: (N, 3) tool axes, of any length.
         sizes: r, e, f, or their changes, in mm.
-        cutters: the cutters whose corner has to be in contact.
+        cutters: the cutters whose corner must be in contact.
         place_of: the place of a row, from 0, for diagnostics.
 
     Returns:
@@ -77,7 +77,7 @@ def corner_shift(
 
 
 def _jumps(m: Array, cosine: Array, near: Flags, e: float, place_of: Callable[[int], Place]) -> tuple[Diagnostic, ...]:
-    """What is to be told of rows whose direction m hangs on the last digits of the normal."""
+    """Diagnostics of rows whose direction m depends on the last digits of the normal."""
     warnings = []
     if near.any():
         row, found = int(np.argmax(near)), f"{int(near.sum())} of {len(near)} rows, this the first"
@@ -91,7 +91,7 @@ def _jumps(m: Array, cosine: Array, near: Flags, e: float, place_of: Callable[[i
 
 
 def _told(code: str, place_of: Callable[[int], Place], marked: Flags, *shown: Any) -> list[Diagnostic]:
-    """One diagnostic for every row that is marked, with the numbers of that row."""
+    """One diagnostic per marked row, with the numbers of that row."""
     rows = np.flatnonzero(marked).tolist()
     told = []
     for count, row in enumerate(rows[:_SHOWN], start=1):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cutter: the shape of a rotating tool, in the terms of the APT cutter d, r, e, f, a, b, h.
+"""Cutter: the shape of a rotating tool, by the APT parameters d, r, e, f, a, b, h.
 
-A tool, or the seven numbers of APT, enter; a cutter leaves. Its profile runs from the tip along the bottom, which
-rises by a, around the corner arc, and up the side, which leans outwards by b. Ball, bull nose, flat and tapered end
-mills and drills are such cutters. Turned about the tool axis, the centre of the corner arc runs on a circle, and the
-corner is the torus about it. Lengths in mm, angles in rad.
+Takes a tool, or the seven APT parameters; returns a cutter. Its profile runs from the tip along the bottom, which rises
+by a, around the corner arc, and up the side, which leans outwards by b. Ball, bull nose, flat and tapered end mills and
+drills are such cutters. Revolved about the tool axis, the centre of the corner arc describes a circle, and the corner
+is the torus around it. Lengths in mm, angles in rad.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pkm_post.model import Tool
 from pkm_post.model.tool import angles_fit, corner_reach, largest_corner
 
 _TANGENT = 2e-3
-"""How far in mm a given e or f may be from the arc that touches bottom and side: files round to three decimals."""
+"""Tolerance in mm of a given e or f against the arc tangent to bottom and side: files round to three decimals."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Cutter:
     ) -> Cutter:
         """The cutter of APT's seven parameters; e and f follow from the others.
 
-        The arc touches bottom and side: (f - e tan a) cos a = r, (d/2 - e) cos b + (f - d/2 tan a) sin b = r.
+        The arc is tangent to bottom and side: (f - e tan a) cos a = r, (d/2 - e) cos b + (f - d/2 tan a) sin b = r.
 
         Args:
             d: diameter of the circle where the lines of bottom and side meet, mm.
@@ -75,7 +75,7 @@ class Cutter:
             h: height, mm.
 
         Raises:
-            ValueError: a value is out of its range, or a given e or f belongs to an arc that does not touch.
+            ValueError: a value is out of its range, or a given e or f belongs to an arc that is not tangent.
         """
         if not (math.isfinite(d) and d > 0.0):
             raise ValueError(f"Cutter: expected a diameter above 0, got {d}")
@@ -94,7 +94,7 @@ class Cutter:
         """The cutter of a tool.
 
         Args:
-            tool: a tool of known diameter, whose corner fits in: its centre is not beyond the axis.
+            tool: a tool of known diameter whose corner fits: its centre is not beyond the axis.
 
         Raises:
             ValueError: the diameter is not above 0, an angle is out of its range, or the corner does not fit.
@@ -118,14 +118,14 @@ class Cutter:
 
     @property
     def corner_start(self) -> float:
-        """Angle in rad from the axis to the normal of the corner where it leaves the bottom, or a lens its axis."""
+        """Angle in rad from the axis to the normal of the corner where it meets the bottom or, for a lens, the axis."""
         if self.radial_offset >= 0.0:
             return self.bottom_angle
         return max(self.bottom_angle, math.asin(-self.radial_offset / self.corner_radius))
 
     @property
     def corner_end(self) -> float:
-        """Angle in rad from the axis to the normal of the corner where it passes into the side."""
+        """Angle in rad from the axis to the normal of the corner where it meets the side."""
         return math.pi / 2.0 - self.side_angle
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Envelope: what a path leaves on a surface, and where it cuts into it.
+"""Envelope: material that a path leaves on a surface, and gouges.
 
-The tips and axes of a path, a cutter, and points of the surface with their normals enter; for every point leaves the
-way in mm from the surface along its normal to the volume that the cutter sweeps: positive is material left, negative
-is the depth of a gouge. The cutter is taken with its true profile, and the path with all that lies between its rows.
+Takes the tips and axes of a path, a cutter, and surface points with their normals; returns for every point the distance
+in mm from the surface along its normal to the volume that the cutter sweeps: positive is material left, negative is the
+depth of a gouge. The cutter has its true profile, and the motion between rows is included.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from pkm_post.geometry.vectors import Array
 
 @dataclass(frozen=True)
 class StockLeft:
-    """What a path leaves on a surface.
+    """Material that a path leaves on a surface.
 
     Attributes:
-        left: (N,) material left at the points along their normals, negative for gouges, mm; infinite where the
-            cutter does not come within the reach asked for.
-        row: (N,) the row of the path whose motion, from the row before, comes nearest; -1 where ``left`` is infinite.
+        left: (N,) material left at the points along their normals, negative for gouges, mm; infinite where the cutter
+            does not come within ``reach``.
+        row: (N,) the row of the path whose motion from the row before comes nearest; -1 where ``left`` is infinite.
     """
 
     left: Array
@@ -41,7 +41,7 @@ class StockLeft:
 
     @property
     def highest(self) -> int:
-        """Index of the point with the most material left where the cutter comes; -1 where it comes nowhere."""
+        """Index of the point with the most material left within reach of the cutter; -1 if there is none."""
         near = np.isfinite(self.left)
         return int(np.argmax(np.where(near, self.left, -np.inf))) if near.any() else -1
 
@@ -60,8 +60,8 @@ def stock_left(
     """Material that a path leaves at points of a surface, and gouges.
 
     Between two rows the tip moves along a straight line and the axis turns evenly. A line through the point along its
-    normal enters the swept volume at the value; it is found by steps of the distance to that volume, none of which
-    can miss it.
+    normal enters the swept volume at the value; it is found by sphere tracing: steps of the distance to that volume
+    cannot skip it.
 
     Args:
         tips: (M, 3) tool tips, mm.
@@ -69,11 +69,11 @@ def stock_left(
         cutter: the cutter; one of unknown height reaches as far as the points do.
         points: (N, 3) points of the surface, mm.
         normals: (N, 3) normals there, out of the material, of any length.
-        tolerance: how far the line may be from the boundary of the swept volume at the value, mm; the value is off by
-            more where the line runs in at a slant.
+        tolerance: distance of the line from the boundary of the swept volume at the value, mm; the error of the value
+            is larger where the line enters at a slant.
         reach: material left of more than this is not measured, mm.
-        progress: told the share that is done, now and then, from 0 to 1 for each round of steps; what it raises
-            stops the work.
+        progress: called now and then with the completed share, from 0 to 1 for each round of steps; an exception it
+            raises aborts.
 
     Raises:
         ValueError: tips and axes, or points and normals, are not of one shape (M, 3); a vector has no direction;
@@ -95,8 +95,8 @@ def _entries(
 ) -> StockLeft:
     """Where the lines through the points along their normals enter the swept volume.
 
-    There is an end to the steps: all but the last one are longer than ``enough``, and those of one point all have one
-    sense. None leads out of the volume again, and none is too long by more than ``enough``.
+    The steps terminate: all but the last are longer than ``enough``, and those of one point have the same sign. None
+    leaves the volume again, and none is too long by more than ``enough``.
     """
     left, row = np.zeros(len(start)), np.full(len(start), -1, dtype=np.int64)
     open_rows = np.arange(len(start))

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joints: how the offset of one element of a contour goes over into that of the next.
+"""Joints: transitions from the offset of one element of a contour to that of the next.
 
-Pairs of elements enter. Leave, as vectors from the programmed joint, where the first one's offset ends and the next
-one's begins, and the points between them that have to be added. The radius vector r = d n x t points from the
-programmed to the offset point, with n the normal of the plane, t the direction of travel and d the signed offset
-[paper eq. 10, 11]. What kind a joint is follows from the turn theta at it, as (S2 - S1).t = -d sin(theta) for S = r
-[paper section 5.3]; where theta is 0 or a half turn, this product is rounding alone, and a guard decides. mm.
+Takes pairs of elements; returns, as vectors from the programmed joint, where the offset of the first ends and that of
+the next begins, and the points to add between them. The radius vector r = d n x t points from the programmed to the
+offset point, with n the normal of the plane, t the direction of travel and d the signed offset [paper eq. 10, 11]. The
+kind of a joint follows from the turn theta, as (S2 - S1).t = -d sin(theta) for S = r [paper section 5.3]; where theta
+is 0 or a half turn, this product is pure rounding, and a threshold decides. mm.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from pkm_post.geometry import norm
 from pkm_post.geometry.vectors import Array
 
 MOST_BETWEEN = 4
-"""Points that a joint may add."""
+"""Most points that a joint adds."""
 
 _RIGHT_ANGLE = 1e-9
-"""Cosine of a turn that is a right angle but for rounding: it is extended, not cut off."""
+"""Cosine of a turn that is a right angle up to rounding: it is extended, not cut off."""
 
 _LEAST_ARC = 0.05
 """Turn in rad up to which offset lines are extended where arcs are asked for: they leave the arc by 0.0003 of its
@@ -42,7 +42,7 @@ class Joint(enum.IntEnum):
     CHORD = 3
     ARC = 4
     SWITCHED = 5
-    """The side changes: from beside the end of the first element straight to beside the begin of the next."""
+    """The side changes: straight from beside the end of the first element to beside the start of the next."""
     LEAD = 6
     """Straight to, or from, the point beside the contour's end."""
 
@@ -53,8 +53,8 @@ class Joints:
 
     Attributes:
         kind: (J,) ``Joint``.
-        first: (J, 3) where the offset of the first element ends, from its programmed end.
-        last: (J, 3) where that of the second begins, from its programmed start.
+        first: (J, 3) end of the offset of the first element, from its programmed end.
+        last: (J, 3) start of the offset of the second, from its programmed start.
         between: (J, 4, 3) points added between, from the programmed start of the second, in order; NaN where unused.
     """
 
@@ -70,14 +70,14 @@ def joints(elements: Elements, first: Array, second: Array, options: OffsetOptio
     Args:
         elements: the elements of all contours.
         first: (J,) the elements that end at the joints.
-        second: (J,) those that begin there. Where it is not the next one, elements between them were removed, and
-            what remains has to meet.
+        second: (J,) those that begin there. If one is not the next element, those between were removed, and the
+            remaining two have to meet.
         options: how contours begin and end.
-        rounded: (J,) whether an arc goes round the corner, if it is an outer one.
+        rounded: (J,) whether an outer corner is rounded by an arc.
     """
     corner = corners_of(elements, first, second)
     kind = _kinds(elements, first, second, corner, options, rounded)
-    # An arc cannot be extended, and the leads are to be where they were: there a line is added.
+    # An arc cannot be extended, and leads must stay in place: a line is added there.
     fixed_first = (elements.turn[first] != 0) | (elements.role[first] == Role.START) | corner.resized
     fixed_second = (elements.turn[second] != 0) | (elements.role[second] == Role.CANCEL)
     extended, shortened = kind == Joint.EXTENDED, kind == Joint.SHORTENED
@@ -121,7 +121,7 @@ def _kinds(
     no_turn = np.abs(corner.sine) < NO_TURN
     inner = ~no_turn & (offset * corner.sine > 0)
     little = (np.abs(corner.sine) <= np.sin(_LEAST_ARC)) & (corner.cosine > 0)
-    # A rapid move goes round by lines, whatever is asked for.
+    # A rapid move goes around by lines, whatever the options ask for.
     arcs = rounded & ~elements.rapid[second] & ~little
     return np.select(
         [
@@ -147,7 +147,7 @@ def _kinds(
 
 
 def _meetings(elements: Elements, first: Array, second: Array, corner: Corners) -> Array:
-    """Where offsets meet that are shortened, from the programmed end of the first element, (J, 3)."""
+    """Meeting points of shortened offsets, from the programmed end of the first element, (J, 3)."""
     radius = elements.radius_left
     arc = elements.turn != 0
     ending = Curves(corner.beside_first, corner.tangent_first, -elements.spoke[first, 1], radius[first, 1], arc[first])
@@ -163,7 +163,7 @@ def _meetings(elements: Elements, first: Array, second: Array, corner: Corners) 
 
 
 def _chosen(otherwise: Array, *choices: tuple[Array, Array]) -> Array:
-    """For each row the vector of the one condition that holds, (J, 3)."""
+    """For each row the vector of the condition that holds, (J, 3)."""
     vectors = otherwise
     for condition, value in choices:
         vectors = np.where(condition[:, None], value, vectors)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Known cutter: the shape of a tool where a contact point hangs on it, or what is not known of it.
+"""Known cutter: the shape of a tool where a contact point depends on it, or what is missing.
 
-A tool enters; its cutter leaves, or the diagnostic that says what is missing. A wrong corner radius moves the tip by
-as much as it is wrong, so none is assumed.
+Takes a tool; returns its cutter, or a diagnostic that states what is missing. An error of the corner radius shifts the
+tip by the same amount, so no radius is assumed.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ def known_cutter(tool: Tool, place: Place) -> tuple[Cutter | None, tuple[Diagnos
         place: what diagnostics name.
 
     Returns:
-        The cutter, or None; and what is not known: N109, N117.
+        The cutter, or None; and diagnostics of what is unknown: N109, N117.
     """
     try:
         cutter = Cutter.of(tool)

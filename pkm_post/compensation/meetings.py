@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Meetings: where two offset lines or arcs cut each other.
+"""Meetings: intersections of two offset lines or arcs.
 
-Two offset curves enter, as rows of lines or circles in one plane, all measured from the programmed end of the first;
-points leave, (J, 3), NaN where the two do not meet. Of two points that circles have in common it is the one nearest to
-the programmed joint, which the second curve reaches first and the first one last. mm.
+Takes two offset curves, as rows of lines or circles in one plane, measured from the programmed end of the first;
+returns points, (J, 3), NaN where the two do not intersect. Of two intersections the one nearest to the programmed joint
+is returned, which is the first on the second curve and the last on the first. mm.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pkm_post.geometry import dot
 from pkm_post.geometry.vectors import Array, cross
 
 SAME = 1e-6
-"""mm within which two offset lines are one."""
+"""mm within which two offset lines coincide."""
 
 NO_TURN = 1e-5
-"""Sine of the turn at a joint below which the path goes straight on, or straight back."""
+"""Sine of the turn at a joint below which the path continues straight on, or straight back."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Curves:
 
 
 def meetings(first: Curves, second: Curves, normal: Array) -> Array:
-    """Points that the curves of each row have in common, (J, 3).
+    """Intersections of the curves of each row, (J, 3).
 
     Args:
         first: the curves that end at the joint.
@@ -59,7 +59,7 @@ def meetings(first: Curves, second: Curves, normal: Array) -> Array:
 
 
 def _line_line(first: Curves, second: Curves, normal: Array) -> Array:
-    """Points of both lines, (J, 3): p1 + x t1 = p2 + y t2, times n x t2, gives x."""
+    """Intersections of lines, (J, 3): p1 + x t1 = p2 + y t2, times n x t2, gives x."""
     across_second = cross(normal, second.tangent)
     apart = dot(second.point - first.point, across_second)
     slope = dot(first.tangent, across_second)
@@ -69,17 +69,17 @@ def _line_line(first: Curves, second: Curves, normal: Array) -> Array:
 
 
 def _along(line: Curves, circle: Curves) -> Array:
-    """Way along lines from their point to circles, (J,): of both ways the shorter one."""
+    """Distance along lines from their point to circles, (J,): the shorter of both."""
     spoke = line.point - circle.centre
     half = dot(spoke, line.tangent)
     excess = dot(spoke, spoke) - circle.radius**2
-    # Without the difference of two large numbers that the shorter way would be otherwise.
+    # This form avoids cancellation in the shorter distance.
     farther = -half - np.where(half < 0, -1.0, 1.0) * np.sqrt(half**2 - excess)
     return np.where(farther == 0, 0.0, excess / farther)
 
 
 def _circle_circle(first: Curves, second: Curves, normal: Array) -> Array:
-    """Both circles' common points lie on their radical line, across the line of centres."""
+    """Intersections of two circles lie on their radical line, across the line of centres."""
     between = second.centre - first.centre
     distance = np.sqrt(dot(between, between))
     towards = between / distance[:, None]

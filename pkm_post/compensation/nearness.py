@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Nearness: the pairs of two sets of segments that are nearer to each other than they should be.
+"""Nearness: pairs from two sets of segments that are closer than their clearance.
 
-Two tables of segments enter, each in the order of its path; the pairs leave that are too near. Over each table stands
-a binary tree: a node holds the segments of its two children, as the chord from the first to the last point and the
-distance that they keep within of it. All pairs of nodes of one level are looked at together, from the roots down, and
-a pair is followed only while something in it may be too near. mm.
+Takes two tables of segments, each in the order of its path; returns the pairs that are too close. Each table has a
+binary tree: a node bounds the segments of its two children by the chord from the first to the last point and their
+largest distance from it. All pairs of nodes of one level are tested together, from the roots down, and a pair is
+refined only while segments in it may be too close. mm.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ class Segments:
         end: (S, 3) end points.
         low: (S,) lowest height.
         high: (S,) highest height.
-        clearance: (S,) largest distance that is asked for.
-        first: (S,) lowest number of the contours that are in it.
+        clearance: (S,) largest required distance.
+        first: (S,) lowest contour number in it.
         last: (S,) highest one.
-        within: (S,) distance from the chord that nothing in it exceeds.
+        within: (S,) bound of the distance from the chord of everything in it.
     """
 
     start: Array
@@ -45,17 +45,17 @@ class Segments:
         return len(self.low)
 
     def rows(self, chosen: Array | slice) -> Segments:
-        """Some of the rows."""
+        """The chosen rows."""
         return Segments(**{name: column[chosen] for name, column in vars(self).items()})
 
 
 def too_near(paths: Segments, walls: Segments, tolerance: float) -> tuple[Array, Array, Array]:
-    """Pairs of segments that are nearer than the smaller clearance of both, but for the tolerance.
+    """Pairs of segments closer than the smaller clearance of both, less the tolerance.
 
-    Pairs are of one contour, and a wall counts where it is not lower than the path.
+    Pairs belong to one contour, and a wall counts where it is not below the path.
 
     Returns:
-        Numbers of the path segments and of the walls, and by how much they are too near in mm, (P,) each.
+        Numbers of the path segments and of the walls, and by how much they are too close in mm, (P,) each.
     """
     levels = list(zip(_tree(paths, len(walls)), _tree(walls, len(paths)), strict=True))
     here = there = np.zeros(1 if len(paths) and len(walls) else 0, dtype=np.int64)
@@ -75,7 +75,7 @@ def too_near(paths: Segments, walls: Segments, tolerance: float) -> tuple[Array,
 
 
 def _tree(segments: Segments, others: int) -> list[Segments]:
-    """The levels of a tree from the segments up to one node, as many as the longer table of both needs."""
+    """The levels of a tree from the segments up to the root, as many as the longer of both tables needs."""
     levels = [segments]
     for _ in range(max(len(segments) - 1, others - 1, 0).bit_length()):
         levels.append(_parents(levels[-1]))
@@ -83,7 +83,7 @@ def _tree(segments: Segments, others: int) -> list[Segments]:
 
 
 def _parents(nodes: Segments) -> Segments:
-    """Nodes that hold two nodes each; the last one may hold one."""
+    """Parents of two nodes each; the last one may have one."""
     left = nodes.rows(slice(0, None, 2))
     right = nodes.rows(np.minimum(np.arange(len(left)) * 2 + 1, len(nodes) - 1))
     start, end = left.start, right.end
@@ -102,7 +102,7 @@ def _parents(nodes: Segments) -> Segments:
 
 
 def _children(here: Array, there: Array, count_here: int, count_there: int) -> tuple[Array, Array]:
-    """All pairs of the children of pairs of nodes."""
+    """All pairs of children of pairs of nodes."""
     pairs = [(2 * here + i, 2 * there + j) for i in (0, 1) for j in (0, 1)]
     left, right = (np.concatenate(side) for side in zip(*pairs, strict=True))
     exists = (left < count_here) & (right < count_there)
@@ -110,10 +110,10 @@ def _children(here: Array, there: Array, count_here: int, count_there: int) -> t
 
 
 def segment_distances(start: Array, end: Array, other_start: Array, other_end: Array) -> Array:
-    """Distances of segments from one another, (...), mm; a segment may be a point.
+    """Distances between segments, (...), mm; a segment may be a point.
 
-    The points nearest to each other are x of the way along the one and y along the other. Both are linear in one
-    another; x is held within its segment, then y, then x again for that y.
+    The closest points are at parameter x of the one segment and y of the other, each linear in the other. x is clamped
+    to its segment, then y, then x again for that y.
     """
     u, v, w = end - start, other_end - other_start, start - other_start
     uu, vv, uv, uw, vw = dot(u, u), dot(v, v), dot(u, v), dot(u, w), dot(v, w)

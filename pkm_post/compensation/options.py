@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Options of the 2D compensation: what controls differ in, and what is done where the tool does not fit."""
+"""Options of the 2D compensation: where controls differ, and what happens where the tool does not fit."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ class OffsetOptions:
     """How contours are offset.
 
     Attributes:
-        corners: what goes round outer corners. "chord": the offset lines are extended until they meet, and beyond a
-            right angle are cut off by a chord, as in the paper; "arc": an arc about the corner, as in LinuxCNC.
-        leads: "A" leads straight to and from the point beside the contour's end; "B" goes round outer corners there.
-        swallowed: what is done with rows that the tool is too large for: "refuse" the program, or "remove" them.
-        tolerance: mm by which the tool may come nearer to the contour than its radius.
+        corners: how outer corners are rounded. "chord": the offset lines are extended until they meet, and beyond a
+            right angle are cut off by a chord, as in the paper; "arc": an arc around the corner, as in LinuxCNC.
+        leads: "A" leads straight to and from the point beside the contour's end; "B" goes around outer corners there.
+        swallowed: treatment of rows that the tool is too large for: "refuse" the program, or "remove" them.
+        tolerance: mm by which the tool may come closer to the contour than its radius.
     """
 
     corners: str = "chord"

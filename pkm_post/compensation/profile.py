@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Profile: how far points are from the solid of a cutter.
+"""Profile: distances of points from the solid of a cutter.
 
-A cutter enters, and points as their radius about the tool axis and their level above the tip, in mm; signed distances
-leave, negative inside. The solid is convex: bottom cone, corner torus and side cone, ended by a plane at its height.
+Takes a cutter, and points as their radius from the tool axis and their level above the tip, in mm; returns signed
+distances, negative inside. The solid is convex: bottom cone, corner torus and side cone, capped by a plane at its
+height.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ class Profile:
     """The outline of a cutter in the half-plane of radius and level: line, arc, line, and a line across the top.
 
     Attributes:
-        foot: where the outline leaves the axis, its level.
-        start: angle from the axis to the normal of the bottom, and of the arc where it begins.
-        end: angle to the normal of the arc where it ends, and of the side.
-        radius: of the arc.
-        centre: of the arc: radius and level.
+        foot: level where the outline leaves the axis.
+        start: angle from the axis to the normal of the bottom and of the start of the arc.
+        end: angle from the axis to the normal of the end of the arc and of the side.
+        radius: radius of the arc.
+        centre: centre of the arc: radius and level.
         top: level of the top.
     """
 
@@ -42,18 +43,18 @@ class Profile:
 
         Args:
             cutter: the cutter.
-            tallest: height in mm above which nothing is of interest; it ends cutters of unknown height.
+            tallest: height in mm above which nothing matters; it caps cutters of unknown height.
         """
         r, e, f = cutter.corner_radius, cutter.radial_offset, cutter.axial_offset
         foot = f - r * math.cos(cutter.corner_start) if e < 0.0 else 0.0
         ends_at = f - r * math.cos(cutter.corner_end)
         top = min(cutter.height, max(tallest, ends_at))
-        if cutter.side_angle < 0.0:  # the side closes above
+        if cutter.side_angle < 0.0:  # the side converges upwards
             top = min(top, ends_at - (e + r * math.sin(cutter.corner_end)) / math.tan(cutter.side_angle))
         return cls(foot, cutter.corner_start, cutter.corner_end, r, (e, f), top)
 
     def corner(self, angle: float) -> tuple[float, float]:
-        """The point of the arc whose normal has this angle to the axis: radius and level."""
+        """The point of the arc whose normal is at this angle to the axis: radius and level."""
         return self.centre[0] + self.radius * math.sin(angle), self.centre[1] - self.radius * math.cos(angle)
 
     def distance(self, radius: Array, level: Array) -> Array:
@@ -81,7 +82,7 @@ class Profile:
 
     @property
     def reach(self) -> float:
-        """The distance from the tip to the farthest point of the solid, mm."""
+        """Distance from the tip to the farthest point of the solid, mm."""
         return max(math.hypot(self._top_radius, self.top), math.hypot(*self.corner(self.end)))
 
     @property
@@ -98,9 +99,9 @@ class Profile:
 
 
 def _line(x: Array, z: Array, angle: float, first: float, last: float) -> tuple[Array, Array]:
-    """How far points are outside of a line through the origin, and from its piece between two lengths.
+    """Signed distances of points from a line through the origin, and from its segment between two lengths.
 
-    The normal of the line has the angle to the axis, down and out; the line runs out and up.
+    The normal of the line is at the angle to the axis, down and out; the line runs out and up.
     """
     along = x * math.cos(angle) + z * math.sin(angle)
     outside = x * math.sin(angle) - z * math.cos(angle)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Side: a program with 2D cutter compensation becomes one without, its tool beside the programmed contour.
+"""Side: 2D cutter compensation resolved into tips beside the programmed contour.
 
-A program enters whose rows say by ``side_offset`` and ``plane`` how they are compensated; the same program leaves, with
-its tips moved and its offsets zero, or what is wrong. mm, in {C}: compensation comes before symmetry and placement.
+Takes a program whose ``side_offset`` and ``plane`` define the compensation of each row; returns it with its tips moved
+and its offsets zero, or diagnostics. mm, in {C}: compensation precedes symmetry and placement.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ _DEFAULT = OffsetOptions()
 def offset_contours(
     program: Program, options: OffsetOptions = _DEFAULT
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program with its 2D cutter compensation applied.
+    """Apply the 2D cutter compensation of a program.
 
     Args:
-        program: its ``side_offset`` is the radius to keep to the left of the path, mm, negative to the right; the row
-            where it begins leads to the contour, the first one without that moves in the plane leads away from it.
-        options: what goes round corners, how contours begin and end, what becomes of rows the tool is too large for.
+        program: its ``side_offset`` is the radius to keep to the left of the path, mm, negative to the right; the first
+            row with an offset leads onto the contour, the first row without one that moves in the plane leads off it.
+        options: rounding of corners, leads of contours, treatment of rows the tool is too large for.
 
     Returns:
         The program with ``side_offset`` 0, or None when a contour cannot be compensated; and the diagnostics.
@@ -64,7 +64,7 @@ def offset_contours(
 def _swallowed(
     program: Program, elements: Elements, offsets: Offsets, options: OffsetOptions
 ) -> tuple[Diagnostic, ...]:
-    """A diagnostic for every run of rows that are gone; an error where they may not go, or where nothing is left."""
+    """A diagnostic for every run of removed rows; an error where removal is not allowed, or nothing is left."""
     left = np.zeros(len(elements), dtype=np.int64)
     np.add.at(left, elements.contour, offsets.kept & (elements.role == Role.CUT))
     refused = (options.swallowed == "refuse") | (left[elements.contour] == 0)
@@ -80,7 +80,7 @@ def _swallowed(
 
 
 def _gone(program: Program, elements: Elements, first: int, last: int) -> str:
-    """What there is to say of a run of elements that the tool is too large for."""
+    """Description of a run of elements that the tool is too large for."""
     tool = f"tool radius {abs(elements.offset[first]):g} mm"
     if last > first:
         return f"{tool}, {last - first + 1} blocks up to line {program.line[elements.row[last]]}"
@@ -90,7 +90,7 @@ def _gone(program: Program, elements: Elements, first: int, last: int) -> str:
 
 
 def _leads(program: Program, elements: Elements, offsets: Offsets, source: Array, extra: Array) -> Array:
-    """Rows of the new program on which a contour is not cut yet, or not any more, or changes its side, (K,)."""
+    """Rows of the new program before a contour is cut, after it, or where it changes its side, (K,)."""
     role = np.full(len(program), Role.CUT)
     role[elements.row] = elements.role
     joint = np.full(len(program), Joint.STRAIGHT_ON)

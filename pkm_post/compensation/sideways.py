@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sideways: the direction at right angles to the tool axis in which a cutter lies from its contact point.
+"""Sideways: the direction across the tool axis from the contact point to the cutter.
 
-Unit normals n, unit tool axes k and the points of the path enter, one row per block; m = unit(n - (n.k) k) leaves.
-Near n = k the direction hangs on the last digits of the normal, and at n = k there is none: then the cutter stays
-where it was, sideways.
+Takes unit normals n, unit tool axes k and the points of the path, one row per block; returns m = unit(n - (n.k) k).
+Near n = k the direction depends on the last digits of the normal, and at n = k it is undefined: the cutter then keeps
+its direction.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 _PARALLEL = 1e-6
-"""Below this sine of the angle between normal and axis, the normal does not say to which side the cutter lies."""
+"""Below this sine of the angle between normal and axis, the normal does not define the side of the cutter."""
 
 _NEARLY_PARALLEL = 0.02
 """Below this sine, an error of the normal by 5e-5 (four decimals) turns m by more than 0.14 degrees."""
@@ -27,21 +27,21 @@ _HALF_WINDOW = 5
 """Rows before and after a row whose normals are averaged with its own."""
 
 _SMOOTHING_COST = 1e-4
-"""How far in mm the averaged direction may let the cutter into the surface; where it would be more, m stays as is."""
+"""Largest gouge in mm by the averaged direction; where it would be deeper, m is not averaged."""
 
 
 def sideways(points: Array, n: Array, k: Array, radial_offset: float) -> tuple[Array, Flags]:
     """Directions m, NaN in rows where no rule gives one.
 
-    The normal decides. Where it is parallel to the axis, m of the latest row that has one is projected anew; before
-    the first of these it is the direction of travel. Where normal and axis are nearly parallel, m is averaged over
-    neighbours, as far as that lets the cutter into the surface by no more than 0.1 um.
+    The normal decides. Where it is parallel to the axis, m of the last row that has one is projected again; before the
+    first of these it is the direction of travel. Where normal and axis are nearly parallel, m is averaged over
+    neighbours, provided that the cutter gouges by no more than 0.1 um.
 
     Args:
         points: (N, 3) points in the order of travel, mm.
         n: (N, 3) unit normals.
         k: (N, 3) unit tool axes.
-        radial_offset: e, or what e changes by, in mm: what stands on m.
+        radial_offset: e, or the change of e, in mm: the factor of m.
 
     Returns:
         m (N, 3), and the rows (N,) where normal and axis are nearly, but not, parallel.
@@ -59,7 +59,7 @@ def sideways(points: Array, n: Array, k: Array, radial_offset: float) -> tuple[A
 
 
 def _averaged(across: Array, sine: Array, m: Array, k: Array, radial_offset: float) -> Array:
-    """Directions of the mean of neighbouring normals, where that costs little enough."""
+    """Directions of the mean of neighbouring normals, where the gouge is small enough."""
     mean = unit_across(_moving_sum(np.nan_to_num(across)), k)
     cost = abs(radial_offset) * sine * (1.0 - dot(mean, m))
     averaged: Array = np.where((cost <= _SMOOTHING_COST)[:, None], mean, m)
@@ -75,7 +75,7 @@ def _moving_sum(rows: Array) -> Array:
 
 
 def _carried(points: Array, m: Array, k: Array) -> Array:
-    """Directions with the rows that have none filled: the first rule that gives one decides."""
+    """Directions with missing rows filled: the first rule that yields one decides."""
     along_path = unit_across(_travel(points), k)
     m[:1] = np.where(np.isnan(m[:1]), along_path[:1], m[:1])
     known = ~np.isnan(m).any(axis=1)
@@ -94,7 +94,7 @@ def _travel(points: Array) -> Array:
 
 
 def unit_across(vectors: Array, k: Array) -> Array:
-    """Unit vectors (N, 3) of what the vectors have at right angles to k; NaN where they are parallel to it."""
+    """Unit vectors (N, 3) of the components normal to k; NaN where the vectors are parallel to it."""
     direction = unit_or_nan(vectors)
     return unit_or_nan(direction - dot(direction, k)[:, None] * k, _PARALLEL)
 

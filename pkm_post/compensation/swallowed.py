@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Swallowed: elements of a contour that the tool is too large for, over any number of them.
+"""Swallowed: elements of a contour that the tool is too large for, any number in a row.
 
-Elements enter; their offsets leave: those that are left, joined. An element is swallowed when its joints shorten it by
-more than its length, or when the tool does not fit into its arc. It is taken out and its neighbours are joined, until
-none is left that is swallowed. Of neighbours that are all swallowed, the one goes first that a growing tool would
-swallow first: to take it out often saves the others. mm.
+Takes elements; returns the offsets of the remaining ones, joined. An element is swallowed when its joints shorten it by
+more than its length, or when the tool does not fit into its arc. It is removed and its neighbours are joined, until no
+swallowed element is left. Of several swallowed neighbours, the one that a growing tool would swallow first is removed
+first: this often saves the others. mm.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pkm_post.geometry import dot
 from pkm_post.geometry.vectors import Array, cross
 
 _UNMET = 1e30
-"""mm: what lacks of the length of elements that do not meet their neighbours; more than any joint takes."""
+"""mm: missing length of elements that do not meet their neighbours; more than any joint takes."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,12 @@ class Offsets:
     """The offsets of M elements.
 
     Attributes:
-        kept: (M,) whether the element is left.
+        kept: (M,) whether the element remains.
         kind: (M,) ``Joint`` before the element.
-        start: (M, 3) where its offset begins, from its programmed start.
-        end: (M, 3) where it ends, from its programmed end.
+        start: (M, 3) start of its offset, from its programmed start.
+        end: (M, 3) end of its offset, from its programmed end.
         between: (M, 4, 3) points added before it, from its programmed start; NaN where unused.
-        length: (M,) what is left of its length, mm; 0 for leads.
+        length: (M,) remaining length, mm; 0 for leads.
     """
 
     kept: Array
@@ -57,7 +57,7 @@ def offsets_of(elements: Elements, options: OffsetOptions) -> Offsets:
         between=np.full((count, MOST_BETWEEN, 3), np.nan),
         length=np.zeros(count),
     )
-    # Who follows whom among those that are left; number ``count`` follows the last one.
+    # Linked list of the remaining elements; number ``count`` follows the last one.
     before, after = np.arange(count + 1) - 1, np.arange(count) + 1
     rounded = np.full(count + 1, options.corners == "arc")
     second = np.flatnonzero(elements.role != Role.START)
@@ -79,7 +79,7 @@ def offsets_of(elements: Elements, options: OffsetOptions) -> Offsets:
 
 
 def _sharpened(offsets: Offsets, after: Array, swallowed: Array, options: OffsetOptions) -> Array:
-    """Joints of elements that are swallowed whose arcs have to go: extended to its corner, an element may be left."""
+    """Rounded joints of swallowed elements that become sharp: extended to its corner, an element may survive."""
     if options.swallowed == "refuse":
         return swallowed[:0]
     beside = np.union1d(swallowed, after[swallowed])
@@ -97,13 +97,13 @@ def _join(
 
 
 def _measure(elements: Elements, offsets: Offsets, rows: Array) -> None:
-    """Write the lengths that are left of elements into the offsets."""
+    """Write the remaining lengths of elements into the offsets."""
     rows = rows[elements.role[rows] == Role.CUT]
     offsets.length[rows] = _lengths(elements, offsets, rows)
 
 
 def _lengths(elements: Elements, offsets: Offsets, rows: Array) -> Array:
-    """Length left of elements, mm, (n,): below zero where they are turned round; NaN where a joint does not meet."""
+    """Remaining length of elements, mm, (n,): negative where they are reversed; NaN where a joint does not meet."""
     start, end = offsets.start[rows], offsets.end[rows]
     straight = dot(elements.end[rows] + end - elements.start[rows] - start, elements.tangent[rows, 1])
     spoke, normal, turn = elements.spoke[rows], elements.normal[rows], elements.turn[rows]
@@ -121,14 +121,14 @@ def _angle(before: Array, after: Array, normal: Array) -> Array:
 
 
 def _first_to_go(elements: Elements, offsets: Offsets, before: Array, after: Array, swallowed: Array) -> Array:
-    """Of the elements that are swallowed, those that shrink to nothing before their neighbours do."""
+    """Swallowed elements that shrink to nothing before their neighbours do."""
     if not len(swallowed):
         return swallowed
     share = np.full(len(elements) + 1, np.inf)
     cut = np.flatnonzero(elements.role == Role.CUT)
     share[cut] = offsets.length[cut] / elements.length[cut]
-    # A joint that does not meet is worse than a length below zero, for the shorter one of both, and an arc that is too
-    # tight is worse than that.
+    # A joint that does not meet outranks a negative length, for the shorter element of both; a too tight arc outranks
+    # both.
     unmet = cut[np.isnan(share[cut])]
     share[unmet] = -_UNMET / elements.length[unmet]
     share = share[np.stack([before[swallowed], swallowed, after[swallowed]])]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sweep: how far points are from everything a cutter sweeps on its path.
+"""Sweep: distances of points from the volume that a cutter sweeps along its path.
 
-Tips and axes of the path, and a cutter, become poses in short steps; points enter, and their signed distances to the
-swept volume leave, in mm, negative inside. Between two poses the tip moves along a straight line and the axis turns
-evenly. What is between them is searched by halving: no point of the cutter moves farther from one pose to the next
-than a known way, and seen from a cutter that does not turn, the distance to it is a convex function of the way.
+Tips and axes of the path, and a cutter, become poses in short steps. Takes points; returns their signed distances to
+the swept volume, in mm, negative inside. Between two poses the tip moves along a straight line and the axis turns
+evenly. Each step is searched by bisection: the distance that any point of the cutter moves within a step is bounded,
+and for a cutter that does not turn, the distance to it is a convex function of the distance travelled.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from pkm_post.geometry.cells import cells
 from pkm_post.geometry.vectors import Array
 
 _BLOCK = 16
-"""Steps of the path that are passed over together when they are far away."""
+"""Steps of the path that are skipped together when they are far away."""
 
 _STEP = 0.25
 """Longest step between two poses, in radii of the cutter."""
 
 _POINTS_PER_CELL = 100
-"""Points for which far blocks are passed over together, about."""
+"""Approximate number of points for which far blocks are skipped together."""
 
 _POINTS_TOGETHER = 6
-"""Points of a cell whose near steps are looked for together, about."""
+"""Approximate number of points of a cell whose near steps are searched together."""
 
 _AT_ONCE = 1 << 16
-"""Distances that are computed at a time: what they need stays in the cache."""
+"""Distances computed at a time: their data stay in the cache."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ class Sweep:
         tip: (M + 1, 3) tool tips at the ends of the steps, mm.
         axis: (M + 1, 3) unit tool axes there.
         row: (M,) row of the path that the step belongs to.
-        way: (M,) how far any point of the cutter moves in the step at most, mm.
-        bend: (M,) how far at most the way of a point, seen from the cutter, is from a straight line, mm.
+        way: (M,) bound of the distance that any point of the cutter moves in the step, mm.
+        bend: (M,) bound of the deviation of a point's path, in the frame of the cutter, from a straight line, mm.
         profile: outline of the cutter.
         within: distance from the cutter up to which points matter, mm.
     """
@@ -68,7 +68,7 @@ class Sweep:
             axes: (N, 3) unit tool axes, no two in a row opposite.
             cutter: the cutter.
             within: distance from the cutter up to which points matter, mm.
-            tallest: height in mm above which nothing is of interest.
+            tallest: height in mm above which nothing matters.
         """
         rows = len(tips)
         if rows == 1:
@@ -92,11 +92,11 @@ class Sweep:
 
         Args:
             points: (N, 3) points, mm.
-            tolerance: how much too large a distance may be, mm.
-            progress: told the share that is done, now and then, from 0 to 1; what it raises stops the work.
+            tolerance: largest overestimate of a distance, mm.
+            progress: called now and then with the completed share, from 0 to 1; an exception it raises aborts.
 
         Returns:
-            Distances (N,), infinite or too large where nothing comes within reach, and rows of the path (N,).
+            Distances (N,), infinite or too large where the cutter stays out of reach, and rows of the path (N,).
         """
         best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
         done = 0
@@ -108,7 +108,7 @@ class Sweep:
         return best, row
 
     def _in_cell(self, points: Array, tolerance: float) -> tuple[Array, Array]:
-        """The distances and rows of points near to each other."""
+        """The distances and rows of points in one cell."""
         best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
         near_all = self._near_steps(points)
         for rows in cells(points, _POINTS_TOGETHER) if len(near_all) else []:
@@ -119,7 +119,7 @@ class Sweep:
         return best, row
 
     def _near_steps(self, points: Array) -> Array:
-        """Steps that may come nearest to one of the points, (K,): those of blocks that are near enough."""
+        """Candidate steps for the nearest to one of the points, (K,): those of blocks that are near enough."""
         first = np.arange(0, len(self.way), _BLOCK)
         last = np.minimum(first + _BLOCK, len(self.way))
         half = (first + last) // 2
@@ -132,7 +132,7 @@ class Sweep:
         return np.flatnonzero(np.repeat(distance - radius - span <= limit, last - first))
 
     def _nearer(self, points: Array, steps: Array) -> Array:
-        """Those of some steps that may come nearest to one of the points."""
+        """The given steps that may come nearest to one of the points."""
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
         radius = float(norm(points - middle).max())
         distance = self._to_poses(middle[None], steps)[0]
@@ -141,7 +141,7 @@ class Sweep:
         return near
 
     def _search(self, points: Array, steps: Array, tolerance: float) -> tuple[Array, Array]:
-        """The least distances over some steps, by halving those that may have a smaller one inside."""
+        """Smallest distances over some steps, by bisection of those that may contain a smaller one."""
         poses = np.unique(np.concatenate([steps, steps + 1]))
         all_found = self._to_poses(points, poses)
         nearest = np.argmin(all_found, axis=1)
@@ -160,7 +160,7 @@ class Sweep:
             winner = m <= best[point]
             row[point[winner]] = self.row[step[winner]]
             way, bend = self.way[step] * width, 3.0 * self.bend[step] * (2.0 * width) ** 2
-            # By the way and by convexity: a line through one end and the middle stays below the other half.
+            # By the Lipschitz bound and by convexity: a line through one end and the middle stays below the other half.
             left = np.maximum((a + m - way) / 2.0, np.minimum(m, 2.0 * m - b) - bend)
             right = np.maximum((m + b - way) / 2.0, np.minimum(m, 2.0 * m - a) - bend)
             limit = np.minimum(best, self.within)[point] - tolerance
@@ -171,7 +171,7 @@ class Sweep:
         return best, row
 
     def _to_poses(self, points: Array, poses: Array) -> Array:
-        """Distances of all points to the cutter in all these poses, (N, K)."""
+        """Distances of all points to the cutter in all given poses, (N, K)."""
         middle = points[0]
         tip, axis = self.tip[poses] - middle, self.axis[poses]
         moved = points - middle

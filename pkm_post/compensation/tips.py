@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tips: a program with surface normals, made for one cutter, becomes that for another one.
+"""Tips: a program with surface normals, made for one cutter, converted to another one.
 
-A program whose rows carry normals (LN blocks, contact output of CAM systems) and two cutters enter; the program with
-its tips moved leaves. Rows without a normal, as links have them, move along with a neighbour, so that approach and
-retract keep their distance to the surface.
+Takes a program whose rows have normals (LN blocks, contact output of CAM systems) and two cutters; returns the program
+with its tips moved. Rows without a normal, such as links, move with a neighbour, so approach and retract keep their
+distance to the surface.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pkm_post.geometry import norm
 from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program
 
 _SAME = 1e-9
-"""Shifts that differ by less, in mm, are one."""
+"""mm within which two shifts count as equal."""
 
 
 def compensate_tips(
@@ -32,7 +32,7 @@ def compensate_tips(
     and including the first rapid after it; further ones move with the next row that has one.
 
     Args:
-        program: tips of the nominal cutter, with normals, in {C}; all rows are one tool's unless ``tool`` is given.
+        program: tips of the nominal cutter, with normals, in {C}; all rows belong to one tool unless ``tool`` is given.
         nominal: the cutter the program was made for.
         actual: the cutter in the spindle.
         tool: number of the tool whose rows are compensated; None for a program of one tool.
@@ -41,7 +41,7 @@ def compensate_tips(
         The program, or None when a row cannot be compensated; and the diagnostics: N101 to N108.
 
     Raises:
-        ValueError: no tool is named in a program that changes between several.
+        ValueError: ``tool`` is None in a program with several tools.
     """
     in_use = _rows_of(program, tool)
     given = in_use & np.isfinite(program.normal).all(axis=1)
@@ -67,7 +67,7 @@ def _bent(program: Program, shift: Array, row: int) -> Diagnostic:
 
 
 def _rows_of(program: Program, tool: int | None) -> Flags:
-    """The rows that are run with the tool; with None all rows."""
+    """The rows cut with the tool; all rows for None."""
     changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
     numbers = np.array([np.nan, *(event.value for event in changes)])
     number = numbers[np.searchsorted([event.row for event in changes], np.arange(len(program)), side="right")]
@@ -79,7 +79,7 @@ def _rows_of(program: Program, tool: int | None) -> Flags:
 
 
 def _neighbours(given: Flags, rapid: Flags) -> Array:
-    """For every row the row it moves with, (N,), counted among the given ones."""
+    """For every row the row it moves with, (N,), as an index into the given ones."""
     count: Array = np.cumsum(given)
     before, after = count - 1, count - given.astype(np.int64)
     rapids = np.cumsum(rapid)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls: the elements of contours that bound the part.
+"""Walls: the elements of contours that bound the workpiece.
 
-Elements enter; which of them the tool has to keep clear of leaves. These are the cutting rows, and of a path that
-closes those of the closed part: what comes before and after it, such as arcs that lead onto the contour, lies on the
-side of the tool, and the tool passes over it. mm.
+Takes elements; returns those the tool has to keep clear of. These are the cutting rows or, of a path that closes, those
+of the closed part: elements before and after it, such as lead-in arcs, lie on the side of the tool, which passes over
+them. mm.
 """
 
 from __future__ import annotations
@@ -20,25 +20,25 @@ _ON = 2e-3
 """mm within which a point lies on an element: programs have three decimals."""
 
 _MOST_BEFORE = 200
-"""Elements that may lead onto the closed part."""
+"""Most elements that lead onto the closed part."""
 
 
 def cutting(elements: Elements) -> Array:
-    """Numbers of the elements that may bound the part, (W,)."""
+    """Numbers of the elements that may bound the workpiece, (W,)."""
     return np.flatnonzero((elements.role == Role.CUT) & ~elements.rapid)
 
 
 def walls_of(elements: Elements, segments: Segments, owner: Array, contours: Array) -> Array:
-    """Which elements of some contours bound the part, (M,).
+    """Flags of the elements of some contours that bound the workpiece, (M,).
 
-    A closed part begins where the path comes back to later, in a corner or on its way. Of such parts that are more than
-    half of the path it is the shortest that counts: the path may come from where it goes to.
+    A closed part begins at a point to which the path later returns, in a corner or along an element. Of the closed
+    parts longer than half of the path the shortest counts: the path may start where it ends.
 
     Args:
         elements: the elements of all contours.
         segments: the cutting ones as straight segments in the planes of their contours.
         owner: (S,) the element of each segment.
-        contours: numbers of the contours that are asked for.
+        contours: numbers of the requested contours.
     """
     cut = cutting(elements)
     way = np.append(0.0, np.cumsum(elements.length[cut]))
@@ -62,7 +62,7 @@ def walls_of(elements: Elements, segments: Segments, owner: Array, contours: Arr
 
 
 def _come_back(elements: Elements, segments: Segments, owner: Array, first: Array) -> tuple[Array, Array]:
-    """Pairs of elements, (P,) each: over the start point of the first one comes the second one, seen in the plane."""
+    """Pairs of elements, (P,) each: the second passes over the start point of the first, seen in the plane."""
     begins = segments.rows(np.searchsorted(owner, first))
     count = len(first)
     points = Segments(
@@ -81,6 +81,6 @@ def _come_back(elements: Elements, segments: Segments, owner: Array, first: Arra
     from_start, from_end = (
         norm(across(elements.start[first] - ends[second], normal)) for ends in (elements.start, elements.end)
     )
-    # What begins there does not come back there, unless it is a full circle.
+    # An element that begins there does not return there, unless it is a full circle.
     comes = (from_end < _ON) | (from_start >= _ON)
     return first[comes], second[comes]
