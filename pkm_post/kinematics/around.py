@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Around: what a check at few poses says of all poses near them; for a way that comes by the same places many times.
+"""Around: bound each check near a few anchor poses; for a pose path that revisits the same region many times.
 
-Enters: a way and checks. Leaves: the checks of which it is not proven that they hold. ``between`` goes along the way;
-here it is a heap of short stretches, which are put into groups by where they are. From the pose in the middle of a
-group, its anchor, each of its poses is reached by a tip on a straight line while axis and spin turn evenly, and then
-along the way. If no pose is farther than d and turned by more than t, and the anchor has the margin m, then all of the
-group has m - by_travel d - by_turn t at least. Where that is negative, the group is parted in two, and so on.
+Input: a pose path and checks. Output: the checks that are not proven to hold. ``between`` follows the path; here the
+path is a set of short stretches, grouped by position. The pose in the middle of a group is its anchor. Each pose of the
+group is reached from the anchor by a straight tip motion with uniform axis and spin motion, then along the path. If no
+pose is farther than d and turned by more than t, and the anchor has the margin m, the whole group has at least
+m - by_travel d - by_turn t. A group where that is negative is split in two, and so on.
 
-The slopes of a check hold while no joints of a strut are nearer to each other than on the way. On a straight line to a
-pose of the way they may be, so that this distance is asked of every group as well.
+The slopes of a check hold while the joints of every strut stay at least as far apart as on the path. The straight line
+to a pose of the path may bring them closer, so this distance is checked for every group as well.
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ from pkm_post.kinematics.way import Way, turn_between
 from pkm_post.model import Machine
 
 _STRETCH = 8.0
-"""mm that tip and platform joints go on a stretch; if one cell is longer, that cell."""
+"""mm that tip and platform joints travel on a stretch; one cell if that is longer."""
 _MOST_GROUPS = 1024
-"""More are not made: then little is left of some margin, and looking along the way takes no longer."""
+"""Most groups: beyond this some margin is small, and surveying along the path is as fast."""
 _NEARER = 0.8
-"""Share of the least distance of joints on the way that is asked of the groups."""
+"""Share of the least joint distance on the path that the groups must keep."""
 _NO_STRUT = 1.0
-"""mm: slopes are to be numbers whatever the way is."""
+"""mm: keeps the slopes finite on any path."""
 
 
 def doubtful(machine: Machine, way: Way, checks_for: Callable[[float], tuple[Check, ...]]) -> tuple[int, ...]:
-    """The checks, by number, of which it is not proven that they hold on the whole way.
+    """Indices of the checks that are not proven to hold on the whole path.
 
     Args:
-        machine: at whose poses the checks look.
-        way: the poses and what is between them, at least one row.
-        checks_for: the checks, with slopes that hold where no strut has its joints nearer to each other than this, mm.
+        machine: the machine the checks evaluate.
+        way: the pose path, at least one row.
+        checks_for: the checks, with slopes that hold where every strut's joints are at least this far apart, mm.
     """
     stretches = _Stretches.of(machine, way)
     shortest = max(_NEARER * float(Placed.of(machine, way.rows(stretches.row)).distance.min()), _NO_STRUT)
@@ -64,12 +64,12 @@ def doubtful(machine: Machine, way: Way, checks_for: Callable[[float], tuple[Che
 
 @dataclass(frozen=True)
 class _Stretches:
-    """K stretches, which are the whole way, each about one of its rows.
+    """K stretches that cover the whole path, each around one of its rows.
 
     Attributes:
         row: (K,) the rows.
-        travel: (K,) how far the tip goes from there to the farther end, mm, or more.
-        turn: (K,) by how much the platform turns on this way, rad, or more.
+        travel: (K,) upper bound of the tip travel from there to the farther end, mm.
+        turn: (K,) upper bound of the platform rotation over that travel, rad.
     """
 
     row: Array
@@ -92,11 +92,11 @@ class _Groups:
     """G groups of stretches.
 
     Attributes:
-        parent: (G,) the group that each was part of before.
+        parent: (G,) the group that each was split from.
         anchor: (G,) the row in the middle of each.
-        travel: (G,) how far the tip is from there at any pose of the group, mm, or more.
-        turn: (G,) by how much the platform turns on the way there, rad, or more.
-        arm: distance of a platform joint from the tip, mm, or more.
+        travel: (G,) upper bound of the tip distance from the anchor to any pose of the group, mm.
+        turn: (G,) upper bound of the platform rotation over that distance, rad.
+        arm: upper bound of the distance of a platform joint from the tip, mm.
     """
 
     parent: Array
@@ -106,7 +106,7 @@ class _Groups:
     arm: float
 
     def bounds(self, machine: Machine, way: Way, check: Check, at: Array, shortest: float) -> tuple[Array, Array]:
-        """The margins at the anchors of some groups; and what each group has at least, of margin or distance."""
+        """Margins at the anchors of some groups, and the lower bound of each group in margin or distance."""
         placed = Placed.of(machine, way.rows(self.anchor[at]))
         margin = check.margins(placed).min(axis=1)
         travel, turn = self.travel[at], self.turn[at]
@@ -115,7 +115,7 @@ class _Groups:
 
 
 def _partitions(machine: Machine, way: Way, stretches: _Stretches) -> Iterator[_Groups]:
-    """The stretches in one group, then the groups of before parted in two where they are widest, and so on."""
+    """Yield all stretches as one group, then the groups split in two along their widest extent, and so on."""
     arm = _longest_arm(machine, way)
     tip, axis, spin, tool_length = way.rows(stretches.row)
     place = np.column_stack([tip, arm * axis, arm * spin, tool_length])
@@ -130,7 +130,7 @@ def _partitions(machine: Machine, way: Way, stretches: _Stretches) -> Iterator[_
         middle, widest = (low + high) / 2, np.argmax(high - low, axis=1)
         anchor = np.lexsort((norm(place - middle[group]), group))[first]
         begin = anchor[group]
-        # As seen from the platform, another tool is another place of the tip of the tool at the anchor.
+        # Seen from the platform, a tool change moves the tip at the anchor.
         travel = norm(tip - tip[begin]) + np.abs(tool_length - tool_length[begin]) + stretches.travel
         turn = turn_between(axis[begin], axis, spin - spin[begin]) + stretches.turn
         farthest = [np.maximum.reduceat(column[order], first) for column in (travel, turn)]

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Between: what a check says of a whole way, not only of its samples.
+"""Between: evaluate a check on a whole pose path, not only at its samples.
 
-Every margin of a check has a slope: how fast it can change, at most, when the platform moves. If it is m0 and m1 at the
-ends of a stretch and cannot change by more than c on it, it is nowhere less than (m0 + m1 - c) / 2 in between. Where
-that is not negative, nothing can have slipped through. Else the stretch is halved and looked at again, until a
-violation is found, or none is possible, or the stretch is so short that the margin is 0 within the resolution of the
-check, which counts as a violation. Margins may be lower bounds of the true ones at any pose: what is said stays true.
+Every margin has a slope: its greatest rate of change with platform motion. If the margin is m0 and m1 at the ends of a
+stretch and changes by at most c on it, it is at least (m0 + m1 - c) / 2 in between. Where that is not negative, the
+stretch is free of violations. Otherwise the stretch is halved and checked again, until a violation is found or ruled
+out, or the bound is 0 within the resolution of the check, which counts as a violation. Margins may be lower bounds
+of the true ones at any pose: the result stays valid.
 
-A check whose margins take long to compute begins with every 64th row. It goes down to the rows where less than its
-comfort is left, and elsewhere far enough to know the least margin to a quarter. Where nothing but violations is asked
-for, every check does so, and goes down only to where one is possible.
+A check with expensive margins starts with every 64th row. It refines to the rows where less than its comfort is left,
+and elsewhere far enough to know the least margin to a quarter. When only violations are requested, every check does so
+and refines only where one is possible.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _AT_ONCE = 2048
 _STRIDE = 64
 _STRIDE_FOR_FAULTS = 512
 _THREE_QUARTERS = 0.75
-"""Beyond the comfort, how much of the least margin that was computed rows that are not computed must have."""
+"""Beyond the comfort, the share of the least computed margin that the skipped rows must have."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,9 @@ class Check(Subject):
 
     Attributes:
         margins: (M, P) margins of M placed poses, or lower bounds of them; a column for each of the ``parts``.
-        by_travel: how much a margin changes at most by mm that every point of the platform travels.
-        by_turn: how much at most by rad that the platform turns about the tip.
-        resolution: a margin that is less, between two rows, counts as none.
+        by_travel: upper bound of the margin change per mm that every point of the platform travels.
+        by_turn: upper bound per rad that the platform turns about the tip.
+        resolution: between two rows, a smaller margin counts as zero.
         comfort: margins beyond it need not be computed for every row.
     """
 
@@ -56,13 +56,13 @@ class Check(Subject):
 def survey(
     machine: Machine, way: Way, checks: tuple[Check, ...], faults_alone: bool = False
 ) -> tuple[ReachFinding, ...]:
-    """Each check along the whole way.
+    """Evaluate each check along the whole path.
 
     Args:
-        machine: at whose poses the checks look.
-        way: the poses and what is between them, at least one row.
-        checks: what is looked at.
-        faults_alone: margins that are proven not to be negative need not be known any better.
+        machine: the machine the checks evaluate.
+        way: the pose path, at least one row.
+        checks: the checks to evaluate.
+        faults_alone: do not refine margins that are proven non-negative.
     """
     turn = way.turn()
     if faults_alone:
@@ -83,7 +83,7 @@ def _chunks(rows: Array) -> Iterator[Array]:
 
 
 class _Survey:
-    """One check on its way along the rows."""
+    """State of one check along the rows."""
 
     def __init__(self, machine: Machine, way: Way, check: Check, turn: Array) -> None:
         self.machine, self.way, self.check = machine, way, check
@@ -92,28 +92,28 @@ class _Survey:
         self.computed, self.proven = np.zeros(len(way), dtype=bool), np.full(len(way), -np.inf)
 
     def _finding(self, at_least: float) -> ReachFinding:
-        """What was found; rows that were not computed must not look as bad as the worst that was."""
+        """Build the finding; skipped rows must not look as bad as the worst computed row."""
         beyond = np.nextafter(self.margin[self.computed].min(), np.inf)
         margin = np.where(self.computed, self.margin, np.maximum(self.margin, beyond))
         return ReachFinding(self.check, margin, self.part, at_least)
 
     def note(self, rows: Array, margins: Array) -> None:
-        """Keep the worst margins of rows."""
+        """Store the worst margin of each row."""
         part = np.argmin(margins, axis=1)
         self.margin[rows], self.part[rows] = margins[np.arange(len(part)), part], part
         self.computed[rows] = True
 
     def look(self, rows: Array) -> None:
-        """Compute and keep the margins of rows."""
+        """Compute and store the margins of rows."""
         for chunk in _chunks(rows):
             self.note(chunk, self.check.margins(Placed.of(self.machine, self.way.rows(chunk))))
 
     def strided(self, stride: int, share: float) -> ReachFinding:
-        """What is found by margins of few rows, and of those between them where little may be left.
+        """Survey every ``stride``-th row, then the rows between them where little margin may be left.
 
         Args:
-            stride: from one of the rows to begin with to the next.
-            share: of the least margin that was computed, what rows that are not computed must have.
+            stride: step between the initial rows.
+            share: share of the least computed margin that skipped rows must have.
         """
         sum_of_changes = np.cumsum(self.change)
         marks = np.unique(np.append(np.arange(0, len(self.way), stride), len(self.way) - 1))
@@ -131,7 +131,7 @@ class _Survey:
         return self.refined()
 
     def _fill(self, start: Array, end: Array, bound: Array) -> None:
-        """Give the rows between two rows the bound that holds on the whole way, and the part of the first one."""
+        """Assign the rows between two rows the bound of the whole stretch and the part of the first one."""
         count = end - start
         rows = np.repeat(start + 1 - (np.cumsum(count) - count), count) + np.arange(int(count.sum()))
         self.proven[rows] = np.repeat(bound, count)
@@ -139,7 +139,7 @@ class _Survey:
         self.margin[rows], self.part[rows] = self.proven[rows], np.repeat(self.part[start], count - 1)
 
     def refined(self) -> ReachFinding:
-        """What is found after looking between the rows where a violation may hide there."""
+        """Finding after refining between the rows where a violation may hide."""
         first = np.concatenate([self.margin[:1], self.margin[:-1]])
         bound = np.maximum((first + self.margin - self.change) / 2, self.proven)
         cells = np.flatnonzero((bound < 0) & (first >= 0) & (self.margin >= 0))
@@ -149,7 +149,7 @@ class _Survey:
         return self._finding(float(bound.min()))
 
     def _halve(self, cells: Array, at_start: Array, at_end: Array) -> Array:
-        """Halve cells until each is settled; the least margin that is left in each of them, (M,)."""
+        """Halve cells until each is settled; return the least remaining margin of each, (M,)."""
         least = np.minimum(at_start, at_end)
         owner = np.arange(len(cells))
         start, width = np.zeros(len(cells)), 1.0
@@ -165,7 +165,7 @@ class _Survey:
             width /= 2
             middle, part = self._at(cells[owner], start + width)
             self._blame(cells, owner, middle, part, least)
-            # One violation settles a cell; what is left of the others is looked at half by half.
+            # One violation settles a cell; the others are checked half by half.
             going = least[owner] >= 0
             owner, start = np.tile(owner[going], 2), np.concatenate([start[going], start[going] + width])
             at_start, at_end = (
@@ -175,7 +175,7 @@ class _Survey:
         return least
 
     def _at(self, cells: Array, share: Array) -> tuple[Array, Array]:
-        """Worst margins at shares of cells and what has them, (M,) each."""
+        """Worst margins at shares of cells and the parts that have them, (M,) each."""
         margin, part = np.empty(len(cells)), np.empty(len(cells), dtype=np.int32)
         for chunk in _chunks(np.arange(len(cells))):
             placed = Placed.of(self.machine, self.way.inside(cells[chunk], share[chunk]))
@@ -185,9 +185,9 @@ class _Survey:
         return margin, part
 
     def _blame(self, cells: Array, owner: Array, found: Array, part: Array | None, least: Array) -> None:
-        """Keep margins found inside cells where they are the least so far."""
+        """Store margins found inside cells where they are the least so far."""
         worse = found < self.margin[cells[owner]]
-        order = np.argsort(-found[worse], kind="stable")  # of several in one cell the least is written last
+        order = np.argsort(-found[worse], kind="stable")  # the least of several in one cell is written last
         rows = cells[owner[worse]][order]
         self.margin[rows] = found[worse][order]
         if part is not None:

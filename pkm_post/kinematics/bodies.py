@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bodies: where the struts' tubes and rods and the bodies of the platform are, and how fast their points can be.
+"""Bodies: positions of strut tubes, strut rods and platform bodies, and speed bounds of their points.
 
-A strut is a tube that is fixed to its base joint and a rod that is fixed to its platform joint, and may come out
-behind the base joint. Near a joint, within its radius, nothing counts. Bodies of the platform are cylinders about the
-tool axis, fixtures are boxes. Units: mm.
+A strut is a tube fixed to its base joint and a rod fixed to its platform joint; the rod may emerge behind the base
+joint. Contact within the radius of a joint is ignored. Platform bodies are cylinders about the tool axis, fixtures are
+boxes. Units: mm.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Pieces:
 
     @classmethod
     def of(cls, machine: Machine, distance: Array) -> Pieces:
-        """The pieces of struts whose joints are at these distances, (M, 6); they change evenly with the distance."""
+        """Build the pieces of struts with joints at these distances, (M, 6); they vary linearly with the distance."""
         free, last = machine.base_joint_radius, distance - machine.platform_joint_radius
         inner = distance - machine.rod_length
         ends = []
@@ -47,7 +47,7 @@ class Pieces:
         if machine.rod_radius > 0:
             ends.append((np.minimum(np.maximum(inner, free), last), last, machine.rod_radius))
         if machine.rod_radius > 0 and _rod_comes_out(machine):
-            # Where it has not come out yet, a point of it is kept there, so that distances have no jumps.
+            # Until the rod emerges, a point of it is kept there, so that distances have no jumps.
             ends.append((np.minimum(inner, -free), np.full_like(distance, -free), machine.rod_radius))
         start, end, radius = zip(*ends, strict=True)
         return cls(np.stack(start, axis=1), np.stack(end, axis=1), np.array(radius))
@@ -64,30 +64,30 @@ def _rod_comes_out(machine: Machine) -> bool:
 
 
 def has_strut_bodies(machine: Machine) -> bool:
-    """Whether the machine file says how thick the struts are."""
+    """Whether the machine file states the strut diameters."""
     return machine.tube_radius > 0 or machine.rod_radius > 0
 
 
 def lever_of_rod(machine: Machine, shortest: float) -> float:
-    """How much faster than its platform joint a point of a strut can be: the far end of a long rod."""
+    """Greatest speed of a strut point, at the far end of a long rod, relative to its platform joint."""
     return max(1.0, machine.rod_length / shortest - 1.0)
 
 
 def reach_of_body(machine: Machine, way: Way, body: Body) -> float:
-    """The greatest distance of a point of a body of the platform from the tip, mm."""
+    """Greatest distance of a point of a platform body from the tip, mm."""
     tips = machine.spindle_nose + way.tool_length.max(), machine.spindle_nose + way.tool_length.min()
     return float(np.hypot(body.radius, max(abs(end + tip) for end in (body.start, body.end) for tip in tips)))
 
 
 def cylinders_of(placed: Placed, body: Body) -> Cylinders:
-    """A body of the platform in {M}, at each of the poses."""
+    """Place a platform body in {M} at each pose."""
     axis = placed.rotation[:, :, 2]
     middle = placed.origin + (body.start + body.end) / 2 * axis
     return Cylinders(middle, axis, np.full(len(placed), (body.end - body.start) / 2), np.full(len(placed), body.radius))
 
 
 def strut_cylinders(placed: Placed) -> Iterator[Cylinders]:
-    """Each piece of the struts in {M}, with flat ends: six cylinders of each pose, pose by pose."""
+    """Yield each strut piece in {M}, with flat ends: six cylinders per pose, pose by pose."""
     machine = placed.machine
     pieces = Pieces.of(machine, placed.distance)
     direction = placed.direction.reshape(-1, 3)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Calibration: where the joints of a machine truly are, from measured poses and the lengths counted there.
+"""Calibration: identify the true joint positions from measured poses and counted strut lengths.
 
 A strut has seven parameters: base joint b, platform joint a, and length offset o. At a measured pose the controller
-counts |p + R a - b| + screw - o. The derivative of that by (b, a, o) is the row [-u, R^T u, -1], with u corrected for
-the screw. Seven poses or more give the seven parameters of each strut by Gauss-Newton on all rows; 42 in all. The
-struts share the poses and nothing else, so the systems are six of seven columns.
+counts |p + R a - b| + screw - o. Its derivative by (b, a, o) is the row [-u, R^T u, -1], with u corrected for the
+screw. Seven or more poses give the seven parameters of each strut by Gauss-Newton on all rows; 42 in all. The struts
+share only the poses, so the problem separates into six systems of seven columns.
 
-Poses that are too much alike leave combinations of parameters undetermined. Columns are scaled to one; combinations
-whose singular value is below a share of the largest are left as they were, and named.
+Poses that are too similar leave parameter combinations undetermined. Columns are scaled to one; combinations whose
+singular value is below a share of the largest keep their values and are reported.
 [Nategh and Agheli 2009]
 """
 
@@ -25,16 +25,16 @@ from pkm_post.model import Machine
 from pkm_post.model.columns import freeze
 
 PARAMETERS = ("base x", "base y", "base z", "platform x", "platform y", "platform z", "offset")
-"""Of one strut, in the order of all arrays here: base joint in {M}, platform joint in {T}, length offset; in mm."""
+"""Parameters of one strut, in array order: base joint in {M}, platform joint in {T}, length offset; mm."""
 _STEP_TOLERANCE = 1e-9
 """mm: Gauss-Newton stops when no parameter moves by more."""
 _LEAST_SHARE = 1e-6
-"""Shares of a parameter in a combination below this are rounding."""
+"""Smaller shares of a parameter in a combination are rounding."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """N measured poses with the strut lengths that the controller counted there.
+    """N measured poses with the strut lengths that the controller counted at them.
 
     Attributes:
         tip: (N, 3) tool tips in {M}, mm.
@@ -59,26 +59,26 @@ class Measured:
 
     @property
     def pose(self) -> tuple[Array, Array, Array, Array]:
-        """The poses alone, as arguments for ``inverse``."""
+        """The poses as arguments for ``inverse``."""
         return self.tip, self.axis, self.spin, self.tool_length
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """What was identified.
+    """Result of a calibration.
 
     Attributes:
-        machine: the machine with the joints and offsets that were found.
-        converged: whether the last step was below the tolerance; if not, nothing here can be relied on.
-        rank: number of combinations of parameters that the poses determine, at most 42.
-        condition: of the scaled rows: how much a worst error of the lengths is amplified more than a best one, over
-            what was determined.
-        deviation: (6, 7) standard deviations of the parameters, mm, judged by what is left of the lengths; infinite
-            for one that takes part in an undetermined combination, and everywhere when the poses are just enough.
-        undetermined: (strut, (7,) combination) of unit length for each that the poses do not determine.
-        before: root mean square of the differences of the lengths before, mm.
-        after: the same with the machine found.
-        left_over: (N, 6) counted lengths less those of the machine found, mm; a wrong row of the measurements sticks
+        machine: the machine with the identified joints and offsets.
+        converged: whether the last step was below the tolerance; if not, the result is unusable.
+        rank: number of parameter combinations that the poses determine, at most 42.
+        condition: of the scaled rows: ratio of the worst to the best amplification of length errors, over the
+            determined combinations.
+        deviation: (6, 7) standard deviations of the parameters, mm, estimated from the length residuals; infinite for
+            a parameter in an undetermined combination, and everywhere when the poses are just enough.
+        undetermined: (strut, (7,) combination) of unit length for each one that the poses do not determine.
+        before: root mean square of the length residuals before, mm.
+        after: the same with the identified machine.
+        left_over: (N, 6) counted lengths less those of the identified machine, mm; a wrong measurement row stands
             out here.
     """
 
@@ -94,14 +94,14 @@ class Calibration:
 
 
 def calibrate(machine: Machine, measured: Measured, least_share: float = 1e-4, iterations: int = 50) -> Calibration:
-    """Find the 42 parameters of a machine, or the part of them that the poses determine.
+    """Identify the 42 parameters of a machine, or the part of them that the poses determine.
 
     Args:
-        machine: the machine as it is believed to be; what is not determined stays so.
+        machine: the nominal machine; undetermined combinations keep its values.
         measured: poses and counted lengths.
-        least_share: combinations with a singular value below this share of their strut's largest are left alone. The
-            noise of measured orientations, in rad, ought to be smaller.
-        iterations: steps before it is given up.
+        least_share: combinations with a singular value below this share of their strut's largest are kept. It should
+            exceed the noise of measured orientations, in rad.
+        iterations: most steps.
 
     Raises:
         ValueError: there are no poses.
@@ -129,13 +129,13 @@ def identification_rows(machine: Machine, measured: Measured) -> Array:
 
 
 def combination_text(strut: int, combination: Array) -> str:
-    """An undetermined combination for people: strut 1: 0.71 base x + 0.71 platform x."""
+    """Format an undetermined combination: strut 1: 0.71 base x + 0.71 platform x."""
     shares = [(share, name) for share, name in zip(combination, PARAMETERS, strict=True) if abs(share) >= 5e-3]
     return f"strut {strut + 1}: " + " ".join(f"{share:+.2f} {name}" for share, name in shares)
 
 
 def _missing(machine: Machine, measured: Measured) -> Array:
-    """Counted lengths less those that the machine would count, (N, 6)."""
+    """Counted lengths less those of the machine, (N, 6)."""
     struts = strut_vectors(machine, *measured.pose)
     distance, rotation = norm(struts), platform_rotation(measured.axis, measured.spin)
     return measured.lengths - counted_lengths(machine, distance, struts / distance[..., None], rotation)
@@ -152,11 +152,11 @@ def _moved(machine: Machine, step: Array) -> Machine:
 
 
 def _scaled(machine: Machine, measured: Measured) -> tuple[tuple[Array, Array, Array], Array]:
-    """Singular value decompositions of the rows with columns of length one, and these lengths (6, 7)."""
+    """Singular value decompositions of the rows with unit columns, and the column lengths (6, 7)."""
     rows = identification_rows(machine, measured)
     scale = np.linalg.norm(rows, axis=1)
     scale[scale == 0.0] = 1.0
-    # Rows of zeros, so that fewer poses than parameters have seven singular values as well
+    # Zero rows, so that fewer poses than parameters have seven singular values as well
     rows = np.pad(rows / scale[:, None, :], ((0, 0), (0, max(0, len(PARAMETERS) - len(measured))), (0, 0)))
     left, values, right = np.linalg.svd(rows, full_matrices=False)
     return (left[:, : len(measured)], values, right), scale
@@ -167,7 +167,7 @@ def _determined(values: Array, least_share: float) -> Array:
 
 
 def _pseudo_inverse(decomposed: tuple[Array, Array, Array], scale: Array, least_share: float) -> Array:
-    """From differences of lengths to steps of the parameters, (6, 7, N)."""
+    """Map length differences to parameter steps, (6, 7, N)."""
     left, values, right = decomposed
     known = _determined(values, least_share)
     inverse = np.where(known, 1.0 / np.where(known, values, 1.0), 0.0)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Checks: what can keep a machine from following a way: stroke, joint cones, singular poses, bodies that meet.
+"""Checks: the limits of a path: stroke, joint cones, singular poses, collisions.
 
-Enters: the machine and the shortest strut on the way. Leaves: one ``Check`` for each limit that the machine file
-states. Slopes follow from the motion of the joints: with r_i from the tip, joint i moves by v_i <= travel + turn |r_i|.
-A strut's length changes by no more than v_i, its direction by v_i / length, the swing in the platform by turn more.
-Bodies are in ``interference``. docs/reach.md has the derivations.
+Input: the machine and the shortest strut on the path. Output: one ``Check`` for each limit that the machine file
+states. Slopes follow from the joint motion: with r_i from the tip, joint i moves by v_i <= travel + turn |r_i|. A
+strut's length changes by at most v_i, its direction by v_i / length, the swing in the platform by turn more. Bodies are
+in ``interference``. docs/reach.md has the derivations.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pkm_post.kinematics.way import Way
 from pkm_post.model import Machine
 
 HUNDREDTH = 0.01
-"""mm: between two rows, what is left of a length is told to this."""
+"""mm: resolution of a length margin between two rows."""
 ANGLE = 1e-4
 """rad, the same for angles, about 0.006 degrees."""
 SINGULAR = 1e-4
@@ -31,8 +31,8 @@ _CHUNK = 4096
 """Poses per pass: the working arrays of one pass stay in the processor's cache."""
 STRUTS = tuple(str(strut) for strut in range(1, 7))
 _SCREW_SLOPE = 4.0
-"""How fast the screw's correction changes, in leads by turn of joint or platform, while every strut keeps 30 degrees
-away from the fixed axes of its universal joints: 1 / sin 30 for each of them."""
+"""Rate of the screw correction, in leads per turn of joint or platform, while every strut stays 30 degrees away from
+the fixed axes of its universal joints: 1 / sin 30 for each of them."""
 
 
 def arms_from_tip(machine: Machine, tool_length: Array) -> Array:
@@ -42,10 +42,10 @@ def arms_from_tip(machine: Machine, tool_length: Array) -> Array:
 
 
 def shortest_distance(machine: Machine, way: Way) -> float:
-    """Lower bound of the distance of a strut's joints on the whole way, mm; not above 0 if none is proven."""
+    """Lower bound of a strut's joint distance on the whole path, mm; not above 0 if none is proven."""
     arms, turn, shortest = arms_from_tip(machine, way.tool_length), way.turn(), np.inf
     for first in range(0, len(way), _CHUNK):
-        rows = slice(first, first + _CHUNK + 1)  # with the first one of the next chunk
+        rows = slice(first, first + _CHUNK + 1)  # includes the first row of the next chunk
         lengths = strut_lengths(machine, *way.rows(rows)) + machine.length_offset - abs(machine.screw_lead) / 2
         change = way.travel[rows, None] + turn[rows, None] * arms
         inside = (lengths[:-1] + lengths[1:] - change[1:]) / 2
@@ -54,7 +54,7 @@ def shortest_distance(machine: Machine, way: Way) -> float:
 
 
 def stroke_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:
-    """That no strut is too short or too long."""
+    """Check that no strut is too short or too long."""
     low, high = machine.strut_stroke
     per_turn = _SCREW_SLOPE * abs(machine.screw_lead) / (2 * np.pi)
     by_travel = 1.0 + per_turn / shortest
@@ -73,7 +73,7 @@ def stroke_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, .
 
 
 def joint_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:
-    """That no joint swings too far from its rest axis."""
+    """Check that no joint swings too far from its rest axis."""
     by_travel = 1.0 / shortest
     by_turn = arms_from_tip(machine, way.tool_length).max() / shortest
 
@@ -91,16 +91,16 @@ def joint_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ..
 
 
 def swing(direction: Array, rest: Array) -> Array:
-    """Angles between unit vectors, (N, 6); half a chord is the sine of half the angle, exact for small ones."""
+    """Angles between unit vectors, (N, 6); half a chord is the sine of half the angle, accurate for small ones."""
     chord = direction - rest
     return 2.0 * np.arcsin(np.minimum(norm(chord) / 2, 1.0))
 
 
 def singularity_check(machine: Machine, way: Way, shortest: float) -> Check:
-    """That no singular pose is near, nor lies between two rows.
+    """Check that no singular pose is near a row or lies between two rows.
 
-    The least singular value of a matrix changes by no more than the matrix does, in the Frobenius norm. While it stays
-    above zero, the determinant keeps its sign: where that is other than at the start, a singular pose was passed.
+    The least singular value of a matrix changes by at most the Frobenius norm of the matrix change. While it stays
+    above zero, the determinant keeps its sign: a sign other than at the start means that a singular pose was passed.
     """
     start = np.sign(np.linalg.det(Placed.of(machine, way.rows(slice(0, 1))).scaled_jacobian()))
     least = machine.least_singular_value

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Findings: what the checks of a way found, by row; as data, and as diagnostics with their places."""
+"""Findings: check results along a path, by row, as data and as diagnostics with their source positions."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ SHOWN: dict[str, tuple[str, float]] = {
     "N/mm": ("N/mm", 1.0),
     "": ("", 1.0),
 }
-"""For each unit inside, the one that people are shown, and its factor."""
+"""Display unit and factor for each internal unit."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """What is checked.
+    """Subject of a check.
 
     Attributes:
-        name: for people.
-        code: of the diagnostic of a violation.
+        name: display name.
+        code: diagnostic code of a violation.
         unit: of the margin, a key of ``SHOWN``.
         parts: what may have the least margin: struts, pairs of bodies.
-        told: how a violation is told, with {part} and {by}.
+        told: message template of a violation, with {part} and {by}.
     """
 
     name: str
@@ -40,21 +40,21 @@ class Subject:
     told: str
 
     def tell(self, part: int, margin: float) -> str:
-        """A violation in words."""
+        """Format a violation."""
         return self.told.format(part=self.parts[part], by=-margin * SHOWN[self.unit][1])
 
 
 @dataclass(frozen=True)
 class ReachFinding:
-    """What one check says of a way of N rows.
+    """Result of one check on a path of N rows.
 
     Attributes:
-        subject: what was checked.
+        subject: the checked subject.
         margin: (N,) least margin found on the cell that ends at the row, its end included; negative is a violation.
-            Where much is left it may not have been computed: then it is less than it need be, but not the least.
+            A comfortable margin may be a lower bound, but is never the least.
         part: (N,) index into ``subject.parts`` of what has this margin.
-        at_least: proven lower bound of the margin on the whole way, between the rows as well; minus infinity where
-            only the rows were looked at.
+        at_least: proven lower bound of the margin on the whole path, between the rows as well; minus infinity where
+            only the rows were checked.
     """
 
     subject: Subject = field(repr=False)
@@ -64,12 +64,12 @@ class ReachFinding:
 
     @property
     def worst_row(self) -> int:
-        """The row of the least margin."""
+        """Row of the least margin."""
         return int(np.argmin(self.margin))
 
     @property
     def first_bad_row(self) -> int | None:
-        """The first row with a violation on its cell, if there is one."""
+        """First row with a violation on its cell, or None."""
         bad = self.margin < 0
         return int(np.argmax(bad)) if bad.any() else None
 
@@ -78,9 +78,9 @@ def faults_of(findings: Iterable[ReachFinding], trajectory: Trajectory, segment:
     """Diagnostics of violations: one for each operation and check, at the worst row.
 
     Args:
-        findings: of a way along the trajectory.
-        trajectory: says where each segment comes from.
-        segment: (N,) segment each row of the way lies on.
+        findings: of a path along the trajectory.
+        trajectory: source positions of the segments.
+        segment: (N,) segment of each row.
     """
     operation = trajectory.operation[segment]
     faults = []

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Following: from the strut lengths along a path to its poses, when only the first pose is known.
+"""Following: poses from the strut lengths along a path when only the first pose is known.
 
-One row after the other would be Newton's method on single rows, a million times. Instead few rows far apart are solved
-in turn, each from the one before; then those halfway between, all at once, each from the one before it; and so on. A
-step that is too long may end in another pose with the same lengths. So in the end every row is solved once more, from
-the row before it: where both agree, the poses are those that small steps from the first one lead to. From the first row
-on where they do not, nothing is claimed.
+Solving row by row would run Newton's method on single rows, a million times. Instead, a few widely spaced rows are
+solved in sequence, each from the previous one; then the rows halfway between, all at once, each from its predecessor;
+and so on. A step that is too long may end in another pose with the same lengths. Finally, every row is solved again
+from the row before it: where both agree, the poses are those that small steps from the first one reach. From the first
+row where they differ, rows are marked as not converged.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from pkm_post.kinematics.forward import Solution, newton
 from pkm_post.model import Machine
 
 _FIRST_ROWS = 128
-"""Rows that are solved one after the other."""
+"""Rows that are solved in sequence."""
 _SAME = 1e-6
-"""mm, and as much in the entries of the rotation: poses that agree to this are one."""
+"""mm, and as much in the entries of the rotation: poses that agree to this are equal."""
 
 
 def follow(machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array) -> Solution:
@@ -33,7 +33,7 @@ def follow(machine: Machine, lengths: Array, tool_length: Array, tip: Array, rot
         rotation: (3, 3) rotation of the platform there.
     """
     count = len(lengths)
-    # Platform origins do not jump when the tool changes: they are the tips of a tool that ends in them.
+    # Platform origins do not jump at a tool change: they are the tips of a tool of reach zero.
     none = np.full(count, -machine.spindle_nose)
     reach = machine.spindle_nose + tool_length
     origins, rotations = np.zeros((count, 3)), np.tile(np.eye(3), (count, 1, 1))
@@ -60,7 +60,7 @@ def follow(machine: Machine, lengths: Array, tool_length: Array, tip: Array, rot
 def _follows(
     machine: Machine, lengths: Array, none: Array, found: Solution, tip: Array, rotation: Array, reach: float
 ) -> Array:
-    """Whether each row, and all before it, is where Newton's method leads to from the row before, (N,)."""
+    """Whether each row, and all rows before it, is the Newton solution from its predecessor, (N,)."""
     before = np.vstack([tip + reach * rotation[:, 2], found.tip[:-1]])
     turned = np.concatenate([rotation[None], found.rotation[:-1]])
     again = newton(machine, lengths, none, before, turned)

@@ -2,7 +2,7 @@
 """Forward kinematics: from six strut lengths to the tool pose, by Newton's method on the rotation group.
 
 dx = J^-1 (l - l(x)); the tip moves by the linear part, the platform turns by the rotation of the angular part. A
-hexapod has up to 40 poses for one set of lengths: the one nearest to the guess is found, or none.
+hexapod has up to 40 poses for one set of lengths: Newton finds the one nearest to the guess, or none.
 [Merlet2006 chapter 4]
 """
 
@@ -27,12 +27,12 @@ LENGTH_TOLERANCE = 1e-10
 
 @dataclass(frozen=True)
 class Solution:
-    """Poses found.
+    """Solved poses.
 
     Attributes:
         tip: (N, 3) tool tips in {M}, mm.
         rotation: (N, 3, 3) rotations R_T of the platform; the tool axis is the third column.
-        converged: (N,) whether the pose has the lengths asked for; the other rows mean nothing.
+        converged: (N,) whether the pose has the given lengths; other rows are undefined.
     """
 
     tip: Array
@@ -53,21 +53,21 @@ def forward(
     guess_axis: Array,
     guess_spin: Array,
 ) -> Solution:
-    """Tool poses that have the given strut lengths.
+    """Solve for tool poses that have the given strut lengths.
 
     Args:
         machine: the geometry.
         lengths: (N, 6) strut lengths as the controller counts them, mm.
         tool_length: (N,) gauge lengths, mm.
-        guess_tip: (N, 3) tips to start from.
-        guess_axis: (N, 3) unit tool axes to start from.
-        guess_spin: (N,) spins to start from.
+        guess_tip: (N, 3) initial tips.
+        guess_axis: (N, 3) initial unit tool axes.
+        guess_spin: (N,) initial spins.
     """
     return newton(machine, lengths, tool_length, guess_tip, platform_rotation(guess_axis, guess_spin))
 
 
 def newton(machine: Machine, lengths: Array, tool_length: Array, guess_tip: Array, guess_rotation: Array) -> Solution:
-    """The same from guesses whose rotations are matrices, (N, 3, 3)."""
+    """The same from guesses with rotation matrices, (N, 3, 3)."""
     tip, rotation = np.array(guess_tip, dtype=np.float64), np.array(guess_rotation, dtype=np.float64)
     converged = np.zeros(len(tip), dtype=bool)
     for first in range(0, len(tip), _AT_ONCE):
@@ -79,7 +79,7 @@ def newton(machine: Machine, lengths: Array, tool_length: Array, guess_tip: Arra
 def _newton(
     machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array, converged: Array
 ) -> None:
-    """Move tips and rotations in place until they have the lengths; say of which rows that is so."""
+    """Iterate tips and rotations in place; return which rows converged."""
     at, turned, wanted, tool = tip.copy(), rotation.copy(), lengths, tool_length
     rows = np.arange(len(tip))
     for _ in range(_MOST_STEPS):

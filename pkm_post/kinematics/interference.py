@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Interference: bodies that must keep their clearance: struts, platform and spindle, fixtures.
+"""Interference: clearance between struts, platform, spindle and fixtures.
 
-Tubes and rods of struts are capsules here, cylinders with round ends; bodies of the platform are cylinders with flat
-ends, fixtures are boxes. Margins are distances less radii less clearance; of a body and a fixture a lower bound of it,
+Strut tubes and rods are capsules here, cylinders with round ends; platform bodies are cylinders with flat ends,
+fixtures are boxes. Margins are distances less radii less clearance; between a body and a fixture, a lower bound of it,
 see ``geometry.separation``. Units: mm.
 """
 
@@ -32,15 +32,15 @@ from pkm_post.model import Machine
 from pkm_post.model.machine import Body
 
 COMFORT = 10.0
-"""mm: distances that leave more than this above the clearance are told by a bound."""
+"""mm: distances that exceed the clearance by more are given as a lower bound."""
 _BOX_EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]])
-"""Corners that the edges of a box join, numbered as ``corners_of`` has them."""
+"""Corner pairs of the box edges, in the numbering of ``corners_of``."""
 _FIRST, _SECOND = np.triu_indices(6, 1)
 _PAIRS = tuple(f"{one + 1} and {two + 1}" for one, two in zip(_FIRST, _SECOND, strict=True))
 
 
 def strut_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:
-    """That struts keep clear of each other, the platform and the fixtures; none where struts have no bodies."""
+    """Check that struts keep clear of each other, the platform and the fixtures; none if struts have no bodies."""
     if not has_strut_bodies(machine):
         return ()
     arm = float(arms_from_tip(machine, way.tool_length).max())
@@ -61,7 +61,7 @@ def strut_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ..
 
 
 def body_checks(machine: Machine, way: Way) -> tuple[Check, ...]:
-    """That each body of the platform keeps clear of the fixtures; none without either."""
+    """Check that each platform body keeps clear of the fixtures; none without either."""
     if not machine.fixtures:
         return ()
     return tuple(
@@ -79,7 +79,7 @@ def _names(others: Iterable[str]) -> tuple[str, ...]:
 
 
 def _strut_to_strut(placed: Placed) -> Array:
-    """Margins of the 15 pairs of struts, (M, 15)."""
+    """Margins of the 15 strut pairs, (M, 15)."""
     machine = placed.machine
     pieces = Pieces.of(machine, placed.distance)
     start, end = pieces.ends(machine.base_joints, placed.direction)
@@ -94,7 +94,7 @@ def _strut_to_strut(placed: Placed) -> Array:
 
 
 def _strut_to_bodies(placed: Placed) -> Array:
-    """Margins of six struts to each body of the platform, (M, 6 B)."""
+    """Margins of six struts to each platform body, (M, 6 B)."""
     machine = placed.machine
     pieces = Pieces.of(machine, placed.distance)
     direction = placed.in_platform()
@@ -120,7 +120,7 @@ def _strut_to_fixtures(placed: Placed) -> Array:
 
 
 def _body_to_fixtures(body: Body, placed: Placed) -> Array:
-    """Margins of a body of the platform to each fixture, (M, F)."""
+    """Margins of a platform body to each fixture, (M, F)."""
     count = len(placed)
     faces, cylinders = np.broadcast_to(np.eye(3), (count, 3, 3)), cylinders_of(placed, body)
     columns = [

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Interpolation: what the machine does when the controller plays cubics between the struts' knots.
+"""Interpolation: machine motion when the controller plays cubics between the strut knots.
 
-Enters: true poses by time at the ends of intervals, and where the tool ought to be inside them. Leaves: by how much
-tool and struts differ from that. Residuals of strut lengths are carried to the tool by the inverse Jacobian: tip by the
-linear part, tool axis by the angular part across the axis; the turn about the axis cuts nothing.
+Input: true poses by time at the ends of intervals, and nominal tool poses inside them. Output: the deviation of tool
+and struts. The inverse Jacobian maps length residuals to the tool: to the tip by the linear part, to the tool axis by
+the angular part across the axis; rotation about the axis does not affect the cut.
 
 Inside an interval the inverse Jacobian is the mean of those at its two ends, weighted by the shares of time. If it
-changes by a part D from end to end, this is wrong by no more than about D^2 / 4 of what is carried: with J linear in
-time, the mean of the inverses times J is I + x (1 - x) (D - 1 + 1 / (1 + D)).
+changes by a part D from end to end, the error is at most about D^2 / 4 of the mapped value: with J linear in time, the
+mean of the inverses times J is I + x (1 - x) (D - 1 + 1 / (1 + D)).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from pkm_post.model import Machine, Poses
 
 @dataclass(frozen=True)
 class Ends:
-    """What there is to know at N places where an interval may begin or end.
+    """Kinematic state at N knots where an interval may begin or end.
 
     Attributes:
         length: (N, 6) strut lengths as the controller counts them, mm.
@@ -40,7 +40,7 @@ class Ends:
 
     @classmethod
     def of(cls, machine: Machine, poses: Poses) -> Ends:
-        """Those of N poses by time."""
+        """State of N poses by time."""
         length, speed, jacobian = moving(machine, poses)
         return cls(length, speed, np.linalg.inv(jacobian))
 
@@ -57,9 +57,9 @@ def moving(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
 
 @dataclass(frozen=True)
 class Inside:
-    """Where the tool ought to be at M instants of each of N intervals, interval by interval.
+    """Nominal tool poses at M instants of each of N intervals, interval by interval.
 
-    If axis, spin and gauge length are the same at all of them, one row of each stands for all.
+    If axis, spin and gauge length are constant, a single row of each stands for all.
 
     Attributes:
         tip: (N * M, 3) mm.
@@ -76,11 +76,11 @@ class Inside:
 
 @dataclass(frozen=True)
 class Stray:
-    """How N intervals of cubics differ from the true motion at M instants of each.
+    """Deviation of N intervals of cubics from the true motion at M instants of each.
 
     Attributes:
-        tip: (N, M) distance of the tool tip from where it ought to be, mm.
-        axis: (N, M) angle of the tool axis from where it ought to be, rad.
+        tip: (N, M) distance of the tool tip from its nominal position, mm.
+        axis: (N, M) angle of the tool axis from its nominal direction, rad.
     """
 
     tip: Array
@@ -88,12 +88,12 @@ class Stray:
 
 
 def stray(machine: Machine, start: Ends, end: Ends, inside: Inside, duration: Array, share: Array) -> Stray:
-    """Play the intervals and compare them with where the tool ought to be.
+    """Play the intervals and compare them with the nominal tool poses.
 
     Args:
         machine: the geometry.
-        start: N places.
-        end: N places.
+        start: N knots.
+        end: N knots.
         inside: at N * M instants, the shares of the duration of each interval.
         duration: (N,) s.
         share: (M,) shares of the duration.
@@ -109,28 +109,28 @@ def stray(machine: Machine, start: Ends, end: Ends, inside: Inside, duration: Ar
 
 
 def steepest(start: Ends, end: Ends, duration: Array) -> Array:
-    """Highest acceleration of a strut in each interval, (N,) mm/s^2; arguments as above."""
+    """Highest strut acceleration in each interval, (N,) mm/s^2; arguments as above."""
     both = hermite_accelerations(start.length, start.speed, end.length, end.speed, duration)
     return np.abs(np.stack(both)).max(axis=(0, 2))
 
 
 def fastest(start: Ends, end: Ends, duration: Array) -> Array:
-    """Bound of the speed of any strut in each interval, (N,) mm/s; arguments as above.
+    """Upper bound of the strut speeds in each interval, (N,) mm/s; arguments as above.
 
-    The speed is a polynomial of degree two: no more than the largest of its Bezier coefficients.
+    The speed is a polynomial of degree two: at most the largest of its Bezier coefficients.
     """
     middle = 3 * (end.length - start.length) / duration[:, None] - start.speed - end.speed
     return np.abs(np.stack([start.speed, middle, end.speed])).max(axis=(0, 2))
 
 
 def carried(at_start: Array, at_end: Array, columns: Array, share: Array) -> Array:
-    """Columns of struts carried to R columns of the tool by the means of matrices, (R, N, M).
+    """Map strut columns to R tool columns by weighted means of matrices, (R, N, M).
 
     Args:
         at_start: (N, R, 6) matrices.
         at_end: (N, R, 6) matrices.
         columns: (N, M, 6).
-        share: (M,) or (N, M), how much of the mean is that at the end.
+        share: (M,) or (N, M), weight of the matrix at the end.
     """
     right = columns.transpose(0, 2, 1)
     first, last = at_start @ right, at_end @ right

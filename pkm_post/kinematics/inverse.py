@@ -2,15 +2,15 @@
 """Inverse kinematics: from tool poses to six strut lengths; unique and in closed form.
 
 r_T = q + L k, MT_i = r_T + R_T TT_i, d_i = |MT_i - MB_i| [paper eq. 1 to 5], where L is the distance from the tool
-tip to the platform origin: gauge length plus spindle nose. The strut vectors here run from the base to the platform,
-the paper's the other way. The length that the controller counts is d_i, corrected for the turn of the screw, less the
-length offset; both are zero unless the machine file states them.
+tip to the platform origin: gauge length plus spindle nose. Strut vectors here run from the base to the platform; in the
+paper, the other way round. The controller counts d_i, corrected for the screw rotation, less the length offset; both
+are zero unless the machine file states them.
 
 Lengths alone need no strut vectors. With p from the middle of the base to the platform origin, a and b the joints in
 their frames, d^2 = |p|^2 + |a|^2 + |b|^2 + 2 a.(R^T p) - 2 b.p - 2 b^T R a: linear in 17 numbers of a pose, with
-coefficients that belong to the machine. So six squares are one product of matrices, and a root. The terms cancel: what
-is lost is at most a few roundings of (|p| + |a| + |b|)^2 / 2 d. Measured from the middle of the base, |p| is no more
-than the mean strut and the offset of the middle of the platform's joints, so that it does not matter where {M} is.
+machine constants as coefficients. Six squares are thus one matrix product, and a root. The terms cancel: the error is
+at most a few roundings of (|p| + |a| + |b|)^2 / 2 d. Measured from the middle of the base, |p| is at most the mean
+strut plus the offset of the middle of the platform joints, so the position of {M} does not matter.
 """
 
 from __future__ import annotations
@@ -66,9 +66,9 @@ def strut_lengths(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
 
 
 def lengths_at_tips(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
-    """The same at tips (N, 3) that have one axis (1, 3), one spin (1,) and one gauge length (1,) in common.
+    """Strut lengths at tips (N, 3) that share one axis (1, 3), one spin (1,) and one gauge length (1,).
 
-    The base joints lie still as seen from where the platform joints are for a tip at 0: distances of points are left.
+    Relative to the platform joints of a tip at 0, the base joints are fixed, so only point distances remain.
     """
     if machine.screw_lead != 0.0:
         each = len(tip)
@@ -82,7 +82,7 @@ def lengths_at_tips(machine: Machine, tip: Array, axis: Array, spin: Array, tool
 
 
 def counted_lengths(machine: Machine, distance: Array, direction: Array, rotation: Array) -> Array:
-    """What the controller counts when joints are at these distances, (N, 6) in mm.
+    """Lengths that the controller counts for these joint distances, (N, 6) in mm.
 
     Args:
         machine: screw and length offsets.
@@ -113,7 +113,7 @@ def form_of_squares(machine: Machine) -> tuple[Array, Array]:
 def _fill(
     numbers: Array, machine: Machine, middle: Array, tip: Array, axis: Array, spin: Array, tool_length: Array
 ) -> Array:
-    """Write the 17 numbers of each pose, (17, N): p, R^T p, |p|^2, 1, and the columns of R one after the other."""
+    """Write the 17 numbers of each pose, (17, N): p, R^T p, |p|^2, 1, and the columns of R in sequence."""
     p, turned, x, y, k = numbers[0:3], numbers[3:6], numbers[8:11], numbers[11:14], numbers[14:17]
     k[:] = axis.T
     fill_frame(x, y, k, spin)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jacobian: strut speeds from the velocity of the tool, V = J v [paper eq. 6].
+"""Jacobian: strut speeds from the tool velocity, V = J v [paper eq. 6].
 
-v stacks the linear velocity of a point of the platform and the angular velocity, both in {M}. With r_i from that
-point to platform joint i, row i is [u_i, r_i x u_i]; a screw without a key adds the gradient of its correction.
+v stacks the linear velocity of a platform point and the angular velocity, both in {M}. With r_i from that point to
+platform joint i, row i is [u_i, r_i x u_i]; a screw without a key adds the gradient of its correction.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ def jacobian_of_tip(machine: Machine, tip: Array, axis: Array, spin: Array, tool
 
 def jacobian_of_platform(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
     """Jacobians for the twist of the platform origin, (N, 6, 6). Arguments as in ``inverse``."""
-    # The platform origin is the tip of a tool that ends in it.
+    # The platform origin is the tip of a tool of reach zero.
     origin = tip + (machine.spindle_nose + tool_length)[:, None] * axis
     return jacobian_of_tip(machine, origin, axis, spin, np.full(len(tip), -machine.spindle_nose))
 
 
 def scaled_jacobian(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
-    """Platform Jacobians in plain numbers, (N, 6, 6): their rotation columns are divided by the characteristic length.
+    """Dimensionless platform Jacobians, (N, 6, 6): rotation columns are divided by the characteristic length.
 
-    Without that, determinant, singular values and condition would depend on the unit of length.
+    Otherwise determinant, singular values and condition would depend on the unit of length.
     """
     jacobian = jacobian_of_platform(machine, tip, axis, spin, tool_length)
     return jacobian / np.repeat([1.0, machine.characteristic_length], 3)
@@ -75,7 +75,7 @@ def moments(along: Array, arm: Array) -> Array:
 
 
 def solve_regular(matrices: Array, right: Array) -> tuple[Array, Array]:
-    """Solutions x of A x = b, (N, 6), and which rows have one, (N,): an exactly singular matrix has none, but zeros."""
+    """Solutions x of A x = b, (N, 6), and which rows have one, (N,); exactly singular matrices yield zeros."""
     try:
         return np.linalg.solve(matrices, right[..., None])[..., 0], np.ones(len(right), dtype=bool)
     except np.linalg.LinAlgError:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Margins: how far single poses are inside the limits of struts, joints and singular poses, strut by strut.
+"""Margins: distance of single poses from the stroke, joint and singularity limits, strut by strut.
 
-For poses in order, whose neighbours matter for the sign of the determinant alone. What is between them, and bodies
-that meet, are looked at in ``workspace``.
+Poses are in order; their sequence matters only for the sign of the determinant. ``workspace`` checks the motion between
+them and collisions.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from pkm_post.model import Machine
 _CHUNK = 4096
 """Poses per pass: the working arrays of one pass stay in the processor's cache."""
 _REGULAR = 1e-6
-"""Determinants above it belong to Jacobians whose inverse has at least ten correct digits."""
+"""Jacobians with a larger determinant have an inverse with at least ten correct digits."""
 
 
 @dataclass(frozen=True)
 class Margins:
-    """How far each pose is inside each limit; negative means outside.
+    """Margin of each pose to each limit; negative means outside.
 
     Attributes:
         shortest: (N, 6) strut length minus the shortest one, mm.
         longest: (N, 6) the longest strut length minus this one, mm.
         base: (N, 6) base cone minus swing of the base joint, rad.
         platform: (N, 6) platform cone minus swing of the platform joint, rad.
-        singular: (N,) smallest singular value of the scaled Jacobian minus the least allowed, or less where it is
-            positive anyway; negative as well where the determinant has another sign than at the start of the path,
-            since a singular pose lies between.
+        singular: (N,) smallest singular value of the scaled Jacobian minus the least allowed, or a lower bound where
+            it is positive; negative as well where the determinant differs in sign from the start of the path, since a
+            singular pose lies between.
     """
 
     shortest: Array
@@ -57,7 +57,7 @@ def reach_margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
 
 
 def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> tuple[Array, ...]:
-    """Margins of a chunk; instead of that to singular poses, smallest singular value and sign of the determinant."""
+    """Margins of a chunk; for singular poses, smallest singular value and sign of the determinant instead."""
     placed = Placed.of(machine, (tip, axis, spin, tool_length))
     length, jacobian = placed.lengths(), placed.scaled_jacobian()
     determinant = np.linalg.det(jacobian)
@@ -72,11 +72,11 @@ def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length
 
 
 def smallest_singular_value(jacobian: Array, determinant: Array, limit: float) -> Array:
-    """Smallest singular values, (N,); where that cannot be below the limit, a lower bound of it that is cheap.
+    """Smallest singular values, (N,); a cheap lower bound where it already exceeds the limit.
 
     |det J| is the product of the singular values and |J|^2 the sum of their squares. The product of five of them is
-    largest when they are equal, so the sixth is at least |det J| / (|J|^2 / 5)^(5/2). Where that does not decide, it
-    is at least 1 / |J^-1|, and where that does not either, it is computed.
+    largest when they are equal, so the sixth is at least |det J| / (|J|^2 / 5)^(5/2). If that is below the limit, the
+    bound 1 / |J^-1| is tried, and if that is below it too, the value is computed.
     """
     square = np.einsum("nij,nij->n", jacobian, jacobian)
     bound = np.abs(determinant) / (square / 5) ** 2.5

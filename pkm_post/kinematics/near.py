@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Near: poses that have given strut lengths, from guesses so near that a linear step or two is enough.
+"""Near: poses with given strut lengths, from guesses so close that a linear step or two is enough.
 
-Enters: strut lengths at instants of intervals, a guess for each, and the inverse Jacobians at the ends of the
-intervals. Leaves: poses, and of which of them the struts have the lengths asked for, to the tolerance of ``forward``.
-That is looked at, not concluded: how good guess and inverse were decides how many poses are found, not whether those
-found are right. The rest is for ``forward``, which takes Newton's steps with the Jacobian of each pose.
+Input: strut lengths at instants of intervals, a guess for each, and the inverse Jacobians at the ends of the intervals.
+Output: poses, and which of them have the given lengths to the tolerance of ``forward``. The lengths are verified:
+quality of guess and inverse decides how many poses are found, not whether they are correct. The rest is left to
+``forward``, which takes Newton steps with the Jacobian of each pose.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from pkm_post.kinematics.orientation import attitude_rates
 from pkm_post.model import Machine
 
 _STEPS = 3
-"""A guess is seldom off by more than a micrometre or a rounding; each step leaves a ten thousandth of what was off."""
+"""A guess is seldom off by more than a micrometre or a rounding; each step cuts the error to a ten thousandth."""
 _FAR = 1.0
-"""mm of a strut beyond which a linear step leads nobody knows where, and is not taken."""
+"""mm of strut error beyond which a linear step is unreliable and not taken."""
 
 
 @dataclass(frozen=True)
@@ -44,15 +44,15 @@ class NearPoses:
 def near_poses(
     machine: Machine, lengths: Array, guess: NearPoses, tool_length: Array, inverses: tuple[Array, Array], share: Array
 ) -> tuple[NearPoses, Array]:
-    """Tool poses that have the given strut lengths, and which of them do, (N * M,); the other rows mean nothing.
+    """Tool poses that have the given strut lengths, and which of them do, (N * M,); other rows are undefined.
 
     Args:
         machine: the geometry.
         lengths: (N, M, 6) strut lengths as the controller counts them, mm.
-        guess: N * M poses to start from.
+        guess: N * M initial poses.
         tool_length: (N * M,) gauge lengths, mm.
         inverses: (N, 6, 6) inverse Jacobians of the tip at both ends of the intervals.
-        share: (M,) or (N, M), how much of the interval has gone.
+        share: (M,) or (N, M), elapsed share of the interval.
     """
     at = guess
     for step in range(_STEPS + 1):
@@ -68,8 +68,8 @@ def near_poses(
 
 
 def moved(pose: NearPoses, twist: Array) -> NearPoses:
-    """Poses after a small way of the tip and a small turn of the platform, (6, N), right to the first order of both."""
+    """Poses after a small tip displacement and a small platform rotation, (6, N), to first order in both."""
     swing, spun = attitude_rates(pose.axis, twist[3:].T)
-    # as long as the axis was, to the second order: without a root, a row that stays does so to the last digit
+    # Keeps the axis length to second order: without a root, an unmoved row stays identical to the last digit.
     swung = pose.axis + swing - (dot(swing, swing) / 2)[:, None] * pose.axis
     return NearPoses(pose.tip + twist[:3].T, swung, pose.spin + spun)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Orientation: from tool axis and spin to the rotation of the platform, and how fast it turns.
+"""Orientation: platform rotation and angular rates from tool axis and spin.
 
 The tool axis k fixes two of three rotations. The third, the spin psi, turns the platform about k, starting from the
 zero-torsion pose: the shortest rotation from the vertical z to k. R(k, psi) = Rmin(z -> k) Rz(psi), Rmin = I + [v] +

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pace: whether the struts are fast enough for the times that a way is meant to take, or for its feed.
+"""Pace: whether the struts are fast enough for given cell durations, or for the feed.
 
-On a stretch of a cell the mean speed of a strut is the way of its length by the time: it is reached somewhere, and the
-highest speed is no more than half the stretch times the bound of l'' above it. Where that leaves a doubt the stretch is
+On a stretch of a cell, the mean speed of a strut is its length change by the time. The strut reaches it somewhere; the
+highest speed exceeds it by at most half the stretch times the bound of l''. Where that is inconclusive, the stretch is
 halved. With r from the tip to a joint, by the share of a cell, at constant rates:
 
     |l''| <= bend + r (|w'| + turn^2) + (travel + turn r)^2 / shortest distance
     |w'|  <= turn angle + h (1 + h^2) / 2 angle^2,   h = tan(tilt / 2)
 
-The second derivative of a screw's correction is not in the bound; it is small, as the lead is beside a strut.
+The second derivative of the screw correction is not in the bound; it is small, as the lead is small beside a strut.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pkm_post.kinematics.way import Way
 from pkm_post.model import Machine
 
 _RESOLUTION = 1e-3
-"""Share of the strut speed that is not told apart."""
+"""Resolution, as a share of the strut speed."""
 
 
 def pace_finding(machine: Machine, way: Way, shortest: float, duration: Array) -> ReachFinding:
@@ -31,9 +31,9 @@ def pace_finding(machine: Machine, way: Way, shortest: float, duration: Array) -
 
     Args:
         machine: with ``strut_speed``.
-        way: the poses and what is between them.
-        shortest: no joints of a strut come nearer to each other on the way, mm.
-        duration: (N,) time that each cell takes, s; that of cell 0 is not looked at.
+        way: the pose path.
+        shortest: lower bound of a strut's joint distance on the path, mm.
+        duration: (N,) duration of each cell, s; that of cell 0 is ignored.
     """
     limit = machine.strut_speed
     subject = Subject("strut speed", "K118", "mm/s", STRUTS, f"strut {{part}} by {{by:.1f}} mm/s; it reaches {limit:g}")
@@ -58,7 +58,7 @@ def _second_derivative(machine: Machine, way: Way, shortest: float) -> Array:
 
 
 def _fastest(start: Array, end: Array, duration: Array) -> tuple[Array, Array]:
-    """Mean speeds of the fastest strut and which it is, (M,) each."""
+    """Mean speeds of the fastest strut and its index, (M,) each."""
     way = np.abs(end - start)
     part = np.argmax(way, axis=1)
     return way[np.arange(len(way)), part] / duration, part
@@ -67,7 +67,7 @@ def _fastest(start: Array, end: Array, duration: Array) -> tuple[Array, Array]:
 def _halve(
     machine: Machine, way: Way, lengths: Array, duration: Array, bend: Array, margin: Array, part: Array
 ) -> float:
-    """Write margins that halving finds; the proven lower bound of the margin."""
+    """Write the margins found by halving; return the proven lower bound of the margin."""
     limit, at_least = machine.strut_speed, machine.strut_speed
     cell = np.arange(1, len(way))
     start, before, after, width, found = np.zeros(len(cell)), lengths[:-1], lengths[1:], 1.0, margin[1:].copy()
@@ -85,5 +85,5 @@ def _halve(
         speed, which = _fastest(before, after, duration[cell] * width)
         found = limit - speed
         order = np.flatnonzero(found < margin[cell])
-        order = order[np.argsort(-found[order], kind="stable")]  # of several in one cell the least is written last
+        order = order[np.argsort(-found[order], kind="stable")]  # the least of several in one cell is written last
         margin[cell[order]], part[cell[order]] = found[order], which[order]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Part: what is being cut, a mesh of triangles, boxes or points, in {M}; and how far cylinders are from it.
+"""Part: workpiece as a mesh of triangles, boxes or points in {M}, and its distance from cylinders.
 
-The triangles are kept in balls within balls. A ball that is farther away than a triangle that was met already, or than
-what needs to be told, is not looked into. Units: mm.
+The triangles are kept in a hierarchy of balls. A ball farther away than the nearest triangle so far, or than the
+distance of interest, is skipped. Units: mm.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ _GROUP = 16
 _POSES = 256
 """Poses in one pass."""
 _HAIR = 0.003
-"""mm by which what is told may be too low, so that the last of many triangles that are equally near do not matter."""
+"""mm by which a result may be too low, so that the last of many equally near triangles do not matter."""
 _BOX_FACES = np.array(
     [
         [0, 1, 2], [1, 2, 3], [4, 5, 6], [5, 6, 7], [0, 1, 4], [1, 4, 5],
         [2, 3, 6], [3, 6, 7], [0, 2, 4], [2, 4, 6], [1, 3, 5], [3, 5, 7],
     ]
 )  # fmt: skip
-"""Corners of the twelve triangles of a box, numbered as ``corners_of`` has them."""
+"""Corners of the twelve triangles of a box, in the numbering of ``corners_of``."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class Part:
     """T triangles, and balls around them, around 16 neighbours, around 16 of these, and so on.
 
     Attributes:
-        triangles: (T, 3, 3) corners, neighbours in space near to each other in order.
+        triangles: (T, 3, 3) corners, sorted so that neighbours in space are close in order.
         faces: (T, 4, 3) normal and edges of each.
-        balls: for each level centres (K, 3) and radii (K,); of the first, one for each triangle; of the last, at most
+        balls: centres (K, 3) and radii (K,) of each level; the first has one ball per triangle, the last at most
             16. Ball i holds balls 16 i to 16 i + 15 of the level before.
     """
 
@@ -49,7 +49,7 @@ class Part:
 
     @classmethod
     def of(cls, triangles: Array | None = None, boxes: Sequence[Box] = (), points: Array | None = None) -> Part:
-        """A part of all that is given, at least one thing.
+        """Build a part of all arguments, at least one of them non-empty.
 
         Args:
             triangles: (T, 3, 3) corners of triangles in {M}.
@@ -70,7 +70,7 @@ class Part:
 
 
 def _balls_around(triangles: Array) -> Iterator[tuple[Array, Array]]:
-    """Balls of all levels."""
+    """Yield the balls of each level."""
     points = triangles
     while True:
         centre = (points.min(axis=1) + points.max(axis=1)) / 2
@@ -82,12 +82,12 @@ def _balls_around(triangles: Array) -> Iterator[tuple[Array, Array]]:
 
 
 def _members(ball: Array, count: int) -> Array:
-    """What balls (K,) hold of the ``count`` of the level below, (K, 16); where there is none left, the last one."""
+    """Members of balls (K,) among the ``count`` of the level below, (K, 16), padded with the last one."""
     return np.minimum(ball[:, None] * _GROUP + np.arange(_GROUP), count - 1)
 
 
 def _along_a_curve(points: Array) -> Array:
-    """Numbers by which neighbours in space come to be neighbours in order: the bits of the coordinates in turn."""
+    """Sort keys that keep neighbours in space close in order: interleaved bits of the coordinates (Morton order)."""
     low, size = points.min(axis=0), np.ptp(points, axis=0).max()
     cells = ((points - low) / max(size, 1e-300) * 1023).astype(np.int64)
     order = np.zeros(len(points), dtype=np.int64)
@@ -104,7 +104,7 @@ def distance_from_part(cylinders: Cylinders, part: Part, far: float) -> Array:
 
 
 def _distance(cylinders: Cylinders, part: Part, far: float) -> Array:
-    """First down to one near triangle of each pose, then to all that may be nearer."""
+    """Descend to one near triangle of each pose, then to all that may be nearer."""
     poses, top = np.arange(len(cylinders)), np.arange(len(part.balls[-1][1]))
     near = np.tile(top, (len(poses), 1))
     for level in reversed(range(len(part.balls))):
@@ -118,13 +118,13 @@ def _distance(cylinders: Cylinders, part: Part, far: float) -> Array:
 
 
 def pairs_within(cylinders: Cylinders, part: Part, within: Array, level: int = 0) -> tuple[Array, Array, Array]:
-    """Pairs of a cylinder and a ball of the part that may be nearer than allowed for, and how near at least, (K,).
+    """Pairs of a cylinder and a ball of the part that may be nearer than a limit, and their least distance, (K,).
 
     Args:
         cylinders: M cylinders.
-        part: whose balls are looked at, from the largest ones down.
-        within: (M,) mm; what is proven to be as far as this is left out.
-        level: of the balls that are told; those of level 0 are the triangles.
+        part: its balls are tested from the largest ones down.
+        within: (M,) mm; pairs proven to be at least this far apart are left out.
+        level: level of the returned balls; those of level 0 are the triangles.
     """
     top = len(part.balls[-1][1])
     pose, ball = np.repeat(np.arange(len(within)), top), np.tile(np.arange(top), len(within))
@@ -141,9 +141,9 @@ def pairs_within(cylinders: Cylinders, part: Part, within: Array, level: int = 0
 def _lowered(
     cylinders: Cylinders, part: Part, least: Array, plane: Array, pose: Array, triangle: Array, bound: Array
 ) -> Array:
-    """The least distances (M,), lowered by those from triangles that are named with their poses, (K,) each.
+    """Lower the least distances (M,) by those from given triangles, paired with their poses, (K,) each.
 
-    The plane, with its normal (M, 3), that shows how far the nearest triangle so far is, shows the same of most others.
+    The separating plane of the nearest triangle so far, with its normal (M, 3), also bounds most of the others.
     """
     lowest = np.full(len(least), np.inf)
     while True:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Part checks: spindle, holder and struts against the part.
 
-Only surfaces count: a body that is inside of the part from the first pose on is not seen, one that enters it is. The
-tool is not a body: it is there to touch the part. Units: mm.
+Only surfaces count: a body that is inside the part from the first pose on is not detected, one that enters it is. The
+tool is not a body, as it has to touch the part. Units: mm.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from pkm_post.model import Machine
 from pkm_post.model.machine import Body
 
 _FAR = 5 * COMFORT
-"""mm: no margin is told beyond it. It leaves the survey room to go in large steps."""
+"""mm: margins are capped here, which leaves the survey room for large steps."""
 
 
 def part_checks(machine: Machine, way: Way, shortest: float, part: Part) -> tuple[Check, ...]:
-    """That bodies of the platform and struts keep clear of the part; none for what the machine file does not state.
+    """Check that platform bodies and struts keep clear of the part; none for those the machine file does not state.
 
     Args:
         machine: bodies and struts.
         way: for the longest tool.
-        shortest: no joints of a strut come nearer to each other on the way, mm.
-        part: what they keep clear of.
+        shortest: lower bound of a strut's joint distance on the path, mm.
+        part: the part to keep clear of.
     """
     far = _FAR + machine.clearance
     checks = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Placed: where platform and struts are at some poses; what every check of a pose begins with. Units: mm."""
+"""Placed: platform and strut positions at some poses, the input of every pose check. Units: mm."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Placed:
 
     @classmethod
     def of(cls, machine: Machine, pose: Pose) -> Placed:
-        """The machine at poses."""
+        """Place the machine at poses."""
         tip, axis, spin, tool_length = pose
         origin = tip + (machine.spindle_nose + tool_length)[:, None] * axis
         rotation = platform_rotation(axis, spin)
@@ -56,5 +56,5 @@ class Placed:
         return self.direction @ self.rotation
 
     def scaled_jacobian(self) -> Array:
-        """Rows [u, a x u / characteristic length], (N, 6, 6), plain numbers."""
+        """Rows [u, a x u / characteristic length], (N, 6, 6), dimensionless."""
         return moments(self.direction, self.arm / self.machine.characteristic_length)

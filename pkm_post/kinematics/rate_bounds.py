@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rate bounds: how fast strut lengths can change along a path of which only the sizes of the derivatives are known.
+"""Rate bounds: bounds of strut length rates along a path with known derivative magnitudes only.
 
 With r the greatest distance of a platform joint from the tip, w the angular velocity and d the shortest distance of a
 strut's joints: the joint moves by |V| <= |q'| + r |w|, |A| <= |q''| + r (|w'| + |w|^2), and so
@@ -18,20 +18,20 @@ from pkm_post.kinematics.checks import arms_from_tip
 from pkm_post.model import Machine
 
 _NEARER = 0.99
-"""Rounded corners and cubics may make a strut a little shorter than the way that is proven to be within the stroke."""
+"""Rounded corners and cubics may make a strut a little shorter than the path that is proven to be within the stroke."""
 
 Pair = tuple[Array, Array]
 
 
 def nearest_joints(machine: Machine) -> float:
-    """How near the two joints of a strut can come to each other within the stroke, mm."""
+    """Least distance between the two joints of a strut within the stroke, mm."""
     return _NEARER * (machine.strut_stroke[0] + float(machine.length_offset.min()))
 
 
 def strut_rate_bounds(
     machine: Machine, tip: Pair, axis: Pair, spin: Pair, half_tilt: Array, tool_length: Array
 ) -> Pair:
-    """Bounds of the first and second derivative of any strut length, (N,) each, where struts keep their stroke.
+    """Bounds of the first and second derivative of any strut length, (N,) each, while struts are within their stroke.
 
     Infinite for a screw without a key, whose correction has no bound here, and without a shortest length.
 
@@ -54,7 +54,7 @@ def strut_rate_bounds(
 
 
 def _turning(axis: Pair, spin: Pair, half_tilt: Array) -> Pair:
-    """Bounds of angular velocity and acceleration: the zero-torsion frame turns about the axis by itself as well."""
+    """Bounds of angular velocity and acceleration; the zero-torsion frame itself also turns about the axis."""
     about = spin[0] + half_tilt * axis[0]
     about_1 = spin[1] + half_tilt * axis[1] + half_tilt * (1 + half_tilt**2) / 2 * axis[0] ** 2
     return np.hypot(axis[0], about), axis[1] + about_1 + about * axis[0]

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Rates: first and second derivatives of the strut lengths along a moving tool pose, in closed form.
 
-The square S of a distance of joints is linear in 17 numbers of a pose (``inverse``), so its derivatives are the same
-product with the derivatives of these numbers: p' = q' + L k', the columns of R turn by c' = w x c and
-c'' = w' x c + w x c', and products follow the rule of Leibniz. Then
+The squared joint distance S is linear in 17 numbers of a pose (``inverse``), so its derivatives are the same product
+with the derivatives of these numbers: p' = q' + L k', the columns of R turn by c' = w x c and
+c'' = w' x c + w x c', and products follow the Leibniz rule. Then
 
     l' = S' / 2l,    l'' = (S'' / 2 - l'^2) / l
 
-The turn of a screw without a key is added with its own derivatives. The parameter is that of the poses: path length or
-time.
+The rotation of a screw without a key is added with its own derivatives. The parameter is that of the poses: path length
+or time.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Screw: what the turn of a strut's halves against each other does to the length that its controller counts.
+"""Screw: correction of the counted strut length for the relative rotation of the strut's halves.
 
 A strut between two universal joints has no joint that lets its halves turn freely. Each half follows its own joint,
-and when nut and screw turn against each other, the nut travels: the motor must make up for it. Enters: directions of
-struts from base to platform and rotations of the platform. Leaves: mm to add to the distance of the joint centres.
+and when nut and screw turn against each other, the nut travels: the motor must compensate. Input: strut directions from
+base to platform and platform rotations. Output: mm to add to the distance of the joint centres.
 
 The axis of the base joint that is fixed to the base is b, that of the platform joint fixed to the platform a = R a0.
 The second axis of each joint is across its first and across the strut: b x u and a x u. They turn with the halves of
@@ -11,8 +11,8 @@ the strut. The twist is the angle from one to the other about u:
 
     delta = atan2(S, C),  S = u . (b x a),  C = b . a - (b . u)(a . u),  dl = lead delta / (2 pi)
 
-genhexkins writes asin for the same angle; both agree while the twist is less than a right angle, and machine files are
-held to that in the rest pose. A strut with a spherical joint needs a key, and one with a key has a lead of zero here.
+genhexkins writes asin for the same angle; both agree while the twist is less than a right angle, and machine files must
+satisfy that in the rest pose. A strut with a spherical joint needs a key, and one with a key has a lead of zero here.
 [genhexkins, StrutLengthCorrection]
 """
 
@@ -25,7 +25,7 @@ from pkm_post.model import Machine
 
 
 def screw_correction(unit_struts: Array, rotations: Array, machine: Machine) -> Array:
-    """What to add to the distances of the joint centres to get counted lengths, (N, 6) in mm.
+    """Correction to add to the distances of the joint centres to get counted lengths, (N, 6) in mm.
 
     The counted length of a strut is distance + screw_correction - machine.length_offset.
 
@@ -41,7 +41,7 @@ def screw_correction(unit_struts: Array, rotations: Array, machine: Machine) -> 
 
 
 def screw_gradient(unit_struts: Array, distances: Array, rotations: Array, machine: Machine) -> tuple[Array, Array]:
-    """How the correction follows the platform: dl' = of_joint . V + of_turn . w.
+    """Gradient of the correction by platform motion: dl' = of_joint . V + of_turn . w.
 
     With r from a reference point to the platform joint, V = v + w x r adds the row [of_joint, r x of_joint + of_turn]
     to the Jacobian of that point. Not defined where a strut is parallel to the fixed axis of one of its joints.
@@ -53,7 +53,7 @@ def screw_gradient(unit_struts: Array, distances: Array, rotations: Array, machi
         machine: its lead and the fixed axes of its universal joints.
 
     Returns:
-        (N, 6, 3) derivative by the velocity V of the platform joint, a plain number, and (N, 6, 3) derivative by the
+        (N, 6, 3) derivative by the velocity V of the platform joint, dimensionless, and (N, 6, 3) derivative by the
         angular velocity w of the platform, mm per rad.
     """
     if machine.screw_lead == 0.0:
@@ -115,12 +115,12 @@ def _turned_axes(machine: Machine, rotations: Array) -> Array:
 
 
 def _twist(along: Array, base: Array, axes: Array) -> tuple[Array, Array]:
-    """Sine and cosine of the twist, both times the same positive number."""
+    """Sine and cosine of the twist, both scaled by the same positive number."""
     return dot(along, cross(base, axes)), dot(base, axes) - dot(base, along) * dot(axes, along)
 
 
 def _carried(along: Array, axes: Array) -> Array:
-    """(u . a)(a x u) / |a x u|^2: how the second axis turns about the strut when the strut swings."""
+    """(u . a)(a x u) / |a x u|^2: rotation of the second axis about the strut when the strut swings."""
     lean = dot(along, axes)
     return (lean / (1.0 - lean**2))[..., None] * cross(axes, along)
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stiffness: how far the tip gives way when the cutting force pushes it along the surface normal.
+"""Stiffness: compliance of the tip under a cutting force along the surface normal.
 
-A force n at the tip puts forces f into the struts, J^T f = [n, 0], and strut i gives way by f_i / k_i: the tip moves
-along n by the compliance sum f_i^2 / k_i, and the stiffness is its inverse. Only the struts with their joints give way
-here; platform, spindle and tool are rigid. With stiffness k0 of all but the screw, and rigidity EA of the screw,
-1 / k = 1 / k0 + l / EA. Units: N, mm. [Merlet2006]
+A force n at the tip puts forces f into the struts, J^T f = [n, 0], and strut i deflects by f_i / k_i: the tip moves
+along n by the compliance sum f_i^2 / k_i, and the stiffness is its inverse. Only the struts with their joints are
+compliant here; platform, spindle and tool are rigid. With stiffness k0 of all but the screw, and rigidity EA of the
+screw, 1 / k = 1 / k0 + l / EA. Units: N, mm. [Merlet2006]
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _CHUNK = 8192
 
 
 def strut_compliance(machine: Machine, distance: Array) -> Array:
-    """What each strut gives way by unit of force, (N, 6) in mm/N, for distances (N, 6) of its joints.
+    """Compliance of each strut, (N, 6) in mm/N, for joint distances (N, 6).
 
     Raises:
         ValueError: the machine file states no stiffness.

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool cubics: the cubics of tip, axis and spin between two poses, and what the cubics of the struts make of them.
+"""Tool cubics: cubics of tip, axis and spin between two poses, and the drift of the strut cubics from them.
 
 The controller plays cubics of strut lengths. Between the same two poses the tool has cubics of its own, with the same
-places and rates at both ends: what is planned is compared with these, and needs no kinematics. What is left is the
-drift, by which the struts' cubics L take the tool off its own cubics. L is the cubic with the ends of l, the lengths
-on the tool's cubics, so with x for the share of the duration that has gone and M for the most of |l''''| by x,
+positions and rates at both ends: the plan is compared with these, without kinematics. What remains is the drift, by
+which the strut cubics L take the tool off its own cubics. L is the cubic with the ends of l, the lengths along the
+tool cubics, so with x for the elapsed share of the duration and M for the maximum of |l''''| by x,
 
     |L - l| <= 16 x^2 (1 - x)^2 M / 384
 
-Where the attitude stays, l is the distance of a cubic from a fixed point. With V, A, J for the most of the cubic's
-derivatives by x and d for the shortest strut, the fourth derivative of l^2 gives
+While the attitude is constant, l is the distance of a cubic from a fixed point. With V, A, J for the maxima of the
+cubic's derivatives by x and d for the shortest strut, the fourth derivative of l^2 gives
 
     M <= (3 A^2 + 4 V J) / d + 12 V^2 A / d^2 + 3 V^4 / d^3
 
-and the inverse Jacobian takes that to the tip: by no more than 1 / s for a platform that comes no nearer to a singular
-pose than s, and by the lever of the tool. Where the attitude moves, the drift is measured in the middle, x = 1/2.
+and the inverse Jacobian maps that to the tip: by at most 1 / s for a platform that comes no nearer to a singular pose
+than s, and by the lever of the tool. Where the attitude moves, the drift is measured in the middle, x = 1/2.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from pkm_post.kinematics.rate_bounds import nearest_joints
 from pkm_post.model import Machine
 
 ROUNDED_SHARE = 0.99
-"""Share of the acceleration of the tip that cubics may take: to round lengths to six decimals adds up to 0.7 % where an
+"""Share of the tip acceleration available to cubics: rounding lengths to six decimals adds up to 0.7 % where an
 interval is 1 ms."""
 _MIDDLE = np.array([0.5])
 _ROOM = 1.1
-"""For a drift that is not quite as x^2 (1 - x)^2."""
+"""Allowance for a drift that deviates from x^2 (1 - x)^2."""
 _STEEPEST = 16 / np.sqrt(27)
 """Highest slope of 16 x^2 (1 - x)^2."""
 _CURVED = 32.0
@@ -43,25 +43,25 @@ _CURVED = 32.0
 
 @dataclass(frozen=True)
 class ToolCubics:
-    """N cubics by the share of the duration that has gone.
+    """N cubics by the elapsed share of the duration.
 
     Attributes:
         powers: (4, C, N) coefficients of the powers of the share. The first three of the C columns are the tip, mm;
-            where the attitude moves, there are axis (3) and spin as well.
+            where the attitude moves, axis (3) and spin follow.
     """
 
     powers: Array
 
     @classmethod
     def between(cls, first: Array, rate: Array, last: Array, last_rate: Array, duration: Array) -> ToolCubics:
-        """Those with given ends: places and rates by time, (C, N) each, and durations, (N,) s."""
+        """Build cubics from their ends: positions and rates by time, (C, N) each, and durations, (N,) s."""
         return cls(hermite_powers(first, rate, last, last_rate, duration))
 
     def __getitem__(self, rows: Array) -> ToolCubics:
         return ToolCubics(np.take(self.powers, rows, axis=2))
 
     def at(self, share: Array | float) -> Array:
-        """Places at one share of each, (C, N)."""
+        """Positions at one share of each, (C, N)."""
         place, begin, square, cube = self.powers
         found = cube * share
         for power in (square, begin):
@@ -71,7 +71,7 @@ class ToolCubics:
         return np.asarray(found)
 
     def sizes(self) -> tuple[Array, Array, Array]:
-        """Most of first, second and third derivative of the tip by the share, (N,) mm each."""
+        """Maxima of first, second and third derivative of the tip by the share, (N,) mm each."""
         _, begin, square, cube = self.powers[:, :3]
         middle, bend = begin + square, square + 3 * cube
         return (
@@ -81,7 +81,7 @@ class ToolCubics:
         )
 
     def turn(self) -> Array:
-        """Most of the first derivative of the tool axis by the share, (N,) rad; zero where the attitude stays."""
+        """Maximum of the first derivative of the tool axis by the share, (N,) rad; zero if the attitude is constant."""
         if self.powers.shape[1] == 3:
             return np.zeros(self.powers.shape[2])
         _, begin, square, cube = self.powers[:, 3:6]
@@ -91,13 +91,13 @@ class ToolCubics:
 
 @dataclass(frozen=True)
 class Demand:
-    """What playing the cubics of struts means in N intervals.
+    """Drift and dynamic load of strut cubics in N intervals.
 
     Attributes:
         tip: (N,) drift of the tip, mm.
         axis: (N,) drift of the tool axis, rad.
         tip_speed: (N,) highest speed of the tip, mm/s.
-        limits: (N,) highest by its limit of: speed and acceleration of a strut, acceleration of the tip, turning rate
+        limits: (N,) highest share of a limit: speed and acceleration of a strut, acceleration of the tip, turning rate
             of the tool axis.
     """
 
@@ -107,7 +107,7 @@ class Demand:
     limits: Array
 
     def but(self, rows: Array, other: Demand) -> Demand:
-        """The same with another demand in some rows."""
+        """Copy with another demand in some rows."""
         columns = [getattr(self, field.name).copy() for field in fields(self)]
         for column, field in zip(columns, fields(self), strict=True):
             column[rows] = getattr(other, field.name)
@@ -115,12 +115,12 @@ class Demand:
 
 
 def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, duration: Array) -> Demand:
-    """What nothing exceeds where the attitude stays.
+    """Upper bound of the demand while the attitude is constant.
 
     Infinite for a screw without a key, and without a shortest strut or a limit of singular poses.
 
     Args:
-        machine: the geometry and the limits; the way comes no nearer to a singular pose than it allows.
+        machine: the geometry and the limits; the path keeps the allowed distance from singular poses.
         tool_length: gauge length, mm.
         cubics: N of them.
         duration: (N,) s.
@@ -151,10 +151,10 @@ def measured_demand(
 
     Args:
         machine: the geometry and the limits.
-        first: N places.
-        last: N places.
+        first: N knots.
+        last: N knots.
         cubics: N of them.
-        inside: where these have the tool in the middle of their durations.
+        inside: their tool poses in the middle of their durations.
         duration: (N,) s.
     """
     found = stray(machine, first, last, inside, duration, _MIDDLE)
@@ -170,9 +170,9 @@ def measured_demand(
 
 
 def _fastest(begin: Array, middle: Array, end: Array) -> Array:
-    """Most of a derivative with these Bezier coefficients, (N,).
+    """Maximum of a derivative with these Bezier coefficients, (N,).
 
-    Its square is a polynomial of degree four: no more than the largest of the Bezier coefficients of that.
+    Its square is a polynomial of degree four: at most its largest Bezier coefficient.
     """
     inner = (2 * _dot(middle, middle) + _dot(begin, end)) / 3
     hull = _dot(begin, begin), _dot(begin, middle), inner, _dot(middle, end), _dot(end, end)

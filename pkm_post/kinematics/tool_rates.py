@@ -5,7 +5,7 @@ With the joint at q = tip + r and its strut of direction u and length d, V = v +
 
     l' = u . V,    l'' = u . (a + w' x r + w x (w x r)) + (|V|^2 - l'^2) / d
 
-So l'' = J [a, w'] + b, where b is what l'' would be without any acceleration of the tool, and
+So l'' = J [a, w'] + b, where b is l'' at zero acceleration of the tool, and
 
     [v, w] = J^-1 l',    [a, w'] = J^-1 (l'' - b)
 
@@ -45,7 +45,7 @@ def tool_rates(
 
 
 def _without_acceleration(machine: Machine, tip: Array, rotation: Array, tool_length: Array, twist: Array) -> Array:
-    """Second derivatives of the strut lengths, (N, 6), of a tool that has a twist and keeps it."""
+    """Second derivatives of the strut lengths, (N, 6), of a tool at constant twist."""
     reach = (machine.spindle_nose + tool_length)[:, None]
     arm = machine.platform_joints @ rotation.transpose(0, 2, 1) + (reach * rotation[:, :, 2])[:, None, :]
     strut = arm + tip[:, None, :] - machine.base_joints

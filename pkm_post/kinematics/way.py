@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Way: tool poses in order, what lies between them, and how far a point of the platform can come on it at most.
+"""Way: a pose path: tool poses in order, the motion between them, and bounds of platform point travel.
 
 Cell i leads from row i - 1 to row i. Inside it the pose is known for any share of the cell, from 0 to 1, and tip, axis
-and spin move evenly with the share: the tip along a line or an arc, the axis along a great circle. Two numbers bound
-what any point of the platform does in a cell: it moves by no more than travel + turn * its distance from the tip.
+and spin move uniformly with the share: the tip along a line or an arc, the axis along a great circle. Two numbers bound
+the motion of any platform point in a cell: it moves by at most travel + turn * its distance from the tip.
 
 The platform turns by w = k x k' + (psi' + tau) k, |tau| <= tan(tilt / 2) |k'| (``geometry.torsion``), so that turn^2 =
 angle^2 + (|spin| + tan(tilt / 2) angle)^2 with the highest tilt of the cell. Units: mm, rad.
@@ -34,7 +34,7 @@ class Way:
         axis: (N, 3) unit tool axes.
         spin: (N,) spins.
         tool_length: (N,) gauge lengths, of the cell that ends at the row as well.
-        travel: (N,) length of the tip's way in the cell, or more.
+        travel: (N,) upper bound of the tip's path length in the cell.
         bend: (N,) largest second derivative of the tip by the share of the cell: 0 on lines, sweep^2 radius on arcs.
         angle: (N,) angle the tool axis turns in the cell.
         spin_change: (N,) change of the spin in the cell.
@@ -53,9 +53,9 @@ class Way:
 
     @classmethod
     def straight(cls, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Way:
-        """The way through poses, tips on straight lines; arguments as in ``inverse``.
+        """Build the path through poses with straight tip motion; arguments as in ``inverse``.
 
-        Where the gauge length changes, the platform stands still, and the tip of the new tool starts elsewhere.
+        Where the gauge length changes, the platform is at rest, and the tip of the new tool starts elsewhere.
         """
         start, axis_before, spin_before, length_before = (
             shifted(column[0], column) for column in (tip, axis, spin, tool_length)
@@ -97,7 +97,7 @@ class Way:
         return _half_tilt(np.concatenate([tilts[:1], tilts[:-1]]), tilts, self.angle)
 
     def turn(self) -> Array:
-        """Angle the platform turns in each cell, or more, (N,)."""
+        """Upper bound of the platform rotation in each cell, (N,)."""
         if not self.angle.any():
             return np.abs(self.spin_change)
         return np.hypot(self.angle, np.abs(self.spin_change) + self.half_tilt() * self.angle)
@@ -113,7 +113,7 @@ def _angles(before: Array, after: Array) -> Array:
 
 
 def turn_between(start: Array, end: Array, spin_change: Array) -> Array:
-    """Angle the platform turns, or more, while the axis goes from one direction to another and the spin with it, (M,).
+    """Upper bound of the platform rotation while axis and spin move between two orientations, (M,).
 
     Args:
         start: (M, 3) unit tool axes.
@@ -125,5 +125,5 @@ def turn_between(start: Array, end: Array, spin_change: Array) -> Array:
 
 
 def _half_tilt(at_start: Array, at_end: Array, angle: Array) -> Array:
-    """Tangent of half the highest tilt on a great circle of which the tilts at its ends are known."""
+    """Tangent of half the highest tilt on a great circle with known tilts at its ends."""
     return turn_by_tilt(np.maximum(at_start, at_end) + angle / 2)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Workspace: whether the machine can follow a way; the paper's check before anything is made for the controller.
+"""Workspace: whether the machine can follow a pose path; the paper's check before any controller output.
 
-Enters: a way. Leaves: one finding for each check that the machine file gives the numbers for, in the order in which
-they are worth looking at. A check of strut lengths alone is not enough: singular poses can lie well inside the stroke.
+Input: a pose path. Output: one finding for each check that the machine file has numbers for, in order of relevance.
+Checking strut lengths alone is not enough: singular poses can lie well inside the stroke.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pkm_post.kinematics.way import Way
 from pkm_post.model import Diagnostic, Machine, Trajectory
 
 _NO_STRUT = 1e-3
-"""Of the shortest stroke: below it a way has no proof of anything, and its struts are much too short anyway."""
+"""Share of the shortest stroke: below it nothing is provable on a path, and its struts are far too short anyway."""
 
 
 def reach_findings(
@@ -34,15 +34,15 @@ def reach_findings(
     normal: Array | None = None,
     least_stiffness: float = 0.0,
 ) -> tuple[ReachFinding, ...]:
-    """All checks along a whole way.
+    """Run all checks along a whole path.
 
     Args:
         machine: the limits; a check whose numbers it does not state is left out.
-        way: N poses and what is between them.
+        way: the pose path, N rows.
         part: what spindle and holder must not touch.
-        duration: (N,) time each cell takes, s, for the check of strut speeds.
-        normal: (N, 3) unit normals of the surface, for the stiffness; a machine without stiffness has no such finding.
-        least_stiffness: what the tip must have along the normals, N/mm.
+        duration: (N,) duration of each cell, s, for the check of strut speeds.
+        normal: (N, 3) unit normals of the surface, for the stiffness; ignored if the machine states no stiffness.
+        least_stiffness: required stiffness of the tip along the normals, N/mm.
     """
     shortest = _shortest(machine, way)
     findings = survey(machine, way, all_checks(machine, way, shortest, part))
@@ -54,12 +54,12 @@ def reach_findings(
 
 
 def all_checks(machine: Machine, way: Way, shortest: float, part: Part | None) -> tuple[Check, ...]:
-    """All that is checked of a way, in the order of their codes.
+    """All checks of a path, in the order of their codes.
 
     Args:
         machine: the geometry.
-        way: where the tool goes.
-        shortest: mm that no strut of the way is below.
+        way: the pose path.
+        shortest: lower bound of the strut lengths on the path, mm.
         part: what the tool must not meet; None leaves its checks out.
     """
     return (
@@ -80,16 +80,16 @@ def _stiffness_finding(machine: Machine, way: Way, normal: Array, least: float) 
 
 
 def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Array) -> tuple[Diagnostic, ...]:
-    """Diagnostics for a way that leaves a limit: one for each operation and limit, at its worst.
+    """Diagnostics for a path that violates a limit: one for each operation and limit, at its worst.
 
-    The same as of ``reach_findings``, but margins are computed only where the slopes do not prove that there is one:
-    those of all poses around a few, and for the checks that this leaves open, those along the way.
+    The same as from ``reach_findings``, but margins are computed only where the slopes do not prove them positive:
+    first for poses around a few anchors, then along the path for the checks that remain open.
 
     Args:
         machine: the limits.
-        trajectory: says where each pose comes from.
-        way: N poses in order along the trajectory, and what is between them.
-        segment: (N,) segment each of them lies on.
+        trajectory: source positions of the segments.
+        way: N poses in order along the trajectory.
+        segment: (N,) segment of each pose.
     """
     left = doubtful(machine, way, lambda shortest: all_checks(machine, way, shortest, None))
     if not left:
