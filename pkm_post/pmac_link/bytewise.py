@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bytewise: what all conversations with a controller have in common.
+"""Bytewise: the common base of all conversations with a controller.
 
-One command is outstanding at a time. Each byte that comes goes to the step that is due; when no byte comes until the
-deadline, another step is taken. What a link adds is which bytes it sends and which steps follow each other.
+One command is outstanding at a time. Each received byte goes to the current step; if no byte arrives before the
+deadline, the timeout step runs. A subclass adds the bytes to send and the sequence of steps.
 
 Enters: commands, bytes and times. Leaves: bytes and events.
 """
@@ -14,13 +14,13 @@ from collections.abc import Callable, Sequence
 from pkm_post.pmac_link.exchange import Answer, Command, Event, Kind, Lost
 
 Step = Callable[[int, float], None]
-"""Takes a byte and the time."""
+"""Called with a byte and the time."""
 Late = Callable[[float], None]
-"""Takes the time when the deadline has passed."""
+"""Called with the time when the deadline has passed."""
 
 
 class BytewiseConversation:
-    """A conversation without its protocol.
+    """A conversation without a protocol.
 
     Attributes:
         deadline: when ``expire`` is due.
@@ -30,8 +30,7 @@ class BytewiseConversation:
         """Make a conversation.
 
         Args:
-            silence: seconds without a byte after which the controller has nothing more to say; more than the longest
-                pause within an answer.
+            silence: seconds without a byte that end an answer; longer than the longest pause within one.
         """
         self.deadline: float | None = None
         self._silence = silence
@@ -69,14 +68,14 @@ class BytewiseConversation:
         return events
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
-        """One line at a time: each is confirmed by itself."""
+        """One line at a time: each is confirmed separately."""
         return min(len(lines), 1)
 
     def _take_up(self, command: Command, most: int) -> None:
         """Make a command the outstanding one.
 
         Raises:
-            ValueError: another one is outstanding, or it is longer than ``most`` characters.
+            ValueError: another one is outstanding, or the command exceeds ``most`` characters.
         """
         if self._step is not None:
             raise ValueError(f"command: expected none outstanding, got {self._command.text!r} before {command.text!r}")
@@ -85,7 +84,7 @@ class BytewiseConversation:
         self._begin_with(command)
 
     def _forget(self) -> None:
-        """Let whatever is outstanding go; what comes until it is silent is nobody's."""
+        """Drop the outstanding command; bytes until the next silence are discarded."""
         self._begin_with(Command("forget", Kind.BLIND, self._silence))
 
     def _begin_with(self, command: Command) -> None:
@@ -99,7 +98,7 @@ class BytewiseConversation:
         self._wait(step, self._unanswered, now + self._command.patience)
 
     def _wait_for_silence(self, now: float) -> None:
-        # A controller thinks before it answers: the first byte may take longer than the next.
+        # A controller thinks before it answers: the first byte may take longer than those after it.
         self._collected.clear()
         self._wait(self._collect, self._silent, now + self._command.patience)
 
@@ -114,7 +113,7 @@ class BytewiseConversation:
         self._end(Lost(f"no answer for {self._command.patience:g} s"))
 
     def _is_untouched(self) -> bool:
-        """Whether the controller surely has not carried out the command."""
+        """Whether the controller certainly did not execute the command."""
         return False
 
     def _end(self, event: Event) -> None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dialogue: a link, a conversation and a clock together. One command goes out, one event comes back, within a time.
+"""Dialogue: combines a link, a conversation and a clock. One command goes out, one event comes back, with a timeout.
 
-Enters: commands. Leaves: the event that ended each; what the link raises passes through.
+Enters: commands. Leaves: the event that ended each; exceptions of the link propagate.
 """
 
 from __future__ import annotations
@@ -13,27 +13,27 @@ from pkm_post.pmac_link.faults import CancelledError, LinkLostError, RefusedErro
 from pkm_post.pmac_link.ports import Door
 
 LONG_S = 0.5
-"""A query that takes longer may be left for what is more urgent; to connect anew takes about as long."""
+"""A query that takes longer may be dropped for something more urgent; reconnecting takes about as long."""
 
 Ending = Answer | Refusal | Lost
 
 
 class Dialogue:
-    """Commands one after the other.
+    """Executes commands one after the other.
 
     Attributes:
-        messages: what programs in the controller sent of their own accord.
-        patience: seconds without a byte until an answer is given up.
-        gives_way: asked while a query takes long: whether something more urgent waits for it.
+        messages: unsolicited messages from programs in the controller.
+        patience: seconds without a byte before an answer is given up.
+        gives_way: called during a long query: whether something more urgent waits.
     """
 
     def __init__(self, port: Door, patience: float, clock: Callable[[], float]) -> None:
-        """Make it; ``restart`` connects.
+        """Create the dialogue; ``restart`` connects.
 
         Args:
-            port: where the controller is.
-            patience: seconds without a byte until an answer is given up.
-            clock: seconds of a clock that only grows.
+            port: of the controller.
+            patience: seconds without a byte before an answer is given up.
+            clock: monotonic clock, s.
         """
         self._port, self._clock = port, clock
         self._link, self._conversation = port.link(), port.conversation()
@@ -43,7 +43,7 @@ class Dialogue:
 
     @property
     def handshake(self) -> str:
-        """The assignments that the conversation needs."""
+        """The assignments that the conversation requires."""
         return self._conversation.handshake
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
@@ -51,10 +51,10 @@ class Dialogue:
         return self._conversation.lines_at_once(lines)
 
     def restart(self, control: int | None = None) -> None:
-        """Connect again; controller and conversation forget what was outstanding.
+        """Reconnect; controller and conversation drop whatever was outstanding.
 
         Args:
-            control: code of a control character that goes out before anything else.
+            control: code of a control character sent before anything else.
 
         Raises:
             LinkLostError: the controller does not answer.
@@ -70,11 +70,11 @@ class Dialogue:
         self._link.close()
 
     def query(self, text: str) -> tuple[str, ...]:
-        """The answer to a query that is asked once.
+        """The answer to a query, without retries.
 
         Raises:
-            RefusedError: the controller does not answer it.
-            LinkLostError: it makes no sense.
+            RefusedError: the controller refuses it.
+            LinkLostError: the answer makes no sense.
         """
         ended = self.run(Command(text, Kind.QUERY, self.patience))
         if isinstance(ended, Answer):
@@ -84,10 +84,10 @@ class Dialogue:
         raise LinkLostError(ended.why)
 
     def blind(self, text: str) -> str:
-        """What a controller says whose handshake is not known.
+        """The answer of a controller whose handshake is unknown.
 
         Raises:
-            LinkLostError: it cannot be told.
+            LinkLostError: the exchange failed.
         """
         ended = self.run(Command(text, Kind.BLIND, 3 * self._port.silence))
         if isinstance(ended, Lost):
@@ -95,11 +95,11 @@ class Dialogue:
         return "\n".join(ended.lines) if isinstance(ended, Answer) else ""
 
     def run(self, command: Command | None, control: int | None = None) -> Ending:
-        """One exchange, or a reset with the control character that goes before it; the event that ended it.
+        """Run one exchange, or a reset with an optional control character; return the event that ended it.
 
         Raises:
             LinkLostError: the link is cut.
-            CancelledError: it was a query that took long, and something more urgent waits.
+            CancelledError: a query took long while something more urgent waits.
         """
         conversation, began = self._conversation, self._clock()
         if command is None:

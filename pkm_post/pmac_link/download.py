@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Download: a program into the controller, proven by listing it back.
+"""Download: load a program into the controller and verify its listing.
 
-What stood under the number of the program goes first, and the controller has to show that it is gone. Then the lines
-go in, the buffer is closed, and the program is listed and compared. When the link fails in between, the controller is
-asked what it holds: if those are whole lines from the first on, it goes on behind them, else it begins anew. Whatever
-ends in an exception leaves nothing under the number, or says that this could not be shown.
+First the existing program of that number is deleted, and the controller must show that it is gone. Then the lines are
+sent, the buffer is closed, and the program is listed and compared. If the link fails in between, the controller's
+listing decides: if it consists of complete lines from the first on, the download continues behind them, else it starts
+again. Every exception leaves nothing under the number, or states that this could not be verified.
 
-Enters: a session and a program. Leaves: what was loaded.
+Enters: a session and a program. Leaves: a record of what was loaded.
 """
 
 from __future__ import annotations
@@ -22,27 +22,27 @@ from pkm_post.pmac_link.ownership import owned
 from pkm_post.pmac_link.session import Session
 
 ATTEMPTS = 5
-"""How often a download is gone on with before it is given up."""
+"""How often a download is tried before it is given up."""
 CLEAR_S = 20.0
 CLEAR_ROUNDS = 12
-"""Seconds, and rounds, in which a number has to be cleared."""
+"""Seconds, and attempts, to clear a program number."""
 _NO_SUCH_PROGRAM = (3, 5, 15)
 _LINES_IN_VIEW = 200
 _log = logging.getLogger(__name__)
 
 Progress = Callable[[int, int], None]
-"""Called with the lines that are in the controller and with all of them."""
+"""Called with the number of lines in the controller and the total."""
 
 
 @dataclass(frozen=True)
 class Loaded:
-    """A program that the controller listed back as it was sent.
+    """A program whose listing matched what was sent.
 
     Attributes:
         program: its number.
-        lines: how many it has.
+        lines: number of lines.
         digest: SHA-256 of its lines.
-        resumptions: how often the link failed and the download went on or began anew.
+        resumptions: how often the download continued or restarted after a failure.
     """
 
     program: int
@@ -52,7 +52,7 @@ class Loaded:
 
 
 def listing_of(session: Session, program: Program) -> Comparison:
-    """What the controller holds under the number of a program, compared with it."""
+    """Compare the controller's listing of a program with the program."""
     most = 3 * sum(map(len, program.lines)) + (1 << 16)
     try:
         listed = session.ask(f"LIST PROG {program.number}", most)
@@ -69,19 +69,19 @@ def download(
     progress: Progress = lambda done, all_lines: None,
     is_cancelled: Callable[[], bool] = lambda: False,
 ) -> Loaded:
-    """Bring a program into the controller.
+    """Load a program into the controller.
 
     Args:
         session: an open session.
         program: what to load.
-        progress: is told how far it is.
-        is_cancelled: asked between the lines.
+        progress: called with the lines loaded and the total.
+        is_cancelled: polled between lines.
 
     Raises:
-        RefusedError: the buffer could not be opened, for a program runs or another buffer is open; nothing changed.
-        DownloadError: it failed; says whether anything is left under the number.
-        CancelledError: it was stopped, and nothing is left under the number.
-        NotOwnerError: another client has the machine; nothing changed.
+        RefusedError: the buffer could not be opened, as a program runs or another buffer is open; nothing changed.
+        DownloadError: it failed; states whether anything is left under the number.
+        CancelledError: it was cancelled, and nothing is left under the number.
+        NotOwnerError: another client owns the machine; nothing changed.
     """
     with owned(session, "download"):
         return _download(session, program, progress, is_cancelled)
@@ -109,14 +109,14 @@ def _download(session: Session, program: Program, progress: Progress, is_cancell
 
 
 def clear(session: Session, number: int) -> None:
-    """Leave nothing under a number, and see that it is so; tried again when the link fails.
+    """Delete the program of a number and verify that; retried when the link fails.
 
     Raises:
-        PmacError: the controller does not do it, or cannot be asked.
+        PmacError: the controller refuses, or is unreachable.
     """
     until = session.now() + CLEAR_S
     for _ in range(CLEAR_ROUNDS):
-        # Each round begins with a closed buffer and ends by looking: doing it again is not guessing.
+        # Each attempt starts with a closed buffer and ends with a check, so a retry is safe.
         try:
             if _cleared(session, number):
                 return
@@ -133,7 +133,7 @@ def _cleared(session: Session, number: int) -> bool:
     _open(session, number)
     session.order("CLEAR")
     session.order("CLOSE")
-    # Looked at twice: a program that is not there is told by a refusal, which a changed byte brings about as well.
+    # Checked twice: a missing program shows as a refusal, which a corrupted byte causes as well.
     return free_words(session) >= 0 and all(listing_of(session, Program(number, ())).same for _ in range(2))
 
 
@@ -152,7 +152,7 @@ def _clear_away(session: Session, number: int) -> bool:
 
 
 def _check_room(session: Session, program: Program) -> None:
-    """Compare the program with the memory that is free when nothing is under its number.
+    """Compare the program's size with the free memory, while nothing is under its number.
 
     Raises:
         PmacError: it is too large.
@@ -163,7 +163,7 @@ def _check_room(session: Session, program: Program) -> None:
 
 
 def _fill(session: Session, program: Program, progress: Progress, is_cancelled: Callable[[], bool]) -> int:
-    """Send the lines until the listing is the program; how often the link failed or the listing differed."""
+    """Send the lines until the listing matches; return how often the link failed or the listing differed."""
     held = 0
     for attempt in range(ATTEMPTS):
         try:
@@ -171,7 +171,7 @@ def _fill(session: Session, program: Program, progress: Progress, is_cancelled: 
         except LinkLostError as lost:
             _log.warning("the link failed: %s", lost)
         is_closed = free_words(session) >= 0
-        there = listing_of(session, program)  # the last thing that is asked: a reset in between shows in it
+        there = listing_of(session, program)  # asked last, so that it reveals a reset in between
         if there.same and is_closed:
             return attempt
         _log.warning("the listing differs, or the buffer is still open: %s", there.difference)
@@ -180,7 +180,7 @@ def _fill(session: Session, program: Program, progress: Progress, is_cancelled: 
 
 
 def _send(session: Session, program: Program, held: int, progress: Progress, is_cancelled: Callable[[], bool]) -> None:
-    """Send the lines behind those that the controller holds."""
+    """Send the lines after those that the controller holds."""
     lines = program.lines
     _open(session, program.number)
     if not held:

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ethernet conversation: commands in the packets of the Turbo PMAC's Ethernet card.
+"""Ethernet conversation: commands in packets of the Turbo PMAC's Ethernet card.
 
-Every packet has a head of eight bytes: request type, request, and value, index and length as big-endian words.
+Every packet has a header of eight bytes: request type, request, and value, index and length as big-endian words.
 
 | request | type | asks for | returns |
 |---|---|---|---|
 | GETRESPONSE BF | 40 | text of one command, without CR | up to 1400 bytes of the answer |
 | GETBUFFER C5 | C0 | the rest of the answer | up to 1400 bytes |
-| WRITEBUFFER C6 | 40 | up to 1024 bytes of lines for an open buffer, each with a 00 behind it | 4 bytes |
-| FLUSH B3 | 40 | that everything outstanding is forgotten | 1 byte |
+| WRITEBUFFER C6 | 40 | up to 1024 bytes of lines for an open buffer, each terminated by 00 | 4 bytes |
+| FLUSH B3 | 40 | everything outstanding to be dropped | 1 byte |
 | CTRL_RESPONSE C4 | C0 | a control character, in the value | its answer |
 
-TCP loses and changes nothing, so there are no checksums (I4=0), and bytes that make no sense mean that the connection
-is of no use any more: it ends with ``Lost``, and whoever runs the conversation connects anew.
+TCP neither loses nor corrupts data, so there are no checksums (I4=0), and invalid bytes mean that the connection is
+unusable: the conversation ends with ``Lost``, and its caller reconnects.
 [UMACEthernet, Ethernet Protocol]
 
 Enters: commands, bytes and times. Leaves: bytes and events.
@@ -34,19 +34,19 @@ MOST_ANSWER = 1400
 MOST_LINES = 1024
 """Bytes of lines in one WRITEBUFFER."""
 LONGEST_COMMAND = 255
-"""Characters of one command; longer ones are not known to be taken."""
+"""Characters of one command; longer ones are not documented to work."""
 
 _LINE_FAULT = 0x80
 
 
 def packet(request: int, data: bytes = b"", value: int = 0, length: int | None = None) -> bytes:
-    """A request.
+    """Build a request packet.
 
     Args:
-        request: its number; its type follows.
-        data: what is sent with it.
-        value: of the head.
-        length: of the head; the length of the data unless given.
+        request: its number, which implies its type.
+        data: the payload.
+        value: header field.
+        length: header field; the length of the data by default.
     """
     kind = UPLOAD if request in (GETBUFFER, CTRL_RESPONSE) else DOWNLOAD
     return struct.pack(">BBHHH", kind, request, value, 0, len(data) if length is None else length) + data
@@ -57,20 +57,20 @@ class EthernetConversation(BytewiseConversation):
 
     Attributes:
         deadline: when ``expire`` is due.
-        handshake: the assignments that it needs.
+        handshake: the assignments it requires.
     """
 
     handshake = "I3=2 I4=0 I6=1 I9=3"
 
     def __init__(self, silence: float = 0.1) -> None:
-        """Make a conversation; as ``BytewiseConversation``."""
+        """Create a conversation; as ``BytewiseConversation``."""
         super().__init__(silence)
         self._reader = ResponseReader(b"", False)
         self._in_packet = 0
 
     def begin(self, command: Command, now: float) -> None:
         """As ``exchange.Conversation``."""
-        # Each line of a buffer has a byte of its end.
+        # Each line of a buffer takes a terminator byte.
         self._take_up(command, MOST_LINES - 1 if command.kind is Kind.BUFFER else LONGEST_COMMAND)
         text = command.text.encode("ascii")
         if command.kind is Kind.BUFFER:
@@ -93,7 +93,7 @@ class EthernetConversation(BytewiseConversation):
         self._wait_for_silence(now)
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
-        """As many lines as one WRITEBUFFER holds."""
+        """As many lines as fit into one WRITEBUFFER."""
         room, count = MOST_LINES, 0
         for line in lines:
             room -= len(line) + 1
@@ -115,7 +115,7 @@ class EthernetConversation(BytewiseConversation):
         self._wait_patiently(self._answer, now)
 
     def _lines_taken(self, byte: int, now: float) -> None:
-        """Four bytes: number of a line, low byte first; number of the error; 80 when there is one."""
+        """Four bytes: line number, low byte first; error number; 80 if there is an error."""
         self._collected.append(byte)
         if len(self._collected) < 4:
             return
@@ -124,7 +124,7 @@ class EthernetConversation(BytewiseConversation):
         if fault == 0 and error == 0:
             self._end(Answer())
         elif fault == _LINE_FAULT:
-            # Whether the first line is 0 or 1 is not in the manuals at hand; 1 is taken.
+            # The available manuals do not state whether the first line is 0 or 1; 1 is assumed.
             self._end(Refusal(error, min(max(line - 1, 0), count - 1)))
         else:
             self._end(Lost(f"{self._collected.hex(' ')} in answer to lines of a program"))

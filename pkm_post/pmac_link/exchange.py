@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Exchange: what goes into a conversation with the controller, and what comes out of it.
+"""Exchange: the commands and events of a conversation with the controller.
 
-A command enters; bytes go out and come in; one event leaves that ends it. A conversation does no input or output and
-knows no clock: whoever runs it passes bytes and the time in seconds, of any clock that only grows.
+A command enters; bytes go out and come in; one event ends it. A conversation does no I/O and has no clock: its caller
+passes the bytes and the time in seconds, from any monotonic clock.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from typing import Protocol
 
 
 class Kind(Enum):
-    """What a command does, which decides whether it may be sent again."""
+    """The effect of a command, which decides whether it may be resent."""
 
     QUERY = "query"
-    """Asks; may be asked again."""
+    """Reads only; may be repeated."""
     SET = "set"
-    """Changes something; never sent again unless it surely was not carried out."""
+    """Changes something; never resent unless it certainly was not executed."""
     BUFFER = "buffer"
-    """Lines for an open program buffer; as a set."""
+    """Lines for an open program buffer; resent like a set."""
     BLIND = "blind"
-    """Its answer cannot be told apart, for the handshake is not known yet: ends when the controller is silent."""
+    """Its answer cannot be parsed, as the handshake is unknown: it ends when the controller falls silent."""
 
 
 @dataclass(frozen=True)
@@ -31,13 +31,13 @@ class Command:
     r"""One command; only one is outstanding at a time.
 
     Attributes:
-        text: without its end. Printable ASCII; the lines of a ``Kind.BUFFER`` are parted by ``\n``.
-        kind: what it does.
-        patience: seconds without a byte until the answer is given up.
-        most: bytes of an answer that are taken; more is no answer.
+        text: without its terminator. Printable ASCII; the lines of a ``Kind.BUFFER`` are separated by ``\n``.
+        kind: its effect.
+        patience: seconds without a byte before the answer is given up.
+        most: maximum bytes of an answer; a longer one is invalid.
 
     Raises:
-        ValueError: the text has other characters.
+        ValueError: the text contains other characters.
     """
 
     text: str
@@ -47,14 +47,14 @@ class Command:
 
     def __post_init__(self) -> None:
         plain = self.text.replace("\n", "") if self.kind is Kind.BUFFER else self.text
-        # The controller obeys control characters even inside a line: ^K takes the power off the motors.
+        # The controller obeys control characters even inside a line: ^K cuts motor power.
         if not plain or not all(" " <= character <= "~" for character in plain):
             raise ValueError(f"text: expected printable ASCII, got {self.text!r}")
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The command was carried out; the lines that the controller said."""
+    """The command was executed; the lines of the answer."""
 
     lines: tuple[str, ...] = ()
 
@@ -64,9 +64,9 @@ class Refusal:
     """The controller refused the command.
 
     Attributes:
-        number: of the error, None when it gave none.
-        line: index of the line that was refused, for lines of a buffer.
-        words: number and meaning, where the controller says them itself.
+        number: of the error, None if it gave none.
+        line: index of the refused line, for lines of a buffer.
+        words: number and meaning, if the controller states them itself.
     """
 
     number: int | None
@@ -76,11 +76,11 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Lost:
-    """No sense came back.
+    """The answer made no sense, or did not arrive.
 
     Attributes:
-        why: in words.
-        untouched: whether the controller surely did not carry the command out.
+        why: in plain text.
+        untouched: whether the controller certainly did not execute the command.
     """
 
     why: str
@@ -89,7 +89,7 @@ class Lost:
 
 @dataclass(frozen=True)
 class Message:
-    """A line that a program in the controller sent of its own accord."""
+    """An unsolicited line from a program in the controller."""
 
     text: str
 
@@ -98,12 +98,11 @@ Event = Answer | Refusal | Lost | Message
 
 
 class Conversation(Protocol):
-    """Bytes in, bytes out.
+    """A protocol without I/O: bytes in, bytes out.
 
     Attributes:
-        deadline: when ``expire`` is due unless bytes come before; None while nothing is outstanding.
-        handshake: the assignments that make the controller answer as this conversation expects; empty when ``reset``
-            is enough.
+        deadline: when ``expire`` is due unless bytes arrive first; None while nothing is outstanding.
+        handshake: the assignments that make the controller answer in the expected form; empty if ``reset`` is enough.
     """
 
     deadline: float | None
@@ -113,28 +112,28 @@ class Conversation(Protocol):
         """Start a command.
 
         Raises:
-            ValueError: another one is outstanding, or it is longer than the link takes.
+            ValueError: another one is outstanding, or it exceeds the link's limit.
         """
 
     def reset(self, now: float, control: int | None = None) -> None:
-        """Forget what is outstanding and make the controller forget it; ends with an ``Answer``, or with ``Lost``.
+        """Drop what is outstanding, here and in the controller; ends with an ``Answer``, or with ``Lost``.
 
         Args:
-            now: the time.
-            control: code of a control character that is sent first; the controller obeys it whatever it is doing.
+            now: current time.
+            control: code of a control character to send first; the controller obeys it in any state.
         """
 
     def receive(self, data: bytes, now: float) -> None:
-        """Take bytes of the controller."""
+        """Take bytes from the controller."""
 
     def expire(self, now: float) -> None:
         """The deadline has passed."""
 
     def outgoing(self) -> bytes:
-        """Bytes to be sent; each call gives them once."""
+        """Bytes to send; each call returns new ones only."""
 
     def events(self) -> list[Event]:
-        """What has happened; each call gives it once."""
+        """Events so far; each call returns new ones only."""
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
         """How many of these lines one ``Kind.BUFFER`` command may hold."""

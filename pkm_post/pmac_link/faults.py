@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults: what can go wrong between this program and a controller, by whose fault it is.
+"""Faults: the exceptions of communication with a controller.
 
-The controller's refusal carries its number and meaning. A lost link is another thing, and a set command of which
-nobody knows whether it was carried out is a third: it must never be sent again without asking for the state.
+A refusal carries the controller's number and its meaning. A lost link is a separate case, and a set command with an
+unknown outcome is a third: it must never be resent without querying the state.
 """
 
 from __future__ import annotations
@@ -34,26 +34,26 @@ MEANINGS: dict[int, str] = {
     18: "the phase reference of a motor is missing",
     19: "positions may not be changed while moves are stored",
 }
-"""What ERR001 to ERR019 mean."""
+"""Meanings of ERR001 to ERR019."""
 
 
 def meaning(number: int | None) -> str:
-    """An error of the controller in words, with its number."""
+    """An error of the controller in plain text, with its number."""
     if number is None:
         return "an error without a number"
     return f"ERR{number:03d}, {MEANINGS.get(number, 'which has no known meaning')}"
 
 
 class PmacError(Exception):
-    """Anything that went wrong between this program and the controller."""
+    """Any failure of communication with the controller."""
 
 
 class RefusedError(PmacError):
-    """The controller refused a command and did not carry it out.
+    """The controller refused a command and did not execute it.
 
     Attributes:
         command: what was sent.
-        number: of the error, None when the controller gave none.
+        number: of the error, None if the controller gave none.
     """
 
     def __init__(self, command: str, number: int | None, words: str = "") -> None:
@@ -62,15 +62,15 @@ class RefusedError(PmacError):
 
 
 class LinkLostError(PmacError):
-    """The link was cut, or what came over it made no sense and asking again did not help."""
+    """The link was cut, or the answer made no sense even after retries."""
 
 
 class NoAccessError(PmacError):
-    """The controller's computer could not prove who it is, or lets this user not in: trying again does not help."""
+    """The controller's computer could not prove its identity, or denies this user access: a retry does not help."""
 
 
 class OutcomeUnknownError(LinkLostError):
-    """The link failed after a set command left: whether it was carried out is unknown.
+    """The link failed after a set command was sent: whether it was executed is unknown.
 
     Attributes:
         command: what was sent.
@@ -82,10 +82,10 @@ class OutcomeUnknownError(LinkLostError):
 
 
 class DiagnosedError(PmacError):
-    """Something outside this program that a person has to put right, with its code and its cure.
+    """A problem outside this program that the operator must fix, with its code and its cure.
 
     Attributes:
-        diagnostic: what, where, and the cure.
+        diagnostic: problem, place and cure.
     """
 
     def __init__(self, diagnostic: Diagnostic) -> None:
@@ -94,10 +94,10 @@ class DiagnosedError(PmacError):
 
 
 class NotOwnerError(DiagnosedError):
-    """Another client has the right to move the machine, or has taken it.
+    """Another client owns the machine, or has taken ownership.
 
     Attributes:
-        what: the other client does, as ``ownership.WHAT`` has it; empty when that is not known.
+        what: the other client's operation, as in ``ownership.WHAT``; empty if unknown.
     """
 
     def __init__(self, diagnostic: Diagnostic, what: str = "") -> None:
@@ -106,10 +106,10 @@ class NotOwnerError(DiagnosedError):
 
 
 class NotReadyError(PmacError):
-    """The controller or the machine is not as it has to be, so nothing was begun.
+    """The controller or the machine is not in the required state, so nothing was started.
 
     Attributes:
-        reasons: what is not as it has to be, each in words.
+        reasons: each unmet condition in plain text.
     """
 
     def __init__(self, reasons: Sequence[str]) -> None:
@@ -118,10 +118,10 @@ class NotReadyError(PmacError):
 
 
 class DownloadError(PmacError):
-    """A program could not be brought into the controller.
+    """A program could not be loaded into the controller.
 
     Attributes:
-        cleared: whether the controller has shown since that nothing is left under the number of the program.
+        cleared: whether the controller has since shown that nothing is left under the program number.
     """
 
     def __init__(self, why: str, cleared: bool) -> None:
@@ -138,8 +138,9 @@ class StreamError(PmacError):
     """A program could not be streamed to its end.
 
     Attributes:
-        line: of the program, from 1, behind which the machine rests or comes to rest by itself; 0 before its first.
-        cleared: whether the controller has shown since that nothing is left in its rotary buffer.
+        line: of the program, from 1, behind which the machine rests or comes to rest by itself; 0 before the first
+            line.
+        cleared: whether the controller has since shown that nothing is left in its rotary buffer.
     """
 
     def __init__(self, why: str, line: int, cleared: bool) -> None:
@@ -155,4 +156,4 @@ class StreamError(PmacError):
 
 
 class CancelledError(PmacError):
-    """The user stopped it."""
+    """Cancelled: by the user, or by a stop."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Free words: the memory of the controller, whose sign says whether a program buffer is open."""
+"""Free words: the controller's free memory, whose sign indicates an open program buffer."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pkm_post.pmac_link.session import Session
 
 
 def free_words(session: Session) -> int:
-    """Words of memory that are free; below zero while a buffer is open.
+    """Words of free memory; negative while a buffer is open.
 
     Raises:
         LinkLostError: the answer makes no sense.

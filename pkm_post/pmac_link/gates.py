@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Gates: a program cut into segments, each of which ends with STOP where the struts rest.
 
-A controller that carries out a rotary buffer goes on as long as there are lines. When they run out in the middle of a
-move, because the link was cut, the struts stop at once or do what no manual says. So STOP is put where the program
-rests anyway, and the lines between two of them go in whole before R lets the first of them begin: whatever becomes of
-the link, the controller finds all lines up to a place where it stops by itself.
+A controller executes a rotary buffer as long as it holds lines. If they run out within a move because the link was cut,
+the struts stop abruptly, or do something undocumented. So STOP is inserted where the program rests anyway, and all
+lines between two STOPs are loaded before R releases the first of them: whatever happens to the link, the controller
+holds all lines up to a place where it stops by itself.
 
-Enters: a program and the words of the rotary buffer. Leaves: its segments.
+Enters: a program and the size of the rotary buffer in words. Leaves: its segments.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ STOP = "STOP"
 _STAND = "DWELL0"
 _DWELL, _INTERVAL = re.compile(r"DWELL"), re.compile(r"PVT\d+")
 _GATE_WORDS = 34
-"""More than DWELL0, STOP, the interval again, and two lines that are done and may lie there still, take."""
+"""More than the words of DWELL0, STOP, the repeated interval, and two executed lines that may still be there."""
 _VALUE = r"(-?\d+\.\d+)"
 
 
 @dataclass(frozen=True)
 class Segment:
-    """Lines that are carried out in one go.
+    """Lines that are executed in one run.
 
     Attributes:
-        lines: as they are sent; the last is STOP.
+        lines: as sent; the last is STOP.
         rest: (6,) strut lengths at their end, mm.
-        last: how many lines of the program are done behind them.
+        last: number of program lines completed at their end.
     """
 
     lines: tuple[str, ...]
@@ -48,7 +48,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class _Rest:
-    """A place where the struts stand: behind how many lines, their lengths, the interval to be stated again."""
+    """A place where the struts stand: after how many lines, their lengths, the interval to repeat."""
 
     behind: int
     length: Array
@@ -56,15 +56,15 @@ class _Rest:
 
 
 def segments_of(program: Program, settings: Settings, words: int) -> tuple[Segment, ...]:
-    """Cut a program where it rests: as seldom as half of the buffer allows, so that one part runs while one is sent.
+    """Cut a program where it rests, as rarely as half the buffer allows, so that one part runs while the next is sent.
 
     Args:
-        program: as it was written for a fixed buffer.
+        program: as written for a fixed buffer.
         settings: of the controller it was written for.
         words: size of the rotary buffer in 48-bit words.
 
     Raises:
-        NotReadyError: it does not end at rest, or between two rests is more than the buffer holds.
+        NotReadyError: it does not end at rest, or the lines between two rests exceed the buffer.
     """
     rests = list(_rests(program.lines, settings))
     if not rests or rests[-1].behind != len(program.lines):
@@ -99,7 +99,7 @@ def _next(rests: list[_Rest], start: int, filled: list[int], words: int) -> _Res
 
 
 def _rests(lines: tuple[str, ...], settings: Settings) -> Iterator[_Rest]:
-    """Where the struts stand: behind a dwell, behind a knot of no speed, and behind all lines."""
+    """Where the struts stand: after a dwell, after a knot with zero speed, and after the last line."""
     knot = re.compile(" ".join(rf"{letter}{_VALUE}(?::{_VALUE})?" for letter in settings.letters))
     length: Array | None = None
     stands, interval = False, ""

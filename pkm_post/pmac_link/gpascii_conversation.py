@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gpascii conversation: commands to a Power PMAC, in the shell that its ssh server gives.
+"""Gpascii conversation: commands to a Power PMAC, in the shell of its ssh server.
 
-The shell is told to start ``gpascii -2``; ``STDIN Open for ASCII Input`` and ACK say that it listens. ``echo 7`` makes
-it answer with values alone. From then on each line that is sent, with one LF behind it, comes back as
+The shell starts ``gpascii -2``, which reports ``STDIN Open for ASCII Input`` and ACK when it is ready. ``echo 7``
+reduces its answers to values. From then on each line sent, terminated by one LF, returns as
 
     answer   = { CR | LF | ACK } command CR LF { data CR LF } ACK CR LF
-    refusal  = the same with ``stdin:LINE:COLUMN: error #NUMBER: MEANING: text`` among the data
+        refusal  = the same with ``stdin:LINE:COLUMN: error #NUMBER: MEANING: text`` among the data
 
-The terminal's echo of the command proves that the answer belongs to it. What is left of the answer before, such as a CR
-LF that came late, stands in front of it and is passed over. Whether ACK follows a refusal is not known for every
-firmware: one that does not come within the silence is not waited for. [gpascii]
+The terminal's echo of the command proves that the answer belongs to it. Remains of the previous answer, such as a late
+CR LF, precede it and are skipped. Whether ACK follows a refusal is not known for every firmware: after the silence it
+is no longer waited for. [gpascii]
 
-ssh loses and changes nothing, so there are no checksums; what makes no sense ends with ``Lost``, and whoever runs the
-conversation connects anew.
+ssh neither loses nor corrupts data, so there are no checksums; invalid data ends with ``Lost``, and the caller
+reconnects.
 
 Enters: commands, bytes and times. Leaves: bytes and events.
 """
@@ -26,9 +26,9 @@ from pkm_post.pmac_link.exchange import Answer, Command, Kind, Lost, Refusal
 
 START, LISTENS, VALUES_ALONE = "gpascii -2", "STDIN Open for ASCII Input", "echo 7"
 START_S = 10.0
-"""Seconds without a byte until a shell is no shell of a controller."""
+"""Seconds without a byte before the shell does not count as that of a controller."""
 LONGEST_LINE = 255
-"""Characters of a command; longer ones are not known to be taken."""
+"""Characters of a command; longer ones are not documented to work."""
 MEANINGS = {
     20: "illegal command",
     21: "wrong parameter",
@@ -44,7 +44,7 @@ MEANINGS = {
     45: "a motor is not active",
     46: "motors are not where the program was stopped",
 }
-"""What the numbers of a Power PMAC mean."""
+"""Error numbers of a Power PMAC."""
 
 _ACK, _LF = 0x06, 0x0A
 _ERROR = re.compile(r"\w+:\d+:\d+: error #(\d+): *(.*)")
@@ -55,13 +55,13 @@ class GpasciiConversation(BytewiseConversation):
 
     Attributes:
         deadline: when ``expire`` is due.
-        handshake: empty: to start gpascii is all it needs.
+        handshake: empty: starting gpascii is enough.
     """
 
     handshake = ""
 
     def __init__(self, silence: float = 0.5) -> None:
-        """Make a conversation; as ``BytewiseConversation``."""
+        """Create a conversation; as ``BytewiseConversation``."""
         super().__init__(silence)
         self._lines: list[str] = []
         self._refusal: Refusal | None = None
@@ -74,10 +74,10 @@ class GpasciiConversation(BytewiseConversation):
         self._send(now)
 
     def reset(self, now: float, control: int | None = None) -> None:
-        """Start gpascii in a shell that is new.
+        """Start gpascii in a new shell.
 
         Raises:
-            ValueError: a control character was given; gpascii takes none.
+            ValueError: a control character was given; gpascii accepts none.
         """
         if control is not None:
             raise ValueError(f"control: expected none over gpascii, got {control}")
@@ -86,7 +86,7 @@ class GpasciiConversation(BytewiseConversation):
         self._wait_patiently(self._greeted, now)
 
     def _greeted(self, byte: int, now: float) -> None:
-        """What the shell says before gpascii listens is of no interest."""
+        """Ignore what the shell prints before gpascii is ready."""
         if byte == _ACK and LISTENS in self._collected.decode("latin-1"):
             self._begin_with(Command(VALUES_ALONE, Kind.SET, START_S))
             self._send(now)
@@ -101,7 +101,7 @@ class GpasciiConversation(BytewiseConversation):
         self._wait_patiently(self._echoed, now)
 
     def _echoed(self, byte: int, now: float) -> None:
-        """The line that was sent has to come back first."""
+        """Wait for the echo of the command."""
         self._wait_patiently(self._echoed, now)
         line = self._line_with(byte)
         if line is None:
@@ -137,7 +137,7 @@ class GpasciiConversation(BytewiseConversation):
         self._end(self._refusal or Answer(tuple(self._lines)))
 
     def _line_with(self, byte: int) -> str | None:
-        """The line that a byte ends, without what an answer before may have left in front of it."""
+        """The line that a byte completes, without remains of the previous answer in front of it."""
         if byte != _LF:
             self._collected.append(byte)
             return None

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Greeting: agree on the handshake with a controller of which nothing is known yet.
+"""Greeting: establish the handshake with a controller in an unknown state.
 
-A controller may be in the middle of anything: a program buffer may be open, and then an assignment would become a line
-of the program. So ``SIZE`` is asked first, whose sign tells, before anything is set; and nothing is set that is so.
+A program buffer may be open, and then an assignment would become a line of the program. So before anything is set,
+``SIZE`` is queried, whose sign reveals an open buffer; values that are already right are not set.
 
-Enters: a dialogue, and what becomes of an open buffer. Leaves: a controller that can be understood.
+Enters: a dialogue, and what to do with an open buffer. Leaves: a controller whose answers can be parsed.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from pkm_post.pmac_link.faults import LinkLostError
 
 
 class Leftover(Enum):
-    """What becomes of a program buffer that is found open while connecting."""
+    """What to do with a program buffer that is open when connecting."""
 
     LEAVE = "leave"
-    """It stays as it is: who watches disturbs nobody, and who wants to load asks first whose it is (``ownership``)."""
+    """Leave it: a client that only monitors disturbs no one, and loading checks its owner first (``ownership``)."""
     STOP = "stop"
-    """As well, if the controller answers as is agreed; else it is closed, for a stop is more urgent than to load."""
+    """Leave it if the handshake is as agreed, else close it: a stop takes precedence over a download."""
     CLOSE = "close"
-    """It is closed as it is, by its owner, whose link came back and who asks what is in it."""
+    """Close it: its owner reconnects and queries its contents."""
 
 
 _HANDSHAKE = re.compile(r"(I\d+)=(\d+)")
@@ -33,10 +33,10 @@ _NEGATIVE = re.compile(r"(?:^|[^0-9A-Za-z$.])-\s?\d+")
 
 
 def greet(dialogue: Dialogue, leftover: Leftover) -> None:
-    """Connect and agree.
+    """Connect and establish the handshake.
 
     Raises:
-        LinkLostError: nobody answers, or not as was agreed.
+        LinkLostError: the controller does not answer, or not as agreed.
     """
     dialogue.restart()
     if not dialogue.handshake:
@@ -45,7 +45,7 @@ def greet(dialogue: Dialogue, leftover: Leftover) -> None:
     if leftover is Leftover.CLOSE:
         dialogue.blind("CLOSE")
     if _is_agreed(dialogue):
-        return  # an assignment might become a line of a program that somebody begins to load just now
+        return  # an assignment might become a line of a download that another client is starting
     if is_open and leftover is Leftover.LEAVE:
         raise LinkLostError("a program buffer is open, and the answers are not as is agreed: abort closes it")
     dialogue.blind("CLOSE")
@@ -55,14 +55,14 @@ def greet(dialogue: Dialogue, leftover: Leftover) -> None:
 
 
 def _is_agreed(dialogue: Dialogue) -> bool:
-    """Whether the controller answers as the conversation expects."""
+    """Whether the controller answers in the form that the conversation expects."""
     names, values = zip(*_HANDSHAKE.findall(dialogue.handshake), strict=True)
     ended = dialogue.run(Command(" ".join(names), Kind.QUERY, dialogue.patience))
     return isinstance(ended, Answer) and ended.lines == values
 
 
 def _finds_open_buffer(dialogue: Dialogue) -> bool:
-    """SIZE is negative while a program buffer is open; asked while nobody knows how the answer is framed."""
+    """SIZE is negative while a program buffer is open; the framing of the answer is still unknown."""
     told = dialogue.blind("SIZE")
     if not re.search(r"\d", told):
         raise LinkLostError(f"SIZE: expected a number of words, got {told!r}")

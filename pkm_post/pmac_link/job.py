@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job: a program file, read as the controller would read it before a byte of it is sent.
+"""Job: a program file, parsed as the controller would parse it before a byte of it is sent.
 
-Enters: the text of a program or of one part of it, and the settings it was written for. Leaves: its lines and its
-motion in mm, or what is wrong with it.
+Enters: the text of a program or one part of it, and the settings it was written for. Leaves: its lines and its motion
+in mm, or what is wrong with it.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from pkm_post.pmac_link.status import Array
 
 @dataclass(frozen=True)
 class Job:
-    """A program that can be sent.
+    """A program that is valid to send.
 
     Attributes:
-        program: what goes into the controller.
-        motion: what it does.
+        program: the lines for the controller.
+        motion: its strut motion.
     """
 
     program: Program
@@ -37,9 +37,9 @@ def read_job(text: str, settings: Settings, file: str) -> tuple[Job | None, tupl
     """Read a program file.
 
     Args:
-        text: of the file. A part of a larger program is read by itself.
+        text: of the file. A part of a larger program is read separately.
         settings: of the machine's controller.
-        file: its name, for the diagnostics.
+        file: its name, for diagnostics.
     """
     motion, faults = read_part(text, settings, file)
     if motion is None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Links: what carries bytes between this computer and a controller. This is the package's door to pyserial.
+"""Links: carry bytes between this computer and a controller. This is the package's only import of pyserial.
 
-Enters and leaves: bytes. Reading and writing have deadlines; a link that is gone raises ``LinkLostError``.
+Enters and leaves: bytes. Reads and writes have deadlines; a lost link raises ``LinkLostError``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import serial
 
 PARITIES = {"none": "N", "odd": "O", "even": "E"}
-# FreeCAD leaves SIGPIPE at its default: writing to a socket that the peer has closed would end the process.
+# FreeCAD leaves SIGPIPE at its default: writing to a socket closed by the peer would end the process.
 WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
 CHUNK = 1 << 16
 
@@ -25,7 +25,7 @@ class Link(Protocol):
     """A connection that carries bytes."""
 
     def read(self, timeout: float) -> bytes:
-        """What has come; empty when nothing came within ``timeout`` seconds.
+        """Received bytes; empty if nothing arrives within ``timeout`` seconds.
 
         Raises:
             LinkLostError: the link is cut.
@@ -35,22 +35,22 @@ class Link(Protocol):
         """Send bytes.
 
         Raises:
-            LinkLostError: the link is cut, or takes no bytes.
+            LinkLostError: the link is cut, or accepts no bytes.
         """
 
     def restart(self) -> None:
-        """Begin anew: connect again where that makes sense, and forget bytes that have come.
+        """Reconnect where that makes sense, and discard received bytes.
 
         Raises:
-            LinkLostError: it does not come back.
+            LinkLostError: reconnecting failed.
         """
 
     def close(self) -> None:
-        """Close it; more than once does no harm."""
+        """Close it; repeated calls do no harm."""
 
 
 class SocketLink(abc.ABC):
-    """What links over a network have in common.
+    """The common base of network links.
 
     Attributes:
         host: name or address.
@@ -59,15 +59,15 @@ class SocketLink(abc.ABC):
     """
 
     def __init__(self, host: str, number: int, timeout: float) -> None:
-        """Make a link, not yet connected."""
+        """Create a link, not yet connected."""
         self.host, self.number, self.timeout = host, number, timeout
 
     @abc.abstractmethod
     def connection(self) -> Any:
-        """What is connected: a socket, or what behaves like one.
+        """The open connection: a socket, or an object that behaves like one.
 
         Raises:
-            LinkLostError: nothing is.
+            LinkLostError: it is not connected.
         """
 
     def read(self, timeout: float) -> bytes:
@@ -78,7 +78,7 @@ class SocketLink(abc.ABC):
             data = bytes(connection.recv(CHUNK))
         except TimeoutError:
             return b""
-        except (OSError, EOFError) as fault:  # paramiko: a peer that has gone is an EOFError
+        except (OSError, EOFError) as fault:  # paramiko: a peer that disconnects raises EOFError
             raise LinkLostError(f"{self.host}: {fault}") from fault
         if not data:
             raise LinkLostError(f"{self.host} closed the connection")
@@ -102,12 +102,12 @@ class TcpLink(SocketLink):
     """A TCP connection."""
 
     def __init__(self, host: str, number: int, timeout: float) -> None:
-        """Make a link, not yet connected."""
+        """Create a link, not yet connected."""
         super().__init__(host, number, timeout)
         self._socket: socket.socket | None = None
 
     def send_all(self, connection: socket.socket, data: bytes) -> None:
-        """A peer that has gone is told by an exception, not by a signal."""
+        """Send every byte; a disconnected peer raises an exception, not a signal."""
         connection.sendall(data, WITHOUT_SIGNAL)
 
     def restart(self) -> None:
@@ -116,7 +116,7 @@ class TcpLink(SocketLink):
         try:
             self._socket = socket.create_connection((self.host, self.number), self.timeout)
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        except (OSError, UnicodeError) as fault:  # a name that no name server could be asked for
+        except (OSError, UnicodeError) as fault:  # a name that cannot be encoded for DNS
             raise LinkLostError(f"{self.host}, port {self.number}: {fault}") from fault
 
     def close(self) -> None:
@@ -136,7 +136,7 @@ class SerialLink:
     """A serial line."""
 
     def __init__(self, device: str, baud: int, parity: str, handshake: bool, timeout: float) -> None:
-        """Make a link, not yet open.
+        """Create a link, not yet open.
 
         Args:
             device: name of the line.
@@ -156,7 +156,7 @@ class SerialLink:
             line.timeout = max(timeout, 1e-3)
             first = line.read(1)
             return first + line.read(line.in_waiting) if first else b""
-        except (OSError, TypeError) as fault:  # pyserial: a line that is closed meanwhile is a TypeError
+        except (OSError, TypeError) as fault:  # pyserial: a line closed meanwhile raises TypeError
             raise self._lost(fault) from fault
 
     def write(self, data: bytes) -> None:
@@ -168,7 +168,7 @@ class SerialLink:
             raise self._lost(fault) from fault
 
     def restart(self) -> None:
-        """As ``Link``; the line is opened again only after it was lost."""
+        """As ``Link``; the line is reopened only after it was lost."""
         try:
             if self._line is None:
                 self._line = self._opened()
@@ -192,11 +192,11 @@ class SerialLink:
         return LinkLostError(f"{self._device}: {fault}")
 
     def _opened(self) -> serial.Serial:
-        """The line, open.
+        """Open the line.
 
         Raises:
             ImportError: pyserial is not installed.
-            OSError: there is no such line, or it is another's.
+            OSError: the line does not exist, or is in use.
         """
         try:
             import serial
@@ -215,7 +215,7 @@ class SerialLink:
 
 
 def _terminal_error() -> type[Exception]:
-    """What the system raises for a line that is gone; Windows has OSError for it."""
+    """The exception of the system for a line that is gone; OSError on Windows."""
     try:
         import termios
     except ImportError:

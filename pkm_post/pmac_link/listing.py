@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Listing: whether what the controller lists is what was sent.
+"""Listing: verify that the controller's listing is the program sent.
 
-A controller does not list the text it got: it keeps numbers, not digits, so ``A512.062500`` is listed as ``A512.0625``,
-and blanks are its own. So each line is cut into words, signs and numbers. Words and signs must be equal, and so must
-the lines: half a line is another move. A number must be the written one to a hundredth of its last digit, or as near
-as the controller's numbers are.
+A controller does not list the original text: it stores numbers, not digits, so ``A512.062500`` is listed as
+``A512.0625``, and it sets its own blanks. So each line is split into words, signs and numbers. Words and signs must be
+equal, and so must the lines: half a line is another move. A number must match to a hundredth of its last written digit,
+or to the precision of the controller's numbers.
 
-Enters: the lines of a program, and the lines of a listing. Leaves: how many lines are there, and where they differ.
+Enters: the lines of a program and of a listing. Leaves: how many lines match, and where they differ.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from decimal import Decimal
 _TOKEN = re.compile(r"\d+(?:\.\d*)?|\.\d+|[A-Z]+|\S")
 _WORD = re.compile(r"[A-Z]+|\d+(?:\.\d+)?")
 _PRECISION = Decimal(2) ** -35
-"""Of a number in the controller: 36 bits, rounded or cut off."""
+"""Relative precision of a number in the controller: 36 bits, rounded or truncated."""
 _RETURN = ("RET", "RETURN")
 _OPENING = re.compile(r"CLOSE\nDELETE GATHER\nOPEN PROG (\d+)\nCLEAR\n(.+\n)CLOSE", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Program:
-    """A program as it goes into the controller.
+    """A program in the form that the controller receives.
 
     Attributes:
-        number: of its buffer.
-        lines: what is between CLEAR and CLOSE, without comments.
+        number: of its program buffer.
+        lines: the text between CLEAR and CLOSE, without comments.
     """
 
     number: int
@@ -44,20 +44,20 @@ class Program:
 
     @property
     def words(self) -> int:
-        """48-bit words of memory it takes."""
+        """Its size in 48-bit words of memory."""
         return sum(map(words_of, self.lines))
 
 
 def words_of(line: str) -> int:
-    """48-bit words that a line takes: two for a length with its speed; elsewhere each word and number counts."""
+    """Size of a line in 48-bit words: two for a length with its speed; elsewhere one for each word and number."""
     return 2 * line.count(":") or len(_WORD.findall(line))
 
 
 def program_of(text: str) -> Program:
-    """The program in a text that was written by ``controllers.pmac``.
+    """Parse a text written by ``controllers.pmac``.
 
     Raises:
-        ValueError: the text has not the frame of a program.
+        ValueError: the text lacks the frame of a program.
     """
     lines = (line.split(";", 1)[0].strip() for line in text.split("\n"))
     found = _OPENING.fullmatch("\n".join(line for line in lines if line))
@@ -68,13 +68,13 @@ def program_of(text: str) -> Program:
 
 @dataclass(frozen=True)
 class Comparison:
-    """What a listing holds of a program.
+    """The result of comparing a listing with a program.
 
     Attributes:
         lines: how many lines of the program, from the first on, are listed whole.
         all_there: whether these are all lines of the program.
-        nothing_else: whether the listing ends behind them.
-        difference: the first place where the two differ, in words; empty when they are the same.
+        nothing_else: whether the listing ends after them.
+        difference: the first difference in plain text; empty if they match.
     """
 
     lines: int
@@ -84,16 +84,16 @@ class Comparison:
 
     @property
     def same(self) -> bool:
-        """Whether the controller holds the program and nothing else."""
+        """Whether the controller holds exactly the program."""
         return self.all_there and self.nothing_else
 
 
 def compare(written: Sequence[str], listed: Sequence[str]) -> Comparison:
-    """Compare a listing with the lines that were sent.
+    """Compare a listing with the lines sent.
 
     Args:
         written: lines of the program.
-        listed: lines of the listing; a RETURN at its end, which the controller adds, does not count.
+        listed: lines of the listing; a final RETURN, which the controller adds, is ignored.
     """
     rows = [tokens for tokens in (_TOKEN.findall(line.upper()) for line in listed) if tokens]
     if rows and rows[-1][-1] in _RETURN:

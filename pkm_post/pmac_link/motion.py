@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motion: whether a machine moves, by its motors and not by the flag of its program alone.
+"""Motion: whether a machine moves, judged by its motors and not by the flag of its program alone.
 
-A motor may move without a program: by a jog from elsewhere, while it looks for its home, when a PLC program drives it,
-when it has lost its power. And a strut that turns round in the middle of a move stands for a moment. So the struts are
-looked at twice.
+A motor may move without a program: when another client jogs it, during homing, under a PLC program, or after losing
+power. And a strut that reverses in the middle of a move stands for a moment. So the struts are read twice.
 
-Enters: a session. Leaves: a state in which only those struts stand that have stayed where they are.
+Enters: a session. Leaves: a state in which only struts that have not moved count as standing.
 """
 
 from __future__ import annotations
@@ -19,13 +18,13 @@ from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import MOTORS, AnySettings, MotorBits, Status, SystemBits, hexadecimal, read_status
 
 LOOK_S = 0.1
-"""Seconds between both looks."""
+"""Seconds between the two readings."""
 STAYED_MM = 0.01
-"""A strut that stands does not move so far meanwhile: it is a hundred counts of a common encoder."""
+"""A standing strut moves less than this between the readings: a hundred counts of a common encoder."""
 
 
 def settled_status(session: Session, settings: AnySettings) -> Status:
-    """The state after a second look: a strut stands that its controller wants to stand, and that has not moved."""
+    """The state after a second reading: a strut stands if both readings command it to stand and it has not moved."""
     before = read_status(session, settings)
     session.sleep(LOOK_S)
     status = read_status(session, settings)
@@ -35,9 +34,9 @@ def settled_status(session: Session, settings: AnySettings) -> Status:
 
 
 def is_busy(session: Session) -> bool:
-    """Whether a program runs or is held in the coordinate system that the port is for, or a motor is to move.
+    """Whether a program runs or is held in the port's coordinate system, or a motor is commanded to move.
 
-    No address of a coordinate system is sent: lines for a rotary buffer go to the one that was addressed last.
+    It sends no coordinate system address: lines for a rotary buffer go to the last one addressed.
 
     Raises:
         LinkLostError: the answer makes no sense.

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Operate: run and resume a program, and its override. Each is sent once; then the state is asked for.
+"""Operate: run and resume a program, and set its override. Each command is sent once; then the state is read.
 
-To hold and to abort is in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts run.
+Hold and abort are in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts are moving.
+The controller's state shows a command with a short delay, so each command is watched until it shows.
 
-The controller shows a command in its state a little after it has taken it, so each is watched for until it shows.
-
-Enters: a session, settings, a program. Leaves: the state that was reached.
+Enters: a session, settings, a program. Leaves: the resulting state.
 """
 
 from __future__ import annotations
@@ -25,9 +24,9 @@ from pkm_post.pmac_link.session import Session
 from pkm_post.pmac_link.status import Array, Status, read_status
 
 OVERRIDE_S = 5.0
-"""Seconds in which the time base has to get to an override."""
+"""Seconds for the time base to reach an override."""
 SHOWN_S = 0.5
-"""Seconds in which the state has to show that a start was taken."""
+"""Seconds for the state to show that a start was accepted."""
 _OVERRIDE_REACHED = 0.1
 """%"""
 _POLL_S = 0.02
@@ -46,16 +45,16 @@ def run(
     Args:
         session: an open session.
         settings: of the machine's controller.
-        program: what has to be in the controller; it is listed and compared again.
+        program: what the controller must hold; its listing is verified again.
         first: (6,) strut lengths of its first point, mm.
-        near: how far each strut may be from it, mm.
-        machine: its geometry, where the pose of the tool is to be compared as well.
+        near: largest distance of each strut from it, mm.
+        machine: its geometry, to compare the tool pose as well.
 
     Raises:
-        NotReadyError: the program is not there as it was written, or the machine is not ready.
-        OutcomeUnknownError: the link failed at the start and the controller does not show that the program runs.
+        NotReadyError: the controller's program differs, or the machine is not ready.
+        OutcomeUnknownError: the link failed at the start, and the state does not show a running program.
         CancelledError: a stop came first; nothing was started.
-        NotOwnerError: another client has the machine; nothing was started.
+        NotOwnerError: another client owns the machine; nothing was started.
     """
     with owned(session, "run"):
         there = listing_of(session, program)
@@ -66,13 +65,13 @@ def run(
 
 
 def resume(session: Session, settings: Settings) -> Status:
-    """Go on with a program that is held.
+    """Resume a held program.
 
     Raises:
-        NotReadyError: no program is held, or something is wrong.
-        OutcomeUnknownError: the link failed, and the controller does not show that the program goes on.
+        NotReadyError: no program is held, or there is a fault.
+        OutcomeUnknownError: the link failed, and the state does not show that the program has resumed.
         CancelledError: a stop came first; the program is still held.
-        NotOwnerError: the program is that of another client; the program is still held.
+        NotOwnerError: the program belongs to another client; it is still held.
     """
     with owned(session, "resume", beside=RESUMED_BY_ALL):
         return _resume(session, settings)
@@ -91,20 +90,20 @@ def _resume(session: Session, settings: Settings) -> Status:
 def override(
     session: Session, settings: Settings, percent: float, meanwhile: Callable[[], None] = lambda: None
 ) -> Status:
-    """Set how fast time passes in programs, and see that it does.
+    """Set the override of the time base and verify that it takes effect.
 
     Args:
         session: an open session.
         settings: of the machine's controller.
-        percent: above 0 and up to 100: programs were planned to the limits of the machine at 100 %.
-        meanwhile: is called after each reading.
+        percent: above 0 and up to 100: programs are planned to the limits of the machine at 100 %.
+        meanwhile: called after each reading.
 
     Raises:
-        ValueError: the percentage is out of range; to stop, hold.
-        NotReadyError: a program is held; its time base stands at 0.
-        PmacError: the time base does not go there.
-        CancelledError: a stop came before it got there.
-        NotOwnerError: another client has the machine.
+        ValueError: the percentage is out of range; use a hold to stop.
+        NotReadyError: a program is held; its time base is at 0.
+        PmacError: the time base does not reach it.
+        CancelledError: a stop came first.
+        NotOwnerError: another client owns the machine.
     """
     if not 0 < percent <= 100:
         raise ValueError(f"percent: expected above 0 and up to 100, got {percent:g}")
@@ -131,7 +130,7 @@ def _override(session: Session, settings: Settings, percent: float, meanwhile: C
 
 
 def _go(session: Session, settings: Settings, order: str, goes: Callable[[Status], bool]) -> Status:
-    """Send what sets the machine in motion, once, unless a stop waits; when its answer is lost, the state tells."""
+    """Send a command that moves the machine, once, unless a stop waits; if its answer is lost, the state decides."""
     session.give_way()
     try:
         session.order(f"&{settings.coordinate_system}{order}")
@@ -151,7 +150,7 @@ def _watched(
     is_over: Callable[[], bool] = lambda: False,
     meanwhile: Callable[[], None] = lambda: None,
 ) -> Status:
-    """The state as soon as something holds of it; the last one when the time, or the waiting, is over before."""
+    """Poll until the state satisfies ``holds``; return the last state on timeout, or when ``is_over``."""
     until = session.now() + seconds
     while True:
         status = read_status(session, settings)

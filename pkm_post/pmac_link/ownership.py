@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ownership: one client at a time may move a machine or load into its controller; all others may watch, and stop it.
+"""Ownership: one client at a time may move a machine or load its controller; all others may monitor and stop it.
 
-Two clients that load or start at the same time close each other's buffers, or let the struts go where neither wants
-them. So who wants to do that takes the right first: a lock file for the clients of this computer, and five variables P
-of the controller for those of all computers. They say who has it, what for, since when, and a count that grows as long
-as the owner is alive.
+Two clients that load or start at the same time close each other's buffers, or move the struts where neither wants them.
+So a client first claims ownership: with a lock file among the clients of this computer, and with five P-variables of
+the controller among those of all computers. They record the owner, its operation, its start time, and a heartbeat
+count.
 
-The controller takes the right by itself, in one assignment that changes the variable only if it has the value that was
-seen before: of two clients that do it at once one finds the other. An owner that was killed leaves its number behind;
-it is passed over when nothing was seen of it for a while and the machine rests. An owner that was silent for long looks
-whether it is one still before it sends anything.
+One assignment in the controller claims it atomically: it changes the variable only if that still has the value read
+before, so of two simultaneous clients one finds the other. A killed owner leaves its number behind; it is overridden if
+it shows no sign of life for a while and the machine rests. An owner that was silent for long verifies that it still is
+the owner before it sends anything.
 
-Enters: a session, and what is to be done. Leaves: the right, for the length of a block, or ``NotOwnerError``.
+Enters: a session and the intended operation. Leaves: ownership for the duration of a block, or ``NotOwnerError``.
 """
 
 from __future__ import annotations
@@ -43,34 +43,34 @@ from pkm_post.pmac_link.motion import is_busy
 from pkm_post.pmac_link.session import Session
 
 VARIABLES = range(8187, 8192)
-"""Numbers of the variables P: owner, count, address of its computer, time since 1970 in s, what it does."""
+"""Numbers of the P-variables: owner, count, address of its computer, time since 1970 in s, operation."""
 OWNER, COUNT, *_ = VARIABLES
 RECORD = f"P{VARIABLES[0]}..{VARIABLES[-1]}"
 
 BEAT_S = 1.0
-"""Seconds after which the owner counts on."""
+"""Heartbeat period of the owner, s."""
 SILENCE_S = 5.0
-"""Seconds without any sign after which an owner is passed over."""
+"""Seconds without a sign of life after which an owner is overridden."""
 LOOK_S = 0.5
 ATTEMPTS = 3
 WHAT = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal")
-"""What an owner does; the controller keeps the place in this list, from 1. New ones come at its end."""
+"""Operations of an owner; the controller stores the index in this list, from 1. Append new ones at its end."""
 RESUMED_BY_ALL = ("stream",)
-"""A stream has no order to resume: whoever holds it may let it go on."""
+"""A stream has no resume command: after a hold any client may resume it."""
 _ERR_NOT_OPEN = 5
 _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class Record:
-    """What the variables of the controller say.
+    """The contents of the controller's variables.
 
     Attributes:
-        owner: a number that is the owner's alone; 0 when there is none.
-        count: grows while it is alive.
-        address: of its computer, IPv4 as a number; 0 when it has none.
+        owner: a unique number; 0 if there is none.
+        count: heartbeat.
+        address: of its computer, IPv4 as a number; 0 if it has none.
         since: seconds since 1970.
-        what: place in ``WHAT``, from 1.
+        what: index in ``WHAT``, from 1.
     """
 
     owner: int
@@ -81,7 +81,7 @@ class Record:
 
     @property
     def action(self) -> str:
-        """What the owner does; empty when that is not known."""
+        """The owner's operation; empty if unknown."""
         return WHAT[self.what - 1] if 0 < self.what <= len(WHAT) else ""
 
     def __str__(self) -> str:
@@ -92,38 +92,38 @@ class Record:
 
 
 class Ownership:
-    """The right to move a machine and to load into its controller."""
+    """The right to move a machine and to load its controller."""
 
     def __init__(self, session: Session, lock: Lock | None, owner: int) -> None:
-        """The right that was taken.
+        """Represent ownership that has been claimed.
 
         Args:
-            session: through which.
-            lock: on this computer; None for a port that no other process can have.
-            owner: the number in the controller; 0 where the controller has none.
+            session: through which it was claimed.
+            lock: on this computer; None for a port that no other process can use.
+            owner: the number in the controller; 0 if the controller keeps none.
         """
         self._session, self._lock, self._owner = session, lock, owner
         self._seen, self._connections, self._is_asking = session.now(), session.connections, False
 
     def answered(self) -> None:
-        """Count on, when it is time and no program buffer is open: the assignment would become a line of it."""
+        """Send a due heartbeat, unless a program buffer is open: the assignment would become a line of it."""
         if self._is_asking or not self._owner or self._session.has_open_buffer or not self._is_older_than(BEAT_S):
             return
         self._is_asking = True
         try:
             self._session.ask(f"P{COUNT}=P{COUNT}+1")
             self._see()
-        except (LinkLostError, RefusedError) as fault:  # done again after the next answer; others wait much longer
+        except (LinkLostError, RefusedError) as fault:  # retried after the next answer; others wait much longer
             _log.warning("the right to move the machine could not be renewed: %s", fault)
         finally:
             self._is_asking = False
 
     def check(self) -> None:
-        """See that nobody has taken the right, when it was not seen lately or the link was lost meanwhile.
+        """Verify ownership, if it was not seen recently or the link was lost meanwhile.
 
         Raises:
-            NotOwnerError: somebody has.
-            LinkLostError: it cannot be seen.
+            NotOwnerError: another client has taken it.
+            LinkLostError: it cannot be verified.
         """
         if self._is_asking or not self._owner or self.is_sure():
             return
@@ -134,12 +134,12 @@ class Ownership:
             self._is_asking = False
 
     def is_sure(self) -> bool:
-        """Whether the right was seen so lately that nobody can have taken it since."""
+        """Whether ownership was seen so recently that no other client can have taken it since."""
         is_same_link = self._connections == self._session.connections
         return is_same_link and not self._is_older_than(SILENCE_S / 2)
 
     def release(self) -> None:
-        """Give the right back; what the controller keeps of it is passed over later when it cannot be reached."""
+        """Release ownership; if the controller is unreachable, its record expires later."""
         self._session.keeper = None
         try:
             if self._owner and not self._session.has_open_buffer:
@@ -154,7 +154,7 @@ class Ownership:
     def _see(self) -> None:
         there = read_record(self._session)
         if not there.owner and not there.since and free_words(self._session) >= 0:
-            self._session.ask(_swap(0, self._owner))  # a controller that was reset has forgotten all of it
+            self._session.ask(_swap(0, self._owner))  # a controller that was reset has lost all of it
             there = read_record(self._session)
         if there.owner != self._owner:
             raise NotOwnerError(_diagnostic(self._session, "C211", str(there)), there.action)
@@ -166,12 +166,12 @@ class Ownership:
 
 @contextmanager
 def owned(session: Session, what: str, beside: tuple[str, ...] = ()) -> Iterator[None]:
-    """Have the right to move the machine; the session keeps the one that it has.
+    """Hold ownership for a block; a session that already has it keeps it.
 
     Args:
         session: an open session.
-        what: is to be done, one of ``WHAT``.
-        beside: what another client may do meanwhile; of any other that is silent the program may go on.
+        what: the operation, one of ``WHAT``.
+        beside: operations of another client that may continue meanwhile; any other silent client's program may go on.
 
     Raises:
         NotOwnerError: another client has it.
@@ -194,17 +194,17 @@ def owned(session: Session, what: str, beside: tuple[str, ...] = ()) -> Iterator
 
 
 def take(session: Session, what: str, beside: tuple[str, ...] = ()) -> Ownership:
-    """Take the right to move the machine; a program buffer that nobody fills any more is made empty and closed.
+    """Claim ownership; clear and close a program buffer that is no longer being filled.
 
     Args:
-        session: an open session that has it not.
-        what: is to be done, one of ``WHAT``.
+        session: an open session without ownership.
+        what: the operation, one of ``WHAT``.
         beside: as ``owned``.
 
     Raises:
-        NotOwnerError: another client has it, or what it began moves the machine still.
-        DiagnosedError: the lock cannot be kept.
-        LinkLostError: the controller cannot be asked.
+        NotOwnerError: another client has it, or its operation still moves the machine.
+        DiagnosedError: the lock file cannot be kept.
+        LinkLostError: the controller cannot be queried.
         CancelledError: a stop came first.
     """
     lock = _locked(session, what) if session.port_name else None
@@ -219,10 +219,10 @@ def take(session: Session, what: str, beside: tuple[str, ...] = ()) -> Ownership
 
 
 def read_record(session: Session) -> Record:
-    """What the controller says of its owner.
+    """Read the owner's record from the controller.
 
     Raises:
-        DiagnosedError: the variables hold what no client writes.
+        DiagnosedError: the variables hold values that no client writes.
         LinkLostError: the answer makes no sense.
     """
     told = session.ask(RECORD)
@@ -238,7 +238,7 @@ def read_record(session: Session) -> Record:
 
 
 def lock_path(port: str) -> Path:
-    """Where the lock file of a port is: the same for all users, and for all names of a serial line."""
+    """Path of a port's lock file: the same for all users, and for all names of a serial line."""
     kind, _, address = port.partition(":")
     name = f"{kind}:{os.path.realpath(address) if kind == 'serial' else address.lower()}"
     return Path(tempfile.gettempdir()) / f"pkm-post-{sha256(name.encode()).hexdigest()[:16]}.lock"
@@ -258,7 +258,7 @@ def _locked(session: Session, what: str) -> Lock:
 
 
 def _taken_in_controller(session: Session, what: str, beside: tuple[str, ...]) -> int:
-    """The number of this client, which is in the controller now."""
+    """Claim ownership in the controller; return the number of this client."""
     before = read_record(session)
     is_open = free_words(session) < 0
     if before.owner or is_open:
@@ -267,11 +267,11 @@ def _taken_in_controller(session: Session, what: str, beside: tuple[str, ...]) -
         _close_leftover(session)
     owner, seen = random.SystemRandom().randrange(1, 1 << 30), before.owner
     for _ in range(ATTEMPTS):
-        session.ask(_swap(seen, owner))  # as often as need be: it may arrive twice
+        session.ask(_swap(seen, owner))  # safe to repeat: it may arrive twice
         there = read_record(session)
         if there.owner not in (0, seen):
             break
-        seen = there.owner  # a controller that was reset has forgotten it
+        seen = there.owner  # a controller that was reset has lost it
     if there.owner != owner:
         raise NotOwnerError(_diagnostic(session, "C210", str(there)), there.action)
     words = (1, _own_address(session.port_name), int(time.time()), WHAT.index(what) + 1)
@@ -280,18 +280,18 @@ def _taken_in_controller(session: Session, what: str, beside: tuple[str, ...]) -
 
 
 def _swap(old: int, new: int) -> str:
-    """The owner becomes another one if it is the one that is known: INT is 1 then, and else 0."""
+    """Replace the owner if it is the expected one: INT is 1 then, and else 0."""
     return f"P{OWNER}=P{OWNER}+({new}-{old})*INT(1/(ABS(P{OWNER}-{old})+1))"
 
 
 def _see_silence(session: Session, record: Record, beside: tuple[str, ...]) -> None:
-    """Wait until an owner has shown nothing for so long that there is none any more.
+    """Wait until an owner has shown no sign of life for so long that it counts as gone.
 
-    An owner whose machine moves or is held may be busy with a buffer, so it is left alone. Who goes on with what one
-    of them began waits for its count alone; it would grow while a program runs, but for those that it may go on beside.
+    An owner whose machine moves or is held may be busy with a buffer, so it keeps ownership. A client that resumes such
+    a program checks its count alone, which would grow while a program runs, except for programs it may continue beside.
 
     Raises:
-        NotOwnerError: it shows something, or the machine does something.
+        NotOwnerError: it shows a sign of life, or the machine is busy.
     """
     known = str(record)
     signs, until = _signs(session, record), session.now() + SILENCE_S
@@ -308,15 +308,15 @@ def _see_silence(session: Session, record: Record, beside: tuple[str, ...]) -> N
 
 
 def _signs(session: Session, record: Record) -> tuple[object, ...]:
-    """What changes while an owner is alive: its count, the memory while it loads, the lines while it streams."""
+    """Signs of life of an owner: its count, free memory while it loads, lines ahead while it streams."""
     return record.owner, record.count, session.ask("SIZE"), session.ask("PR")
 
 
 def _close_leftover(session: Session) -> None:
-    """Make a program buffer empty that nobody fills any more, and close it."""
+    """Clear and close a program buffer that is no longer being filled."""
     try:
         session.order("CLEAR")
-    except RefusedError as refused:  # of another port; whether CLOSE does it is seen
+    except RefusedError as refused:  # it belongs to another port; the check below shows whether CLOSE works
         if refused.number != _ERR_NOT_OPEN:
             raise
     session.order("CLOSE")
@@ -330,7 +330,7 @@ def _diagnostic(session: Session, code: str, found: str) -> Diagnostic:
 
 
 def _process(said: Words) -> str:
-    """The process that has the lock of this computer, in words."""
+    """The process that holds the lock on this computer, in plain text."""
     if not {"user", "process", "what", "since"} <= said.keys():
         return "a process of this computer that does not say who it is"
     return f"process {said['process']} of {said['user']}, {said['what']}, since {_moment(said['since'])}"
@@ -348,7 +348,7 @@ def _user() -> str:
 
 
 def _own_address(port: str) -> int:
-    """The address that this computer has towards a controller; 0 where there is none. Nothing is sent."""
+    """This computer's address towards a controller; 0 if there is none. Nothing is sent."""
     kind, _, address = port.partition(":")
     host, _, number = address.rpartition(":")
     if kind != "tcp":
@@ -358,4 +358,4 @@ def _own_address(port: str) -> int:
             asked.connect((host, int(number)))
             return int(ipaddress.IPv4Address(asked.getsockname()[0]))
     except OSError:
-        return 0  # an IPv6 address has no room in a variable
+        return 0  # an IPv6 address does not fit into a variable

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ports: ``serial:/dev/ttyUSB0``, ``tcp:HOST[:PORT]`` or ``ssh:USER@HOST[:PORT]`` becomes a link that carries bytes.
+"""Ports: turn ``serial:/dev/ttyUSB0``, ``tcp:HOST[:PORT]`` or ``ssh:USER@HOST[:PORT]`` into a link.
 
-Enters: the name of a port. Leaves: the link to it, and the conversation that such a link needs.
+Enters: the name of a port. Leaves: its link, and the conversation that this kind of link requires.
 """
 
 from __future__ import annotations
@@ -23,38 +23,38 @@ TCP_PORT, SSH_PORT = 1025, 22
 
 
 class Door(Protocol):
-    """What a session needs of a port; tests have doors of their own."""
+    """The interface of a port to a session; tests supply their own."""
 
     @property
     def name(self) -> str:
-        """By which others know it, as ``port_named`` takes it; empty when nobody else can connect to it."""
+        """Name for ``port_named`` that other clients use; empty if no other client can connect."""
 
     @property
     def silence(self) -> float:
-        """Seconds without a byte after which the controller has nothing more to say."""
+        """Seconds without a byte that end an answer."""
 
     def link(self) -> Link:
-        """A link, not yet connected: ``restart`` does that."""
+        """A link, not yet connected: ``restart`` connects."""
 
     def conversation(self) -> Conversation:
-        """A conversation as this kind of link needs it."""
+        """A conversation for this kind of link."""
 
 
 @dataclass(frozen=True)
 class Port:
-    """Where a controller is.
+    """The address of a controller.
 
     Attributes:
         kind: ``"serial"``, ``"tcp"`` or ``"ssh"``.
         address: of the device or host.
         number: of the TCP port.
-        baud: of a serial line, as I54 of the controller says.
+        baud: of a serial line, as set by I54 of the controller.
         parity: a key of ``links.PARITIES``.
-        handshake: whether the line has RTS and CTS; adapters and pseudo terminals without them would wait for ever.
+        handshake: whether the line has RTS and CTS; adapters and pseudo terminals without them would block for ever.
         timeout: seconds to connect, and to send.
-        silence: seconds without a byte after which the controller has nothing more to say.
-        user: who logs in over ssh.
-        known_hosts: file with the host keys that are trusted; the user's own unless given.
+        silence: seconds without a byte that end an answer.
+        user: login name for ssh.
+        known_hosts: file of trusted host keys; the user's own by default.
     """
 
     kind: str
@@ -70,7 +70,7 @@ class Port:
 
     @property
     def name(self) -> str:
-        """As ``port_named`` takes it."""
+        """Name for ``port_named``."""
         if self.kind == "serial":
             return f"serial:{self.address}"
         host = f"[{self.address}]" if ":" in self.address else self.address
@@ -78,11 +78,11 @@ class Port:
 
     @property
     def is_power(self) -> bool:
-        """Whether a Power PMAC is there; else a Turbo PMAC."""
+        """Whether it leads to a Power PMAC; else to a Turbo PMAC."""
         return self.kind == "ssh"
 
     def link(self) -> Link:
-        """A link, not yet connected: ``restart`` does that."""
+        """A link, not yet connected: ``restart`` connects."""
         if self.kind == "ssh":
             return SshLink(self.address, self.number, self.user, self.known_hosts, self.timeout)
         if self.kind == "serial":
@@ -90,7 +90,7 @@ class Port:
         return TcpLink(self.address, self.number, self.timeout)
 
     def conversation(self) -> Conversation:
-        """A conversation as this kind of link needs it."""
+        """A conversation for this kind of link."""
         return _CONVERSATIONS[self.kind](self.silence)
 
 
@@ -109,10 +109,10 @@ _NAMES = "serial:DEVICE, tcp:HOST[:PORT] or ssh:USER@HOST[:PORT]"
 
 
 def port_named(name: str) -> Port:
-    """The port of a name.
+    """Parse the name of a port.
 
     Args:
-        name: ``serial:DEVICE``, ``tcp:HOST[:PORT]`` or ``ssh:USER@HOST[:PORT]``; an IPv6 address stands in brackets.
+        name: ``serial:DEVICE``, ``tcp:HOST[:PORT]`` or ``ssh:USER@HOST[:PORT]``; an IPv6 address in brackets.
 
     Raises:
         ValueError: the name has another form.

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Power status: the state of the six struts of a Power PMAC, as ``status.Status``.
 
-Its bits stand in other places than those of a Turbo PMAC, in two words of 32, and whether a program runs is asked by
-the names of its data structure. Bits are counted from the least significant one of all hexadecimal digits.
-[EPICSpmac, pmacHardwarePower]
+Its bits differ in position from those of a Turbo PMAC, in two words of 32, and elements of its data structure show
+whether a program runs. Bits are counted from the least significant one of all hexadecimal digits. [EPICSpmac,
+pmacHardwarePower]
 
-Enters: the settings of a controller, and what it answers. Leaves: the query that ``status.read_status`` asks, counts,
-bits, and what they mean.
+Enters: the settings of a controller, and its answers. Leaves: the query for ``status.read_status``, counts, bits, and
+their meanings.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _STATUS_BITS = 64
 
 
 class PowerMotorBits(MotorBits):
-    """Two words of 32 bits: ``#n?``. The closed loop has a bit here, the open loop has not; see ``_motor``."""
+    """Two words of 32 bits: ``#n?``. They have a bit for the closed loop, not for the open loop; see ``_motor``."""
 
     DIGITS = 16
     PLACES = {
@@ -35,7 +35,7 @@ class PowerMotorBits(MotorBits):
 
 
 class PowerSystemBits(SystemBits):
-    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements, set when it is not 0."""
+    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements, set if it is not 0."""
 
     DIGITS = 16
     PLACES = {
@@ -49,7 +49,7 @@ class PowerSystemBits(SystemBits):
 
 
 def query(settings: Settings) -> str:
-    """The line that asks for everything."""
+    """The query line for the complete state."""
     system = settings.coordinate_system
     return " ".join(
         [
@@ -61,7 +61,7 @@ def query(settings: Settings) -> str:
 
 
 def status_of(told: tuple[str, ...], settings: Settings) -> Status:
-    """What the lines of the answer mean.
+    """Parse the lines of the answer.
 
     Raises:
         ValueError: they make no sense.

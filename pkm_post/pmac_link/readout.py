@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Readout: where the tool is, from the six strut lengths that the controller tells.
+"""Readout: DRO of the tool pose, from the six strut lengths that the controller reports.
 
 Enters: a machine, the gauge length of its tool, states of the controller. Leaves: tip in mm, axis and spin by forward
-kinematics, each from the pose before it, and lines of text.
+kinematics, each warm-started from the previous pose, and lines of text.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ _STEPS_FROM_HOME = 128
 
 @dataclass(frozen=True)
 class Pose:
-    """Where the tool is.
+    """A tool pose.
 
     Attributes:
         tip: (3,) in {M}, mm.
         axis: (3,) unit tool axis in {M}, from the tip towards the spindle.
-        spin: turn of the platform about it, rad.
+        spin: rotation of the platform about it, rad.
     """
 
     tip: Array
@@ -37,10 +37,10 @@ class Pose:
 
 
 class Readout:
-    """Poses one after the other."""
+    """Computes poses in sequence."""
 
     def __init__(self, machine: Machine, tool_length: float) -> None:
-        """Begin at the home of the machine.
+        """Start at the home of the machine.
 
         Args:
             machine: the geometry.
@@ -53,7 +53,7 @@ class Readout:
         )
 
     def pose(self, status: Status) -> Pose | None:
-        """The pose of the lengths that nearest fits the one before; None when there is none near."""
+        """The pose of the actual lengths nearest to the previous one; None if there is none nearby."""
         for tip, rotation in ((self._tip, self._rotation), self._home):
             found = newton(self._machine, status.length[None], self._tool, tip, rotation)
             if found.converged[0]:
@@ -63,17 +63,17 @@ class Readout:
 
 
 def spin_of(rotation: Array) -> Array:
-    """Turns of the platform about the tool axis, (N,) rad, of rotations R_T (N, 3, 3)."""
+    """Spins about the tool axis, (N,) rad, of rotations R_T (N, 3, 3)."""
     unspun = platform_rotation(rotation[:, :, 2], np.zeros(len(rotation)))
     spun: Array = np.arctan2(*(np.einsum("ni,ni->n", unspun[:, :, side], rotation[:, :, 0]) for side in (1, 0)))
     return spun
 
 
 def standing_pose(machine: Machine, length: Array, tool_length: float) -> Pose | None:
-    """The pose of lengths of which nothing is known but that the machine came to them from its home.
+    """The pose for strut lengths, given only that the machine reached them from its home.
 
-    One jump of Newton's method may end in another pose with the same lengths. So the lengths between home and here are
-    gone through in small steps: the pose is the one that the platform can have got to without being taken apart.
+    A single Newton solve may converge to another pose with the same lengths. So the lengths are stepped from home in
+    small increments: the result is the pose that the platform can reach without being taken apart.
 
     Args:
         machine: the geometry.
@@ -91,7 +91,7 @@ def standing_pose(machine: Machine, length: Array, tool_length: float) -> Pose |
 
 
 def pose_text(pose: Pose | None) -> str:
-    """Where the tool is, for a terminal."""
+    """The tool pose, for a terminal."""
     if pose is None:
         return "tool: no pose has these strut lengths"
     tilt = np.degrees(np.arccos(np.clip(pose.axis[2], -1, 1)))
@@ -111,7 +111,7 @@ def state_text(status: Status) -> str:
 
 
 def activity_text(status: Status) -> str:
-    """What program and struts do, for a terminal."""
+    """Activity of program and struts, for a terminal."""
     return f"{_activity(status)}, override {status.override:g} %"
 
 

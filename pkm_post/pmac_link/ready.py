@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ready: whether controller and machine are as a program relies on; asked, never assumed.
+"""Ready: check the preconditions of a program in controller and machine; they are queried, never assumed.
 
 Enters: a session, the settings of the machine file, the stroke in mm, strut lengths in mm. Leaves: nothing, or
 ``NotReadyError`` with every reason.
@@ -28,15 +28,15 @@ _ROTARY = "ABC"
 
 
 def check_setup(session: Session, settings: Settings, stroke: tuple[float, float]) -> None:
-    """Compare the controller with the set-up that programs of this machine rely on.
+    """Compare the controller with the setup that programs of this machine rely on.
 
     Args:
         session: an open session.
         settings: of the machine's controller.
-        stroke: shortest and longest strut, mm.
+        stroke: shortest and longest strut length, mm.
 
     Raises:
-        NotReadyError: with everything that differs.
+        NotReadyError: lists all differences.
     """
     reasons = [
         *_axis_faults(session, settings),
@@ -48,16 +48,16 @@ def check_setup(session: Session, settings: Settings, stroke: tuple[float, float
 
 
 def check_start(status: Status, first: Array, near: float = NEAR_MM, machine: Machine | None = None) -> None:
-    """Whether a program may start: struts homed, in closed loop, without faults, standing near its first point.
+    """Check that a program may start: struts homed, in closed loop, without faults, standing near its first point.
 
     Args:
         status: of the struts.
         first: (6,) strut lengths of the first point, mm.
-        near: how far each strut may be from it, mm.
-        machine: its geometry, where the pose of the tool is to be compared as well.
+        near: largest distance of each strut from it, mm.
+        machine: its geometry, to compare the tool pose as well.
 
     Raises:
-        NotReadyError: with every reason against it.
+        NotReadyError: lists every reason.
     """
     reasons = [*_motor_faults(status), *status.words()]
     if status.running:
@@ -77,10 +77,10 @@ def check_start(status: Status, first: Array, near: float = NEAR_MM, machine: Ma
 
 
 def number_of(session: Session, name: str) -> float:
-    """What a variable of the controller holds.
+    """The value of a variable of the controller.
 
     Raises:
-        LinkLostError: the answer is no number.
+        LinkLostError: the answer is not a number.
     """
     told = _one(session, name)
     if not re.fullmatch(_REAL, told):
@@ -103,7 +103,7 @@ def _motor_faults(status: Status) -> Iterator[str]:
 
 
 def _axis_faults(session: Session, settings: Settings) -> Iterator[str]:
-    """``#n->`` against the axis definitions of the set-up file."""
+    """Compare ``#n->`` with the axis definitions of the setup file."""
     scale = Decimal(repr(float(settings.counts_per_mm)))
     for motor, letter, zero in zip(MOTORS, settings.letters, settings.zero_length, strict=True):
         wanted = (scale, letter, -scale * Decimal(repr(float(zero))))
@@ -131,7 +131,7 @@ def _variable_faults(session: Session, settings: Settings) -> Iterator[str]:
 
 
 def _limit_faults(session: Session, settings: Settings, stroke: tuple[float, float]) -> Iterator[str]:
-    """The soft limits have to be on, and within the stroke."""
+    """The soft limits must be enabled and within the stroke."""
     for motor, zero in zip(MOTORS, settings.zero_length, strict=True):
         low, high = sorted(settings.counts_per_mm * (length - zero) for length in stroke)
         for name, (least, most) in {f"I{motor}13": (-np.inf, high), f"I{motor}14": (low, np.inf)}.items():

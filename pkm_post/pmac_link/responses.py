@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Responses: the bytes of one answer of the controller, as I3=2, I6=1 and either I4 frame them.
+"""Responses: parse the bytes of one answer of the controller, framed by I3=2, I6=1 and either I4.
 
     answer   = { data CR [sum] } ACK [sum of the command]     or     { data CR [sum] } BEL ERRnnn CR
-    message  = STX text CR                                    (I64=1: a program speaks of its own accord)
+        message  = STX text CR                                    (I64=1: unsolicited, from a program)
 
-Each [sum] is one byte, there with I4=1 only: the sum of the bytes of the data line with its CR, or of the command
-without its CR, modulo 256. A sum may be any byte, 06, 07 and 0D as well, so it is told by its place alone. Whether a
-refusal has a sum is not known from the manuals; none is expected, and one that comes is a stray byte.
-[TurboPMAC, I3, I4, I6, I64]
+Each [sum] is one byte, present with I4=1 only: the sum of the bytes of the data line with its CR, or of the command
+without its CR, modulo 256. A sum may be any byte, including 06, 07 and 0D, so only its position identifies it. The
+manuals do not state whether a refusal has a sum; none is expected, and one that arrives is a stray byte. [TurboPMAC,
+I3, I4, I6, I64]
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _ERROR = re.compile(r"\s*ERR(\d{3})")
 
 
 def checksum(data: bytes | bytearray) -> int:
-    """The sum of bytes that I4=1 and ^N tell."""
+    """The checksum of I4=1 and ^N."""
     return sum(data) & 0xFF
 
 
@@ -36,14 +36,14 @@ class _State(Enum):
 
 
 class ResponseReader:
-    """Reads one answer, byte by byte.
+    """Parses one answer, byte by byte.
 
     Attributes:
-        messages: lines that programs sent in between.
+        messages: lines sent by programs in between.
     """
 
     def __init__(self, command: bytes, summed: bool) -> None:
-        """Make a reader for the answer to a command.
+        """Create a reader for the answer to a command.
 
         Args:
             command: its characters without CR.
@@ -64,11 +64,11 @@ class ResponseReader:
         }
 
     def take(self, byte: int) -> Event | None:
-        """Take one byte; the event when it was the last of the answer, or one that cannot be."""
+        """Take one byte; return the event if it completes the answer, or makes it invalid."""
         return self._steps[self._state](byte)
 
     def taken_messages(self) -> list[Message]:
-        """What programs sent in between; each call gives it once."""
+        """Lines sent by programs in between; each call returns new ones only."""
         messages, self.messages = self.messages, []
         return messages
 
@@ -110,7 +110,7 @@ class ResponseReader:
     def _error(self, byte: int) -> Event | None:
         self._line.append(byte)
         text = self._line.decode("latin-1")
-        # I6=3 has a CR before ERRnnn as well
+        # I6=3 also sends a CR before ERRnnn
         if byte != CR or not text.strip():
             return None if len(text) < 16 else Lost("an error that does not end")
         found = _ERROR.fullmatch(text.rstrip())

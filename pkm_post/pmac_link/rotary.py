@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotary: segments go through the rotary buffer and are let go by R, one after the other.
+"""Rotary: segments are sent through the rotary buffer and released by R, one after the other.
 
-So many lines were let go; the controller tells how many it has not begun (``rotary_buffer``). Whatever was heard of a
-command that got lost, these numbers say whether it was carried out.
+The number of released lines is known; the controller reports how many it has not begun (``rotary_buffer``). Whatever
+the answer to a command, these numbers show whether it was executed.
 
-Enters: a session, segments, the size of the buffer. Leaves: a machine at rest, and where that is.
+Enters: a session, segments, the size of the buffer. Leaves: a machine at rest, and where it rests.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from pkm_post.pmac_link.status import Array, Status, read_status
 _NOT_OPEN, _NO_ROOM = 5, 6
 _POLL_S = 0.05
 _QUIET_POLLS = 20
-"""So often the controller has to show that it stands where it should not."""
+"""Consecutive readings that must show the machine at rest where it should not be."""
 _log = logging.getLogger(__name__)
 
 Progress = Callable[[int, int, int], None]
-"""Called with the lines of the program that were let go, those that are in the controller, and all."""
+"""Called with the numbers of program lines released, loaded, and in total."""
 
 
 class RotaryStream:
-    """A program on its way.
+    """A program being streamed.
 
     Attributes:
         segments: of the program.
-        rest: (6,) strut lengths where the machine rests when all that was let go is done, mm.
+        rest: (6,) strut lengths where the machine rests once all released lines are done, mm.
         line: of the program behind which that is.
-        resumptions: how often it was gone on with.
+        resumptions: how often the stream was resumed.
     """
 
     def __init__(
@@ -58,11 +58,11 @@ class RotaryStream:
         self._let_go = 0  # lines
 
     def open(self) -> None:
-        """An empty rotary buffer, open, and the coordinate system pointed to it."""
+        """Open an empty rotary buffer and point the coordinate system to it."""
         self._buffer.open()
 
     def run(self, progress: Progress, is_cancelled: Callable[[], bool]) -> None:
-        """Send and let go segment by segment."""
+        """Send and release the segments in order."""
         total = self.segments[-1].last
 
         def check() -> None:
@@ -79,7 +79,7 @@ class RotaryStream:
         progress(total, total, total)
 
     def end(self, at_once: bool) -> bool:
-        """Come to rest, empty the buffer and close it; whether the controller has shown both."""
+        """Come to rest, empty the buffer and close it; return whether the controller has confirmed both."""
         try:
             self._come_to_rest(at_once)
             return self._buffer.empty()
@@ -88,23 +88,23 @@ class RotaryStream:
             return False
 
     def _come_to_rest(self, at_once: bool) -> None:
-        """Wait for it; an interrupt meanwhile holds the program and aborts it."""
+        """Wait for rest; an interrupt meanwhile holds and aborts the program."""
         try:
             if not at_once:
                 self._wait(lambda: None)
                 return
         except KeyboardInterrupt:
-            pass  # this is how the user says that it has to be now
+            pass  # the user wants it to end now
         stopping.abort(self._session, self._settings)
         self._wait(lambda: None)
 
     def _sent(self) -> int:
-        """Lines of the program that are in the controller, in whole segments."""
+        """Program lines in the controller, in whole segments."""
         there = [each.last for each, end in zip(self.segments, self._ends, strict=True) if end <= self._buffer.loaded]
         return max(there, default=0)
 
     def _fill(self, end: int, check: Callable[[], None]) -> None:
-        """Bring the lines up to ``end`` into the buffer, as it has room for them."""
+        """Load the lines up to ``end`` into the buffer, as room becomes free."""
         failures = 0
         while self._buffer.loaded < end:
             check()
@@ -120,12 +120,12 @@ class RotaryStream:
                 self._settle(check)
 
     def _wait(self, check: Callable[[], None]) -> Status:
-        """Until the controller has done what it was let go with, or was stopped, and the struts stand."""
+        """Wait until the controller has finished the released lines, or was stopped, and the struts stand."""
         quiet = 0
         while True:
             status = read_status(self._session, self._settings)
             quiet = 0 if status.running or not status.standing else quiet + 1
-            # R may take a moment until the state shows it.
+            # The state may show R with a delay.
             if quiet and (quiet >= _QUIET_POLLS or self._is_done()):
                 return status
             check()
@@ -141,22 +141,22 @@ class RotaryStream:
             raise PmacError(f"the program was stopped with {ahead} lines of the rotary buffer ahead of it")
 
     def _settle(self, check: Callable[[], None]) -> None:
-        """After a failure: wait for rest, see how many lines are there, and open the buffer again.
+        """Recover from a failure: wait for rest, count the loaded lines, and reopen the buffer.
 
         Raises:
-            PmacError: what the controller tells cannot be explained.
+            PmacError: the controller's count is inconsistent.
         """
         self._check(self._wait(check))
         self._buffer.recount(self._let_go)
         self.resumptions += 1
 
     def _release(self, segment: Segment, end: int) -> None:
-        """R; when its answer is lost, the lines ahead tell whether it was carried out."""
+        """Send R; if its answer is lost, the lines ahead show whether it was executed."""
         self._check_done()
         for attempt in range(ATTEMPTS):
             self._check(read_status(self._session, self._settings))
             rest, line, before = self.rest, self.line, self._let_go
-            # From here on the machine may go as far as this, whatever is heard of it.
+            # From here on the machine may move as far as this, whatever the answer.
             self.rest, self.line, self._let_go = segment.rest, segment.last, end
             try:
                 self._session.order(f"&{self._settings.coordinate_system}R")
@@ -171,7 +171,7 @@ class RotaryStream:
         raise AssertionError("unreachable")
 
     def _goes(self, before: int) -> bool:
-        """Whether lines behind the first ``before`` were begun."""
+        """Whether lines behind the first ``before`` have begun."""
         return read_status(self._session, self._settings).running or self._buffer.loaded - self._buffer.ahead() > before
 
     def _check(self, status: Status) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotary buffer: lines on their way into it, and what is known of it at any time.
+"""Rotary buffer: sends lines into it and tracks its contents.
 
-Lines are counted from the first that was sent: so many are surely in the controller, some behind them may be. The
-controller tells how many it has not begun, and with these numbers which of the last ones arrived.
+Lines are counted from the first one sent: some are certainly in the controller, some after them may be. The controller
+reports how many it has not begun, which shows how many of the last ones arrived.
 
 Enters: a session, the lines, the size of the buffer in 48-bit words. Leaves: lines in the buffer.
 """
@@ -20,18 +20,18 @@ from pkm_post.pmac_link.listing import words_of
 from pkm_post.pmac_link.session import Session
 
 ATTEMPTS = 5
-"""How often something is begun anew after a failure."""
+"""How often an operation is tried before it is given up."""
 _MARGIN = 2
-"""Lines that may lie in the buffer still though they are not ahead any more: the one that runs, the one after it."""
+"""Lines no longer ahead that may still occupy the buffer: the running one, and the one after it."""
 _log = logging.getLogger(__name__)
 
 
 class RotaryBuffer:
-    """What is known of the buffer.
+    """Tracks the contents of the buffer.
 
     Attributes:
-        loaded: lines that are, or were, surely in it.
-        unsure: lines behind those that may have arrived.
+        loaded: lines that certainly arrived, executed or not.
+        unsure: lines after those that may have arrived.
     """
 
     def __init__(self, session: Session, settings: Settings, lines: Sequence[str], words: int) -> None:
@@ -43,28 +43,28 @@ class RotaryBuffer:
         self._connections = session.connections
 
     def open(self) -> None:
-        """Open it empty, the coordinate system pointed to it."""
-        # To begin all this anew does no harm: nothing was let go.
+        """Open it empty and point the coordinate system to it."""
+        # A retry of the whole sequence is safe: nothing has been released.
         if ahead := self._ordered(*self._opening):
             raise PmacError(f"{ahead} lines are in the rotary buffer after CLEAR")
 
     def empty(self) -> bool:
-        """Empty and close it; whether the controller shows that."""
+        """Empty and close it; return whether the controller confirms that."""
         return self._ordered("CLOSE", self._system, "OPEN ROT", "CLEAR", "CLOSE") == 0
 
     def ahead(self) -> int:
-        """Lines in it that were not begun."""
+        """Lines in it that have not begun."""
         told = self._session.ask(f"{self._system}PR")
         if len(told) != 1 or not re.fullmatch(r"\d{1,9}", told[0].strip()):
             raise LinkLostError(f"PR: expected a number of lines, got {told}")
         return int(told[0])
 
     def send(self, end: int) -> bool:
-        """Send as many of the lines up to ``end`` as there is room for; whether there was any.
+        """Send as many of the lines up to ``end`` as fit; return whether any did.
 
         Raises:
             RefusedError: a line was refused; those before it may be in the buffer.
-            LinkLostError: the link failed, or was called back; ``recount`` has to come next.
+            LinkLostError: the link failed, or has reconnected; ``recount`` must come next.
         """
         batch = self._lines[self.loaded : self.loaded + self._fitting(end)]
         if not self._is_still_open():
@@ -78,10 +78,10 @@ class RotaryBuffer:
         return True
 
     def recount(self, begun: int) -> None:
-        """After a failure, at rest behind the line ``begun``: see how many lines are there, and open the buffer again.
+        """After a failure, at rest behind line ``begun``: count the loaded lines and reopen the buffer.
 
         Raises:
-            PmacError: what the controller tells cannot be explained.
+            PmacError: the controller's count is inconsistent.
         """
         there = begun + self._ordered("CLOSE", self._system, "OPEN ROT")
         if not self.loaded <= there <= self.loaded + self.unsure:
@@ -89,7 +89,7 @@ class RotaryBuffer:
         self.loaded, self.unsure, self._room = there, 0, 0
 
     def _ordered(self, *lines: str) -> int:
-        """Have lines carried out, all again when the link fails; how many lines lie ahead then."""
+        """Execute lines, all again when the link fails; return how many lines lie ahead then."""
         for attempt in range(ATTEMPTS):
             self._connections = self._session.connections
             try:
@@ -106,11 +106,11 @@ class RotaryBuffer:
         raise LinkLostError("the link fails again and again")
 
     def _is_still_open(self) -> bool:
-        """A link that was called back has closed the buffer: a line would be carried out at once, not kept."""
+        """Whether it is still open: a reconnect closes it, and a line would then be executed at once, not stored."""
         return self._connections == self._session.connections
 
     def _fitting(self, end: int) -> int:
-        """How many of the next lines there is room for."""
+        """How many of the next lines fit."""
         if self._filled[self.loaded + 1] - self._filled[self.loaded] > self._room:
             oldest = max(self.loaded - self.ahead() - _MARGIN, 0)
             self._room = self._words - (self._filled[self.loaded] - self._filled[oldest])

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Serial conversation: commands over a line that may lose, double or change bytes.
+"""Serial conversation: commands over a line that may lose, duplicate or corrupt bytes.
 
-No line is carried out before the controller has told its checksum: the line goes out without CR, then ^N; the
-controller returns one byte, the sum of what it holds. If it is right, CR goes out; if not, ^X makes the controller
-forget the line, and it is sent again. So sending again is safe: what was not confirmed was not carried out.
-After CR a line is sent again in one case only: where the controller refuses it with ERR004. That is noise, for lines
-hold printable characters alone; a byte above 127 or a framing error does not count in the checksum, but the controller
-does not carry out a line that has one.  [TurboPMAC, <CTRL-N>, <CTRL-X>, I6]
+No line is executed before the controller has confirmed its checksum: the line is sent without CR, then ^N; the
+controller returns one byte, the sum of what it holds. If it matches, CR follows; if not, ^X discards the line, and it
+is resent. So resending is safe: a line not confirmed was not executed. After CR a line is resent in one case only: if
+the controller refuses it with ERR004. That is noise, as lines contain printable characters only; a byte above 127 or a
+framing error does not count in the checksum, but the controller does not execute a line that has one. [TurboPMAC,
+<CTRL-N>, <CTRL-X>, I6]
 
 Enters: commands, bytes and times. Leaves: bytes and events.
 """
@@ -21,7 +21,7 @@ FORGET, SUM, END = b"\x18", b"\x0e", b"\r"
 GUARD_ATTEMPTS = 4
 LONGEST_LINE = 255
 ILLEGAL_CHARACTER = 4
-"""Number of the refusal that noise on the line leads to."""
+"""Number of the refusal that line noise causes."""
 
 
 class SerialConversation(BytewiseConversation):
@@ -29,13 +29,13 @@ class SerialConversation(BytewiseConversation):
 
     Attributes:
         deadline: when ``expire`` is due.
-        handshake: the assignments that it needs.
+        handshake: the assignments it requires.
     """
 
     handshake = "I3=2 I4=1 I6=1 I9=3"
 
     def __init__(self, silence: float = 0.1) -> None:
-        """Make a conversation; as ``BytewiseConversation``, where adapters for USB make pauses as well."""
+        """Create a conversation; as ``BytewiseConversation``, allowing for the pauses of USB adapters."""
         super().__init__(silence)
         self._reader = ResponseReader(b"", True)
         self._attempts = 0
@@ -49,7 +49,7 @@ class SerialConversation(BytewiseConversation):
         self._send_line(now)
 
     def reset(self, now: float, control: int | None = None) -> None:
-        """As ``exchange.Conversation``; a control character acts at once, also inside a line."""
+        """As ``exchange.Conversation``; a control character acts at once, even inside a line."""
         self._forget()
         self._out += FORGET if control is None else bytes([control]) + FORGET
         self._wait_for_silence(now)
@@ -60,7 +60,7 @@ class SerialConversation(BytewiseConversation):
         self._wait(self._guard, self._unguarded, now + self._command.patience)
 
     def _guard(self, byte: int, now: float) -> None:
-        """The line is out, its checksum is due."""
+        """Check the checksum of the line just sent."""
         line = self._command.text.encode("ascii")
         if byte != checksum(line):
             self._flush(f"the controller holds a line of checksum {byte:02X}, not {checksum(line):02X}", now)
@@ -76,7 +76,7 @@ class SerialConversation(BytewiseConversation):
         self._flush("no checksum came back", now)
 
     def _flush(self, why: str, now: float) -> None:
-        """^X, then silence, then the line goes out again."""
+        """Send ^X, wait for silence, then resend the line."""
         self._out += FORGET
         if self._attempts >= GUARD_ATTEMPTS:
             self._end(Lost(f"{why}, {self._attempts} times", untouched=True))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Session: a controller that answers. Queries are asked again, sets are not.
+"""Session: a controller that answers. Queries are retried, sets are not.
 
 Enters: the text of commands. Leaves: the lines of the answers, or an exception: ``RefusedError`` with the controller's
-number, ``OutcomeUnknownError`` for a set that may or may not have been carried out, ``LinkLostError``, and
+number, ``OutcomeUnknownError`` for a set that may or may not have been executed, ``LinkLostError``, and
 ``CancelledError`` when something more urgent waits.
 """
 
@@ -23,40 +23,40 @@ from pkm_post.pmac_link.ports import Door
 __all__ = ["Leftover", "Session"]
 
 ATTEMPTS = 5
-"""How often a query is asked."""
+"""How often a query is sent."""
 CALLS = 3
-"""How often a lost link is called back at once."""
+"""How often a reconnect is tried at once."""
 HURRY_S = 0.4
-"""Longest silence while a stop is sent: it tries again by itself, and soon."""
+"""Longest silence while a stop is sent, which is retried soon."""
 
 
 class Keeper(Protocol):
-    """Who keeps the right to move the machine, and is called while the session does so (``ownership``)."""
+    """Holds ownership of the machine; the session calls it (``ownership``)."""
 
     def answered(self) -> None:
         """A query was answered."""
 
     def check(self) -> None:
-        """Something is about to be set, or loaded.
+        """Called before a set or a load.
 
         Raises:
-            PmacError: the right is gone.
+            PmacError: ownership is lost.
         """
 
     def is_sure(self) -> bool:
-        """Whether the right was seen so lately that nobody can have taken it since."""
+        """Whether ownership was seen so recently that no other client can have taken it since."""
 
     def release(self) -> None:
-        """Give the right back."""
+        """Release ownership."""
 
 
 class Session:
     """A controller that answers.
 
     Attributes:
-        connections: how often it has connected; the owner's program buffer that was open before is closed since.
-        keeper: who keeps the right to move the machine; None while this session has not got it.
-        has_open_buffer: whether lines that are sent may go into a program buffer that was opened here.
+        connections: how often it has connected; a reconnect closes the owner's program buffer.
+        keeper: holds ownership of the machine; None without it.
+        has_open_buffer: whether lines may go into a program buffer opened by this session.
     """
 
     def __init__(
@@ -68,15 +68,15 @@ class Session:
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Make a session; ``open`` connects.
+        """Create a session; ``open`` connects.
 
         Args:
-            port: where the controller is.
-            patience: seconds without a byte until an answer is given up.
-            pause: seconds before a lost link is called back, longer each time.
-            leftover: what becomes of a program buffer that ``open`` finds open while this session is not the owner.
-            clock: seconds of a clock that only grows.
-            sleep: waits so many seconds of it.
+            port: of the controller.
+            patience: seconds without a byte before an answer is given up.
+            pause: seconds before a reconnect, longer each time.
+            leftover: what to do with a program buffer that is open when connecting without ownership.
+            clock: monotonic clock, s.
+            sleep: waits that many seconds of the clock.
         """
         self._patience, self._pause, self._leftover = patience, pause, leftover
         self._clock, self._sleep = clock, sleep
@@ -97,11 +97,11 @@ class Session:
 
     @property
     def messages(self) -> list[str]:
-        """What programs in the controller sent of their own accord."""
+        """Unsolicited messages from programs in the controller."""
         return self._dialogue.messages
 
     def open(self) -> None:
-        """Connect and agree on the handshake.
+        """Connect and establish the handshake.
 
         Raises:
             LinkLostError: no controller answers.
@@ -109,7 +109,7 @@ class Session:
         self._call()
 
     def close(self) -> None:
-        """Disconnect, and give back the right to move the machine."""
+        """Disconnect, and release ownership of the machine."""
         if self.keeper is not None:
             self.keeper.release()
         self._dialogue.close()
@@ -117,19 +117,19 @@ class Session:
 
     @property
     def has_handshake(self) -> bool:
-        """Whether it is a Turbo PMAC, of which a handshake is agreed."""
+        """Whether it is a Turbo PMAC, whose answers need a handshake."""
         return bool(self._dialogue.handshake)
 
     def now(self) -> float:
-        """Seconds of the clock of this session."""
+        """Current time of the session's clock, s."""
         return self._clock()
 
     def sleep(self, seconds: float) -> None:
-        """Let so many seconds of that clock pass."""
+        """Wait for this many seconds of the session's clock."""
         self._sleep(seconds)
 
     def give_way_when(self, is_waited_for: Callable[[], bool]) -> None:
-        """From now on leave what takes long, and begin nothing that moves, while ``is_waited_for`` is true."""
+        """Abandon long operations, and start no motion, while ``is_waited_for`` is true."""
         self._dialogue.gives_way = is_waited_for
 
     def is_waited_for(self) -> bool:
@@ -137,7 +137,7 @@ class Session:
         return self._dialogue.gives_way()
 
     def give_way(self) -> None:
-        """Go on only when nothing more urgent waits.
+        """Check that nothing more urgent waits.
 
         Raises:
             CancelledError: something does.
@@ -146,15 +146,15 @@ class Session:
             raise CancelledError("not carried out, or not to its end: a stop came first")
 
     def ask(self, text: str, most: int = 1 << 16) -> tuple[str, ...]:
-        """The lines of the answer to a query.
+        """Send a query; return the lines of its answer.
 
         Args:
-            text: the query; it changes nothing, for it may be sent several times.
-            most: bytes of the answer that are taken.
+            text: the query; it must not change anything, as it may be sent several times.
+            most: maximum bytes of the answer.
 
         Raises:
-            RefusedError: the controller does not answer it.
-            LinkLostError: it was asked ``ATTEMPTS`` times and got no answer.
+            RefusedError: the controller refuses it.
+            LinkLostError: no answer to ``ATTEMPTS`` attempts.
             CancelledError: it takes long, and something more urgent waits.
         """
         told = self._asked(Command(text, Kind.QUERY, self._patience, most))
@@ -163,13 +163,13 @@ class Session:
         return told
 
     def order(self, text: str) -> tuple[str, ...]:
-        """Have a command carried out, once; what it says.
+        """Execute a command, sent once; return its answer.
 
         Raises:
             RefusedError: the controller refused it.
-            OutcomeUnknownError: it may or may not have been carried out.
-            LinkLostError: it surely was not.
-            PmacError: the right to move the machine is gone; it was not sent. A stop needs no right.
+            OutcomeUnknownError: it may or may not have been executed.
+            LinkLostError: it certainly was not executed.
+            PmacError: ownership is lost; it was not sent. A stop needs no ownership.
         """
         self._check()
         self.has_open_buffer |= text.startswith("OPEN")
@@ -179,7 +179,7 @@ class Session:
 
     @contextmanager
     def in_a_hurry(self) -> Iterator[None]:
-        """Ask once, call once and wait ``HURRY_S`` at most, for a stop that tries again by itself."""
+        """No retries, one reconnect and a timeout of ``HURRY_S``, for a stop that is retried by its caller."""
         before = self._patience, self._attempts, self._calls, self._in_a_hurry
         self._patience, self._attempts, self._calls, self._in_a_hurry = min(self._patience, HURRY_S), 1, 1, True
         self._dialogue.patience = self._patience
@@ -190,13 +190,13 @@ class Session:
             self._dialogue.patience = self._patience
 
     def interrupt(self, control: int) -> None:
-        """Send a control character, which the controller obeys whatever it is doing; no answer says that it has.
+        """Send a control character, which the controller obeys in any state; it is not acknowledged.
 
         Args:
             control: its code.
 
         Raises:
-            LinkLostError: it could not be sent, or the controller is not understood after it.
+            LinkLostError: it could not be sent, or later answers make no sense.
         """
         if not self._in_step:
             self._dialogue.restart(control)
@@ -208,7 +208,7 @@ class Session:
         self._in_step = True
 
     def load(self, lines: Sequence[str]) -> int:
-        """Put some lines into the open program buffer: as many as one exchange takes; their number.
+        """Put lines into the open program buffer, as many as one exchange takes; return their number.
 
         Args:
             lines: at least one.
@@ -216,7 +216,7 @@ class Session:
         Raises:
             RefusedError: a line was refused.
             OutcomeUnknownError: they may or may not be in the buffer.
-            LinkLostError: they are not.
+            LinkLostError: they are certainly not in the buffer.
         """
         count = self.lines_at_once(lines)
         if not count:
@@ -226,7 +226,7 @@ class Session:
         return count
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
-        """How many of these lines ``load`` puts into the buffer in one exchange."""
+        """How many of these lines ``load`` sends in one exchange."""
         return self._dialogue.lines_at_once(lines)
 
     def _check(self) -> None:
@@ -244,7 +244,7 @@ class Session:
     def _exchange(self, command: Command) -> tuple[str, ...]:
         if not self._in_step:
             self._call()
-        self._in_step = False  # until the end is known: an interrupt may come at any time
+        self._in_step = False  # until the outcome is known: an interrupt may come at any time
         try:
             ended = self._dialogue.run(command)
         except LinkLostError as lost:
@@ -259,7 +259,7 @@ class Session:
         raise OutcomeUnknownError(command.text[:60], ended.why)
 
     def _call(self) -> None:
-        """Connect, several times if need be."""
+        """Connect, with retries."""
         is_own = self.keeper is not None and self.keeper.is_sure()
         leftover = Leftover.CLOSE if is_own else self._leftover
         for attempt in range(self._calls):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ssh link: a shell on a controller's computer. This is the package's door to paramiko.
+"""Ssh link: a shell on a controller's computer. This is the package's only import of paramiko.
 
-Nobody is trusted on sight: the controller's host key has to be among those that are known, or nothing is sent to it. A
-key of the user or of his agent is tried first, then a password, which is asked for and kept for this link alone.
+No host is trusted on first use: the controller's host key must be known, or nothing is sent to it. A key of the user or
+of the ssh agent is tried first, then a password, which is requested and kept for this link only.
 
 Enters and leaves: bytes.
 """
@@ -26,27 +26,27 @@ if TYPE_CHECKING:
     import paramiko
 
 PASSWORD = "PKM_PMAC_PASSWORD"
-"""Variable of the environment with the password."""
+"""Environment variable for the password."""
 _LOG = logging.getLogger("pkm_post.paramiko")
-_LOG.setLevel(logging.CRITICAL)  # what goes wrong is told by exceptions; the rest is chatter
+_LOG.setLevel(logging.CRITICAL)  # failures are raised as exceptions; the rest is noise
 _NOTHING_TO_OFFER = "No authentication methods available"
-"""What paramiko says, by an exception that has no name of its own."""
+"""Message by which to recognize paramiko's exception, which has no class of its own."""
 _CURE = f"offer a key, by an agent or in ~/.ssh, or the password in {PASSWORD}"
 _COLUMNS = 1000
-"""Of the terminal: a line that is longer may be echoed in several."""
+"""Width of the terminal: a longer line may be echoed in several pieces."""
 
 
 class SshLink(SocketLink):
     """A shell over ssh."""
 
     def __init__(self, host: str, number: int, user: str, known_hosts: Path | None, timeout: float) -> None:
-        """Make a link, not yet connected.
+        """Create a link, not yet connected.
 
         Args:
             host: name or address.
             number: of the TCP port.
-            user: who logs in.
-            known_hosts: file with the host keys that are trusted; the user's own unless given.
+            user: login name.
+            known_hosts: file of trusted host keys; the user's own by default.
             timeout: seconds for each step of connecting, and to send.
         """
         super().__init__(host, number, timeout)
@@ -56,10 +56,10 @@ class SshLink(SocketLink):
         self._channel: paramiko.Channel | None = None
 
     def restart(self) -> None:
-        """As ``links.Link``; logs in anew.
+        """As ``links.Link``; logs in again.
 
         Raises:
-            NoAccessError: the host key is not a known one, or the user is not let in.
+            NoAccessError: the host key is unknown, or the user is denied access.
             ImportError: paramiko is not installed.
         """
         self.close()
@@ -93,12 +93,12 @@ class SshLink(SocketLink):
         return self._channel
 
     def _log_in(self, ssh: ModuleType) -> None:
-        """Connect and open a shell, within a time."""
+        """Connect and open a shell, within a deadline."""
         client = self._client = ssh.SSHClient()
         client.set_log_channel(_LOG.name)
         self._trust(client, ssh)
         connection = _Socket(socket.create_connection((self.host, self.number), self.timeout))
-        # Some steps of paramiko have no deadline of their own; closing ends them.
+        # Some steps of paramiko have no deadline of their own; closing the client ends them.
         deadline = threading.Timer(4 * self.timeout, client.close)
         deadline.start()
         try:
@@ -115,7 +115,7 @@ class SshLink(SocketLink):
             deadline.cancel()
 
     def _trust(self, client: paramiko.SSHClient, ssh: ModuleType) -> None:
-        """Make a client trust the keys that are known, and no other."""
+        """Make a client trust the known host keys, and no others."""
         host, number = self.host, self.number
 
         class Refuse(ssh.MissingHostKeyPolicy):  # type: ignore[misc,name-defined]
@@ -130,7 +130,7 @@ class SshLink(SocketLink):
 
         file = self._known_hosts or Path("~/.ssh/known_hosts").expanduser()
         try:
-            ssh.HostKeys(str(file)).lookup(host)  # some lines are only found faulty when one is looked for
+            ssh.HostKeys(str(file)).lookup(host)  # only a look-up reveals some faulty lines
             client.load_system_host_keys(str(file))
         except OSError as fault:
             if self._known_hosts is not None:
@@ -141,7 +141,7 @@ class SshLink(SocketLink):
             ) from fault
 
     def _asked_password(self) -> bool:
-        """Ask the user once for a password; whether there is one to try now."""
+        """Request a password from the user once; return whether there is one to try now."""
         if self._password is not None or not _has_listener():
             return False
         self._password = getpass.getpass(f"password of {self._user} at {self.host}: ")
@@ -149,7 +149,7 @@ class SshLink(SocketLink):
 
 
 def _bad_line(file: Path, ssh: ModuleType) -> int:
-    """The first line that is no host key; 0 when each of them is one by itself."""
+    """Number of the first line that is not a host key; 0 if each line on its own is one."""
     for number, line in enumerate(file.read_bytes().splitlines(), 1):
         try:
             ssh.hostkeys.HostKeyEntry.from_line(line.decode(), number)
@@ -159,7 +159,7 @@ def _bad_line(file: Path, ssh: ModuleType) -> int:
 
 
 class _Socket(socket.socket):
-    """A socket that raises no SIGPIPE: FreeCAD would end of it."""
+    """A socket that raises no SIGPIPE, which would end FreeCAD."""
 
     def __init__(self, connection: socket.socket) -> None:
         timeout = connection.gettimeout()
@@ -173,7 +173,7 @@ class _Socket(socket.socket):
 
 
 def _has_listener() -> bool:
-    """Whether somebody sits at a terminal; behind a window nobody does, and its thread would wait for ever."""
+    """Whether a user sits at a terminal; behind a window there is none, and its thread would block for ever."""
     here = threading.current_thread() is threading.main_thread()
     return here and sys.stdin is not None and sys.stdin.isatty()
 

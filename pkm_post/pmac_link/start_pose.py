@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Start pose: how far the tool is from where a program starts.
+"""Start pose: the distance of the tool from the start of a program.
 
-Enters: a machine, the strut lengths that the controller tells and those of the first point, mm. Leaves: how far tip,
-axis and spin of both poses are apart, by forward kinematics from home. Both are taken for the tool of the rest pose:
-what the platform has to go is nearly the same for any other.
+Enters: a machine, the strut lengths that the controller reports and those of the first point, mm. Leaves: the distances
+of tip, axis and spin between the two poses, by forward kinematics from home. Both poses use the tool of the rest pose:
+the distance the platform has to travel is nearly the same for any other.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pkm_post.pmac_link.status import Array
 
 @dataclass(frozen=True)
 class Away:
-    """How far a tool is from where it ought to be.
+    """Distance of a tool from its target pose.
 
     Attributes:
         tip: mm.
@@ -38,16 +38,16 @@ class Away:
         return f"tip {self.tip:.3f} mm, axis {axis:.4f} degrees, spin {spin:.4f} degrees"
 
     def most(self, radius: float) -> float:
-        """The largest of tip and turns, mm, where a turn counts as what it moves a point at a radius."""
+        """The largest of tip distance and turns, mm, where a turn counts as the displacement of a point at a radius."""
         return max(self.tip, radius * self.axis, radius * self.spin)
 
 
 def away_from_start(machine: Machine, length: Array, first: Array) -> Away | None:
-    """How far the tool is from the start; None where no pose that home leads to has these lengths.
+    """The distance of the tool from the start; None if no pose reachable from home has these lengths.
 
     Args:
         machine: the geometry.
-        length: (6,) strut lengths where it stands, mm.
+        length: (6,) current strut lengths, mm.
         first: (6,) strut lengths of the first point, mm.
     """
     here, start = (standing_pose(machine, each, machine.rest_tool_length) for each in (length, first))
@@ -59,13 +59,13 @@ def away_from_start(machine: Machine, length: Array, first: Array) -> Away | Non
 
 
 def start_faults(machine: Machine, length: Array, first: Array, near: float) -> tuple[str, ...]:
-    """Why a program may not start from where the tool is, in words; nothing when it may.
+    """Why a program may not start from the current pose, in plain text; empty if it may.
 
     Args:
         machine: the geometry.
-        length: (6,) strut lengths where it stands, mm.
+        length: (6,) current strut lengths, mm.
         first: (6,) strut lengths of the first point, mm.
-        near: how far the tip may be away, and by its turns a point at the characteristic length, mm.
+        near: largest distance of the tip, and, by its turns, of a point at the characteristic length, mm.
     """
     away = away_from_start(machine, length, first) if np.isfinite([length, first]).all() else None
     if away is None:

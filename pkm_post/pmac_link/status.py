@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Status: positions, following errors and status bits of the six motors, asked in one line and told in words.
+"""Status: positions, following errors and status bits of the six motors, queried in one line.
 
-Enters: a session. Leaves: counts, bits, and what they mean. Bits are counted from the least significant one of all
-hexadecimal digits of an answer.  [TurboPMAC, #n?, &n??]
+Enters: a session. Leaves: counts, bits, and their meanings. Bits are counted from the least significant one of all
+hexadecimal digits of an answer. [TurboPMAC, #n?, &n??]
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ class Bits:
     DIGITS: ClassVar[int]
     PLACES: ClassVar[Mapping[str, int]]
     TOLD: ClassVar[Mapping[str, str]] = {}
-    """Bits that are worth a word when they are set."""
+    """Bits that are reported in plain text when set."""
 
     def has(self, name: str) -> bool:
         """Whether a bit is set."""
         return bool(self.value >> self.PLACES[name] & 1)
 
     def words(self) -> tuple[str, ...]:
-        """What is wrong, in words."""
+        """Faults in plain text."""
         return tuple(text for name, text in self.TOLD.items() if self.has(name))
 
 
@@ -52,7 +52,7 @@ class MotorBits(Bits):
     """Two words of 24 bits: ``#n?``."""
 
     def moving(self) -> MotorBits:
-        """The same of a motor that does not stand."""
+        """A copy with the standing bit cleared."""
         return type(self)(self.value & ~(1 << self.PLACES["standing"]))
 
     DIGITS = 12
@@ -98,9 +98,8 @@ class Status:
         system: bits of the coordinate system.
         override: time base in %; 0 while held.
         length: (6,) strut lengths, mm.
-        following_error: (6,) commanded less actual length, mm.
-        slows_in_a_hold: whether the override tells how far a hold has slowed the program down; a Power PMAC tells that
-            which is set.
+        following_error: (6,) commanded minus actual length, mm.
+        slows_in_a_hold: whether the override follows the deceleration of a hold; a Power PMAC reports the set value.
     """
 
     motors: tuple[MotorBits, ...]
@@ -112,12 +111,12 @@ class Status:
 
     @property
     def commanded(self) -> Array:
-        """(6,) strut lengths that the controller wants, mm."""
+        """(6,) commanded strut lengths, mm."""
         return self.length + self.following_error
 
     @property
     def homed(self) -> tuple[bool, ...]:
-        """For each strut whether it has found its home."""
+        """For each strut whether it is homed."""
         return tuple(motor.has("homed") for motor in self.motors)
 
     @property
@@ -127,7 +126,7 @@ class Status:
 
     @property
     def held(self) -> bool:
-        """Whether a program waits in a feed hold, or slows down to it."""
+        """Whether a program is in a feed hold, or slows down to it."""
         return self.running and (self.system.has("held") or self.override == 0)
 
     @property
@@ -137,11 +136,11 @@ class Status:
 
     @property
     def powered(self) -> bool:
-        """Whether any motor has its amplifier on."""
+        """Whether any amplifier is enabled."""
         return any(motor.has("amplifier_enabled") for motor in self.motors)
 
     def words(self) -> tuple[str, ...]:
-        """What is wrong, in words, strut by strut."""
+        """Faults in plain text, strut by strut."""
         own = [
             f"strut {number}: {word}"
             for number, motor in zip(MOTORS, self.motors, strict=True)
@@ -151,13 +150,13 @@ class Status:
 
 
 def read_status(session: Session, settings: Settings | PowerSettings) -> Status:
-    """Ask for everything in one line, so that it belongs together.
+    """Query everything in one line, so that it is consistent.
 
     Raises:
         LinkLostError: the answer makes no sense.
     """
     if isinstance(settings, PowerSettings):
-        from pkm_post.pmac_link import power_status  # it is made of what is here
+        from pkm_post.pmac_link import power_status  # it builds on this module
 
         return _asked(session, power_status.query(settings), settings, power_status.status_of)
     return _asked(session, _query(settings), settings, _status_of)
@@ -166,7 +165,7 @@ def read_status(session: Session, settings: Settings | PowerSettings) -> Status:
 def _asked(
     session: Session, query: str, settings: AnySettings, status_of: Callable[[tuple[str, ...], AnySettings], Status]
 ) -> Status:
-    """The state that an answer tells; a ValueError says that it makes no sense."""
+    """The parsed state; a ValueError means that the answer makes no sense."""
     told = session.ask(query)
     try:
         return status_of(told, settings)
@@ -191,11 +190,12 @@ def lengths_and_errors(told: tuple[str, ...], settings: Settings | PowerSettings
     """Lengths and following errors of the struts, (6,) each in mm.
 
     Args:
-        told: for each strut three lines, bits and the counts of position and following error; any more behind them.
+        told: three lines for each strut, bits and the counts of position and following error; further lines are
+            ignored.
         settings: of the controller.
 
     Raises:
-        ValueError: a count is no number.
+        ValueError: a count is not a number.
     """
     counts = np.array([[float(line) for line in told[column : 3 * len(MOTORS) : 3]] for column in (1, 2)])
     position, error = counts / settings.counts_per_mm
@@ -206,7 +206,7 @@ def hexadecimal(text: str, digits: int) -> int:
     """The bits of an answer.
 
     Raises:
-        ValueError: it has not so many digits.
+        ValueError: the number of digits differs.
     """
     text = text.strip().lstrip("$")
     if len(text) != digits:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stopping: a hold or an abort, sent again until the machine is seen at rest.
+"""Stopping: a hold or an abort, resent until the machine is seen at rest.
 
-A stop never gives up. It is a ladder: a hold slows the program down along its path, an abort stops each strut on its
-own ramp, a control character aborts all that the controller does, and needs no line that arrives whole; the last one
-takes the power off the motors. Each rung has a time. A link that fails does not stop the climb, but for the last rung:
-struts without power may sink, so they lose it only while they are seen to move though all else was sent.
+A stop never gives up. It is a ladder: a hold slows the program down along its path; an abort stops each strut on its
+own ramp; a control character aborts everything in the controller and does not depend on a line arriving intact; the
+last one cuts motor power. Each rung has a timeout. A failing link does not stop the climb, except for the last rung:
+struts without power may sink, so power is cut only while they are seen to move after everything else was sent.
 
-Enters: a session, settings. Leaves: the state of a machine at rest. Only another stop that waits ends it before.
+Enters: a session, settings. Leaves: the state of a machine at rest. Only another waiting stop ends it earlier.
 """
 
 from __future__ import annotations
@@ -25,24 +25,24 @@ from pkm_post.pmac_link.status import MOTORS, Status, read_status
 AnySettings = Settings | PowerSettings
 
 SHOWN_S = 0.5
-"""Seconds in which the state has to show that a stop was taken; then it is sent again."""
+"""Seconds for the state to show that a stop was accepted; then it is resent."""
 POLL_S = 0.02
 NEXT_SEGMENT_S = 1.0
-"""Seconds in which a stream lets its next segment go when its link is well."""
+"""Seconds within which a stream with a working link releases its next segment."""
 _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class Rung:
-    """One way to stop.
+    """One rung of the ladder.
 
     Attributes:
-        name: in words.
+        name: in plain text.
         send: sends it.
         is_taken: whether a state shows that the controller obeys it.
-        unseen_s: seconds for which it is sent again while no state shows that.
-        rest_s: seconds that the struts have to come to rest once a state has shown it.
-        blindly: whether it is sent though it is not known that the machine moves.
+        unseen_s: seconds for which it is resent while no state shows that.
+        rest_s: seconds for the struts to come to rest once a state has shown it.
+        blindly: whether it is sent even if the machine is not known to move.
     """
 
     name: str
@@ -70,7 +70,7 @@ def _is_held(status: Status) -> bool:
 
 
 def _is_held_or_ended(status: Status) -> bool:
-    """Held means that time stands still: while it slows down, struts that turn round stand for a moment."""
+    """Held means that the time base is at 0: during deceleration, struts that reverse stand for a moment."""
     return not status.running or (status.held and (status.override == 0 or not status.slows_in_a_hold))
 
 
@@ -87,33 +87,33 @@ ABORT = Rung("abort", _order("A"), _is_ended, unseen_s=1.0, rest_s=2.0)
 ABORT_ALL = Rung("abort of everything (^A)", _control(0x01), _is_ended, unseen_s=1.0, rest_s=2.0)
 KILL_ALL = Rung("power off all motors (^K)", _control(0x0B), _never, unseen_s=1.0, rest_s=0.0, blindly=False)
 KILL_EACH = Rung("power off all motors", _kill_each, _never, unseen_s=1.0, rest_s=0.0, blindly=False)
-"""^A and ^K are control characters of a Turbo PMAC [TurboPMAC, <CTRL-A>, <CTRL-K>]; gpascii takes none."""
+"""^A and ^K are control characters of a Turbo PMAC [TurboPMAC, <CTRL-A>, <CTRL-K>]; gpascii accepts none."""
 
 TURBO_LADDER = (HOLD, ABORT, ABORT_ALL, KILL_ALL)
 POWER_LADDER = (HOLD, ABORT, KILL_EACH)
 
 
 def hold(session: Session, settings: AnySettings) -> Status:
-    """Slow the program down to rest on its path; what does not obey is stopped by the rungs above.
+    """Slow the program down to rest on its path; if it does not obey, the rungs above stop it.
 
     Raises:
         CancelledError: another stop waits.
-        NoAccessError: the controller's computer does not let this user in.
+        NoAccessError: the controller's computer denies this user access.
     """
     return _climb(session, settings, _ladder(settings), _is_held_or_ended)
 
 
 def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Status:
-    """End a program: held first, so that the struts stay on the path, then aborted.
+    """End a program: with a hold first, so that the struts stay on the path, then an abort.
 
     Args:
         session: an open session.
         settings: of the machine's controller.
-        at_once: without the hold: each strut stops on its own ramp, off the path.
+        at_once: skip the hold: each strut stops on its own ramp, off the path.
 
     Raises:
         CancelledError: another stop waits; the abort was sent.
-        NoAccessError: the controller's computer does not let this user in.
+        NoAccessError: the controller's computer denies this user access.
     """
     _, *rungs = _ladder(settings)
     if not at_once:
@@ -132,7 +132,7 @@ def _ladder(settings: AnySettings) -> tuple[Rung, ...]:
 def _climb(
     session: Session, settings: AnySettings, rungs: tuple[Rung, ...], is_stopped: Callable[[Status], bool]
 ) -> Status:
-    """Climb until a state shows the machine at rest; from the top on, the upper two rungs again and again."""
+    """Climb until a state shows the machine at rest; from the top on, repeat the upper two rungs."""
     seen: Status | None = None
     with session.in_a_hurry():
         for rung in _without_end(rungs):
@@ -148,7 +148,7 @@ def _climb(
 
 
 def _goes_on(session: Session, settings: AnySettings, status: Status) -> bool:
-    """Whether another client's stream lets its next segment go: between two of them the machine rests by itself."""
+    """Whether another client's stream releases its next segment: between segments the machine rests by itself."""
     if status.held or session.keeper is not None or not _is_streamed(session):
         return False
     until = session.now() + NEXT_SEGMENT_S
@@ -162,7 +162,7 @@ def _goes_on(session: Session, settings: AnySettings, status: Status) -> bool:
 
 
 def _is_streamed(session: Session) -> bool:
-    """Whether a stream has the machine, or that cannot be seen."""
+    """Whether a stream owns the machine, or the owner is unknown."""
     if not session.has_handshake:
         return False
     try:
@@ -187,7 +187,7 @@ def _rests(status: Status, is_stopped: Callable[[Status], bool]) -> bool:
 
 
 def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callable[[Status], bool]) -> Status | None:
-    """Send one rung until it shows, and wait for rest; the state that was read last, None when none could be read."""
+    """Send one rung until it shows, and wait for rest; return the last state read, None if none could be read."""
     until, is_taken, seen = session.now() + rung.unseen_s, False, None
     while session.now() < until:
         _send(session, settings, rung)
@@ -204,7 +204,7 @@ def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callab
 
 
 def _send(session: Session, settings: AnySettings, rung: Rung) -> None:
-    """Send it; whether it arrived, the state shows."""
+    """Send it; the state shows whether it arrived."""
     try:
         rung.send(session, settings)
     except (CancelledError, NoAccessError):

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stream: a program that is larger than the controller's memory, run from its rotary buffer while it is sent.
+"""Stream: run a program that exceeds the controller's memory from its rotary buffer while it is being sent.
 
-The program goes in segments that end with STOP at rest (``gates``). A segment is let go by R when it is in the buffer
-whole and the one before it has ended; while it runs, the next one is sent. So a cut link ends at rest, with no one's
-help. When the link comes back, the controller is waited for until it rests, and is asked how many lines lie ahead of
-it: that number says which of the last lines arrived. If it cannot be explained, or the machine is not where the
-segment ends, nothing goes on.
+The program is sent in segments that end with STOP at rest (``gates``). R releases a segment once it is completely in
+the buffer and the previous one has ended; while it runs, the next one is sent. So a cut link ends at rest without any
+help. When the link is back, the stream waits until the controller rests and queries how many lines lie ahead: that
+number shows which of the last lines arrived. If it is inconsistent, or the machine is not where the segment ends, the
+stream does not continue.
 
-Enters: a session, settings, a program, the size of the rotary buffer. Leaves: what was carried out.
+Enters: a session, settings, a program, the size of the rotary buffer. Leaves: a record of what was executed.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Streamed:
-    """A program that was carried out to its end.
+    """A program that was executed to its end.
 
     Attributes:
         lines: of the program.
-        digest: SHA-256 of them.
-        segments: how many there were.
-        resumptions: how often the link failed and the stream went on.
+        digest: SHA-256 of its lines.
+        segments: number of segments.
+        resumptions: how often the link failed and the stream continued.
     """
 
     lines: int
@@ -67,17 +67,17 @@ def stream(
         settings: of the machine's controller.
         program: what to run.
         first: (6,) strut lengths of its first point, mm.
-        words: size of the rotary buffer, as it was defined.
-        near: how far each strut may be from the first point, and from the rest that it goes on from, mm.
-        progress: is told how far it is.
-        is_cancelled: asked again and again; the machine then rests at the end of the segment that runs.
-        machine: its geometry, where the pose of the tool is to be compared with the first point as well.
+        words: size of the rotary buffer, as defined.
+        near: largest distance of each strut from the first point, and from each rest it continues from, mm.
+        progress: called with the lines released, loaded, and in total.
+        is_cancelled: polled; the machine then rests at the end of the running segment.
+        machine: its geometry, to compare the tool pose with the first point as well.
 
     Raises:
         NotReadyError: the program cannot be streamed, or the machine is not ready; nothing was sent.
-        StreamError: it failed; says where the machine rests and whether anything is left in the buffer.
-        CancelledError: it was stopped; the machine rests and nothing is left in the buffer.
-        NotOwnerError: another client has the machine; nothing was sent.
+        StreamError: it failed; states where the machine rests and whether anything is left in the buffer.
+        CancelledError: it was cancelled; the machine rests and nothing is left in the buffer.
+        NotOwnerError: another client owns the machine; nothing was sent.
     """
     streaming = RotaryStream(session, settings, segments_of(program, settings, words), words, near)
     streaming.rest = first
@@ -104,7 +104,7 @@ def _streamed(
 
 
 def _ended(streaming: RotaryStream, fault: PmacError | KeyboardInterrupt) -> PmacError:
-    """End a stream that did not come to its end, and tell how it was left."""
+    """End an incomplete stream; return the exception that describes how it was left."""
     is_empty = streaming.end(at_once=isinstance(fault, KeyboardInterrupt))
     if isinstance(fault, CancelledError | KeyboardInterrupt) and is_empty:
         return CancelledError("the stream was stopped; the machine rests, the rotary buffer is empty")
