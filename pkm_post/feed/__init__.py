@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Feed: corner blending, look-ahead and timing. Arrays alone: no machine, no kinematics."""
+"""Feed: corner blending, look-ahead and timing. Works on arrays only: no machine, no kinematics."""
 
 from pkm_post.feed.glimpse import Glimpse, glimpse, glimpse_within
 from pkm_post.feed.jerk import Ceilings, for_jerk

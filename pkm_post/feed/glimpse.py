@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Glimpse: where the tool is on a path, and where its tip goes, at many places at once.
+"""Glimpse: tool pose and tangent of the tip at many places of a path at once.
 
-Enters: path lengths. Leaves: tips, axes, spins and the way of the tip, column after column in memory. In the half of a
-segment at one of its joints, a path of lines needs no cases: with t the tangent of the segment, D that of its neighbour
-at the joint less t, W the step, H its integral and x the distance from the joint,
+Enters: path lengths. Leaves: tips, axes, spins and tangents of the tip, column-major in memory. In the half of a
+segment next to a joint, a path of lines needs no case distinction: with t the tangent of the segment, D that of its
+neighbour at the joint minus t, W the step, H its integral and x the distance from the joint,
 
     p = p_line + D H(-x) before the joint, p_line - D H(-x) behind it,    p' = t + D W(-x)
 
-for H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin go the same way. What is near an arc is left
-to ``ToolPath.at``, which says the same of lines, by the way of their two prolonged segments.
+as H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin follow the same formulas. Places near an arc are left to
+``ToolPath.at``, which gives the same result for lines by extending both segments.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pkm_post.geometry.gather import among, taken
 from pkm_post.geometry.vectors import Array
 
 _NO_WIDTH = 1e-200
-"""mm: stands for the width of a blend of none, so that the share of it is 0 or 1 without a case of its own."""
+"""mm: replaces a blend width of zero, so that the share of it is 0 or 1 without a special case."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Glimpse:
         spin: (M,) rad.
         way: (M, 3) derivative of the tip by path length.
         tool_length: (M,) gauge length in use, mm.
-        segment: (M,) the segment each place lies on, at a joint the earlier one.
+        segment: (M,) the segment of each place; at a joint the earlier one.
     """
 
     tip: Array
@@ -49,13 +49,13 @@ class Glimpse:
 
 
 def glimpse(path: ToolPath, s: Array) -> Glimpse:
-    """What ``path.at`` says of path lengths s, (M,), but for most derivatives."""
+    """The result of ``path.at`` for path lengths s, (M,), without most derivatives."""
     segment = np.clip(np.searchsorted(path.starts, s) - 1, 0, len(path.segments) - 1)
     return glimpse_within(path, segment, s - path.starts[segment])
 
 
 def glimpse_within(path: ToolPath, segment: Array, u: Array) -> Glimpse:
-    """The same at path lengths u, (M,), of the segments named."""
+    """The same at path lengths u, (M,), of the given segments."""
     seg, to_end = path.segments, path.segments.extent[segment] - u
     nearer_end = u > to_end
     joint = segment + nearer_end
@@ -90,7 +90,7 @@ def _columns(vectors: Array, rows: Array) -> Array:
 
 
 def _axes(seg: Segments, joints: Array, at: Array, x: Array, gone: Array) -> Array:
-    """Tool axes at distances x from the joints numbered ``at`` of those given, with H(-|x|)."""
+    """Tool axes at distances x from the joints ``joints[at]``, with H(-|x|)."""
     before, after = np.maximum(joints - 1, 0), np.minimum(joints, len(seg) - 1)
     if not (seg.axis_rate[before].any() or seg.axis_rate[after].any()):
         return taken(seg.axis[before], at)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jerk: what the limits must be for a plan whose acceleration does not jump.
+"""Jerk: limits for a plan with continuous acceleration.
 
-The profile of speed has a constant acceleration in every cell. Its course in time is averaged over a window of the
-length T (``Schedule``): then the acceleration changes by no more than 2 a / T per second. Means of allowed values are
-allowed if all of them are allowed where the mean is taken; so each limit is carried to all places that lie within one
-window of time. Enters: limits at stations. Leaves: lower ones, at more stations. [Biagiotti2012]
+The feed profile has constant acceleration in every cell. Its motion in time is averaged over a window of length T
+(``Schedule``), so the acceleration changes by no more than 2 a / T per second. The mean of allowed values is allowed if
+all of them are allowed where the mean is taken; so each limit is extended to all places within one window of time.
+Enters: limits at stations. Leaves: lower limits, at more stations. [Biagiotti2012]
 
-For a quantity y(s) the jerk is y' j + 3 y'' v a + y''' v^3; each term gets a third of what is planned.
+For a quantity y(s) the jerk is y' j + 3 y'' v a + y''' v^3; each term gets a third of the planned jerk.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from pkm_post.geometry.vectors import Array, norm
 
 _TERMS = 3
 _PLANNED_SHARE = 0.8
-"""Share of each jerk limit that is planned: third derivatives are differences between stations, and within a blend
-the largest is 8/7 of the largest difference."""
+"""Share of each jerk limit that is planned: third derivatives are finite differences between stations, and within a
+blend the largest is 8/7 of the largest difference."""
 _NEGLIGIBLE = 1e-12
-"""Derivatives below this bound nothing; keeps the quotients finite."""
+"""Derivatives below this impose no limit; keeps the quotients finite."""
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,11 @@ class Ceilings:
 
 
 def for_jerk(ceilings: Ceilings, bounded: Iterable[Bounded], window: float) -> Ceilings:
-    """Ceilings under which the course averaged over a window keeps the limits of jerk as well.
+    """Ceilings under which the motion averaged over a window also keeps the jerk limits.
 
     Args:
         ceilings: limits of speed and acceleration at the stations.
-        bounded: what has limits of its own, at the same stations.
+        bounded: the quantities with limits of their own, at the same stations.
         window: T, s, above 0.
     """
     square, along = ceilings.square, ceilings.along
@@ -60,7 +60,7 @@ def for_jerk(ceilings: Ceilings, bounded: Iterable[Bounded], window: float) -> C
 
 
 def _lowered(s: Array, square: Array, along: Array, item: Bounded, window: float) -> tuple[Array, Array]:
-    """Ceilings and accelerations that leave each of the three terms its part of the jerk."""
+    """Ceilings and accelerations that leave each of the three terms its share of the jerk."""
     part = _PLANNED_SHARE * item.jerk / _TERMS
     first, second = item.sizes()
     third = _third(s, item)
@@ -72,7 +72,7 @@ def _lowered(s: Array, square: Array, along: Array, item: Bounded, window: float
 
 
 def _third(s: Array, item: Bounded) -> Array:
-    """Sizes of the third derivative, (M, C) or (M, 1): the larger one of the cells before and after."""
+    """Magnitudes of the third derivative, (M, C) or (M, 1): the larger of the cells before and after."""
     change = np.diff(item.second, axis=0)
     size = np.abs(change) if item.each else norm(change)[:, None]
     in_cell = size / np.maximum(np.diff(s), _NEGLIGIBLE)[:, None]
@@ -84,11 +84,11 @@ def _largest(size: Array) -> Array:
 
 
 def _carried(ceilings: Ceilings, window: float) -> Ceilings:
-    """Ceilings that hold within one window of time of the place they come from.
+    """Ceilings that hold within one window of time around the place of their origin.
 
-    Where no speed within r = v T of a place is above v, the way of r takes T or longer. So it is enough to carry
-    the limits of each place that far. From a rest a window of time leads no farther than a T^2 / 2; there is no speed
-    to carry, since the course stands still for a whole window. Places are added at the ends of these ways.
+    Where no speed within r = v T of a place is above v, the distance r takes T or longer. So it is enough to extend the
+    limits of each place that far. From a rest the tool travels no farther than a T^2 / 2 in one window; there is no
+    speed to extend, as the motion dwells for a whole window. Places are added at the ends of these distances.
     """
     reach = np.where(ceilings.rest, ceilings.along * window**2 / 2, np.sqrt(ceilings.square) * window)
     begin, end = ceilings.s - reach, ceilings.s + reach
@@ -111,12 +111,12 @@ def _carried(ceilings: Ceilings, window: float) -> Ceilings:
 
 
 def _between(ceilings: Ceilings, s: Array, after: Array) -> Ceilings:
-    """Ceilings at places within cells, as the profile takes them: v^2 straight, the lower acceleration.
+    """Ceilings at places within cells, as the profile interprets them: v^2 linear, the lower acceleration.
 
     Args:
-        ceilings: those at the stations.
+        ceilings: the ceilings at the stations.
         s: (N,) path lengths.
-        after: (N,) the station behind each.
+        after: (N,) the station after each place.
     """
     before = after - 1
     first = np.where(ceilings.rest[before], ceilings.square[after], ceilings.square[before])
@@ -127,9 +127,9 @@ def _between(ceilings: Ceilings, s: Array, after: Array) -> Ceilings:
 
 
 def _least_of_covers(first: Array, last: Array, value: Array, size: int) -> Array:
-    """For each of so many places the least value of the ranges that cover it, (size,); infinite without one.
+    """For each of ``size`` places the least value of the ranges that cover it, (size,); infinite without one.
 
-    Every range is two ranges of a power of two that overlap; those of one length are halved, level by level.
+    Every range splits into two overlapping ranges with a power of two as length; these are halved level by level.
     """
     level = np.frexp(last - first + 1)[1] - 1
     least = np.full(size, np.inf)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Knots: the whole milliseconds at which the controller is given a point.
+"""Knots: the whole milliseconds at which the controller gets a point.
 
-Few, but enough to keep the controller's cubic within tolerance: every interval that is not is cut in two, all
-intervals at once, until they hold or are as short as the controller takes them. A cut is made where a blend begins or
-ends, if there is such a place: a cubic follows a straight or a blend for long, but not both.
+As few as keep the controller's cubics within tolerance: intervals outside it are bisected, all at once, until they hold
+or reach the shortest interval of the controller. An interval is cut where a blend begins or ends, if possible: one
+cubic follows a line or a blend over a long distance, but not both.
 """
 
 from __future__ import annotations
@@ -16,26 +16,26 @@ from pkm_post.geometry.gather import numbered
 from pkm_post.geometry.vectors import Array
 
 LONGEST_MS = 128
-"""The width to start from: the narrower, the less can hide between the places where the error is measured."""
+"""The initial width: the narrower, the less error goes unnoticed between the places where it is measured."""
 
 
 def even_marks(rests_ms: Array) -> Array:
-    """Whole ms, (R + more,): the rests, and between them even intervals of at most ``LONGEST_MS``."""
+    """Whole ms, (R + more,): the rests, with even intervals of at most ``LONGEST_MS`` between them."""
     start, _ = _even(rests_ms)
     return np.append(start, rests_ms[-1])
 
 
 def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array], shortest: int = 1) -> Array:
-    """Times of the knots, (K,) whole ms, from the first rest to the last; every rest is one of them.
+    """Times of the knots, (K,) whole ms, from the first rest to the last; every rest is a knot.
 
-    Knots of one part do not depend on the other parts: a long motion may be cut at its even marks, and the knots of
-    each piece found by themselves.
+    Knots of one piece do not depend on other pieces: a long motion may be cut at its even marks and each piece
+    processed separately.
 
     Args:
-        rests_ms: (R,) whole ms, or other marks that have to be knots.
-        edges_ms: (E,) whole ms where intervals had best be cut, increasing.
-        error: for starts and ends of intervals, (N,) whole ms each, the error by tolerance of each; 1 is just right.
-        shortest: no interval is cut into pieces below so many ms.
+        rests_ms: (R,) whole ms of rests, or of other marks that must be knots.
+        edges_ms: (E,) whole ms of preferred cuts, increasing.
+        error: maps starts and ends of intervals, (N,) whole ms each, to error / tolerance; 1 is just within tolerance.
+        shortest: least width of a cut piece, ms.
     """
     start, end = _even(rests_ms)
     edges_ms = edges_ms[slice(*np.searchsorted(edges_ms, rests_ms[[0, -1]]))]
@@ -61,7 +61,7 @@ def _even(rests_ms: Array) -> tuple[Array, Array]:
 
 
 def _cut(start: Array, end: Array, edges_ms: Array, shortest: int) -> Array:
-    """Where to cut intervals: at the edge nearest to the middle, without one in the middle; no piece is too short."""
+    """Cuts of intervals: at the edge nearest to the middle, else in the middle; no piece is too short."""
     middle = (start + end) // 2
     bounded = np.concatenate([[np.iinfo(np.int64).min // 2], edges_ms, [np.iinfo(np.int64).max // 2]])
     above = np.searchsorted(bounded, middle)

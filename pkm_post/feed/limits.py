@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Limits: how fast the path may be run at each station, from arrays alone.
+"""Limits: speed and acceleration limits along the path at each station, from arrays only.
 
 For a quantity y(s) of the path with derivatives y', y'' by path length and the speed v = s': its rate is y' v and its
-acceleration y' v' + y'' v^2. Enters: y', y'' of everything that is limited, with the limits. Leaves: at each station
-the highest v^2 and the highest |v'|. Nothing here knows of machines: struts, tip and axis are columns like any other.
+acceleration y' v' + y'' v^2. Enters: y', y'' of every limited quantity, with its limits. Leaves: at each station the
+highest v^2 and the highest |v'|. This module is independent of the machine: struts, tip and axis are plain columns.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ import numpy as np
 from pkm_post.geometry.vectors import Array, norm
 
 PLANNED_SHARE = 0.6
-"""Share of each acceleration limit that is planned: the cubic a controller plays across a switch from full
+"""Share of each acceleration limit that is planned: the cubic that a controller runs across a switch from full
 acceleration to full braking reaches 5/3 of it at its end (shown in docs/feed.md and in the tests)."""
 _FOR_CURVATURE = 0.5
-"""Share of the planned acceleration that the curvature of the path may use up; the rest speeds up and brakes."""
+"""Share of the planned acceleration that the curvature of the path may use; the rest accelerates and brakes."""
 _NEGLIGIBLE = 1e-12
-"""Derivatives below this bound nothing; keeps the quotients finite."""
+"""Derivatives below this impose no limit; keeps the quotients finite."""
 _STEEPEST = 1e6
-"""mm/s^2: stands for no limit, where nothing limited moves; keeps the sums of the profile finite."""
+"""mm/s^2: stands for no limit where no limited quantity moves; keeps the sums of the profile finite."""
 
 
 @dataclass(frozen=True)
 class Bounded:
-    """A vector of the path with limits on the size of its rate, acceleration and jerk.
+    """A vector along the path with limits on the magnitude of its rate, acceleration and jerk.
 
     Attributes:
         first: (M, C) derivatives by path length.
         second: (M, C) second derivatives.
         speed: limit of the rate, infinite where there is none.
         acceleration: limit of the acceleration, infinite where there is none.
-        each: whether every column has the limit for itself (struts), or the vector as a whole (tip).
+        each: whether the limits apply to every column (struts), or to the norm of the vector (tip).
         jerk: limit of the jerk, infinite where there is none.
     """
 
@@ -48,10 +48,10 @@ class Bounded:
     jerk: float = np.inf
 
     def sizes(self) -> tuple[Array, Array]:
-        """Sizes of first and second derivative by column of its own limit, (M, C) or (M, 1).
+        """Magnitudes of first and second derivative, by column (M, C) or of the vector (M, 1).
 
-        The second derivative is the largest of a station and its two neighbours: between two stations both it and v^2
-        change, and their product may be larger there than at either.
+        The second derivative is the maximum over a station and its two neighbours: between two stations both it and v^2
+        change, and their product may exceed that at either.
         """
         if self.each:
             return np.abs(self.first), _of_neighbours(np.abs(self.second))
@@ -61,12 +61,12 @@ class Bounded:
 def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
     """Highest speed squared and highest acceleration along the path at each station, (M,) each.
 
-    The rate y' v is limited by the largest y' of a station and its two neighbours: from one station to the next neither
-    v^2 nor y' is beyond the larger of its two ends, so the limit is kept all the way, even if both are there at once.
+    The rate y' v is limited by the largest y' of a station and its two neighbours: between two stations neither v^2 nor
+    y' exceeds the larger of its end values, so the limit holds throughout, even if both maxima coincide.
 
     Args:
         feed: (M,) programmed speed by path length.
-        bounded: everything with limits of its own.
+        bounded: the quantities with limits of their own.
     """
     bounded = tuple(bounded)
     square = feed**2
@@ -84,13 +84,13 @@ def limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
 
 
 def rough_limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]:
-    """Speeds squared and accelerations along the path that are allowed all over each segment, (N,) each.
+    """Speeds squared and accelerations along the path that are allowed on the whole of each segment, (N,) each.
 
-    Neither is above those of ``limits`` anywhere on the segment: each term of the acceleration has its part for itself.
+    Neither exceeds those of ``limits`` anywhere on the segment: each term of the acceleration has a fixed share.
 
     Args:
         feed: (N,) programmed speed by path length.
-        bounded: everything with limits of its own; ``first`` and ``second`` are bounds of the sizes, (N, 1).
+        bounded: the quantities with limits of their own; ``first`` and ``second`` bound the magnitudes, (N, 1).
     """
     square, along = feed**2, np.full(len(feed), _STEEPEST)
     for item in bounded:
@@ -102,12 +102,12 @@ def rough_limits(feed: Array, bounded: Iterable[Bounded]) -> tuple[Array, Array]
 
 
 def of_columns(function: Callable[[Array, Array], Array], columns: Array) -> Array:
-    """The least or largest one of each row, (M,), of few columns; many times faster than numpy's along the rows."""
+    """The minimum or maximum of each row, (M,), for few columns; many times faster than numpy's reduction of rows."""
     return functools.reduce(function, columns.T)
 
 
 def _of_neighbours(size: Array) -> Array:
-    """The largest of each row and the rows before and after it."""
+    """The maximum of each row and the rows before and after it."""
     padded = np.concatenate([size[:1], size, size[-1:]])
     return np.maximum(np.maximum(padded[:-2], padded[2:]), size)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""PathBounds: how large the derivatives of a tool path can be on each of its segments, blends included.
+"""PathBounds: upper bounds on the derivatives of a tool path on each segment, blends included.
 
-No number is looked for along the way: what a segment and its two blends are made of says how far they can go. Enters:
-a path. Leaves: upper bounds, one for each segment. They show where a path asks so little of a machine that its limits
-need not be computed from place to place. docs/feed.md has the derivations.
+The bounds are closed-form in the parameters of a segment and its two blends; the path is not sampled. Enters: a path.
+Leaves: upper bounds per segment. They show where a path demands so little of a machine that its limits need not be
+computed at every station. docs/feed.md has the derivations.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from pkm_post.geometry.torsion import tilt, turn_by_tilt
 from pkm_post.geometry.vectors import Array, norm
 
 _STEP = 0.75
-"""Largest slope of the cubic step that leads from one segment to the next, by its half width."""
+"""Largest slope of the cubic step from one segment to the next, per half width."""
 _PARTING_1, _PARTING_2 = 0.1, 0.73
-"""What following two arcs that part adds to the first derivative of the tip, by half width and bends, and to the second
-by bends: the most of |S - W| |x| + S' x^2 / 2 and of 2 S' |x| + |S''| x^2 / 2 in a blend of half width 1."""
+"""What two diverging arcs add to the first derivative of the tip, per half width and bends, and to the second, per
+bends: the maxima of |S - W| |x| + S' x^2 / 2 and of 2 S' |x| + |S''| x^2 / 2 in a blend of half width 1."""
 _WIDEST = 0.5
-"""rad: a blend in which the tool axis may turn farther has no bound."""
+"""rad: a blend in which the tool axis may turn by more has no bound."""
 _NO_BOUND = 1e12
 _BEYOND = 1.45
-"""How far a segment is followed for its blends, by its extent: it begins one and ends one."""
+"""How far a segment is extended for its two blends, per extent."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,10 @@ class PathBounds:
     """Upper bounds on N segments; ``_1`` and ``_2`` are derivatives by path length.
 
     Attributes:
-        tip_1, tip_2: (N,) sizes of the derivatives of the tip.
-        axis_1, axis_2: (N,) sizes of those of the unit tool axis.
+        tip_1, tip_2: (N,) magnitudes of the derivatives of the tip.
+        axis_1, axis_2: (N,) magnitudes of those of the unit tool axis.
         half_tilt: (N,) tangent of half the highest tilt of the tool axis.
-        spin_1, spin_2: (N,) sizes of those of the spin.
+        spin_1, spin_2: (N,) magnitudes of those of the spin.
     """
 
     tip_1: Array
@@ -62,7 +62,7 @@ class PathBounds:
 
 
 def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array]:
-    """In a blend, what the prolonged segments bend away from each other adds to the change of the tangent."""
+    """Bounds of the tip: in a blend, the divergence of the extended segments adds to the change of the tangent."""
     first, bend, arcs = norm(seg.tangent), np.zeros(len(seg)), seg.arcs
     radius, scale = norm(arcs.radius), 1 + np.abs(arcs.growth) * _BEYOND * seg.extent[arcs.row]
     first[arcs.row] = np.hypot(first[arcs.row], np.hypot(arcs.growth * radius, arcs.turn * radius * scale))
@@ -78,7 +78,7 @@ def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tu
 
 
 def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array, Array]:
-    """A tangent vector a of the sphere moves the axis by no more than itself, and bends it by |a'|^2 (1 + 2 |a|)."""
+    """Bounds of the axis: a tangent vector a moves it by at most |a|, and bends it by |a'|^2 (1 + 2 |a|)."""
     first = norm(seg.axis_rate)
     if not first.any():
         return first, first, _half_tilt(seg, first, first[1:])
@@ -95,7 +95,7 @@ def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> t
 
 
 def _half_tilt(seg: Segments, angle: Array, off: Array) -> Array:
-    """A great circle rises above its ends by no more than half its angle, and a blend is off by a little."""
+    """Highest tilt: a great circle rises above its ends by at most half its angle, plus the deviation of blends."""
     last = seg.axis_at(np.array([len(seg) - 1]), seg.extent[-1:])[0]
     tilts = tilt(np.concatenate([seg.axis, last]))
     highest = np.maximum(tilts[1:], tilts[:-1]) + angle / 2 + _with_joints(np.zeros(len(seg)), off, off > 0)
@@ -112,6 +112,6 @@ def _of_spin(seg: Segments, blended: Array, steepness: Array) -> tuple[Array, Ar
 
 
 def _with_joints(inside: Array, at_joint: Array, blended: Array) -> Array:
-    """The larger one of what segments (N,) have and what the blends at their joints (N - 1,) have."""
+    """The maximum of the values of segments (N,) and of the blends at their joints (N - 1,)."""
     joint = np.concatenate([[0.0], np.where(blended, at_joint, 0.0), [0.0]])
     return np.maximum(inside, np.maximum(joint[1:], joint[:-1]))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Places: where intervals of a motion are looked at: at the joints of the path, and between them.
+"""Places: where intervals of a motion are checked: at the joints of the path, and between them.
 
-What is played and what is planned part most near a joint, or near the middle between two of them. Enters: when the
-joints are passed, and intervals of time. Leaves: instants, interval by interval, with the segments they belong to.
+The interpolated motion deviates most from the plan near a joint, or near the middle between two of them. Enters: times
+of the joints, and intervals of time. Leaves: instants, ordered by interval, with the segments they belong to.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pkm_post.geometry.gather import numbered
 from pkm_post.geometry.vectors import Array
 
 _ROUNDING = 1e-9
-"""Of a number of gaps, so that one too many is not made of a rounding."""
+"""Tolerance on a number of gaps, so that rounding does not add one."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class Places:
 
     Attributes:
         row: (M,) the interval.
-        share: (M,) of the duration of the interval that has gone.
+        share: (M,) elapsed share of the duration of the interval.
         time: (M,) s.
-        segment: (M,) on which the path is then; at a joint the one before it.
+        segment: (M,) the segment of the path at that time; at a joint the one before it.
     """
 
     row: Array
@@ -35,7 +35,7 @@ class Places:
     segment: Array
 
     def most(self, values: Array, count: int) -> Array:
-        """The largest of values at the places, (M,), for each of so many intervals; 0 where there is no place."""
+        """The maximum of values at the places, (M,), for each of ``count`` intervals; 0 where there is no place."""
         most, first = np.zeros(count), np.flatnonzero(np.diff(self.row, prepend=-1))
         if len(first):
             most[self.row[first]] = np.maximum.reduceat(values, first)
@@ -49,7 +49,7 @@ class Intervals:
     Attributes:
         start: (N,) whole ms.
         end: (N,) whole ms.
-        first: (N,) the segment on which each begins.
+        first: (N,) the segment on which it begins.
         last: (N,) the segment on which it ends.
     """
 
@@ -60,7 +60,7 @@ class Intervals:
 
     @classmethod
     def of(cls, joint_time: Array, start: Array, end: Array) -> Intervals:
-        """Those between whole ms, (N,) each, on a path that passes the ends of its segments at given times, s."""
+        """The intervals between whole ms, (N,) each, on a path that passes the ends of its segments at times in s."""
         first = np.searchsorted(joint_time, start / 1000, side="right")
         return cls(start, end, first, np.searchsorted(joint_time, end / 1000))
 
@@ -76,13 +76,13 @@ class Intervals:
         return np.asarray((self.end - self.start) / 1000)
 
     def at_joints(self, joint_time: Array) -> Places:
-        """The joints inside."""
+        """The joints inside the intervals."""
         row, number = numbered(self.last - self.first)
         joint = self.first[row] + number
         return self._places(row, joint_time[joint], joint)
 
     def between_joints(self, joint_time: Array, gaps: int) -> Places:
-        """At least one place on each segment, and together with the joints no gap above one of ``gaps`` even ones."""
+        """At least one place on each segment; with the joints, no gap exceeds 1 / ``gaps`` of the interval."""
         row, number = numbered(self.last - self.first + 1)
         segment = self.first[row] + number
         begin = np.where(number > 0, joint_time[segment - 1], (self.start / 1000)[row])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Profile: speed along the path, from rest to rest, as fast as the limits allow.
+"""Profile: the fastest speed along the path, from rest to rest, within the limits.
 
-With x = v^2 the acceleration along the path is half of dx/ds, so that a bound on acceleration is a bound on the slope
-of x: x_j <= x_i + 2 a_i (s_j - s_i). The largest such x under given ceilings is a running minimum of x - C with C the
-sum of the slopes, once from the left and once from the right: look-ahead of any depth without a loop.
+With x = v^2 the acceleration along the path is half of dx/ds, so a bound on acceleration is a bound on the slope of x:
+x_j <= x_i + 2 a_i (s_j - s_i). The largest such x under given ceilings is a running minimum of x - C with C the sum of
+the slopes, once from the left and once from the right: look-ahead of any depth without a loop.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model.columns import pieces
 
 _ROUNDING = 4 * np.finfo(np.float64).eps
-"""Of sums of slopes and ceilings."""
+"""Relative rounding error of sums of slopes and ceilings."""
 _AT_ONCE = 1 << 14
 
 
 def cell_times(s: Array, square: Array) -> Array:
-    """How long each cell takes, (M - 1,) s: with v^2 straight from place to place, 2 ds / (v0 + v1).
+    """Duration of each cell, (M - 1,) s: with v^2 linear in s, 2 ds / (v0 + v1).
 
     Args:
         s: (M,) path lengths, not decreasing.
@@ -39,7 +39,7 @@ def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
         ceiling: (M,) highest speed squared; 0 where the motion rests.
         acceleration: (M,) highest acceleration along the path.
     """
-    climb, square = np.zeros(len(s)), np.empty(len(s))  # these two alone are as long as the path
+    climb, square = np.zeros(len(s)), np.empty(len(s))  # the only arrays of this length
     rise = np.minimum(acceleration[1:], acceleration[:-1], out=climb[1:])
     rise *= 2
     for rows in pieces(len(rise), _AT_ONCE):
@@ -51,6 +51,6 @@ def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
     square += climb
     np.minimum.accumulate(square[::-1], out=square[::-1])
     square -= climb
-    # what a difference of sums has lost by rounding is not standstill
+    # cancellation must not produce a standstill
     least = np.minimum(ceiling, _ROUNDING * (climb[-1] + ceiling.max()), out=climb)
     return np.clip(square, least, ceiling, out=square)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Schedule: where on the path the tool is at any time.
+"""Schedule: position along the path as a function of time.
 
 Between two places the speed squared is linear in path length, so the acceleration is constant and the time is
-2 ds / (v0 + v1). Controllers take whole milliseconds: the time from one rest to the next is stretched to the next
-whole one, which makes every speed a little lower and breaks no limit. For a plan whose acceleration does not jump, the
-course is averaged over a window of time; at every rest it stands still for one window, so that a rest stays one.
+2 ds / (v0 + v1). Controllers take whole milliseconds: the time from rest to rest is stretched to the next whole one,
+which lowers every speed slightly and exceeds no limit. For continuous acceleration the motion is averaged over a window
+of time; at every rest it dwells for one window, so that a rest remains a rest.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from pkm_post.model import Poses
 from pkm_post.model.columns import in_pieces, pieces
 
 _HALVINGS = 50
-"""Of a window, to find when a place is passed."""
+"""Bisections of a window to find when a place is passed."""
 _AT_ONCE = 1 << 14
-"""Places in one pass: what is computed for them takes more memory than what is kept."""
+"""Places in one pass: the working arrays take more memory than the result."""
 
 
 @dataclass(frozen=True)
 class Schedule:
-    """A course in time and what the planner wants to know of it.
+    """The motion along the path in time, with its rests, edges and joints.
 
     Attributes:
         course: path length by time.
-        window: s, over which the course is averaged; 0 leaves it as it is.
+        window: s, over which the motion is averaged; 0 for no averaging.
         rests_ms: (R,) whole milliseconds at which the motion rests, from 0 to the end.
-        rest_joints: (R,) for each rest the number of segments that lie before it.
+        rest_joints: (R,) for each rest the number of segments before it.
         edges_ms: (E,) whole milliseconds nearest to where blends begin and end.
         joint_time: (N,) s, when the end of each segment is passed.
     """
@@ -50,14 +50,14 @@ class Schedule:
     def of(
         cls, stations: Stations, s: Array, rest: Array, square: Array, window_ms: int = 0, shortest_ms: int = 1
     ) -> Schedule:
-        """The schedule that runs through places with the given speeds squared.
+        """The schedule that passes places at the given speeds squared.
 
         Args:
-            stations: say which path lengths are joints and edges; all joints are among the places.
+            stations: define the path lengths of joints and edges; all joints are among the places.
             s: (M,) path length of each place.
             rest: (M,) whether the motion stops there.
             square: (M,) speed squared.
-            window_ms: how long a window the course is averaged over.
+            window_ms: window over which the motion is averaged.
             shortest_ms: least time from one rest to the next.
         """
         course, rests_ms = _stretched(s, rest, square, window_ms, shortest_ms)
@@ -88,7 +88,7 @@ class Schedule:
         )
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
-        """Path length, speed and acceleration along the path at the times given, (N,) each.
+        """Path length, speed and acceleration along the path at the given times, (N,) each.
 
         Args:
             time: (N,) s, from 0 to the end.
@@ -97,7 +97,7 @@ class Schedule:
 
 
 def _stretched(s: Array, rest: Array, square: Array, window_ms: int, shortest_ms: int) -> tuple[Course, Array]:
-    """The course from rest to rest in whole milliseconds, with a window of time at each rest; and the rests."""
+    """The motion from rest to rest in whole milliseconds, with a dwell of one window at each rest; and the rests."""
     speed, duration = np.sqrt(square), cell_times(s, square)
     run = np.cumsum(rest) - 1
     elapsed = np.bincount(run[:-1], duration)
@@ -118,7 +118,7 @@ def _stretched(s: Array, rest: Array, square: Array, window_ms: int, shortest_ms
 
 
 def _each_once(ms: Array) -> Array:
-    """Whole milliseconds from 0 on, increasing but for roundings, each of them once."""
+    """Unique whole milliseconds from 0 on, from values that increase except for rounding."""
     ms = np.maximum.accumulate(ms)
     other = np.ones(len(ms), dtype=np.bool_)
     np.not_equal(ms[1:], ms[:-1], out=other[1:])
@@ -126,7 +126,7 @@ def _each_once(ms: Array) -> Array:
 
 
 def _when_passed(course: Course, window: float, s: Array, time: Array) -> Array:
-    """When the averaged course passes path lengths, (N,) s, given when the course itself does."""
+    """Times at which the averaged motion passes path lengths, (N,) s, given those of the original motion."""
     early, late = time - window / 2, time + window / 2
     for _ in range(_HALVINGS):
         middle = (early + late) / 2
@@ -136,7 +136,7 @@ def _when_passed(course: Course, window: float, s: Array, time: Array) -> Array:
 
 
 def by_time(poses: Poses, speed: Array, acceleration: Array) -> Poses:
-    """Poses with derivatives by path length turned into derivatives by time, given s' and s''."""
+    """Convert derivatives of poses by path length to derivatives by time, given s' and s''."""
     v, a = speed[:, None], acceleration[:, None]
     return Poses(
         tip=poses.tip,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Segments: the tool path before its corners are rounded, each segment by its own path length.
+"""Segments: the tool path before corner rounding, each segment parametrized by its own path length.
 
-Path length u runs over the tip's way; where the tip (nearly) stands and only the axis turns, a degree counts as a
-millimetre, so that F in mm/min becomes degrees per minute as controls have it. A segment can be evaluated beyond its
-ends, which the blends need. Units: mm, rad.
+Path length u is the distance travelled by the tip; where the tip (nearly) stands and only the axis turns, a degree
+counts as a millimetre, so that F in mm/min becomes degrees per minute, as on CNC controls. A segment can be evaluated
+beyond its ends, which the blends need. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from pkm_post.model import Kind, Trajectory
 from pkm_post.model.columns import both_by_row, by_row, is_uniform, rows_of
 
 _TURNING_IN_PLACE = 0.01
-"""mm of tip way per degree of axis turn below which a segment counts as a turn in place."""
+"""mm of tip travel per degree of axis turn below which a segment counts as a turn in place."""
 
 
 @dataclass(frozen=True)
 class Arcs:
-    """Columns of A segments whose tips run on arcs.
+    """Columns of A segments whose tip moves on an arc.
 
     Attributes:
-        row: (A,) which segments they are, ascending.
-        radius: (A, 3) from the point of the arc's axis at the height of the start to the start.
+        row: (A,) indices of the segments, ascending.
+        radius: (A, 3) perpendicular vector from the arc's axis to the start.
         quarter: (A, 3) the radius turned by 90 degrees.
         turn: (A,) angle of the arc by path length.
-        growth: (A,) relative growth of the radius by path length: ends that do not quite fit one circle are met.
+        growth: (A,) relative growth of the radius by path length, to meet end points slightly off the circle.
     """
 
     row: Array
@@ -42,7 +42,7 @@ class Arcs:
 
     @classmethod
     def of(cls, trajectory: Trajectory, start: Array, extent: Array) -> Arcs:
-        """Those of a trajectory, with the starts of all of its segments and their path lengths."""
+        """The arcs of a trajectory, given the starts and path lengths of all its segments."""
         row = np.flatnonzero(trajectory.kind == Kind.ARC)
         centre, turn_axis = trajectory.arc_centre[row], trajectory.arc_axis[row]
         radius = across(start[row] - centre, turn_axis)
@@ -56,7 +56,7 @@ class Arcs:
         )
 
     def among(self, segment: Array) -> tuple[Array, Array]:
-        """Which of the segments named, (M,), are arcs, and the rows here that they have, (K,) each."""
+        """Which of the given segments, (M,), are arcs, and their rows here, (K,) each."""
         if not len(self.row):
             return self.row, self.row
         at = np.minimum(np.searchsorted(self.row, segment), len(self.row) - 1)
@@ -66,13 +66,13 @@ class Arcs:
 
 @dataclass(frozen=True)
 class Segments:
-    """Columns of N segments as their evaluation wants them; one row stands for all that are alike.
+    """Columns of N segments, ready for evaluation; one row stands for N equal ones.
 
     Attributes:
         extent: (N,) path length.
         start: (N, 3) tip at the start.
-        tangent: (N, 3) derivative of the tip on a line; on an arc only the rise along its axis.
-        arcs: what those segments need that are arcs.
+        tangent: (N, 3) derivative of the tip on a line; on an arc only the component along its axis.
+        arcs: additional columns of the segments that are arcs.
         axis: (N, 3) tool axis at the start.
         axis_rate: (N, 3) tangent of its great circle there, rad by path length.
         spin: (N,) spin at the start.
@@ -114,13 +114,13 @@ class Segments:
         return len(self.extent)
 
     def turn(self) -> Array:
-        """By how much tool axis or arc turn at most, by path length, (N,)."""
+        """The larger rate of turn of tool axis or arc, by path length, (N,)."""
         turn = np.array(by_row(norm, self.axis_rate))
         turn[self.arcs.row] = np.maximum(turn[self.arcs.row], self.arcs.turn)
         return turn
 
     def tip_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
-        """Tip with first and second derivative, (M, 3) each, at path lengths u of the segments named."""
+        """Tip with first and second derivative, (M, 3) each, at path lengths u of the given segments."""
         tangent = np.take(self.tangent, segment, axis=0)
         tip = u[:, None] * tangent
         tip += np.take(self.start, segment, axis=0)
@@ -133,7 +133,7 @@ class Segments:
         return tip, first, second
 
     def _turned(self, arc: Array, u: Array) -> tuple[Array, Array, Array]:
-        """What turning about the arc's axis adds to the straight rise."""
+        """The contribution of the rotation about the arc's axis."""
         arcs = self.arcs
         radius, quarter = arcs.radius[arc], arcs.quarter[arc]
         turn, growth = arcs.turn[arc][:, None], arcs.growth[arc][:, None]
@@ -149,11 +149,11 @@ class Segments:
     def axis_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
         """Tool axis with first and second derivative, (M, 3) each."""
         axis, rate = rows_of(self.axis, segment), rows_of(self.axis_rate, segment)
-        if not rate.any():  # as in all work with three axes
+        if not rate.any():  # as in all three-axis work
             return axis, rate, np.zeros_like(rate)
         return along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))
 
 
 def _by_length(change: Array, extent: Array) -> Array:
-    """Changes over a segment by its path length; where there are none, one row of zeros stands for all."""
+    """Changes over a segment by its path length; one row of zeros stands for all if there are none."""
     return change if is_uniform(change) and not change.any() else change / extent

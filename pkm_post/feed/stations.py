@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stations: the places on a tool path where its limits are asked for and its speed is planned.
+"""Stations: the places on a tool path where limits are evaluated and speed is planned.
 
-Enough of them that what the limits depend on is close to straight between two: every blend is cut evenly, and between
-blends the tip moves and the axis turns only a little from one station to the next. Segments on which nothing has to
-be computed from place to place have none in their blends.
+They are dense enough for limits to vary almost linearly between them: every blend is divided evenly, and between blends
+the tip moves and the axis turns only a little from station to station. Segments whose limits need no evaluation at
+stations have none in their blends.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Stations:
     """Columns of M stations in order.
 
     Attributes:
-        segment: (M,) segment each station lies on; a joint is the end of the earlier one.
+        segment: (M,) segment of each station; a joint is the end of the earlier one.
         u: (M,) path length on that segment.
         s: (M,) path length since the start.
         rest: (M,) whether the motion stops there.
@@ -47,7 +47,7 @@ def stations(path: ToolPath, close: Array | None = None) -> Stations:
 
     Args:
         path: N segments.
-        close: (N,) whether a segment gets all of its stations, those in its blends as well; if not given, each does.
+        close: (N,) whether a segment gets all of its stations, including those in its blends; by default all do.
     """
     extent = path.segments.extent
     close = np.ones(len(extent), dtype=bool) if close is None else close

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""ToolPath: the way of tip, axis and spin with rounded corners, as a function of path length s.
+"""ToolPath: the path of tip, axis and spin with rounded corners, as a function of path length s.
 
-Enters: a trajectory and how far tip and axis may leave it at its corners. Leaves: poses with exact first and second
-derivatives at any s. Tip and axis are rounded in step, so that cutting direction and tool attitude stay together; the
-axis always turns along great circles, never through Euler angles [paper section 5.2].
+Enters: a trajectory and the tolerances of tip and axis at its corners. Leaves: poses with exact first and second
+derivatives at any s. Tip and axis are rounded in step, so that cutting direction and tool attitude stay synchronous;
+the axis always turns along great circles, never through Euler angles [paper section 5.2].
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import Poses, Trajectory
 
 _INSIDE = 1 - 1e-9
-"""Part of the half width that counts as the blend: at its very end the segment is itself, whatever was rounded."""
+"""Share of the half width that counts as the blend: at its very end the segment is exact despite rounding."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,12 @@ class ToolPath:
 
     Attributes:
         segments: the segments before rounding.
-        starts: (N + 1,) path length s at the start of each segment, and at the end of all.
+        starts: (N + 1,) path length s at the start of each segment, and at the end of the path.
         blend: (N + 1,) half width of the blend at the start of each segment; 0 at rests and at both ends.
         rests: (N + 1,) whether the motion stops at the start of each segment; true at both ends.
         feed: (N,) highest speed by path length, mm/s.
         tool_length: (N,) gauge length in use.
-        tip_tolerance: (N,) how far the tip may be from each segment where the program says so, mm; 0 elsewhere.
+        tip_tolerance: (N,) tolerance of the tip on each segment where the program states one, mm; 0 elsewhere.
     """
 
     segments: Segments
@@ -52,7 +52,7 @@ class ToolPath:
         Args:
             trajectory: at least one segment.
             tip_tolerance: how far the tip may leave the segments at corners, mm; a number, or (N,) by segment. At a
-                joint the lower one of its two segments counts.
+                joint the lower tolerance of its two segments applies.
             axis_tolerance: how far the tool axis may, rad.
         """
         segments = Segments.of(trajectory)
@@ -69,7 +69,7 @@ class ToolPath:
 
     @functools.cached_property
     def attitude(self) -> tuple[Array, Array, Array] | None:
-        """Tool axis (1, 3), spin (1,) and gauge length (1,) if the whole path has one of each, as with three axes."""
+        """Tool axis (1, 3), spin (1,) and gauge length (1,) if constant along the whole path, as with three axes."""
         seg = self.segments
         if seg.axis_rate.any() or seg.spin_rate.any():
             return None
@@ -77,12 +77,12 @@ class ToolPath:
         return (seg.axis[:1], seg.spin[:1], self.tool_length[:1]) if all((c == c[:1]).all() for c in columns) else None
 
     def at(self, s: Array) -> Poses:
-        """Poses at path lengths s, (M,); at a joint the earlier segment counts."""
+        """Poses at path lengths s, (M,); at a joint those of the earlier segment."""
         segment = np.clip(np.searchsorted(self.starts, s) - 1, 0, len(self.segments) - 1)
         return self.within(segment, s - self.starts[segment])
 
     def within(self, segment: Array, u: Array) -> Poses:
-        """Poses at path lengths u, (M,), of the segments named, with derivatives by path length."""
+        """Poses at path lengths u, (M,), of the given segments, with derivatives by path length."""
         tip, axis = self.segments.tip_at(segment, u), self.segments.axis_at(segment, u)
         rate = self.segments.spin_rate[segment]
         spin = [self.segments.spin[segment] + u * rate, rate.copy(), np.zeros_like(rate)]
@@ -96,9 +96,9 @@ class ToolPath:
     def _round(
         self, joint: Array, x: Array, rows: Array, tip: tuple[Array, ...], axis: tuple[Array, ...], spin: list[Array]
     ) -> None:
-        """Overwrite the rows that lie in blends, at distances x from the joints at the starts of segments ``joint``.
+        """Overwrite the rows in blends, at distances x from the joints at the starts of segments ``joint``.
 
-        With p1, p2 the two segments prolonged, D the change of tangent and H the integral of W:
+        With p1, p2 the two extended segments, D the change of tangent and H the integral of W:
         p = p1 + D H + S (p2 - p1 - D x); where both are lines this is p1 + D H.
         """
         before, seg = joint - 1, self.segments
