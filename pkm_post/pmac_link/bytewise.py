@@ -27,7 +27,7 @@ class BytewiseConversation:
     """
 
     def __init__(self, silence: float) -> None:
-        """Make a conversation.
+        """Create a conversation.
 
         Args:
             silence: seconds without a byte that end an answer; longer than the longest pause within one.

@@ -21,7 +21,7 @@ class Kind(Enum):
     SET = "set"
     """Changes something; never resent unless it certainly was not executed."""
     BUFFER = "buffer"
-    """Lines for an open program buffer; resent like a set."""
+    """Lines for an open program buffer; the rule for a set applies."""
     BLIND = "blind"
     """Its answer cannot be parsed, as the handshake is unknown: it ends when the controller falls silent."""
 

@@ -5,7 +5,7 @@ The shell starts ``gpascii -2``, which reports ``STDIN Open for ASCII Input`` an
 reduces its answers to values. From then on each line sent, terminated by one LF, returns as
 
     answer   = { CR | LF | ACK } command CR LF { data CR LF } ACK CR LF
-        refusal  = the same with ``stdin:LINE:COLUMN: error #NUMBER: MEANING: text`` among the data
+    refusal  = the same with ``stdin:LINE:COLUMN: error #NUMBER: MEANING: text`` among the data
 
 The terminal's echo of the command proves that the answer belongs to it. Remains of the previous answer, such as a late
 CR LF, precede it and are skipped. Whether ACK follows a refusal is not known for every firmware: after the silence it
@@ -26,7 +26,7 @@ from pkm_post.pmac_link.exchange import Answer, Command, Kind, Lost, Refusal
 
 START, LISTENS, VALUES_ALONE = "gpascii -2", "STDIN Open for ASCII Input", "echo 7"
 START_S = 10.0
-"""Seconds without a byte before the shell does not count as that of a controller."""
+"""Seconds without a byte after which the shell is not that of a controller."""
 LONGEST_LINE = 255
 """Characters of a command; longer ones are not documented to work."""
 MEANINGS = {

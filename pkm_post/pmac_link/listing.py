@@ -3,8 +3,8 @@
 
 A controller does not list the original text: it stores numbers, not digits, so ``A512.062500`` is listed as
 ``A512.0625``, and it sets its own blanks. So each line is split into words, signs and numbers. Words and signs must be
-equal, and so must the lines: half a line is another move. A number must match to a hundredth of its last written digit,
-or to the precision of the controller's numbers.
+equal, and so must the lines: half a line is a different move. A number must match to a hundredth of its last
+written digit, or to the precision of the controller's numbers.
 
 Enters: the lines of a program and of a listing. Leaves: how many lines match, and where they differ.
 """

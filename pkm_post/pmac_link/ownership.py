@@ -171,7 +171,7 @@ def owned(session: Session, what: str, beside: tuple[str, ...] = ()) -> Iterator
     Args:
         session: an open session.
         what: the operation, one of ``WHAT``.
-        beside: operations of another client that may continue meanwhile; any other silent client's program may go on.
+        beside: operations of another client that are allowed meanwhile; any other silent client's program may continue.
 
     Raises:
         NotOwnerError: another client has it.

@@ -2,12 +2,12 @@
 """Responses: parse the bytes of one answer of the controller, framed by I3=2, I6=1 and either I4.
 
     answer   = { data CR [sum] } ACK [sum of the command]     or     { data CR [sum] } BEL ERRnnn CR
-        message  = STX text CR                                    (I64=1: unsolicited, from a program)
+    message  = STX text CR                                    (I64=1: unsolicited, from a program)
 
 Each [sum] is one byte, present with I4=1 only: the sum of the bytes of the data line with its CR, or of the command
 without its CR, modulo 256. A sum may be any byte, including 06, 07 and 0D, so only its position identifies it. The
-manuals do not state whether a refusal has a sum; none is expected, and one that arrives is a stray byte. [TurboPMAC,
-I3, I4, I6, I64]
+manuals do not state whether a refusal has a sum; none is expected, and one that arrives is a stray byte.
+[TurboPMAC, I3, I4, I6, I64]
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ class RotaryStream:
     Attributes:
         segments: of the program.
         rest: (6,) strut lengths where the machine rests once all released lines are done, mm.
-        line: of the program behind which that is.
+        line: of the program after which that is.
         resumptions: how often the stream was resumed.
     """
 

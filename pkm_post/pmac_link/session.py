@@ -25,7 +25,7 @@ __all__ = ["Leftover", "Session"]
 ATTEMPTS = 5
 """How often a query is sent."""
 CALLS = 3
-"""How often a reconnect is tried at once."""
+"""How many reconnects are tried in a row."""
 HURRY_S = 0.4
 """Longest silence while a stop is sent, which is retried soon."""
 
