@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine files: a TOML text becomes a ``model.Machine`` in mm, rad and s, or a list of everything wrong with it."""
+"""Machine files: read a TOML text into a ``model.Machine`` in mm, rad and s, or a list of all its faults."""
 
 from pkm_post.machine_file.named import machine_named
 from pkm_post.machine_file.presets import find_machine, presets, templates

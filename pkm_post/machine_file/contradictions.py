@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contradictions: entries of a machine file that are well formed each and cannot all be true.
+"""Contradictions: entries of a machine file that are well formed but cannot all be true.
 
-Enters: the entries in mm and rad, by name; None for one that the file leaves out, and malformed ones are not there.
-Leaves: a fault for each check that fails. A check runs when everything it needs is there.
+Input: the entries in mm and rad, by name; None for omitted ones, malformed ones are absent. Output: a fault for each
+failed check. A check runs when all its entries are present.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _CHECKS = rest_pose.CHECKS + strut_parts.CHECKS + limit_pairs.CHECKS + tool_chan
 
 
 def contradictions(values: Values) -> list[Fault]:
-    """What the entries that could be read say against each other."""
+    """Faults from all cross-checks of the readable entries."""
     return [
         Fault("M103" if values[entry] is None else "M106", tuple(entry.split(".")), found)
         for needs, check in _CHECKS

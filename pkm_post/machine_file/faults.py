@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults of a machine file, by entry, and the lines of the text they are told at.
+"""Faults of a machine file, by entry, and the lines they are reported at.
 
-Enters: the text, the document ``tomllib`` made of it and faults by the name of their entry. Leaves: diagnostics in the
-order of the text. ``tomllib`` keeps no lines for entries: they are found by looking for the keys again.
+Input: the text, its ``tomllib`` document and faults by entry name. Output: diagnostics in text order. ``tomllib`` keeps
+no line numbers: they are found by searching for the keys.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$
 
 
 MOST_SHOWN = 100
-"""Faults of a file that are shown; looking for the names that are meant takes the most time."""
+"""Most faults shown per file; suggesting known names takes the most time."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """One fault: code of its rule, name of the entry, what was found there; for M105 that is the name that is meant."""
+    """One fault: rule code, entry name, and what was found there; for M105 that is the suggested name."""
 
     code: str
     name: Name
@@ -41,7 +41,7 @@ def _parts(dotted: str) -> Name:
 
 
 def _stands(document: Any, name: Name) -> bool:
-    """Whether the document has such an entry: a row of numbers in brackets looks like the head of a section."""
+    """Whether the document has such an entry: a row of numbers in brackets looks like a section header."""
     for part in name:
         if not isinstance(document, dict) or part not in document:
             return False
@@ -50,7 +50,7 @@ def _stands(document: Any, name: Name) -> bool:
 
 
 def entry_lines(text: str, document: dict[str, Any]) -> dict[Name, int]:
-    """The line, from 1, of every section and key that starts a line."""
+    """Line, from 1, of every section and key that starts a line."""
     lines: dict[Name, int] = {}
     section: Name = ()
     for number, line in enumerate(text.split("\n"), start=1):
@@ -65,12 +65,12 @@ def entry_lines(text: str, document: dict[str, Any]) -> dict[Name, int]:
 
 
 def _line(name: Name, lines: dict[Name, int]) -> int:
-    """The line of the entry, or of the smallest section around it, or 0."""
+    """Line of the entry, or of the innermost section around it, or 0."""
     return next((lines[name[:length]] for length in range(len(name), 0, -1) if name[:length] in lines), 0)
 
 
 def tell(faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]) -> tuple[Diagnostic, ...]:
-    """The faults as diagnostics, from the first line to the last; of very many the first, and how many more."""
+    """Convert faults to diagnostics in line order; beyond the limit, report only how many more."""
     lines = entry_lines(text, document)
     placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])
     told = [
@@ -86,14 +86,14 @@ def tell(faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]
 
 
 def _suggestion(name: Name) -> str:
-    """The known name nearest to an unknown one."""
+    """Known name nearest to an unknown one."""
     known = dict.fromkeys(".".join(field.name[:length]) for field in FIELDS for length in range(1, len(field.name) + 1))
     nearest = difflib.get_close_matches(".".join(name), known, n=1)
     return f"the nearest known entry is {nearest[0]}" if nearest else "no known entry is like it"
 
 
 def not_toml(fault: Exception, file: str, text: str) -> Diagnostic:
-    """The diagnostic of a text that is no TOML, at the place ``tomllib`` names in its message."""
+    """Diagnostic of a text that is not TOML, at the position from the ``tomllib`` message."""
     message = str(fault)
     place = _TOML_PLACE.search(message)
     if place is None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Fields: every entry that a machine file may have, in the order of the documentation.
 
-What enters and leaves are rows, no numbers: the name of the entry, its form, its dimension (the unit in the file), its
-default and the attribute of ``model.Machine`` it becomes. The reader and docs/machine-file.md follow this table; a new
-entry is a new row. ``*`` stands for a name that the user chooses.
+Each row has the name of an entry, its form, its dimension (the unit in the file), its default and its attribute in
+``model.Machine``. The reader and docs/machine-file.md follow this table; a new entry is a new row. ``*`` stands for a
+user-defined name.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ class Field:
 
     Attributes:
         entry: its sections and its key, joined by dots.
-        form: what its value looks like.
-        dimension: which unit it is in.
-        default: its value when the file has none: None for nothing, ``REQUIRED`` when the entry must be there.
-        attribute: the attribute of ``Machine`` it becomes as it is, empty when something is made of it first.
+        form: form of its value.
+        dimension: its unit.
+        default: value if the file has none: None for no value, ``REQUIRED`` for a mandatory entry.
+        attribute: the ``Machine`` attribute it is stored in unchanged, empty when it is processed first.
     """
 
     entry: str
@@ -40,18 +40,18 @@ class Field:
 
     @property
     def name(self) -> Name:
-        """Sections and key, one by one."""
+        """Sections and key as a tuple."""
         return tuple(self.entry.split("."))
 
     def entries(self, chosen: list[str]) -> list[str]:
-        """The entries this row stands for, when the user chose these names."""
+        """Entries of this row for the user-defined names."""
         return [self.entry.replace(ANY, name) for name in chosen] if ANY in self.entry else [self.entry]
 
 
 MOST_DECIMALS = 9
 MOST_WORDS = 2**24
 LONGEST_SHORTEST = 50
-"""ms: intervals of up to 128 ms can be cut evenly into pieces no shorter than that."""
+"""ms: intervals of up to 128 ms can be split evenly into pieces no shorter than that."""
 JOINT_KIND = forms.choice("universal", "spherical")
 
 FIELDS: tuple[Field, ...] = (
@@ -144,7 +144,7 @@ FIELDS: tuple[Field, ...] = (
 
 
 def section_tree() -> dict[str, Any]:
-    """The table as nested sections: a dict is a section, a ``Field`` an entry."""
+    """Table as nested sections: a dict is a section, a ``Field`` an entry."""
     tree: dict[str, Any] = {}
     for field in FIELDS:
         *sections, key = field.name

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Forms: what the value of an entry may look like, in words and as a reading function.
+"""Forms: allowed values of an entry, as a description and a parser.
 
-Enters: one value as ``tomllib`` gives it and the scale of its unit. Leaves: the same in mm, rad, s as a number, a
-numpy array or a text, or ``FormError`` that says what was there instead. The words are those of the documentation.
+Input: one value from ``tomllib`` and the scale of its unit. Output: a number, numpy array or text in mm, rad, s, or
+``FormError`` with what was found instead. The descriptions are those of the documentation.
 """
 
 from __future__ import annotations
@@ -20,27 +20,27 @@ from pkm_post.machine_file.units import Scale
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 LARGEST = 1e12
-"""A number beyond this, an infinity or a NaN is a slip: no quantity of a machine comes near it."""
+"""A larger number, an infinity or a NaN is a typing error: no machine quantity comes near it."""
 SHORTEST_DIRECTION = 1e-9
 UNKNOWN = "unknown"
-"""Stands in a template for what is not known of a machine."""
+"""Placeholder in a template for unknown machine data."""
 RIGID_TOLERANCE = 1e-6
-"""How far a typed matrix may be from a rotation: six decimals are common."""
+"""Tolerance of a typed rotation matrix: six decimals are common."""
 _ROOM = 1.0 + 1e-9
-"""For the rounding of units, so that the limits themselves make sense."""
+"""Allowance for unit rounding, so that the limits themselves are valid."""
 AXIS_LETTERS = "ABCUVWXYZ"
 STRUTS = 6
 MOST_SHOWN = 60
-"""Characters of a wrong value that a diagnostic repeats."""
+"""Characters of a wrong value that a diagnostic quotes."""
 
 
 class FormError(Exception):
-    """A value has not the form that its entry asks for; the text says what was found."""
+    """A value does not have the required form; the text says what was found."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """One form: its words, after "expected", and the function that reads a value and converts it."""
+    """One form: its description, after "expected", and the function that parses and converts a value."""
 
     words: str
     read: Callable[[Any, Scale], Any]
@@ -61,27 +61,27 @@ _SHOWN: dict[type, Callable[[Any], str]] = {
 
 
 def shown(value: Any) -> str:
-    """A value of the file in a few words."""
+    """Format a value of the file, shortened."""
     return _SHOWN.get(type(value), str)(value)
 
 
 def holds_unknown(value: Any) -> bool:
-    """Whether a value, or anything in it, is still to be filled in."""
+    """Whether a value, or any part of it, is still to be filled in."""
     if isinstance(value, dict):
         value = list(value.values())
     return any(map(holds_unknown, value)) if isinstance(value, list) else value == UNKNOWN
 
 
 def _is_number(value: Any) -> bool:
-    # The comparison also turns away NaN, infinities and integers that no float can hold.
+    # The comparison also rejects NaN, infinities and integers that exceed a float.
     return isinstance(value, int | float) and not isinstance(value, bool) and -LARGEST <= value <= LARGEST
 
 
 def collect(value: Any, shape: tuple[int, ...], at: tuple[int, ...] = ()) -> Any:
-    """The nested lists of ``value`` as floats, when they have exactly this shape.
+    """Nested lists of ``value`` as floats, with exactly this shape.
 
     Raises:
-        FormError: they have another; the text says what stands where.
+        FormError: the shape differs; the text says what was found where.
     """
     where = f" at place {', '.join(map(str, at))}" if at else ""
     if not shape and _is_number(value):
@@ -92,10 +92,10 @@ def collect(value: Any, shape: tuple[int, ...], at: tuple[int, ...] = ()) -> Any
 
 
 def converted(value: Any, shape: tuple[int, ...], scale: Scale, is_positive: bool = False) -> Array:
-    """The numbers of ``value`` in mm, rad and s.
+    """Numbers of ``value`` in mm, rad and s.
 
     Raises:
-        FormError: they have another shape, or a size that makes no sense; a positive one may not be too small either.
+        FormError: wrong shape or implausible magnitude; a positive number may not be too small either.
     """
     numbers: Array = np.array(collect(value, shape)) * scale.factor
     size = np.abs(numbers)
@@ -111,7 +111,7 @@ def _numbers(
     finish: Callable[[Array], Any] = lambda numbers: numbers,
     is_positive: bool = False,
 ) -> Form:
-    """A form of numbers: their shape, what is accepted of them once converted, what they become."""
+    """Form of numbers: shape, condition on the converted values, and result."""
 
     def read(value: Any, scale: Scale) -> Any:
         numbers = converted(value, shape, scale, is_positive)
@@ -133,7 +133,7 @@ def _read_pose(value: Any, scale: Scale) -> Array:
     if not rigid or np.any(pose[3] != (0.0, 0.0, 0.0, 1.0)):
         raise FormError("a matrix that is no rigid motion")
     left, _, right = np.linalg.svd(rotation)
-    pose[:3, :3] = left @ right  # the nearest rotation: typed decimals must not stretch a path
+    pose[:3, :3] = left @ right  # nearest rotation: rounded decimals must not stretch a path
     pose[:3, 3] = converted(pose[:3, 3].tolist(), (3,), scale)
     return pose
 
@@ -166,12 +166,12 @@ def _text(words: str, accept: Callable[[str], Any]) -> Form:
 
 
 def choice(*names: str) -> Form:
-    """The form of an entry that is one of a few words."""
+    """Form of an entry with a fixed choice of words."""
     return _text(f"one of {', '.join(names)}", names.__contains__)
 
 
 def whole_number(least: int, most: int) -> Form:
-    """The form of an entry that counts, from ``least`` to ``most``."""
+    """Form of a whole-number entry, from ``least`` to ``most``."""
 
     def read(value: Any, scale: Scale) -> int:
         if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:

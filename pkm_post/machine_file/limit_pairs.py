@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Limit pairs: limits of a machine file that cannot both be kept.
+"""Limit pairs: mutually exclusive limits of a machine file.
 
-Enters: the entries in mm, rad and s, by name. Leaves: entries at fault and what was found there. Limits that are merely
-never reached, like a rapid speed beyond what the struts can do, are no contradiction: the lower one holds.
+Input: the entries in mm, rad and s, by name. Output: faulty entries and what was found there. An unreachable limit,
+like a rapid speed beyond the strut speed, is no contradiction: the lower one holds.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from pkm_post.machine_file.rest_pose import Check, Values
 
 _STRUTS = 6
 _BEYOND_REACH = 10
-"""Longest struts."""
+"""In lengths of the longest strut."""
 
 
 def _fast_approach(values: Values) -> Iterator[tuple[str, str]]:
-    """Where one strut alone has to move, it has all of the speed that the six have together."""
+    """Yield an approach speed above the strut speed: a strut that moves alone gets the combined speed of all six."""
     approach, most = values["controller.approach_speed"], values["struts.speed"]
     if approach > most:
         yield "controller.approach_speed", f"{approach:g} mm/s, struts.speed is {most:g} mm/s"
 
 
 def _short_lines(values: Values) -> Iterator[tuple[str, str]]:
-    """The shortest line of moves has one digit in front of the point of each speed: ``A750.000000:0.0000``."""
+    """Yield a line limit below a move with one digit before the point of each speed: ``A750.000000:0.0000``."""
     length, speed = values["controller.length_decimals"], values["controller.speed_decimals"]
     digits = len(str(int(values["struts.stroke"][0])))
     least = _STRUTS * (len("A") + digits + len(".") + length + len(":0.") + speed) + (_STRUTS - 1)
@@ -37,7 +37,7 @@ def _short_lines(values: Values) -> Iterator[tuple[str, str]]:
 
 
 def _far(entry: str) -> Check:
-    """The check that a place is not beyond all reach: the way to it would be planned, step by step."""
+    """Check that a position is not beyond all reach: the path to it would be planned, step by step."""
 
     def check(values: Values) -> Iterator[tuple[str, str]]:
         away = float(np.linalg.norm(values[entry] - values["base.joints"].mean(axis=0)))
@@ -56,4 +56,4 @@ CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
     ),
     *(((entry, "base.joints", "struts.stroke"), _far(entry)) for entry in ("tool_path.home_tip", "tool_change.nose")),
 )
-"""Each check with the entries it needs."""
+"""Each check with its required entries."""

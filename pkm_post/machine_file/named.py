@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Named: the machine that a user means, by the name of a preset or by the path of a file."""
+"""Named: resolve a machine by preset name or file path."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from pkm_post.model import Diagnostic, Machine, Place
 
 
 def machine_named(name_or_path: str | Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
-    """The machine that is meant, or what is wrong with its name or its file.
+    """The machine, or the faults of its name or file.
 
     Args:
-        name_or_path: name of a machine that comes with PKM Post, or path of a machine file.
+        name_or_path: name of a machine that ships with PKM Post, or path of a machine file.
     """
     path = find_machine(str(name_or_path))
     if path is None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Presets: the machine files that come with the program, found by name.
+"""Presets: machine files that ship with the program, found by name.
 
-Enters: what a user wrote for a machine, a preset's name or a path. Leaves: the path of the file to read.
+Input: the user's machine argument, a preset name or a path. Output: the path of the file to read.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ SUFFIX = ".toml"
 
 
 def presets() -> list[str]:
-    """The names of the complete machines that come with the add-on, in alphabetical order."""
+    """Names of the complete machines that ship with the add-on, in alphabetical order."""
     return _names(FOLDER)
 
 
 def templates() -> list[str]:
-    """The names of machines of which too little is known: their files are to be copied and filled in."""
+    """Names of machines with too little known data: their files are to be copied and filled in."""
     return _names(TEMPLATES)
 
 
 def find_machine(name_or_path: str) -> Path | None:
-    """The machine file that is meant.
+    """Find the machine file.
 
     Args:
         name_or_path: the name of a preset or template, or a path: anything with a separator or the suffix ``.toml``.
 
     Returns:
-        The path as it was given, whether there is such a file or not; for a name the path of the preset or template,
+        The path unchanged, whether or not the file exists; for a name the path of the preset or template,
         None if unknown.
     """
     if "/" in name_or_path or "\\" in name_or_path or name_or_path.endswith(SUFFIX):

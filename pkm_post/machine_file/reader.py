@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reading a machine file: a TOML text enters, a ``model.Machine`` in mm, rad and s leaves.
+"""Machine file reader: from TOML text to a ``model.Machine`` in mm, rad and s.
 
-All faults are collected in one run: first the form of every entry after the table of fields, then what the well-formed
-entries say against each other. A file with a fault gives no machine, as a limit that was misread can break one.
+All faults are collected in one run: first the form of every entry by the table of fields, then contradictions among the
+well-formed entries. A file with a fault yields no machine, since a misread limit can damage one.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from pkm_post.model import Diagnostic, Machine, Place
 
 CONTROLLER = "controller"
 _FREE_TEXTS = (NAME, PROSE)
-"""Here "unknown" is a word like others."""
+"""Forms in which "unknown" is an ordinary word."""
 
 
 def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
     """Read a machine file and check all of it.
 
     Args:
-        path: the file, as the user named it: diagnostics show it so.
+        path: the file, as the user named it; diagnostics show it unchanged.
 
     Returns:
-        The machine, or None when the file has a fault; and every fault, in the order of the text.
+        The machine, or None when the file has a fault; and every fault, in text order.
     """
     file = str(path)
     try:
@@ -48,11 +48,11 @@ def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
 
 
 def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
-    """The same for the content of a machine file.
+    """Read the content of a machine file, as ``read_machine``.
 
     Args:
         content: TOML in UTF-8.
-        file: what diagnostics call it.
+        file: name shown in diagnostics.
     """
     limit = too_large(content, file)
     if limit:
@@ -77,7 +77,7 @@ def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnos
 
 
 def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[str, Any], list[Fault]]:
-    """Every entry converted, by its dotted name, defaults where the file has none; and what is wrong with entries."""
+    """Convert every entry, by dotted name, with defaults for omitted ones; and collect the entry faults."""
     units = stated_units(document)
     optional = [field for field in FIELDS if field.default is not REQUIRED]
     values = {entry: field.default for field in optional for entry in field.entries(offsets)}
@@ -102,7 +102,7 @@ def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[st
 
 
 def _walk(table: dict[str, Any], tree: dict[str, Any], above: Name) -> Iterator[tuple[Name, Any, Any]]:
-    """Each entry of the document: its name, its ``Field`` (a dict for a section, None if unknown) and its value."""
+    """Yield each entry of the document: name, ``Field`` (a dict for a section, None if unknown) and value."""
     for key, value in table.items():
         known = tree.get(key, tree.get(ANY))
         if isinstance(known, dict) and isinstance(value, dict):
@@ -112,7 +112,7 @@ def _walk(table: dict[str, Any], tree: dict[str, Any], above: Name) -> Iterator[
 
 
 def _missing(present: set[Name]) -> list[Fault]:
-    """The required entries that are not there; those in a section of wrong form have been told with it."""
+    """Required entries that are absent; those in a malformed section are reported with it."""
     return [
         Fault("M103", field.name, f"expected {field.form.words}")
         for field in FIELDS
@@ -131,13 +131,13 @@ def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Ma
         work_offsets=work_offsets(offsets, values),
         controller=_controller(values),
         tool_change=tool_change(values),
-        # what the file leaves out is left to the machine's own defaults
+        # omitted entries get the machine's own defaults
         **{name: value for name, value in attributes.items() if value is not None},
     )
 
 
 def _controller(values: dict[str, Any]) -> dict[str, Any]:
-    """The entries below ``controller``, nested as in the file, in mm and mm/s."""
+    """Entries below ``controller``, nested as in the file, in mm and mm/s."""
     settings: dict[str, Any] = {}
     for field in FIELDS:
         if field.name[0] == CONTROLLER:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The rest pose: where every joint stands in the middle of its cone, and what contradicts it.
+"""Rest pose: the pose with every joint in the middle of its cone, and its contradictions.
 
-Enters: the entries of a machine file in mm and rad, by name. Leaves: the rest axes of the twelve joints and the faults
-of a geometry whose entries are well formed each but do not fit together. In the rest pose the tool axis is vertical
-and {T} is parallel to {M}, its origin above the tip by the tool and the spindle.
+Input: the entries of a machine file in mm and rad, by name. Output: the rest axes of the twelve joints and the faults
+of a geometry whose entries are well formed but inconsistent. In the rest pose the tool axis is vertical and {T} is
+parallel to {M}, its origin above the tip by the tool and the spindle.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from pkm_post.machine_file.forms import Array
 
 Values = dict[str, Any]
 Check = Callable[[Values], Iterator[tuple[str, str]]]
-"""Gives the entry at fault and what was found there."""
+"""Yields the faulty entry and what was found there."""
 
 COINCIDENT = 1e-3
-"""Joint centres nearer than this (mm) give a strut no direction."""
+"""mm: joint centres closer than this leave the strut direction undefined."""
 CONE_TOLERANCE = 1e-9
 SIDES = ("base", "platform")
 POSE = ("base.joints", "platform.joints", "platform.spindle_nose", "joints.rest_pose", "joints.rest_tool_length")
 
 
 def rest_struts(values: Values) -> Array:
-    """The struts in the rest pose, from base joint to platform joint: p_i + tip + (nose + tool) z - b_i.
+    """Struts in the rest pose, from base joint to platform joint: p_i + tip + (nose + tool) z - b_i.
 
     Returns:
-        (6, 3) in mm, in {M}, and as {T} is parallel to it, in {T}.
+        (6, 3) in mm, in {M} and, as {T} is parallel to it, in {T}.
     """
     height = values["platform.spindle_nose"] + values["joints.rest_tool_length"]
     origin = values["joints.rest_pose"] + np.array([0.0, 0.0, height])
@@ -54,7 +54,7 @@ def rest_distances(values: Values) -> Array:
 
 
 def rest_twists(values: Values) -> tuple[Array, Array]:
-    """By how much the halves of each strut are turned against each other in the rest pose, as in ``kinematics.screw``.
+    """Twist between the halves of each strut in the rest pose, as in ``kinematics.screw``.
 
     Returns:
         (6,) in rad, and (2, 6) sines of the angles between the strut and the fixed axes of its base and platform joint.
@@ -106,7 +106,7 @@ def _outside_cone(side: str, sign: float) -> Check:
 
 
 def each(rows: list[int], words: str, quantity: Array) -> str:
-    """The same words for each row, with its number from 1 and its quantity."""
+    """Format the same text for each row, with its number from 1 and its quantity."""
     return ", ".join(words.format(row + 1, quantity[row]) for row in rows)
 
 
@@ -116,4 +116,4 @@ CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
     ((*POSE, "joints.base_rest", "joints.base_cone"), _outside_cone("base", 1.0)),
     ((*POSE, "joints.platform_rest", "joints.platform_cone"), _outside_cone("platform", -1.0)),
 )
-"""Each check with the entries it needs; it runs when all of them are there and well formed."""
+"""Each check with its required entries; it runs when all of them are present and well formed."""

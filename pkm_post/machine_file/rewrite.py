@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rewriting a machine file: other numbers in a few entries, and every other character of the text as it was.
+"""Machine file rewriting: replace the numbers of a few entries and keep all other text unchanged.
 
-Enters: the text of a file that reads without fault, and arrays in mm by the name of their entry. Leaves: the text with
-these arrays in the units of the file. Comments inside a list that is replaced go with it.
+Input: the text of a valid file, and arrays in mm by entry name. Output: the text with these arrays in the units of the
+file. Comments inside a replaced list are lost.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from pkm_post.machine_file.units import factor, stated_units
 
 
 class CannotRewriteError(Exception):
-    """The entry is written in a way that is not replaced here; the text says what was expected."""
+    """The entry is written in an unsupported form; the text says what was expected."""
 
 
 DECIMALS = 6
-"""Of mm, as they are written: a nanometre; two more in inches."""
+"""Decimals of a written mm value: one nanometre; two more in inches."""
 _INDENT = "    "
 _DIMENSIONS = {field.entry: field.dimension for field in FIELDS}
 
 
 def with_entries(text: str, entries: dict[str, Array]) -> str:
-    """The text with other values for some entries.
+    """Return the text with new values for some entries.
 
     Args:
         text: a machine file, TOML.
-        entries: for each entry the numbers it shall have, in mm, as rows or in one row.
+        entries: new numbers of each entry, in mm, as rows or in one row.
 
     Raises:
-        CannotRewriteError: an entry does not start a line, or is not there and its section has no head of its own that
-            it could be put below.
+        CannotRewriteError: an entry does not start a line, or is absent and its section has no header of its own to
+            insert it below.
     """
     units = stated_units(tomllib.loads(text))
     for entry, numbers in entries.items():
@@ -50,7 +50,7 @@ def _toml(numbers: Array, scale: float) -> str:
         rows = "".join(f"{_INDENT}{_toml(row, scale)},\n" for row in numbers)
         return f"[\n{rows}]"
     decimals = DECIMALS if scale == 1.0 else DECIMALS + 2
-    # 0.0 is added so that no zero has a sign
+    # adding 0.0 removes the sign of negative zeros
     return f"[{', '.join(f'{round(float(number), decimals) + 0.0:.{decimals}f}' for number in numbers)}]"
 
 
@@ -71,7 +71,7 @@ def _is_key(line: str, key: str) -> bool:
 
 
 def _replaced(lines: list[str], first: int, value: str) -> str:
-    """The lines with another value from the first equals sign of a line on, up to where its brackets close."""
+    """Replace a value from the first equals sign of a line to its closing bracket."""
     head, _, rest = lines[first].partition("=")
     last, depth = first, _depth(rest)
     while depth > 0:
@@ -83,6 +83,6 @@ def _replaced(lines: list[str], first: int, value: str) -> str:
 
 
 def _depth(line: str) -> int:
-    """How many brackets a line opens more than it closes. Lists of numbers hold no text with brackets."""
+    """Opening less closing brackets of a line. Lists of numbers hold no text with brackets."""
     code = line.partition("#")[0]
     return code.count("[") - code.count("]")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids of a machine file: the bodies that move with the platform and the boxes that stand still.
+"""Solids of a machine file: bodies that move with the platform and fixed boxes.
 
-Enters: a list of tables as ``tomllib`` gives it and the scale of its length unit. Leaves: ``model.Body`` and
-``model.Box`` in mm, or ``FormError`` that says which table of the list is wrong.
+Input: a list of tables from ``tomllib`` and the scale of its length unit. Output: ``model.Body`` and ``model.Box`` in
+mm, or ``FormError`` that names the faulty table of the list.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from pkm_post.model import Body, Box
 
 _NAME = "name"
 MOST_SOLIDS = 100
-"""Of either sort: each body is checked against each fixture, all along the path."""
+"""Most solids of either sort: each body is checked against each fixture along the whole path."""
 
 
 def _tables(value: Any, shapes: dict[str, tuple[int, ...]], scale: Scale) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The name of each table and its numbers in mm, when it has these keys and no others."""
+    """Yield the name of each table and its numbers in mm; other keys are refused."""
     if not isinstance(value, list) or len(value) > MOST_SOLIDS:
         raise FormError(shown(value))
     for place, table in enumerate(value, start=1):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts of a strut: what a machine file says of tube, rod, screw and spindle, and what contradicts it.
+"""Strut parts: contradictions among the entries for tube, rod, screw and spindle.
 
-Enters: the entries in mm and rad, by name. Leaves: entries at fault and what was found there.
+Input: the entries in mm and rad, by name. Output: faulty entries and what was found there.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ import numpy as np
 from pkm_post.machine_file.rest_pose import COINCIDENT, POSE, SIDES, Check, Values, each, rest_distances, rest_twists
 
 _LEAST_ACROSS = 1e-6
-"""Least sine of the angle between a strut and the fixed axis of its joint; below, the second axis has no direction."""
+"""Least sine of the angle between a strut and the fixed axis of its joint; below, the second axis is undefined."""
 
 
 def partner(stated: str, needed: str) -> tuple[tuple[str, ...], Check]:
-    """The check that an entry does not stand alone."""
+    """Check that an entry has its partner."""
 
     def check(values: Values) -> Iterator[tuple[str, str]]:
         if _is_left_out(values, needed):
@@ -82,4 +82,4 @@ CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
     ((*POSE, "struts.screw_lead", "joints.base_axes", "joints.platform_axes"), _screw_twisted_at_rest),
     (("spindle.least_speed", "spindle.speed"), _slow_spindle),
 )
-"""Each check with the entries it needs."""
+"""Each check with its required entries."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Text limits: how large a machine file may be, and how deep its tables and lists may be nested.
+"""Text limits: size and nesting limits of a machine file.
 
-The bytes or the text of a file enter, before they are taken for TOML; the diagnostic of the first place that is beyond
-a limit leaves. ``tomllib`` needs time with the square of the parts of a key, and a level of Python for each bracket.
+Input: the bytes or text of a file, before TOML parsing. Output: the diagnostic of the first place beyond a limit.
+``tomllib`` takes quadratic time in the parts of a key, and one level of Python recursion per bracket.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import re
 from pkm_post.model import Diagnostic, Place
 
 MOST_BYTES = 1 << 18
-"""Forty times the largest machine that comes with the program."""
+"""Forty times the largest machine file that ships with the program."""
 DEEPEST = 8
-"""Brackets in each other, and parts of a key: a list of boxes in a table of a section has four."""
+"""Nested brackets, and parts of a key: a list of boxes in a table of a section has four."""
 
 _TOKEN = re.compile(
     r'''
@@ -29,11 +29,11 @@ _STEPS = {"[": 1, "{": 1, "]": -1, "}": -1}
 
 
 def too_large(content: bytes, file: str) -> Diagnostic | None:
-    """M206 for more bytes than a machine file may have, at the line where they are reached.
+    """M206 for too many bytes in a machine file, at the line of the limit.
 
     Args:
-        content: the file, or more of its bytes than it may have.
-        file: what the diagnostic calls it.
+        content: the file, or a part of it that exceeds the limit.
+        file: name shown in the diagnostic.
     """
     if len(content) <= MOST_BYTES:
         return None
@@ -45,8 +45,8 @@ def too_deep(text: str, file: str) -> Diagnostic | None:
     """M207 for the first bracket or key that is nested too deeply.
 
     Args:
-        text: of a file that is not too large, TOML or not.
-        file: what the diagnostic calls it.
+        text: of a file that is not too large, valid TOML or not.
+        file: name shown in the diagnostic.
     """
     brackets = parts = 0
     for token in _TOKEN.finditer(text):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The tool-change pose and the times of the spindle: what a machine file says of them, and what contradicts it.
+"""Tool change: the tool-change pose and spindle times of a machine file, and their contradictions.
 
-Enters: the entries in mm, s and rad, by name. Leaves: the pose, and entries at fault with what was found there.
+Input: the entries in mm, s and rad, by name. Output: the pose, and faulty entries with what was found there.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from pkm_post.model import ToolChange
 _NOSE, _AXIS, _SPIN, _HEIGHT = (f"tool_change.{key}" for key in ("nose", "axis", "spin", "safe_height"))
 _HOME = ("tool_path.home_tip", "tool_path.home_axis", "tool_path.home_spin")
 _SAME = 1e-6
-"""mm, and of unit axes: poses nearer than this are one."""
+"""mm, and as much in unit axes: poses closer than this are equal."""
 
 
 def tool_change(values: Values) -> ToolChange | None:
-    """The pose, when the file states one."""
+    """Tool-change pose, or None if the file states none."""
     if values[_NOSE] is None:
         return None
     return ToolChange(values[_NOSE], np.asarray(values[_AXIS]), values[_SPIN], values[_HEIGHT])
@@ -34,7 +34,7 @@ def _low_nose(values: Values) -> Iterator[tuple[str, str]]:
 
 
 def _spun_on_the_spot(values: Values) -> Iterator[tuple[str, str]]:
-    """Home and tool change with one tool axis on one line: a tool may have its tip at one point in both."""
+    """Home and tool change with one tool axis on one line: the tip of some tool may be at one point in both."""
     axis, home = np.asarray(values[_AXIS]), np.asarray(values[_HOME[1]])
     away = np.cross(values[_HOME[0]] - values[_NOSE], axis)
     if max(np.abs(away).max(), np.abs(home - axis).max()) < _SAME and values[_SPIN] != values[_HOME[2]]:
@@ -48,4 +48,4 @@ CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
     ((_NOSE, _AXIS, _SPIN, *_HOME), _spun_on_the_spot),
     partner("spindle.spin_down_time", "spindle.spin_up_time"),
 )
-"""Each check with the entries it needs."""
+"""Each check with its required entries."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Units of a machine file: the file names its units once, every number in it is converted by its dimension.
+"""Units of a machine file: the file states its units once, and every number is converted by its dimension.
 
-Enters: the names under ``[units]``. Leaves: for each dimension the factor that takes a number of the file to mm, rad
-and s. Conversion takes place here and nowhere further in.
+Input: the names under ``[units]``. Output: for each dimension the factor from file units to mm, rad and s. No other
+module converts units.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ UNITS: dict[str, dict[str, float]] = {
     "angle": {"deg": math.pi / 180.0, "rad": 1.0},
     "time": {"s": 1.0},
 }
-"""Per base quantity the units a file may use and their size in mm, rad, s. The first one is taken to check the
-rest of a file whose own unit is unknown."""
+"""Allowed units of each base quantity and their size in mm, rad, s. The first one is assumed in a file with an
+unknown unit, to check the rest of it."""
 
 
 @dataclass(frozen=True)
 class Dimension:
-    """What kind of quantity an entry is, and which sizes of it make sense: no machine comes near to others.
+    """Dimension of an entry, and its plausible range.
 
     Attributes:
-        noun: how the documentation calls it.
+        noun: name in the documentation.
         unit: its unit in a file that uses mm, deg and s; ``-`` for plain numbers and texts.
-        least: smallest size of a number that has to be above 0, in that unit.
-        most: largest size of any number, in that unit.
+        least: smallest plausible magnitude of a positive number, in that unit.
+        most: largest plausible magnitude of any number, in that unit.
         length: exponent of the length unit.
         angle: exponent of the angle unit.
         time: exponent of the time unit.
@@ -52,37 +52,37 @@ ANGLE = Dimension("angle", "deg", 1e-3, 1e4, angle=1)
 TIME = Dimension("time", "s", 1e-3, 1e4, time=1)
 TURNING_RATE = Dimension("turning rate", "deg/s", 1e-3, 1e6, angle=1, time=-1)
 MILLISECONDS = Dimension("interval", "ms", 1, 1e3)
-"""Whole ms whatever the units of the file: controllers count them."""
+"""Whole ms regardless of the file units: controllers count them."""
 RATE = Dimension("gain", "1/s", 1e-3, 1e6)
-"""Per second, the only unit of time that a file may have."""
+"""Per second, the only time unit of a file."""
 BLOCK_RATE = Dimension("block rate", "1/s", 10, 1e6)
-"""The same of points of a motion, which are at most 128 ms apart."""
+"""As above, for the points of a motion, which are at most 128 ms apart."""
 SPINDLE_SPEED = Dimension("spindle speed", "1/min", 1e-2, 1e6)
-"""Revolutions per minute whatever the units of the file: every spindle is named so."""
+"""Revolutions per minute regardless of the file units, as is usual for spindles."""
 COUNT_DENSITY = Dimension("counts per length", "1/mm", 1e-3, 1e9)
-"""Per mm whatever the units of the file: the entry carries its unit in its name."""
+"""Per mm regardless of the file units: the name of the entry includes the unit."""
 STIFFNESS = Dimension("stiffness", "N/mm", 1e-3, 1e12)
-"""N/mm whatever the units of the file, as a file states no unit of force."""
+"""N/mm regardless of the file units, as a file states no unit of force."""
 FORCE = Dimension("force", "N", 1e-3, 1e12)
 SINGULAR_VALUE = Dimension("singular value", "-", 1e-6, 1e3)
 DIMENSIONS = (
     LENGTH, SPEED, ACCELERATION, JERK, ANGLE, TIME, TURNING_RATE, RATE, BLOCK_RATE, SPINDLE_SPEED, COUNT_DENSITY,
     STIFFNESS, FORCE, SINGULAR_VALUE,
 )  # fmt: skip
-"""Those with sizes of their own, in the order of the documentation."""
+"""Dimensions with their own plausible range, in the order of the documentation."""
 _OF_THE_TABLE = {quantity: next(iter(sizes.values())) for quantity, sizes in UNITS.items()}
-"""The units of ``Dimension.unit``: mm, deg and s."""
+"""Units of ``Dimension.unit``: mm, deg and s."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """How the numbers of an entry are converted, and which of them make sense.
+    """Conversion factor and plausible range of the numbers of an entry.
 
     Attributes:
-        factor: takes a number of the file to mm, rad and s.
-        least: smallest size that makes sense where a number is above 0, in mm, rad and s.
-        most: largest size that makes sense, in mm, rad and s.
-        words: the same in words.
+        factor: from file units to mm, rad and s.
+        least: smallest plausible magnitude of a positive number, in mm, rad and s.
+        most: largest plausible magnitude, in mm, rad and s.
+        words: the range as text.
     """
 
     factor: float
@@ -92,14 +92,14 @@ class Scale:
 
     @classmethod
     def of(cls, dimension: Dimension, units: dict[str, float]) -> Scale:
-        """That of a quantity in a file with these units, from ``stated_units``."""
+        """Scale of a quantity in a file with these units, from ``stated_units``."""
         size, unit = factor(dimension, _OF_THE_TABLE), "" if dimension.unit == "-" else f" {dimension.unit}"
         words = f"sizes from {dimension.least:g} to {dimension.most:g}{unit} make sense"
         return cls(factor(dimension, units), dimension.least * size, dimension.most * size, words)
 
 
 def stated_units(document: dict[str, Any]) -> dict[str, float]:
-    """The size of each base unit of the file; the usual one where the file states none that is known."""
+    """Size of each base unit of the file; the default one where the file states no known unit."""
     stated = document.get("units")
     table = stated if isinstance(stated, dict) else {}
     return {
@@ -108,10 +108,10 @@ def stated_units(document: dict[str, Any]) -> dict[str, float]:
 
 
 def factor(dimension: Dimension, units: dict[str, float]) -> float:
-    """The number that takes a quantity from the units of the file to mm, rad, s.
+    """Conversion factor of a quantity from file units to mm, rad, s.
 
     Args:
-        dimension: what kind of quantity it is.
+        dimension: the dimension of the quantity.
         units: the sizes of the base units, from ``stated_units``.
     """
     return float(

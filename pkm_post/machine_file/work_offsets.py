@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Work offsets of a machine file: an origin with a turn about z, or a whole matrix, becomes the pose of {C} in {M}.
+"""Work offsets of a machine file: pose of {C} in {M} from an origin with a rotation about z, or from a matrix.
 
-Enters: the entries below ``work_offsets`` in mm and rad. Leaves: (4, 4) matrices by name, and the faults of offsets
-that state no pose or two.
+Input: the entries below ``work_offsets`` in mm and rad. Output: (4, 4) matrices by name, and the faults of offsets with
+no pose or two.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ SECTION = "work_offsets"
 
 
 def offset_names(document: dict[str, Any]) -> list[str]:
-    """The names the file gives to its offsets, in the order of the file."""
+    """Names of the work offsets, in file order."""
     section = document.get(SECTION)
     return [name for name, offset in section.items() if isinstance(offset, dict)] if isinstance(section, dict) else []
 
 
 def stated_poses(names: list[str], document: dict[str, Any]) -> list[Fault]:
-    """The faults of offsets that have not exactly one of origin and matrix."""
+    """Faults of offsets without exactly one of origin and matrix."""
     faults = []
     for name in names:
         stated = document[SECTION][name]
@@ -40,7 +40,7 @@ def stated_poses(names: list[str], document: dict[str, Any]) -> list[Fault]:
 
 
 def _upright(origin: Array, rotation_z: float) -> Array:
-    """The pose with this origin, turned by ``rotation_z`` rad about the z axis of {M}."""
+    """Pose with this origin, rotated by ``rotation_z`` rad about the z axis of {M}."""
     cosine, sine = math.cos(rotation_z), math.sin(rotation_z)
     pose = np.eye(4)
     pose[:2, :2] = (cosine, -sine), (sine, cosine)
@@ -49,7 +49,7 @@ def _upright(origin: Array, rotation_z: float) -> Array:
 
 
 def work_offsets(names: list[str], values: dict[str, Any]) -> dict[str, Array]:
-    """The poses ``machine_from_work`` by name, of offsets that were found to be without fault."""
+    """Poses ``machine_from_work`` by name, of faultless offsets."""
     poses = {}
     for name in names:
         origin, rotation_z, matrix = (values[f"{SECTION}.{name}.{key}"] for key in ("origin", "rotation_z", "matrix"))
