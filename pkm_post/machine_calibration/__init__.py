@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Calibration of a machine from the files of a user: measurements and a machine file enter, a machine file leaves."""
+"""Machine calibration: from a measurement file and a machine file to a calibrated machine file."""
 
 from pkm_post.machine_calibration.calibrated import calibrate_file
 from pkm_post.machine_calibration.measurements import COLUMNS, read_measurements

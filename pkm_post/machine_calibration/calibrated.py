@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Calibrated: a machine file with the joints and length offsets that its measurements tell, and a report on them.
+"""Calibrated: write a machine file with identified joints and length offsets, and a report on them.
 
-The new file is the old text with three entries replaced; it is read again before it is kept. Lengths in mm.
+The new file is the old text with three entries replaced; it is parsed again before it is kept. Lengths in mm.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pkm_post.model.diagnostics import errors
 from pkm_post.unwritten import unwritten
 
 _WRITTEN = 1e-6
-"""mm: by how much a number may change when it is written."""
+"""mm: largest change of a number by formatting."""
 
 
 def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[str | None, tuple[Diagnostic, ...]]:
@@ -31,7 +31,7 @@ def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[st
         out: the machine file to write.
 
     Returns:
-        A report for people, or None when nothing was written; and what was found.
+        A report for the user, or None when nothing was written; and the diagnostics.
     """
     machine, faults = machine_named(machine_file)
     measured, wrong = read_measurements(measurements)
@@ -55,7 +55,7 @@ def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[st
 
 
 def report(machine: Machine, found: Calibration, poses: int) -> str:
-    """What was found, strut by strut: by how much each parameter changes, and its standard deviation below."""
+    """Format the result, strut by strut: change of each parameter, and its standard deviation below."""
     change = _parameters(found.machine) - _parameters(machine)
     worst, worst_strut = np.unravel_index(np.abs(found.left_over).argmax(), found.left_over.shape)
     rows = [
@@ -85,7 +85,7 @@ def _told(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
 def _text(
     path: Path, found: Calibration, poses: int, source: str, out: str
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
-    """The text of the new file, once it was read again."""
+    """Text of the new file, after parsing it again."""
     entries = {
         "base.joints": found.machine.base_joints,
         "platform.joints": found.machine.platform_joints,

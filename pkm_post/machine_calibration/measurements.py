@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measurements: a CSV file of poses and strut lengths becomes ``kinematics.calibration.Measured``, or its faults.
+"""Measurements: read a CSV file of poses and strut lengths into ``kinematics.calibration.Measured``, or its faults.
 
-One row for each pose, in mm and degrees: tip x, y, z and tool axis i, j, k in {M}, spin, gauge length, and the six
-lengths l1 to l6 that the controller counts. docs/calibration.md describes it.
+One row per pose, in mm and degrees: tip x, y, z and tool axis i, j, k in {M}, spin, gauge length, and the six counted
+strut lengths l1 to l6. docs/calibration.md describes it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pkm_post.model import Diagnostic, Place
 
 COLUMNS = ("x", "y", "z", "i", "j", "k", "spin", "gauge", "l1", "l2", "l3", "l4", "l5", "l6")
 _AXIS_TOLERANCE = 1e-3
-"""How far the length of a tool axis may be from one: four decimals are common."""
+"""Tolerance of the length of a tool axis: four decimals are common."""
 _LEAST_K = -0.99
 _LARGEST = 1e6
 
@@ -56,8 +56,8 @@ def read_measurements(path: Path) -> tuple[Measured | None, tuple[Diagnostic, ..
 
 
 def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
-    """The lines that say something, with their numbers from 1."""
-    # Line by line, as a quotation mark without its partner would swallow the lines below it.
+    """Yield the non-empty, non-comment lines with their numbers from 1."""
+    # Line by line, since an unpaired quotation mark would swallow the lines below it.
     for line, row in enumerate(text.splitlines(), start=1):
         cells = [cell.strip() for cell in next(csv.reader([row]), [])]
         if any(cells) and not cells[0].startswith("#"):
@@ -65,7 +65,7 @@ def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
 
 
 def _fault(cells: list[str]) -> str:
-    """What is wrong with a row, empty when nothing is."""
+    """Fault of a row, empty when it has none."""
     if len(cells) != len(COLUMNS):
         return f"expected {len(COLUMNS)} numbers, got {len(cells)}"
     numbers = np.array([_number(cell) for cell in cells])
