@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lock: one process of this computer has something, and a file says which one that is.
+"""Lock: exclusive ownership by one process of this computer, with a file that describes the owner.
 
-The system holds the lock and releases it with the process, however that ends. What a file says that nobody has locked
-means nothing.
+The system holds the lock and releases it when the process ends in any manner. The content of an unlocked file is
+meaningless.
 
-Enters: a path, words. Leaves: a lock, or the words of the process that has it.
+Input: a path, words. Output: a lock, or the words of the owning process.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ Words = dict[str, Any]
 
 
 class Lock:
-    """A lock that this process has."""
+    """A lock that this process holds."""
 
     def __init__(self, path: Path, descriptor: int) -> None:
         self._path, self._descriptor = path, descriptor
@@ -51,14 +51,14 @@ class Lock:
         self.release()
 
     def say(self, words: Words) -> None:
-        """Write what others read of it."""
+        """Write the description for other processes."""
         os.ftruncate(self._descriptor, 0)
         os.lseek(self._descriptor, 0, os.SEEK_SET)
         os.write(self._descriptor, json.dumps(words).encode()[:_MOST_BYTES])
 
     def release(self) -> None:
-        """Give it back. The file goes before: who waits for this one sees that it is no longer the one of the path."""
-        if sys.platform == "win32":  # an open file cannot be removed there: it stays for who waits for it
+        """Release the lock. The file is removed first, so that a waiting process sees that its file is stale."""
+        if sys.platform == "win32":  # an open file cannot be removed there: it stays for waiting processes
             os.close(self._descriptor)
             self._remove()
         else:
@@ -71,7 +71,7 @@ class Lock:
 
 
 def locked(path: Path) -> Lock | None:
-    """The lock of a path; None when another process has it.
+    """Acquire the lock of a path; None when another process holds it.
 
     Raises:
         OSError: the file cannot be written, or the file system has no locks.
@@ -80,7 +80,7 @@ def locked(path: Path) -> Lock | None:
         descriptor = _opened(path)
         try:
             _lock(descriptor)
-        except (BlockingIOError, PermissionError):  # the one of POSIX, the other of Windows: another has it
+        except (BlockingIOError, PermissionError):  # POSIX and Windows: another process holds it
             os.close(descriptor)
             return None
         except OSError:
@@ -92,7 +92,7 @@ def locked(path: Path) -> Lock | None:
 
 
 def words_of(path: Path) -> Words:
-    """What the process that has the lock says of itself; empty when it says nothing."""
+    """Description that the owning process wrote; empty when there is none."""
     try:
         said = json.loads(path.read_bytes()[:_MOST_BYTES])
     except (OSError, ValueError):
@@ -101,7 +101,7 @@ def words_of(path: Path) -> Words:
 
 
 def _opened(path: Path) -> int:
-    """The file, for every user of the computer: a system may refuse to create what another user has created."""
+    """Open the file for every user of the computer: a system may refuse to create another user's existing file."""
     flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
     while True:
         with contextlib.suppress(FileNotFoundError):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Moved: the files of one result take the place of those of an earlier one, and never stand beside them.
+"""Moved: the files of one result replace those of an earlier one, and the two never mix.
 
-Enters: a private folder with new files, the folder that they belong in, and one for what they replace. Leaves: the new
-files in their folder, or the earlier ones as they were.
+Input: a private folder with new files, their target folder, and a folder for replaced files. Output: the new files in
+the target folder, or the earlier ones unchanged.
 
-First all earlier files go aside, then all new ones come. A process that is killed at any moment leaves earlier files or
-new files, perhaps not all of them, but no mixture.
+All earlier files are moved aside before any new one arrives. A process killed at any moment leaves earlier files or new
+files, perhaps not all of them, but no mixture.
 """
 
 from __future__ import annotations
@@ -16,27 +16,27 @@ from collections.abc import Iterator
 from pathlib import Path
 
 Move = tuple[Path, Path]
-"""From where, and to where."""
+"""Source and destination."""
 
 
 class MixedError(OSError):
-    """Files could not be moved, and not all of those that had been there could be put back."""
+    """Files could not be moved, and not all of the earlier ones could be restored."""
 
 
 def move(new: Path, folder: Path, aside: Path, last: str) -> None:
     """Move all files of a folder into another one, and those that they replace into a third one.
 
-    After a failure, an interrupt of the user too, all is as it was.
+    A failure or a user interrupt restores the initial state.
 
     Args:
-        new: has the files to be moved, no folders.
-        folder: gets them.
-        aside: gets what had their names; it is empty.
-        last: the file that says that the others belong together, if there is one: it goes first and comes last.
+        new: contains the files to move, no folders.
+        folder: target folder.
+        aside: receives the replaced files; it is empty.
+        last: file that marks the set as complete, if there is one: it is removed first and arrives last.
 
     Raises:
         OSError: a file cannot be moved.
-        MixedError: nor can all be put back.
+        MixedError: nor can all earlier ones be restored.
     """
     names = sorted(os.listdir(new), key=lambda name: (name == last, name))
     for name in names:
@@ -53,7 +53,7 @@ def move(new: Path, folder: Path, aside: Path, last: str) -> None:
 
 
 def _moves(names: list[str], new: Path, folder: Path, aside: Path, last: str) -> Iterator[Move]:
-    """All moves in their order; names are on disk before others follow that must not be there without them."""
+    """Yield all moves in order; names reach the disk before moves that depend on them."""
     for name in reversed(names):
         if os.path.lexists(folder / name):
             yield folder / name, aside / name
@@ -65,13 +65,13 @@ def _moves(names: list[str], new: Path, folder: Path, aside: Path, last: str) ->
 
 
 def _undo(begun: list[Move], last: str, fault: BaseException) -> None:
-    """Move back what was moved; ``last`` does not come back where another file did not."""
+    """Undo the begun moves; ``last`` is not restored if another file was not."""
     stuck: list[str] = []
     for source, target in reversed(begun):
         if stuck and source.name == last:
             continue
         try:
-            if not os.path.lexists(source):  # the last of them may not have been moved
+            if not os.path.lexists(source):  # the last move may not have happened
                 os.replace(target, source)
         except OSError:
             stuck.append(source.name)
@@ -86,7 +86,7 @@ def _refuse_folder(target: Path) -> None:
 
 
 def synchronise_names(folder: Path) -> None:
-    """Wait until the names in a folder are on disk; Windows cannot open folders and stores names by itself."""
+    """Wait until the names in a folder are on disk; Windows cannot open folders and stores names itself."""
     if os.name == "posix":
         descriptor = os.open(folder, os.O_RDONLY)
         try:

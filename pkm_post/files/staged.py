@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Staged files: results are written aside and get their final names when all of them are complete.
+"""Staged files: results are written to a private folder and get their final names when all are complete.
 
-Enters: the folder the results belong in. Leaves: the files in it, or none of them. A machine must never be given half
-a program, nor a program beside the report of another one.
+Input: the target folder. Output: all files in it, or none. A machine must never receive half a program, nor a program
+beside the report of another one.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from pkm_post.files.moved import move
 
 _PREFIX = ".staged-"
 _PRIVATE = re.compile(re.escape(_PREFIX) + "[a-z0-9_]{8}")
-"""The names of private folders, as ``tempfile.mkdtemp`` makes them."""
+"""Names of private folders, as ``tempfile.mkdtemp`` makes them."""
 _LOCK = _PREFIX + "lock"
-"""Of a folder, while a process moves files into it."""
+"""Lock file of a folder, while a process moves files into it."""
 _OWNER = "owner"
-"""Of a private folder, locked as long as its process lives."""
+"""Lock file of a private folder, held for the life of its process."""
 _PATIENCE = 30.0
-"""s, for another process to move its files; that takes milliseconds."""
+"""s, timeout for another process to move its files; that takes milliseconds."""
 _PAUSE = 0.005
-"""s, until the lock is tried again."""
+"""s, between attempts to acquire the lock."""
 
 
 class BusyError(OSError):
@@ -38,25 +38,25 @@ class BusyError(OSError):
 
 @contextmanager
 def staged(folder: Path, last: str = "") -> Iterator[Path]:
-    """Yield a fresh private folder inside ``folder``; what is written there moves into ``folder`` when the block ends.
+    """Yield a new private folder inside ``folder``; its files move into ``folder`` when the block ends.
 
-    Promised: a file appears under its final name complete and with its content on disk, never in part. When the block
-    raises, or a file cannot be moved, everything is as it was before. What is replaced goes before anything comes: also
-    a process that is killed, or a failure of power, leaves no new file beside an earlier one. Of two processes that
-    move files into one folder the second waits for the first. The private folder is removed in every case; that of a
-    process that was killed is removed by the next that writes into ``folder``.
+    Guaranteed: a file appears under its final name complete and with its content on disk, never in part. If the block
+    raises, or a file cannot be moved, the initial state is restored. Replaced files are removed before any new one
+    arrives: even a killed process or a power failure leaves no new file beside an earlier one. Of two processes that
+    move files into one folder, the second waits for the first. The private folder is always removed; that of a killed
+    process is removed by the next process that writes into ``folder``.
 
-    Not promised: a process that is killed while it moves files leaves some of them, or some of the earlier ones. Then
-    there is no ``last``. ``folder`` itself is made when it is missing, and stays.
+    Not guaranteed: a process killed while it moves files leaves some of them, or some of the earlier ones. Then there
+    is no ``last``. A missing ``folder`` is created, and stays.
 
     Args:
-        folder: where the files belong.
-        last: the name of a file among them that is removed first and comes last.
+        folder: target folder.
+        last: name of a file among them that is removed first and arrives last.
 
     Raises:
-        BusyError: another process does not end moving files.
-        MixedError: files could not be moved, and not all that had been there could be put back.
-        OSError: a folder cannot be made, what the block left is not all files, or one cannot be synchronised or moved.
+        BusyError: another process is still moving files.
+        MixedError: files could not be moved, and not all earlier ones could be restored.
+        OSError: a folder cannot be made, the block left more than files, or one cannot be synchronised or moved.
     """
     folder.mkdir(parents=True, exist_ok=True)
     with _private(folder) as private:
@@ -72,18 +72,18 @@ def staged(folder: Path, last: str = "") -> Iterator[Path]:
 
 @contextmanager
 def _private(folder: Path) -> Iterator[Path]:
-    """A fresh private folder, which others can see is of a living process."""
+    """Yield a new private folder, locked so that others see that its process is alive."""
     with ExitStack() as stack:
         with _lock_of(folder / _LOCK):
             _sweep(folder)
             private = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
-            stack.callback(shutil.rmtree, private, ignore_errors=True)  # the next sweep has what this cannot remove
+            stack.callback(shutil.rmtree, private, ignore_errors=True)  # the next sweep removes what is left
             stack.enter_context(_lock_of(private / _OWNER))
         yield private
 
 
 def _sweep(folder: Path) -> None:
-    """Remove the private folders of processes that have ended."""
+    """Remove the private folders of ended processes."""
     for name in filter(_PRIVATE.fullmatch, os.listdir(folder)):
         try:
             owner = locked(folder / name / _OWNER)
@@ -95,7 +95,7 @@ def _sweep(folder: Path) -> None:
 
 
 def _lock_of(path: Path) -> Lock:
-    """The lock of a path, when the process that has it gives it back or ends."""
+    """Lock of a path, once the owning process releases it or ends."""
     deadline = time.monotonic() + _PATIENCE
     while (lock := locked(path)) is None:
         if time.monotonic() > deadline:
@@ -105,6 +105,6 @@ def _lock_of(path: Path) -> Lock:
 
 
 def _synchronise(file: Path) -> None:
-    """Wait until the content of a file is on disk; a folder cannot be opened so and is refused."""
-    with file.open("r+b") as stream:  # Windows synchronises only what is open for writing
+    """Wait until the content of a file is on disk; folders cannot be opened this way and are refused."""
+    with file.open("r+b") as stream:  # Windows synchronises only files open for writing
         os.fsync(stream.fileno())
