@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Argument types: a word of a command line becomes a number, or the user is told what was expected.
+"""Argument types: convert command line words to numbers, or report what was expected.
 
-Enters: the text of an argument. Leaves: its value in the unit of the argument, never infinite and never NaN. These
-are for ``type=`` of ``argparse`` alone, also where a command line begins in a Python without NumPy.
+Input: the text of an argument. Output: its value in the unit of the argument, always finite. For ``type=`` of
+``argparse`` only, also where a command line starts in a Python without NumPy.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from typing import TypeVar
 
 Value = TypeVar("Value")
 Converter = Callable[[str], Value]
-"""Raises ``argparse.ArgumentTypeError``, with what was expected and what it got."""
+"""Raises ``argparse.ArgumentTypeError`` with the expected and the actual text."""
 
 
 def fitting(convert: Converter[Value], fits: Callable[[Value], bool], expected: str) -> Converter[Value]:
-    """A converter that takes some values only.
+    """Make a converter that accepts only some values.
 
     Args:
-        convert: the text to a value; a ValueError says that it is none.
-        fits: whether the value is taken.
-        expected: what is taken, in words behind "expected".
+        convert: parses the text; a ValueError rejects it.
+        fits: whether the value is accepted.
+        expected: description of accepted values, after "expected".
     """
 
     def converted(text: str) -> Value:
@@ -45,17 +45,17 @@ positive = fitting(number, lambda value: value > 0, "a number above 0")
 
 
 def between(least: float, most: float) -> Converter[float]:
-    """Numbers from the least to the most, both included."""
+    """Numbers from the least to the most, both inclusive."""
     return fitting(float, lambda value: least <= value <= most, f"a number from {least} to {most}")
 
 
 def above_zero(most: float) -> Converter[float]:
-    """Numbers that are not 0, up to the most, which is included."""
+    """Numbers above 0, up to and including the most."""
     return fitting(float, lambda value: 0 < value <= most, f"a number above 0 and up to {most}")
 
 
 LONGEST_TOOL, FARTHEST_OFFSET = 10_000, 1_000_000
-"""mm; beyond them a number is a slip, and arithmetic with it has no digits left for the rest."""
+"""mm; a larger number is a typing error, and leaves no digits for the rest of the arithmetic."""
 tool_length = above_zero(LONGEST_TOOL)
 """Gauge length or diameter of a tool, mm."""
 offset = between(-FARTHEST_OFFSET, FARTHEST_OFFSET)
@@ -69,25 +69,25 @@ def _digits(text: str) -> int:
 
 
 def whole(least: int, most: int, noun: str = "a whole number") -> Converter[int]:
-    """Whole numbers without a sign, from the least to the most, both included; the noun is what the user is told."""
+    """Unsigned whole numbers from the least to the most, both inclusive; the noun appears in the error message."""
     return fitting(_digits, lambda value: least <= value <= most, f"{noun} from {least} to {most}")
 
 
 def whole_from(least: int, expected: str) -> Converter[int]:
-    """Whole numbers without a sign, the least or more; ``expected`` is how the user is told so."""
+    """Unsigned whole numbers, the least or more; ``expected`` appears in the error message."""
     return fitting(_digits, lambda value: value >= least, expected)
 
 
 count = whole_from(1, "a whole number above 0")
-"""How many, or which one counted from 1."""
+"""A count, or an index from 1."""
 
 
 def numbered(convert: Converter[Value], form: str) -> Converter[tuple[int, Value]]:
     """A number, an equals sign and a value, such as the number of a tool and its length.
 
     Args:
-        convert: the text of the value to the value.
-        form: of the whole, as the user is told it, such as ``"NUMBER=MM"``.
+        convert: parses the text of the value.
+        form: of the whole argument in the error message, such as ``"NUMBER=MM"``.
     """
 
     def converted(text: str) -> tuple[int, Value]:

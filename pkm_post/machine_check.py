@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine check: what a machine file says, in figures that a person can compare with the machine.
+"""Machine check: contents of a machine file as figures to compare with the real machine.
 
-A machine enters. Leave rows of text, label and figure, and warnings when it cannot stand at home. Figures of the home
-pose are told for the tool of the rest pose; lengths in mm, angles in degrees.
+Input: a machine. Output: rows of text, label and figure, and warnings when the home pose breaks limits. Home figures
+use the tool of the rest pose; lengths in mm, angles in degrees.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from pkm_post.model import Diagnostic, Machine, Place
 
 Rows = list[tuple[str, str]]
 _SINGULAR = 1e-9
-"""Singular values below are rounding."""
+"""Smaller singular values are rounding."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,10 @@ class Home:
     Attributes:
         lengths: (6,) counted strut lengths.
         singular_values: (6,) of the scaled Jacobian, from the largest to the smallest.
-        turning_rate: which the strut speed allows about the tip, whatever the axis, rad/s.
+        turning_rate: about the tip, within the strut speed for any rotation axis, rad/s.
         stiffness: (3,) of the tip in x, y and z of {M}, N/mm; None when it is not stated, or the pose singular.
-        findings: of all checks of reach.
-        count_at_tip: how far one count of each strut moves the tip, mm; None where the pose is singular.
+        findings: of all reach checks.
+        count_at_tip: tip displacement by one count of each strut, mm; None where the pose is singular.
     """
 
     lengths: Array
@@ -55,7 +55,7 @@ class Home:
 
 
 def at_home(machine: Machine) -> Home:
-    """Put the machine at home."""
+    """Evaluate the machine at home."""
     spin, tool_length = np.array([machine.home_spin]), np.array([machine.rest_tool_length])
     pose = machine.home_tip[None], machine.home_axis[None], spin, tool_length
     way = Way.straight(*pose)
@@ -74,11 +74,11 @@ def at_home(machine: Machine) -> Home:
 
 
 def machine_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
-    """What stands against posting for a machine whose file is well formed: its controller, home and tool change.
+    """Faults of a well-formed machine that prevent posting: of its controller, home and tool change.
 
     Args:
         machine: the machine.
-        file: what the messages call its file.
+        file: file name in messages.
     """
     _, faults = controller_settings(machine)
     told = (replace(fault, place=Place(file)) for fault in faults)
@@ -86,7 +86,7 @@ def machine_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
 
 
 def _count_at_tip(machine: Machine, pose: tuple[Array, ...]) -> float | None:
-    """The largest way of the tip, mm, that one count of each strut makes, with the signs that add up."""
+    """Largest tip displacement, mm, by one count of each strut, with the worst combination of signs."""
     jacobian = jacobian_of_tip(machine, *pose)[0]
     counts = machine.controller.get("counts_per_mm")
     if counts is None or np.linalg.cond(jacobian) > 1 / _SINGULAR:
@@ -100,7 +100,7 @@ def home_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
 
     Args:
         machine: the machine.
-        file: what the messages call its file.
+        file: file name in messages.
     """
     return _broken_limits("M108", at_home(machine), file)
 
@@ -110,7 +110,7 @@ def change_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
 
     Args:
         machine: the machine.
-        file: what the messages call its file.
+        file: file name in messages.
     """
     pose = machine.tool_change
     if pose is None:
@@ -129,7 +129,7 @@ def _broken_limits(code: str, standing: Home, file: str) -> tuple[Diagnostic, ..
 
 
 def summary(machine: Machine) -> Rows:
-    """What the file says and what follows from it."""
+    """Rows of the file's contents and derived figures."""
     home = at_home(machine)
     return [
         *_geometry(machine),
@@ -141,7 +141,7 @@ def summary(machine: Machine) -> Rows:
 
 
 def as_text(rows: Rows) -> str:
-    """The rows as a table."""
+    """Format the rows as a table."""
     width = max(len(label) for label, _ in rows)
     return "\n".join(f"  {label.ljust(width)}  {figure}" for label, figure in rows)
 
@@ -222,11 +222,11 @@ def _at_home(machine: Machine, home: Home) -> Iterator[tuple[str, str]]:
         yield "  one count of each strut", f"moves the tip by {1000 * home.count_at_tip:.3f} um at most"
     for one in home.findings:
         shown, factor = SHOWN[one.subject.unit]
-        if shown:  # the margin to singular poses is a bound; the value itself is told above
+        if shown:  # the margin to singular poses is a bound; the value itself is listed above
             yield f"  room: {one.subject.name}", f"{one.margin[0] * factor:.3f} {shown}"
 
 
 def _span(values: Array, decimals: int = 4) -> str:
-    """The least and the greatest value, or the one they share."""
+    """Format the least and the greatest value, or the one they share."""
     texts = list(dict.fromkeys(f"{value + 0.0:.{decimals}f}" for value in (values.min(), values.max())))
     return " to ".join(texts)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Manifest: which files one posting made, with a fingerprint of each, so that no reader takes files of two postings.
+"""Manifest: files of one posting with their fingerprints, so that no reader mixes files of two postings.
 
-A folder with the results of a posting enters; ``STEM-manifest.json`` beside them leaves. Later any of the results
-enters; the manifest leaves, if every file that it lists is there and is still the same, or what is wrong.
+Writing: from a folder with the results of a posting to ``STEM-manifest.json`` beside them. Checking: from any of the
+results to the manifest, if every listed file is present and unchanged, or to the fault.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from pkm_post.model import Diagnostic, Place
 Findings = tuple[Diagnostic, ...]
 
 ENDING = "-manifest.json"
-"""How the name of a manifest goes on behind the stem of the results."""
+"""Ending of a manifest name after the stem of the results."""
 _FORMAT = 1
 _BINARY = (".pkmt", ".png")
-"""Suffixes of results that are no text."""
+"""Suffixes of binary results."""
 _MOST_BYTES = 1 << 24
-"""Of a manifest that is read: a hundred thousand parts of a program need less."""
+"""Largest manifest that is read: a hundred thousand program parts need less."""
 _AT_ONCE = 1 << 20
-"""Bytes in one pass."""
+"""Bytes per pass."""
 _FINGERPRINT = re.compile("[0-9a-f]{64}")
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """What one posting made.
+    """Files of one posting.
 
     Attributes:
-        path: of the manifest; the results lie beside it.
+        path: of the manifest; the results are in the same folder.
         files: fingerprints by name.
     """
 
@@ -46,22 +46,22 @@ class Manifest:
     files: Mapping[str, str]
 
     def fingerprint_of(self, name: str) -> str | None:
-        """What is listed for a name; capital and small letters are the same, as on Windows. None where nothing is."""
+        """Fingerprint listed for a name, case-insensitive as on Windows, or None."""
         found = {listed.casefold(): fingerprint for listed, fingerprint in self.files.items()}
         return found.get(name.casefold())
 
 
 class _UnreadableError(Exception):
-    """What is wrong with a manifest."""
+    """Fault of a manifest."""
 
 
 def manifest_name(stem: str) -> str:
-    """The name of the manifest of results with this stem."""
+    """Name of the manifest of results with this stem."""
     return stem + ENDING
 
 
 def write(folder: Path, stem: str) -> None:
-    """Write the manifest of all files in a folder into it; the same files give the same bytes."""
+    """Write the manifest of all files in a folder into it; identical files yield identical bytes."""
     files = {path.name: fingerprint_of_file(path) for path in sorted(folder.iterdir())}
     content = {"format": _FORMAT, "product": f"PKM Post {pkm_post.__version__}", "files": files}
     text = json.dumps(content, indent=2) + "\n"
@@ -69,19 +69,19 @@ def write(folder: Path, stem: str) -> None:
 
 
 def listed(folder: Path, stem: str) -> tuple[str, ...]:
-    """The names of the results in a folder that an earlier posting made; none where it left no manifest."""
+    """Names of the results that an earlier posting left in a folder; empty without a manifest."""
     try:
         return tuple(_read(folder / manifest_name(stem)).files)
-    except (OSError, _UnreadableError):  # readers of the results refuse them for it
+    except (OSError, _UnreadableError):  # readers of the results refuse such a manifest
         return ()
 
 
 def check(file: Path) -> tuple[Manifest | None, Findings]:
-    """The manifest that lists a result, with every listed file there and unchanged.
+    """Find the manifest that lists a result, and verify that every listed file is present and unchanged.
 
     Returns:
-        The manifest and no finding, or None and why: F106 where a listed file is missing or has changed, F108 where the
-        manifest cannot be read, and the warning F107 where no manifest lists the file.
+        The manifest and no finding, or None and the reason: F106 where a listed file is missing or has changed, F108
+        where the manifest cannot be read, and the warning F107 where no manifest lists the file.
     """
     for path in _manifests_near(file):
         try:
@@ -95,18 +95,18 @@ def check(file: Path) -> tuple[Manifest | None, Findings]:
 
 
 def fingerprint_of_file(file: Path) -> str:
-    """The fingerprint of a result on disk; see ``fingerprint``."""
+    """Fingerprint of a result on disk; see ``fingerprint``."""
     with file.open("rb") as stream:
         return _fingerprint(file.name, stream)
 
 
 def fingerprint(name: str, content: bytes) -> str:
-    """The SHA-256 of a result, in hexadecimal digits.
+    """SHA-256 of a result, in hexadecimal digits.
 
-    Line ends of a text count as LF: CAM writes programs with CR LF on Windows, and they mean the same.
+    Line ends of a text are normalised to LF: CAM writes programs with CR LF on Windows, which are equivalent.
 
     Args:
-        name: of the result; its suffix says whether it is a text.
+        name: of the result; its suffix identifies text files.
         content: its bytes.
     """
     return _fingerprint(name, BytesIO(content))
@@ -116,13 +116,13 @@ def _fingerprint(name: str, stream: BinaryIO) -> str:
     is_text = not name.lower().endswith(_BINARY)
     digest = hashlib.sha256()
     for part in _parts(stream):
-        has_line_ends = is_text and b"\r" in part  # to look for one byte is much faster than for two
+        has_line_ends = is_text and b"\r" in part  # searching for one byte is much faster than for two
         digest.update(part.replace(b"\r\n", b"\n") if has_line_ends else part)
     return digest.hexdigest()
 
 
 def _parts(stream: BinaryIO) -> Iterator[bytes]:
-    """The bytes of a stream, part by part; a CR stays with the LF behind it."""
+    """Yield the bytes of a stream in parts; a CR stays with the LF behind it."""
     while part := stream.read(_AT_ONCE):
         while part.endswith(b"\r") and (more := stream.read(1)):
             part += more
@@ -130,7 +130,7 @@ def _parts(stream: BinaryIO) -> Iterator[bytes]:
 
 
 def _manifests_near(file: Path) -> list[Path]:
-    """The manifests beside a file whose stems begin its name, the longest first."""
+    """Manifests beside a file whose stem is a prefix of its name, the longest first."""
     name = file.name.casefold()
     found = [path for path in file.parent.glob("*" + ENDING) if name.startswith(_stem(path).casefold())]
     return sorted(found, key=lambda path: len(path.name), reverse=True)
@@ -141,10 +141,10 @@ def _stem(manifest: Path) -> str:
 
 
 def _read(path: Path) -> Manifest:
-    """A manifest from its file.
+    """Read a manifest file.
 
     Raises:
-        _UnreadableError: it is not as ``write`` makes it.
+        _UnreadableError: it does not have the format of ``write``.
     """
     with path.open("rb") as stream:
         text = stream.read(_MOST_BYTES + 1)
@@ -169,7 +169,7 @@ def _is_entry(name: str, fingerprint: object) -> bool:
 
 
 def _differences(manifest: Manifest) -> Iterator[str]:
-    """Which of the listed files are not as they were, in words."""
+    """Messages on listed files that are missing or have changed."""
     for name, listed in manifest.files.items():
         try:
             found = fingerprint_of_file(manifest.path.with_name(name))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Out of memory: a lack of memory, met anywhere, becomes the diagnostic F130 where people come in.
+"""Out of memory: report a lack of memory anywhere as the diagnostic F130 at the entry points.
 
-A name of what was being done enters. All doors use this: the command line, CAM's Post Process, document objects,
-panels, and the calls for macros. What was half done is taken back on the way out, as for any exception. This module is
-imported without NumPy, as the command line starts without it.
+Input: a name of the current task. All entry points use this: the command line, CAM's Post Process, document objects,
+panels, and the macro API. Unfinished work is rolled back on the way out, as for any exception. This module is imported
+without NumPy, as the command line starts without it.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
 
 FAULTS = (MemoryError, OSError, RuntimeError, ImportError)
-"""The exceptions that can say it."""
+"""Exceptions that can signal it."""
 
 _UNIT = 1 << 20 if sys.platform == "darwin" else 1 << 10
-"""Of the largest size of a process, which macOS counts in bytes and others in kilobytes, in one MB."""
+"""Units of the peak process size per MB: macOS counts bytes, others kilobytes."""
 _NOT_MAPPED = "failed to map segment from shared object"
-"""What the C library says when there is no memory for a library that Python imports."""
+"""Message of the C library when there is no memory for a library that Python imports."""
 _NO_THREAD = "can't start new thread"
-"""What Python says when there is no memory for the stack of a thread; it has no exception of its own."""
+"""Message of Python when there is no memory for a thread stack; it has no exception of its own."""
 
 
 @contextmanager
 def memory_or_refused(subject: str) -> Iterator[None]:
-    """Refuse what there is not enough memory for.
+    """Refuse work that exceeds the memory.
 
     Args:
-        subject: what was being done, or the file it was done for, as messages name it.
+        subject: the current task, or its file, as named in messages.
 
     Raises:
-        Refused: memory ran out, F130. What the calls inside held is free again.
+        Refused: memory ran out, F130. Memory held by the calls inside is released.
     """
     try:
         _start_workers()
@@ -56,10 +56,10 @@ def memory_or_refused(subject: str) -> Iterator[None]:
 
 
 def lack_of_memory(fault: BaseException, subject: str) -> Diagnostic | None:
-    """The diagnostic of an exception that says that memory ran out; None for all others.
+    """Diagnostic of an exception that signals lack of memory; None for all others.
 
     Args:
-        fault: one of ``FAULTS``; where it is a lack of memory, what the calls it came through held is free again.
+        fault: one of ``FAULTS``; on lack of memory, the memory held by the calls in its traceback is released.
         subject: as in ``memory_or_refused``.
     """
     if not _is_lack_of_memory(fault):
@@ -73,7 +73,7 @@ def lack_of_memory(fault: BaseException, subject: str) -> Diagnostic | None:
 
 
 def _start_workers() -> None:
-    """While there is memory for them, and nothing is written."""
+    """Start the workers while there is memory for them, and before anything is written."""
     from pkm_post.workers import workers
 
     workers()
@@ -88,7 +88,7 @@ def _is_lack_of_memory(fault: BaseException) -> bool:
 
 
 def _found(fault: BaseException) -> str:
-    """What was asked for, in which step, and how much the process had before."""
+    """Format the requested memory, the step, and the process size before."""
     asked = str(fault) or "a request for memory was refused"
     return ", ".join([asked, *getattr(fault, "__notes__", ()), *_had()])
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Result names: what posting may write, so that no result takes the place of another one, or of a source.
+"""Result names: the files that posting may write, so that no result overwrites another one or a source.
 
-What is posted enters, each with the stem of its results; what would be lost leaves, in words. Capital and small letters
-count as the same, since they are to Windows, macOS and memory sticks. No file is opened, and NumPy is not needed.
+Input: the items to post, each with the stem of its results. Output: messages on what would be lost. Names that differ
+only in case count as equal, as on Windows, macOS and memory sticks. No file is opened, and NumPy is not needed.
 """
 
 from __future__ import annotations
@@ -15,23 +15,23 @@ from pathlib import Path
 
 _PROGRAM = ".pmc"
 _ALWAYS = (_PROGRAM, "-setup.pmc", "-setup.cfg", ".pkmt", "-report.json", "-report.png", "-manifest.json")
-"""How the names of results go on behind the stem, whatever the controller is."""
+"""Endings of result names after the stem, for any controller."""
 _PROMISED = (_PROGRAM, ".pkmt", "-report.json", "-manifest.json")
-"""Those of them that no choice leaves out."""
+"""Those that every posting writes, whatever its options."""
 _ALSO = {"csv": ".csv", "halstreamer": "-halstreamer.txt", "linuxcnc": "-linuxcnc.ngc"}
-"""The same of what is written beside the program, by its name in ``options.ALSO``."""
+"""Endings of files beside the program, by name in ``options.ALSO``."""
 _IN_PARTS = (_PROGRAM, _ALSO["halstreamer"])
 _PART = re.compile(r"(.*)-part[1-9][0-9]*(\.[a-z]+)")
 
 
 @dataclass(frozen=True)
 class Item:
-    """What becomes one motion program with its files.
+    """One source of a motion program with its files.
 
     Attributes:
-        name: a file, or a job of a document, as people are told of it.
+        name: display name of a file, or of a job in a document.
         stem: of its results.
-        also: what may be written beside the program, names of ``options.ALSO``.
+        also: optional files beside the program, names of ``options.ALSO``.
     """
 
     name: str
@@ -40,23 +40,23 @@ class Item:
 
 
 def job_stem(document: str, label: str, jobs: int) -> str:
-    """The stem of the results of a CAM job.
+    """Stem of the results of a CAM job.
 
     Args:
         document: stem of its document.
-        label: of the job; it counts where the document has several.
+        label: of the job; used where the document has several jobs.
         jobs: how many jobs the document has.
     """
     return re.sub(r"[^\w.-]+", "_", f"{document}-{label}" if jobs > 1 else document)
 
 
 def result_names(item: Item) -> list[str]:
-    """The names of what posting may write, but for the second part and those that follow it."""
+    """File names that posting may write, except those of the second and later parts."""
     return [item.stem + ending for ending in (*_ALWAYS, *(_ALSO[name] for name in item.also))]
 
 
 def missing_results(items: Sequence[Item], out: Path) -> list[Path]:
-    """Which results are not there, though all was posted.
+    """Promised results that are absent after posting.
 
     Args:
         items: what was posted.
@@ -67,13 +67,13 @@ def missing_results(items: Sequence[Item], out: Path) -> list[Path]:
 
 
 def lost_results(items: Sequence[Item]) -> list[str]:
-    """Which results would be lost if all were posted to one folder, in words; nothing where all is well."""
+    """Messages on results that would be overwritten if all items were posted to one folder; empty if none."""
     made = [(item, name) for item in items for name in result_names(item)]
     return list(dict.fromkeys([*_of_two(made), *_of_parts(items, made)]))
 
 
 def _of_two(made: Sequence[tuple[Item, str]]) -> Iterator[str]:
-    """Results that two would write; one name tells it of two."""
+    """Messages on results that two items would write; one per name."""
     owners: dict[str, Item] = {}
     told = set()
     for item, name in made:
@@ -84,7 +84,7 @@ def _of_two(made: Sequence[tuple[Item, str]]) -> Iterator[str]:
 
 
 def _of_parts(items: Sequence[Item], made: Sequence[tuple[Item, str]]) -> Iterator[str]:
-    """Results with the name that a part of another one would have."""
+    """Messages on results that coincide with a part of another item."""
     wholes = {(item.stem + ending).casefold(): item for item in items for ending in _IN_PARTS}
     for item, name in made:
         part = _PART.fullmatch(name.casefold())
@@ -94,11 +94,11 @@ def _of_parts(items: Sequence[Item], made: Sequence[tuple[Item, str]]) -> Iterat
 
 
 def lost_sources(files: Sequence[Path], items: Sequence[Item], out: Path) -> list[str]:
-    """Which sources the results of others would replace, in words.
+    """Messages on sources that the results of other items would overwrite.
 
     Args:
         files: the sources.
-        items: what is posted of them.
+        items: items posted from them.
         out: the folder for the results.
     """
     sources = {_place(os.path.realpath(file.parent), file.name): file for file in files}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Unwritten: why a file could not be written, as a diagnostic.
+"""Unwritten: diagnostic of a file that could not be written.
 
-The path of a result and what the system said enter; the diagnostic leaves, the same at every door.
+Input: the path of a result and the system's error. Output: the diagnostic, the same at every entry point.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ _CODES = ((BusyError, "F109"), (MixedError, "F110"), (OSError, "F101"))
 
 
 def unwritten(path: Path, fault: OSError) -> Diagnostic:
-    """What is to be told of a result that could not be written.
+    """Make the diagnostic of a result that could not be written.
 
     Args:
         path: of the result.
-        fault: what ``files.staged`` or writing into its folder raised.
+        fault: raised by ``files.staged`` or by writing into its folder.
     """
     code = next(code for kind, code in _CODES if isinstance(fault, kind))
     return Diagnostic(code, Place(str(path)), str(fault))

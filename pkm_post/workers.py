@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Workers: the threads that compute beside each other, one for each processor, the same ones all the time.
+"""Workers: one pool of compute threads, one per processor, kept for the life of the process.
 
-All are started, and all have computed once, before any of them is given work. A thread that Python starts without
-memory can wait for ever, and OpenBLAS, which NumPy computes with, takes memory where a thread first needs it and ends
-the process when there is none: files that are half written would stay. Work given to workers gives no work to them.
+All threads start and compute once before any receives work. A thread that Python starts without memory can wait
+forever, and OpenBLAS, which NumPy uses, allocates memory at the first use in a thread and ends the process if there is
+none: half-written files would remain. Work in a worker must not submit work to the pool.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 _FOR_EACH = 112 << 20
-"""Bytes that a thread may take of the addresses there are: 64 MB to allocate in, 32 for OpenBLAS, and its stack."""
+"""Bytes of address space that a thread may take: 64 MB to allocate in, 32 for OpenBLAS, and its stack."""
 _ROWS = 256
-"""Of a matrix that keeps a thread busy for a millisecond or more, so that all compute at a time."""
+"""Rows of a matrix that keeps a thread busy for a millisecond or more, so that all compute at once."""
 
 
 @functools.cache
 def workers() -> ThreadPoolExecutor:
-    """The threads.
+    """Thread pool.
 
     Raises:
-        MemoryError: there is not enough for them.
+        MemoryError: there is not enough memory for the threads.
     """
     count = os.cpu_count() or 1
-    np.empty(count * _FOR_EACH, dtype=np.uint8)  # is given back at once: it only says when there is no room
+    np.empty(count * _FOR_EACH, dtype=np.uint8)  # released at once: only tests whether there is room
     together, pool = threading.Barrier(count), ThreadPoolExecutor(count, thread_name_prefix="pkm_post")
 
     def compute(_: int) -> None:
