@@ -218,7 +218,7 @@ class NumericalControl:
         return self._owning("run", lambda: operate.run(*order))
 
     def go_on(self, job: Job, stop: int, near: float = NEAR_MM) -> Status:
-        """Continue a program behind the stop (M0, M1) at which it stands, numbered from 1; as ``stops.go_on``."""
+        """Continue a program after the stop (M0, M1) at which it stands, numbered from 1; as ``stops.go_on``."""
         return self._owning("run", lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
 
     def open_blocks(self, blocks: Blocks, at: int = 1) -> int:
@@ -237,7 +237,7 @@ class NumericalControl:
         return len(blocks)
 
     def plan_step(self) -> tuple[Plan | None, Findings]:
-        """Plan the next block from its start; executing it advances to the block behind it.
+        """Plan the next block from its start; executing it advances to the block after it.
 
         Raises:
             ValueError: no program is open in single block mode, or all its blocks have run.

@@ -83,7 +83,7 @@ class Desk:
         busy: whether an order is in progress.
         has_job: whether a program is open.
         loaded: whether it is in the controller, as far as known here.
-        has_stops: whether it has stops (M0, M1) to continue behind.
+        has_stops: whether it has stops (M0, M1) to continue after.
         stepping: whether its blocks are open in single block mode.
         homing: whether a homing started here is being monitored.
     """

@@ -117,7 +117,7 @@ class Blocks:
         with_before, at = self._segments(max(first - 1, 0), end), int(first > 0)
         block = self._segments(first, end)
         last = np.arange(len(block)) == len(block) - 1
-        behind = end + (end == len(whole))  # events behind the last segment belong to it
+        behind = end + (end == len(whole))  # events after the last segment belong to it
         events = (each for each in whole.events if first <= each.row < behind and each.kind is not EventKind.STOP)
         return replace(
             block,

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stops: continue behind an M0 or M1, where the program ends until the operator starts it again.
+"""Stops: continue after an M0 or M1, where the program ends until the operator starts it again.
 
 The controller's state is the same at a stop as after the end or an abort: no program runs. ``R`` would continue from
-wherever the program is, and after an abort that is in the middle of a move. So nothing is resumed: the part behind the
+wherever the program is, and after an abort that is in the middle of a move. So nothing is resumed: the part after the
 stop is loaded as a separate program, under the job's number, and started like any other if the struts stand where the
 program stopped. Events at that knot before the stop were already carried out and are left out.
 
-Enters: the program and the number of a stop. Leaves: a job that begins behind it, and the state after the start.
+Enters: the program and the number of a stop. Leaves: a job that begins after it, and the state after the start.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from pkm_post.pmac_link.status import Array, Status
 
 @dataclass(frozen=True)
 class Stop:
-    """An M0 or M1 with moves behind it.
+    """An M0 or M1 with moves after it.
 
     Attributes:
         number: of the stop in its program, from 1.
@@ -49,7 +49,7 @@ def stops_of(job: Job) -> tuple[Stop, ...]:
 
 
 def job_behind(job: Job, stop: Stop, settings: Settings) -> Job:
-    """The part of a program behind a stop, under the number of the job.
+    """The part of a program after a stop, under the number of the job.
 
     Args:
         job: the program.
@@ -89,7 +89,7 @@ def same(one: StrutMotion, other: StrutMotion) -> bool:
 def go_on(
     session: Session, machine: Machine, settings: Settings, job: Job, number: int, near: float = NEAR_MM
 ) -> Status:
-    """Load the part of a program behind a stop and start it.
+    """Load the part of a program after a stop and start it.
 
     Args:
         session: an open session.

@@ -113,7 +113,7 @@ class Worker:
         return time.monotonic() - self._attended_at < self._attended
 
     def _is_waited_for(self) -> bool:
-        """Whether a stop or the shutdown waits; the shutdown waits for a stop in progress, but not for ever."""
+        """Whether a stop or the shutdown waits; the shutdown waits for a stop in progress, but not forever."""
         return bool(self._stops) or (self._ended and (not self._stopping or self._is_stop_overdue()))
 
     def _is_stop_overdue(self) -> bool:

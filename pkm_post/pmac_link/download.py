@@ -3,7 +3,7 @@
 
 First the existing program of that number is deleted, and the controller must show that it is gone. Then the lines are
 sent, the buffer is closed, and the program is listed and compared. If the link fails in between, the controller's
-listing decides: if it consists of complete lines from the first on, the download continues behind them, else it starts
+listing decides: if it consists of complete lines from the first on, the download continues after them, else it starts
 again. Every exception leaves nothing under the number, or states that this could not be verified.
 
 Enters: a session and a program. Leaves: a record of what was loaded.

@@ -138,7 +138,7 @@ class StreamError(PmacError):
     """A program could not be streamed to its end.
 
     Attributes:
-        line: of the program, from 1, behind which the machine rests or comes to rest by itself; 0 before the first
+        line: of the program, from 1, after which the machine rests or comes to rest by itself; 0 before the first
             line.
         cleared: whether the controller has since shown that nothing is left in its rotary buffer.
     """

@@ -50,7 +50,7 @@ class Port:
         number: of the TCP port.
         baud: of a serial line, as set by I54 of the controller.
         parity: a key of ``links.PARITIES``.
-        handshake: whether the line has RTS and CTS; adapters and pseudo terminals without them would block for ever.
+        handshake: whether the line has RTS and CTS; adapters and pseudo terminals without them would block forever.
         timeout: seconds to connect, and to send.
         silence: seconds without a byte that end an answer.
         user: login name for ssh.

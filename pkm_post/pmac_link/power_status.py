@@ -2,8 +2,8 @@
 """Power status: the state of the six struts of a Power PMAC, as ``status.Status``.
 
 Its bits differ in position from those of a Turbo PMAC, in two words of 32, and elements of its data structure show
-whether a program runs. Bits are counted from the least significant one of all hexadecimal digits. [EPICSpmac,
-pmacHardwarePower]
+whether a program runs. Bits are counted from the least significant one of all hexadecimal digits.
+[EPICSpmac, pmacHardwarePower]
 
 Enters: the settings of a controller, and its answers. Leaves: the query for ``status.read_status``, counts, bits, and
 their meanings.

@@ -171,7 +171,7 @@ class RotaryStream:
         raise AssertionError("unreachable")
 
     def _goes(self, before: int) -> bool:
-        """Whether lines behind the first ``before`` have begun."""
+        """Whether lines after the first ``before`` have begun."""
         return read_status(self._session, self._settings).running or self._buffer.loaded - self._buffer.ahead() > before
 
     def _check(self, status: Status) -> None:

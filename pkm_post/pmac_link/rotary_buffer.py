@@ -78,7 +78,7 @@ class RotaryBuffer:
         return True
 
     def recount(self, begun: int) -> None:
-        """After a failure, at rest behind line ``begun``: count the loaded lines and reopen the buffer.
+        """After a failure, at rest after line ``begun``: count the loaded lines and reopen the buffer.
 
         Raises:
             PmacError: the controller's count is inconsistent.

@@ -5,8 +5,8 @@ No line is executed before the controller has confirmed its checksum: the line i
 controller returns one byte, the sum of what it holds. If it matches, CR follows; if not, ^X discards the line, and it
 is resent. So resending is safe: a line not confirmed was not executed. After CR a line is resent in one case only: if
 the controller refuses it with ERR004. That is noise, as lines contain printable characters only; a byte above 127 or a
-framing error does not count in the checksum, but the controller does not execute a line that has one. [TurboPMAC,
-<CTRL-N>, <CTRL-X>, I6]
+framing error does not count in the checksum, but the controller does not execute a line that has one.
+[TurboPMAC, <CTRL-N>, <CTRL-X>, I6]
 
 Enters: commands, bytes and times. Leaves: bytes and events.
 """

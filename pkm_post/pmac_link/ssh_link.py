@@ -173,7 +173,7 @@ class _Socket(socket.socket):
 
 
 def _has_listener() -> bool:
-    """Whether a user sits at a terminal; behind a window there is none, and its thread would block for ever."""
+    """Whether a user sits at a terminal; behind a window there is none, and its thread would block forever."""
     here = threading.current_thread() is threading.main_thread()
     return here and sys.stdin is not None and sys.stdin.isatty()
 

@@ -54,7 +54,7 @@ class Expression:
     constant: bool = False
 
     def bracketed(self) -> str:
-        """The text behind a letter: a constant as it is, anything else in brackets."""
+        """The text after a letter: a constant as it is, anything else in brackets."""
         return self.text if self.constant else f"({self.text})"
 
 
@@ -151,7 +151,7 @@ def _variable(scanner: Scanner, depth: int) -> Expression:
 
 
 def variable_number(scanner: Scanner, depth: int = 0) -> Expression:
-    """Read the number behind a variable's letter: digits, or an expression in brackets."""
+    """Read the number after a variable's letter: digits, or an expression in brackets."""
     if scanner.take(r"\("):
         return _closed(scanner, depth)
     return constant(scanner.expect(r"(?P<digits>[0-9]{1,5})")["digits"])

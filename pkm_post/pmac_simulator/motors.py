@@ -144,7 +144,7 @@ class Motors:
         return position
 
     def _searched(self, index: int, jog: Jog, position: float) -> float:
-        """The flag sets the zero; behind it the motor turns back to its home."""
+        """The flag sets the zero; after it the motor turns back to its home."""
         flag, before = self.home_flag[index], self.commanded[index]
         if position == before or (before - flag) * (position - flag) > 0:
             return position  # the flag was not passed

@@ -47,5 +47,5 @@ def hexadecimal(*words: int) -> str:
 
 
 def number_of(text: str) -> float:
-    """The value of a constant: decimal, or hexadecimal behind a dollar sign."""
+    """The value of a constant: decimal, or hexadecimal after a dollar sign."""
     return kept(float(int(text[1:], 16)) if text.startswith("$") else float(text))

@@ -23,7 +23,7 @@ class Path:
 
     Attributes:
         time: program time, ms.
-        abrupt_stops: number of PVT moves that ended at nonzero speed with nothing behind them.
+        abrupt_stops: number of PVT moves that ended at nonzero speed with nothing after them.
     """
 
     def __init__(self) -> None:

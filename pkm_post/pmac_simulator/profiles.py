@@ -35,7 +35,7 @@ class Profile:
     """A move of a single motor.
 
     Attributes:
-        pieces: in order; behind the last one the motor rests, or continues at constant speed.
+        pieces: in order; after the last one the motor rests, or continues at constant speed.
         goal: end position; None if it does not end by itself.
     """
 

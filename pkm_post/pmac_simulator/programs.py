@@ -26,7 +26,7 @@ class Program:
         statements: of all lines.
         line_starts: for each line the number of its first statement.
         words: its size.
-        labels: number of the statement behind each label.
+        labels: number of the statement after each label.
         jumps: for each branch or loop statement the number of the statement it may jump to.
         sound: whether its structure is valid.
     """

@@ -72,7 +72,7 @@ class Variables:
     """All variables of a controller. Those never written are zero, or the default.
 
     Attributes:
-        definitions: text behind ``Mn->``, by number.
+        definitions: text after ``Mn->``, by number.
     """
 
     def __init__(self) -> None:
