@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Placement: where the program stands, by symmetry of the part (T_C) and by the work offset on the machine (D)."""
+"""Placement: position of the program, by symmetry of the workpiece (T_C) and by the work offset on the machine (D)."""
 
 from pkm_post.placement.climb import CutDirection, CutLengths, cut_directions, cut_lengths
 from pkm_post.placement.coverage import Coverage, Sector, beside_plane, coverage, sector

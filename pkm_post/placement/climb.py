@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Climb: whether the cutter cuts with the feed or against it, where the program tells.
+"""Climb: climb or conventional milling by row, where the program defines it.
 
-A program enters; a sign by row leaves: +1 climb, -1 conventional, 0 unknown. A cutter that turns clockwise as seen from
-the spindle (M3) climbs where the material is to the right of its way, for there its teeth move backwards. The side is
-told by cutter compensation, by surface normals, or by the caller; the sense by the spindle events, or by the caller.
-Where nothing tells, the answer is unknown.
+Takes a program; returns a sign by row: +1 climb, -1 conventional, 0 unknown. A cutter that turns clockwise as seen from
+the spindle (M3) climbs where the material is to the right of its path: there its teeth move backwards. The side follows
+from cutter compensation, surface normals, or the caller; the sense from the spindle events or the caller. Without any
+of these the direction is unknown.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from pkm_post.model import EventKind, Kind, Program
 from pkm_post.placement.passes import cutting, steps
 
 _TELLING = 0.05
-"""Sine of the angle between surface and tool axis below which the cutter stands on the surface, with no side."""
+"""Sine of the angle between normal and tool axis below which the cutter stands on the surface and has no side."""
 _NO_MOVE = 1e-9
 """mm"""
 
 
 class CutDirection(enum.Enum):
-    """How a program cuts."""
+    """Cut direction of a program."""
 
     CLIMB = "Climb"
     CONVENTIONAL = "Conventional"
@@ -37,7 +37,7 @@ class CutDirection(enum.Enum):
 
 @dataclass(frozen=True)
 class CutLengths:
-    """How far a program cuts in which way, mm."""
+    """Distance cut in each direction, mm."""
 
     climb: float
     conventional: float
@@ -45,7 +45,7 @@ class CutLengths:
 
     @property
     def direction(self) -> CutDirection:
-        """In one word; unknown as soon as more than a tenth is."""
+        """The overall direction; unknown if more than a tenth is unknown."""
         known = self.climb + self.conventional
         if self.unknown > 0.1 * (known + self.unknown) or known <= 0.0:
             return CutDirection.UNKNOWN
@@ -55,11 +55,11 @@ class CutLengths:
 
 
 def material_side(program: Program, given: int = 0) -> Array:
-    """Where the material is, seen along the way with the spindle up: +1 right, -1 left, 0 not known, (N,).
+    """Side of the material, seen along the path with the spindle up: +1 right, -1 left, 0 unknown, (N,).
 
     Args:
         program: compensated or not: 2D compensation to the left (G41) has the material to its right.
-        given: the side where neither compensation nor normals of the program tell.
+        given: the side where neither compensation nor normals of the program define it.
     """
     along = steps(program)
     arc = program.kind == Kind.ARC
@@ -76,7 +76,7 @@ def material_side(program: Program, given: int = 0) -> Array:
 
 
 def spindle_sense(program: Program, before: int = 0) -> Array:
-    """+1 where the spindle turns clockwise as seen from it (M3), -1 the other way, 0 not known or at rest, (N,).
+    """+1 where the spindle turns clockwise as seen from it (M3), -1 counterclockwise, 0 unknown or at rest, (N,).
 
     Args:
         program: with its spindle events.
@@ -102,7 +102,7 @@ def cut_directions(program: Program, given_side: int = 0, spindle_before: int = 
 
 
 def cut_lengths(program: Program, given_side: int = 0, spindle_before: int = 0) -> CutLengths:
-    """How much of the way that cuts is climb milling, conventional milling, and of unknown direction."""
+    """Distances cut by climb milling, by conventional milling, and in unknown direction."""
     directions = cut_directions(program, given_side, spindle_before)
     length, rows = norm(steps(program)), np.flatnonzero(program.kind == Kind.ARC)
     centre, axis = program.arc_centre[rows], program.arc_axis[rows]

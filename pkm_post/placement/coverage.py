@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coverage: whether copies of a program lie all round an axis, and where two lie on each other.
+"""Coverage: whether copies of a program surround an axis, and where two overlap.
 
-Programs enter, with an axis or a plane; angles in rad and distances in mm leave. Only what is cut counts. The sector of
-a program is the smallest one that holds its cut; a program that is cut in two places apart counts as one that is cut
-between them as well.
+Takes programs, with an axis or a plane; returns angles in rad and distances in mm. Only cuts count. The sector of a
+program is the smallest one that contains its cuts; the space between two separate cuts counts as cut as well.
 """
 
 from __future__ import annotations
@@ -21,20 +20,21 @@ from pkm_post.placement.passes import chords
 
 ROUND = 2 * np.pi
 _ON_AXIS = 1e-6
-"""mm: a point this near to the axis has no angle."""
+"""mm: a point this close to the axis has no angle."""
 _ON_PLANE = 1e-5
-"""mm: less than this between a cut and its mirror image is nothing; points of saved documents have six decimals."""
+"""mm: smaller distances between a cut and its mirror image count as zero; points of saved documents have six
+decimals."""
 MEET = 1e-4
-"""rad: sectors nearer than this meet; points of saved documents have six decimals."""
+"""rad: sectors closer than this meet; points of saved documents have six decimals."""
 
 
 @dataclass(frozen=True)
 class Sector:
-    """Where a program cuts about an axis, in rad.
+    """Sector about an axis in which a program cuts, in rad.
 
     Attributes:
-        start: angle at which it begins, 0 to 2 pi, from a direction that belongs to the axis.
-        width: how far it goes on, right-handed about the axis; 0 to 2 pi.
+        start: angle at which it begins, 0 to 2 pi, from a fixed direction of the axis.
+        width: its extent, right-handed about the axis; 0 to 2 pi.
         spacing: its widest angle without a cut, such as that from pass to pass.
     """
 
@@ -45,12 +45,12 @@ class Sector:
 
 @dataclass(frozen=True)
 class Coverage:
-    """What sectors make together, in rad.
+    """Union of sectors, in rad.
 
     Attributes:
-        covered: angle in which one or more of them lie.
-        overlap: angle in which two or more of them lie.
-        gap: widest angle in which none lies.
+        covered: angle covered by at least one of them.
+        overlap: angle covered by at least two of them.
+        gap: widest angle covered by none.
         spacing: widest angle without a cut within one of them.
     """
 
@@ -61,12 +61,12 @@ class Coverage:
 
     @property
     def tiles(self) -> bool:
-        """Whether they lie all round, with no wider gap than within each of them, and none on another."""
+        """Whether they surround the axis, without overlap and with no gap wider than those within them."""
         return self.gap <= self.spacing + MEET and self.overlap <= MEET
 
 
 def sector(program: Program, point: ArrayLike, axis: ArrayLike) -> Sector | None:
-    """The sector in which a program cuts; None where it cuts nothing, or on the axis alone.
+    """The sector in which a program cuts; None where it cuts nothing, or only on the axis.
 
     Args:
         program: cutter locations in {C}.
@@ -79,7 +79,7 @@ def sector(program: Program, point: ArrayLike, axis: ArrayLike) -> Sector | None
     begin, width = _spans(program, np.asarray(point, dtype=np.float64), unit(np.asarray(axis, dtype=np.float64)))
     if not len(begin):
         return None
-    # Three times round, so that the holes of the middle turn are those of the circle.
+    # Three turns: the gaps of the middle turn are those of the circle.
     start = np.concatenate([begin - ROUND, begin, begin + ROUND])
     order = np.argsort(start)
     end = np.maximum.accumulate((start + np.tile(width, 3))[order])
@@ -98,7 +98,7 @@ def sector(program: Program, point: ArrayLike, axis: ArrayLike) -> Sector | None
 
 
 def _spans(program: Program, point: Array, axis: Array) -> tuple[Array, Array]:
-    """Where each straight piece of the cut begins, 0 to 2 pi, and by how much it goes on, (n,) each."""
+    """Start, 0 to 2 pi, and extent of each straight piece of the cut, (n,) each."""
     first = unit(cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     second = cross(axis, first)
     ends = [each - point for each in chords(program)]
@@ -107,7 +107,7 @@ def _spans(program: Program, point: Array, axis: Array) -> tuple[Array, Array]:
     on_axis = [each < _ON_AXIS for each in radius]
     one, other = (np.where(on_axis[side], angle[1 - side], angle[side]) for side in (0, 1))
     turn = (other - one + np.pi) % ROUND - np.pi
-    # A line straight through the axis is at two angles, and at none between.
+    # A line through the axis has two angles and none between.
     through = np.pi - np.abs(turn) < MEET
     known = ~(on_axis[0] & on_axis[1])
     begin = np.concatenate([np.where(through | (turn > 0), one, one + turn)[known], other[known & through]])
@@ -116,7 +116,7 @@ def _spans(program: Program, point: Array, axis: Array) -> tuple[Array, Array]:
 
 
 def coverage(sectors: Sequence[Sector]) -> Coverage:
-    """What sectors about one axis make together.
+    """The union of sectors about one axis.
 
     Raises:
         ValueError: there is none.
@@ -134,7 +134,7 @@ def coverage(sectors: Sequence[Sector]) -> Coverage:
 
 
 def _longest(length: Array, empty: Array) -> float:
-    """The longest run of empty pieces round the circle."""
+    """The longest run of empty pieces around the circle."""
     if np.all(empty):
         return float(ROUND)
     turned = -int(np.argmin(empty))
@@ -145,11 +145,11 @@ def _longest(length: Array, empty: Array) -> float:
 
 
 def beside_plane(program: Program, point: ArrayLike, normal: ArrayLike) -> tuple[float, float]:
-    """Distance in mm between a cut and its mirror image, and the depth to which they lie on each other; one is zero.
+    """Distance in mm between a cut and its mirror image, and the depth of their overlap; one is zero.
 
     Args:
         program: cutter locations in {C}; without a cut both are zero.
-        point: (3,) a point of the plane of the mirror, mm.
+        point: (3,) a point of the mirror plane, mm.
         normal: (3,) its normal.
 
     Raises:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Exchanged: for each open pass its plunge and its lift, and what they become when the pass is run the other way.
+"""Exchanged: plunge and lift of each open pass, and their replacements when the pass is reversed.
 
-Passes and links enter; leads at comparable heights leave. With one tool axis at both ends of a pass heights are those
-along it, so that a plane of CAM stays a plane; with two, or where a program keeps one distance to all its passes, they
-are distances from either end.
+Takes passes and links; returns leads at comparable heights. If the tool axis is the same at both ends of a pass,
+heights are measured along it, so a clearance plane stays a plane; otherwise, or where a program keeps one distance to
+all its passes, heights are distances from either end.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from pkm_post.placement.leads import LEVEL, Lead, Rows, above_plane, approach, d
 from pkm_post.placement.links import Link
 
 _ONE_AXIS = 1e-3
-"""rad: tool axes nearer than this are one."""
+"""rad within which tool axes count as equal."""
 _ONE_HEIGHT = 1e-5
-"""mm: heights nearer than this are one, with six decimals."""
+"""mm within which heights count as equal, with six decimals."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,8 @@ class Exchange:
     Attributes:
         plunge: the approach.
         lift: the departure.
-        feed: of the first row of the pass, mm/s: that of the plunge where the pass was reached by rapid moves alone.
+        feed: feed of the first row of the pass, mm/s: that of the plunge where the pass was reached only by rapid
+            moves.
     """
 
     plunge: Lead
@@ -40,11 +41,11 @@ class Exchange:
     feed: float
 
     def is_high(self) -> bool:
-        """Whether the lift ends as high as rapid moves came down, or there is none."""
+        """Whether the lift ends at the height that rapid moves came down to, or there is no lift."""
         return not len(self.lift.way) or bool(self.lift.height[-1] >= self.plunge.rapid_to - LEVEL)
 
     def ways(self) -> tuple[Rows, Rows, int, int]:
-        """The way to the pass and from it, and the old rows that end where the one begins and the other ends."""
+        """The rows to the pass and from it, and the old rows that end where the former begin and the latter end."""
         slow = self.plunge.feed[0] if np.isfinite(self.plunge.feed[:1]).any() else self.feed
         enter, leave = gone_down(self.lift, self.plunge, slow), gone_up(self.plunge, self.lift, slow)
         return enter, leave, int(self.lift.point[-1]), int(self.plunge.point[-1])
@@ -57,7 +58,7 @@ def exchanges(program: Program, runs: Array, between: list[Link], whole: Array) 
         program: the old one.
         runs: (P, 2) its passes.
         between: the P + 1 links.
-        whole: (P,) whether a pass is closed.
+        whole: (P,) closed passes.
     """
     made = {}
     for number in np.flatnonzero(~whole).tolist():
@@ -70,7 +71,7 @@ def exchanges(program: Program, runs: Array, between: list[Link], whole: Array) 
 
 
 def _by_distance(leads: list[Exchange]) -> bool:
-    """Whether rapid moves come down to one distance from all passes, and not to one plane."""
+    """Whether rapid moves come down to one distance from all passes rather than to one plane."""
     distance = np.array([each.plunge.rapid_to for each in leads])
     start, axis = (np.array([getattr(each.plunge, name)[0] for each in leads]) for name in ("position", "tool_axis"))
     if len(leads) < 2 or np.ptp(distance) > _ONE_HEIGHT:
@@ -80,7 +81,7 @@ def _by_distance(leads: list[Exchange]) -> bool:
 
 
 def _on_planes(pair: Exchange) -> Exchange:
-    """The leads with heights from one plane, if one tool axis is normal to it, and rapid moves end above the pass."""
+    """The leads with heights from one plane, if it is normal to both tool axes, and rapid moves end above the pass."""
     if norm(pair.plunge.tool_axis[0] - pair.lift.tool_axis[0]) > _ONE_AXIS:
         return pair
     plunge, lift = (above_plane(lead, pair.plunge.position[0]) for lead in (pair.plunge, pair.lift))

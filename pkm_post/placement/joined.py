@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joined: programs one after the other as one program."""
+"""Joined: programs concatenated into one."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS
 
 
 def joined(programs: Sequence[Program]) -> Program:
-    """One program of several that have their operations, tools and source in common, as copies have.
+    """Concatenate programs that share operations, tools and source, as copies do.
 
     Args:
-        programs: at least one; each is reached from the one before by the rapid move that it begins with.
+        programs: at least one; each is reached from the one before by its first rapid move.
 
     Raises:
         ValueError: there is none, or they do not have the same operations.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joints: how well copies of a program meet where one ends and the next one begins.
+"""Joints: mismatch of copies of a program where one ends and the next begins.
 
-Programs enter, with their sectors about an axis; distances of tips in mm and angles of tool axes in rad leave.
+Takes programs with their sectors about an axis; returns distances of tips in mm and angles of tool axes in rad.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ class Joint:
 
 
 def joints(programs: Sequence[Program], sectors: Sequence[Sector]) -> tuple[Joint, ...]:
-    """How well those copies meet of which one begins where another one ends.
+    """Mismatch of the copies that begin where another one ends.
 
     Args:
         programs: copies of one program.
-        sectors: theirs. Where they are further apart than passes within them, they do not meet.
+        sectors: their sectors. Copies farther apart than the passes within them do not meet.
 
     Raises:
         ValueError: the programs have different numbers of passes.
@@ -45,7 +45,7 @@ def joints(programs: Sequence[Program], sectors: Sequence[Sector]) -> tuple[Join
 
 
 def joint(one: Program, other: Program) -> Joint:
-    """How near the passes of one copy come to the same passes of another one at their nearest ends.
+    """Mismatch of the passes of one copy and the same passes of another one at their nearest ends.
 
     Raises:
         ValueError: they have different numbers of passes, or none.
@@ -58,7 +58,7 @@ def joint(one: Program, other: Program) -> Joint:
     axes = [program.tool_axis[row] for program, row in zip((one, other), rows, strict=True)]
     between = norm(tips[0][:, :, None] - tips[1][:, None, :]).reshape(-1, 4)
     chord = norm(axes[0][:, :, None] - axes[1][:, None, :]).reshape(-1, 4)
-    # Of ends that are equally near, those count where the tool axis turns least: a closed pass has two at one place.
+    # Of equally near ends, those with the smallest axis angle count: a closed pass has both ends in one place.
     nearest = np.argmin(np.round(between, 6) + chord * 1e-9, axis=1)[:, None]
     turn = 2 * np.arcsin(np.clip(np.take_along_axis(chord, nearest, axis=1) / 2, 0.0, 1.0))
     return Joint(float(np.take_along_axis(between, nearest, axis=1).max()), float(turn.max()))

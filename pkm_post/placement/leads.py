@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Leads of reversed passes: the lift gone back as a plunge, and the plunge gone back as a lift.
+"""Leads of reversed passes: the lift reversed into a plunge, and the plunge reversed into a lift.
 
-A lead is the way between a pass and the travel, by its distance from the pass. It stays where it is; what is done on it
-changes places: the way down takes feeds and stations of the plunge, the way up those of the lift, whichever end of the
-pass they lead to. So a plunge keeps its feed, and a second reversal takes both back. A rapid move never comes down to
-where a pass begins, and goes no deeper than one went before.
+A lead is the path between a pass and the travel moves, by its distance from the pass. Its geometry is kept, its feeds
+are exchanged: downward moves take feeds and stations of the plunge, upward moves those of the lift, at either end of
+the pass. So a plunge keeps its feed, and a second reversal restores both. A rapid move never reaches the start of a
+pass, and goes no deeper than before.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from pkm_post.model import Program
 from pkm_post.placement.passes import lifts
 
 LEVEL = 1e-6
-"""mm: as high as another point, with six decimals."""
+"""mm within which two heights are equal, with six decimals."""
 _ON_LINE = 1e-5
-"""mm, and rad: how far a station may be off the motion that it divides, with six decimals."""
+"""mm and rad: largest distance of a station from the motion that it divides, with six decimals."""
 
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of the new program, (n,) each: the old row whose end is reached, the old row of the way, the feed.
+    """Rows of the new program, (n,) each: the old row whose end is reached, the old row of the path, the feed.
 
-    The feed is NaN for a rapid move; ``back`` says that the way is gone from its end to its start. ``position`` and
-    ``tool_axis``, (n, 3) each, are given where they are not those of the old row's end.
+    The feed is NaN for a rapid move; ``back`` marks paths run from end to start. ``position`` and ``tool_axis``, (n, 3)
+    each, are given where they differ from the end of the old row.
     """
 
     point: Array
@@ -48,23 +48,23 @@ class Rows:
 
 
 def as_is(program: Program, rows: Array) -> Rows:
-    """Rows of the old program that stay."""
+    """Rows of the old program, unchanged."""
     return Rows(rows, rows, program.feed[rows])
 
 
 @dataclass(frozen=True)
 class Lead:
-    """A way from a pass outwards, n rows between n + 1 stations.
+    """A path from a pass outwards, n rows between n + 1 stations.
 
     Attributes:
         position: (n + 1, 3) stations, the end of the pass first.
         tool_axis: (n + 1, 3) tool axes there.
         point: (n + 1,) old rows that end there.
-        way: (n,) old rows of the way.
-        feed: (n,) feeds, NaN where it is rapid.
-        slanted: (n,) whether it is a feed move that does not go along the tool axis.
-        height: (n + 1,) how far the stations are from the pass along the way, or their heights above a plane; none is
-            lower than the one before.
+        way: (n,) old rows of the path.
+        feed: (n,) feeds, NaN for rapid moves.
+        slanted: (n,) feed moves that are not along the tool axis.
+        height: (n + 1,) distances of the stations from the pass along the path, or their heights above a plane; never
+            decreasing.
     """
 
     position: Array
@@ -76,7 +76,7 @@ class Lead:
     height: Array
 
     def row_at(self, height: Array) -> Array:
-        """The row that goes through a height, (m,); n above the lead, 0 below it."""
+        """The row that passes through a height, (m,); n above the lead, 0 below it."""
         row: Array = np.clip(np.searchsorted(self.height, height, side="right") - 1, 0, len(self.way))
         return row
 
@@ -86,7 +86,7 @@ class Lead:
 
     @property
     def rapid_to(self) -> float:
-        """Height of the lowest station that a rapid move leads to or from."""
+        """Height of the lowest station at an end of a rapid move."""
         rapid = np.flatnonzero(np.isnan(self.feed))
         return float(self.height[rapid[0] if len(rapid) else -1])
 
@@ -105,7 +105,7 @@ def _lead(program: Program, point: Array, way: Array) -> Lead:
     position, axis, feed = program.position[point], program.tool_axis[point], program.feed[way]
     height = np.append(0.0, np.cumsum(norm(np.diff(position, axis=0))))
     made = Lead(position, axis, point, way, feed, np.isfinite(feed) & (lifts(program)[way] == 0), height)
-    # A move that turns the tool and goes on from rapid to feed is a rapid lift that was divided.
+    # A move that turns the tool and changes from rapid to feed is a divided rapid lift.
     turning = norm(np.diff(axis, axis=0)[:-1]) > _ON_LINE
     divided = turning & _straight_on(made) & np.isnan(feed[1:])
     return replace(made, slanted=made.slanted & ~np.append(divided, False)[: len(way)])
@@ -118,12 +118,12 @@ def above_plane(lead: Lead, origin: Array) -> Lead:
 
 
 def gone_down(lead: Lead, plunge: Lead, slow: float) -> Rows:
-    """A lead gone to the pass with feeds and stations of a plunge.
+    """A lead run towards the pass with feeds and stations of a plunge.
 
     Args:
         lead: the departure that becomes the approach.
         plunge: the old approach of the pass.
-        slow: feed where the plunge has none and a rapid move would come too deep, mm/s.
+        slow: feed where the plunge has none and a rapid move would go too deep, mm/s.
     """
     made, row = _divided(lead, _stations(plunge))
     feed, rises = _feeds(made, plunge), np.diff(made.height) > 0.0
@@ -135,10 +135,10 @@ def gone_down(lead: Lead, plunge: Lead, slow: float) -> Rows:
 
 
 def gone_up(lead: Lead, lift: Lead, slow: float) -> Rows:
-    """A lead gone from the pass with feeds and stations of a lift.
+    """A lead run away from the pass with feeds and stations of a lift.
 
-    A plunge that does not go along the tool axis is never gone back by a rapid move: where the lift is one, it keeps
-    its feed. A lift that has that feed there stands for a rapid one, so that a second reversal finds it.
+    A plunge not along the tool axis is never reversed as a rapid move: where the lift is rapid, it keeps its feed. A
+    lift with that feed there represents a rapid one, so a second reversal restores it.
 
     Args:
         lead: the approach that becomes the departure.
@@ -157,20 +157,20 @@ def gone_up(lead: Lead, lift: Lead, slow: float) -> Rows:
 
 
 def _feeds(made: Lead, role: Lead) -> Array:
-    """Feeds of the rows of a divided lead by those of another one at their heights, (n,)."""
+    """Feeds for the rows of a divided lead, taken from another lead at the same heights, (n,)."""
     middle = (made.height[:-1] + made.height[1:]) / 2
     return np.where(np.diff(made.height) > 0.0, role.feed_at(middle), np.nan)
 
 
 def _stations(lead: Lead) -> Array:
-    """Heights of the stations by choice: the motion goes on straight there, or its feed changes."""
+    """Heights of the removable stations: the motion continues straight there, or its feed changes."""
     feed = np.nan_to_num(lead.feed, nan=-1.0)
     heights: Array = lead.height[1:-1][_straight_on(lead) | (feed[1:] != feed[:-1])]
     return heights
 
 
 def _straight_on(lead: Lead) -> Array:
-    """Whether the motion goes on as it was at the stations between the first and the last, (n - 1,)."""
+    """Whether the motion continues unchanged at the stations between the first and the last, (n - 1,)."""
     way = np.diff(lead.position, axis=0)
     before, after = way[:-1], way[1:]
     whole = np.maximum(norm(before + after), _ON_LINE)
@@ -182,9 +182,9 @@ def _straight_on(lead: Lead) -> Array:
 
 
 def _divided(lead: Lead, heights: Array) -> tuple[Lead, Array]:
-    """The lead with other stations, and the old row on which each of its rows is.
+    """The lead with other stations, and the old row that contains each of its rows.
 
-    Stations of its own remain where the motion turns.
+    Its own stations remain where the motion changes direction.
     """
     rows = len(lead.way)
     if not rows:
@@ -209,7 +209,7 @@ def _divided(lead: Lead, heights: Array) -> tuple[Lead, Array]:
 
 
 def _between(values: Array, row: Array, share: Array) -> Array:
-    """Values at shares of the ways from rows to the next ones; exactly those of the rows at shares 0 and 1."""
+    """Values interpolated from rows to the next ones; exactly those of the rows at shares 0 and 1."""
     shares = share.reshape(-1, *[1] * (values.ndim - 1))
     between: Array = (1.0 - shares) * values[row] + shares * values[row + 1]
     return between

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Links: how the tool leaves a pass, travels, and comes to the next one.
+"""Links: departure from a pass, travel, and approach to the next one.
 
-A program with its passes enters; for each link the rows leave: departure, travel, approach. Departure and approach run
-along the tool axis, with the plunges and lifts next to the pass that do not, and the rapid moves that turn the tool on
-the way; or they are the rapid move next to the pass where no such move is. Before the first pass all but the approach
-is travel, and behind the last one all but the departure.
+Takes a program with its passes; returns the rows of each link: departure, travel, approach. Departure and approach run
+along the tool axis, and include oblique plunges and lifts next to the pass and rapid moves that turn the tool on the
+path; without such moves they are the rapid move next to the pass. Before the first pass all but the approach is travel,
+and after the last one all but the departure.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from pkm_post.model import Kind, Program
 from pkm_post.placement.passes import cutting, lifts, moving, rises, steps
 
 _SAME = 1e-6
-"""mm, and of unit vectors: saved documents have six decimals."""
+"""mm, and difference of unit vectors: saved documents have six decimals."""
 _STEEP = 0.7
-"""Cosine of the angle between a rapid move that turns the tool and the tool axis, above which it leads up or down."""
+"""Cosine of the angle between a rapid move that turns the tool and the tool axis, above which it goes up or down."""
 _STRAIGHT = 1.0 - 1e-6
 """Cosine of the angle between two moves in line."""
 
@@ -32,9 +32,9 @@ class Link:
 
     Attributes:
         rows: all of them.
-        departure: those that lead away from the pass before.
+        departure: those that lead off the pass before.
         travel: those between.
-        approach: those that lead to the pass behind.
+        approach: those that lead to the next pass.
     """
 
     rows: Array
@@ -60,11 +60,11 @@ def links(program: Program, runs: Array) -> list[Link]:
         rows = every[moves[every]]
         away = 0 if number == 0 else _leading(up[rows], rapid[rows])
         rest = rows[away:]
-        # Row 0 has no start: it is a point that is travelled to.
+        # Row 0 has no start: it is a travel target.
         own = rest[1:] if number == 0 else rest
         to = 0 if number == len(runs) else _leading(down[own][::-1], rapid[own][::-1])
         if 0 < number < len(runs) and away + to == len(rows):
-            # Between two passes something has to be travel, and a move that turns the tool may be.
+            # Two passes need travel between them; a move that turns the tool may serve.
             back = away > 0 and bool(swings[rows[away - 1]])
             away, to = away - back, to - (not back and to > 0 and bool(swings[rows[-to]]))
             rest = rows[away:]
@@ -73,20 +73,20 @@ def links(program: Program, runs: Array) -> list[Link]:
 
 
 def _turns(program: Program) -> Array:
-    """Whether a rapid move turns the tool, (N,)."""
+    """Rapid moves that turn the tool, (N,)."""
     turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
     flags: Array = (program.kind == Kind.RAPID) & (turn > _SAME)
     return flags
 
 
 def _swings(program: Program) -> Array:
-    """Whether a rapid move turns the tool while it goes up or down, (N,)."""
+    """Rapid moves that turn the tool while going up or down, (N,)."""
     flags: Array = _turns(program) & (norm(steps(program)) >= _SAME) & (np.abs(rises(program)) > _STEEP)
     return flags
 
 
 def _leading_ways(program: Program, runs: Array, swings: Array) -> tuple[Array, Array]:
-    """Whether rows may lead up from a pass, and down to one, (N,) each."""
+    """Rows that may lead up from a pass, and down to one, (N,) each."""
     rise, lift = rises(program), lifts(program)
     plunges = cutting(program) & ~_within(runs, len(program))
     leads = plunges | swings | _in_line(program, plunges)
@@ -95,14 +95,14 @@ def _leading_ways(program: Program, runs: Array, swings: Array) -> tuple[Array, 
 
 
 def _within(runs: Array, rows: int) -> Array:
-    """Whether rows are within the passes, (N,)."""
+    """Rows within the passes, (N,)."""
     edges = np.bincount(runs[:, 0], minlength=rows + 1) - np.bincount(runs[:, 1], minlength=rows + 1)
     inside: Array = np.cumsum(edges)[:rows] > 0
     return inside
 
 
 def _in_line(program: Program, plunges: Array) -> Array:
-    """Rapid moves that go on in the line of a plunge or lift beside them, (N,)."""
+    """Rapid moves in line with an adjacent plunge or lift, (N,)."""
     way = steps(program)
     direction = way / np.maximum(norm(way), _SAME)[:, None]
     ahead = np.append(dot(direction[:-1], direction[1:]) > _STRAIGHT, False)
@@ -113,7 +113,7 @@ def _in_line(program: Program, plunges: Array) -> Array:
 
 
 def closed(program: Program, runs: Array) -> Array:
-    """Whether each pass ends where and as it begins, (P,)."""
+    """Passes that end at the pose they begin with, (P,)."""
     begin, end = runs[:, 0] - 1, runs[:, 1] - 1
     off = norm(program.position[begin] - program.position[end])
     turned = norm(program.tool_axis[begin] - program.tool_axis[end])
@@ -128,6 +128,6 @@ def same_pose(program: Program, row: int, other: int) -> bool:
 
 
 def _leading(along: Array, rapid: Array) -> int:
-    """How many rows from the pass outwards lead along the tool axis; if none does, 1 where the first one is a rapid."""
+    """Number of rows from the pass outwards along the tool axis; if none, 1 where the first one is rapid."""
     run = int(np.argmin(np.append(along, False)))
     return run or int(np.any(rapid[:1]))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Passes: the stretches of a program in which the cutter works its way, and what leads from one to the next.
+"""Passes: the runs of rows in which the cutter cuts, and the moves between them.
 
-A program enters; flags by row, and first and last rows of the passes leave. A pass is a run of feed moves between rapid
-moves and plunges. Moves straight along the tool axis belong to no pass: down they lead to one, up they lead away.
+Takes a program; returns flags by row, and first and last rows of the passes. A pass is a run of feed moves between
+rapid moves and plunges. Moves straight along the tool axis belong to no pass: downwards they approach one, upwards they
+leave one.
 """
 
 from __future__ import annotations
@@ -14,22 +15,22 @@ from pkm_post.geometry.vectors import Array, dot
 from pkm_post.model import Kind, Program
 
 _NO_MOVE = 1e-9
-"""mm, and of unit vectors: a row that moves less stands."""
+"""mm, and difference of unit vectors: a row that moves less stands still."""
 _ALONG = 1e-3
-"""rad: a straight move this near to the direction of the tool axis goes along it."""
+"""rad within which a straight move counts as along the tool axis."""
 _SLANTED = 0.5
-"""Sine of the angle against the plane across the tool axis above which a move is a plunge or lift."""
+"""Sine of the angle to the plane across the tool axis above which a move is a plunge or lift."""
 _ARC_STEPS = 24
-"""Points for each arc, a full turn at most: 15 degrees apart."""
+"""Points per arc: 15 degrees apart for a full circle."""
 
 
 def steps(program: Program) -> Array:
-    """How the tip moves on each row, (N, 3) in mm; zero on row 0, whose start is not known."""
+    """Displacement of the tip on each row, (N, 3) in mm; zero on row 0, whose start is unknown."""
     return np.diff(program.position, axis=0, prepend=program.position[:1])
 
 
 def moving(program: Program) -> Array:
-    """Whether tip or tool axis move on each row, (N,); row 0 does not."""
+    """Rows on which tip or tool axis move, (N,); not row 0."""
     turn = np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1])
     flags: Array = (norm(steps(program)) > _NO_MOVE) | (norm(turn) > _NO_MOVE) | (program.kind == Kind.ARC)
     return flags
@@ -48,7 +49,7 @@ def lifts(program: Program) -> Array:
 
 
 def rises(program: Program) -> Array:
-    """How far straight rows go up along the tool axis, as a share of their way, (N,): 1 along it, 0 on other rows."""
+    """Rise of straight rows along the tool axis as a share of their length, (N,): 1 along it, 0 on other rows."""
     way = steps(program)
     axis = program.tool_axis + np.concatenate([program.tool_axis[:1], program.tool_axis[:-1]])
     size = norm(way) * norm(axis)
@@ -59,9 +60,9 @@ def rises(program: Program) -> Array:
 
 
 def without_plunges(program: Program, runs: Array) -> Array:
-    """The passes without the plunges and lifts at their ends that do not go along the tool axis, (P, 2).
+    """The passes without the oblique plunges and lifts at their ends, (P, 2).
 
-    These are the straight rows down at the beginning and up at the end, whose feed is not that of the cut next to them.
+    These are straight rows, down at the start and up at the end, whose feed differs from that of the adjacent cut.
     """
     rise = rises(program)
     inner = np.array(runs)
@@ -73,7 +74,7 @@ def without_plunges(program: Program, runs: Array) -> Array:
 
 
 def _plunging(down: Array, feed: Array) -> int:
-    """How many rows from an end of a pass are a plunge to it; none where that would be all."""
+    """Number of plunge rows at an end of a pass; 0 where that would be all rows."""
     going = np.append(down > _SLANTED, False)
     count = int(np.argmin(going))
     if count == len(feed):
@@ -82,7 +83,7 @@ def _plunging(down: Array, feed: Array) -> int:
 
 
 def cutting(program: Program) -> Array:
-    """Whether a row belongs to a pass, (N,). A row that moves nothing belongs to what is before it."""
+    """Rows that belong to a pass, (N,). A row without motion belongs with the row before."""
     cuts = (program.kind != Kind.RAPID) & (lifts(program) == 0)
     known = moving(program)
     known[:1], cuts[:1] = True, False
@@ -92,13 +93,13 @@ def cutting(program: Program) -> Array:
 
 
 def passes(program: Program) -> Array:
-    """The passes, (P, 2): the first row, and the one behind the last row."""
+    """The passes, (P, 2): the first row, and the one after the last row."""
     edge = np.diff(np.concatenate([[0], cutting(program).astype(np.int8), [0]]))
     return np.column_stack([np.flatnonzero(edge > 0), np.flatnonzero(edge < 0)])
 
 
 def chords(program: Program) -> tuple[Array, Array]:
-    """Starts and ends of what is cut, (n, 3) each in mm: straight rows as they are, arcs as short chords."""
+    """Starts and ends of the cuts, (n, 3) each in mm: straight rows as they are, arcs as short chords."""
     rows = np.flatnonzero(cutting(program))
     arc = program.kind[rows] == Kind.ARC
     start, end = program.position[rows - 1], program.position[rows]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Place: put a program on the machine; from cutter locations in {C} to trajectory segments in {M}.
+"""Place: a program on the machine, from cutter locations in {C} to trajectory segments in {M}.
 
-q_M = D q, k_M = R_D k with the work offset D, the pose of {C} in {M} [paper eq. 1, 2]. The way starts at the
-machine's home pose; rows that move nothing are left out, and their events kept. The spin stays at zero: the platform
-has the spin of the program, zero torsion where that says nothing.
+q_M = D q, k_M = R_D k with the work offset D, the pose of {C} in {M} [paper eq. 1, 2]. The path starts at the machine's
+home pose; rows without motion are dropped, and their events kept. The spin stays at zero: the platform has the spin of
+the program, and zero torsion where the program gives none.
 """
 
 from __future__ import annotations
@@ -26,26 +26,26 @@ from pkm_post.placement.symmetry import mirrors, transform
 from pkm_post.placement.tool_changes import with_tool_changes
 
 _NO_MOVE = 1e-9
-"""mm and rad: a row that moves less is left out."""
+"""mm and rad: a row that moves less is dropped."""
 _HALF_TURN = np.pi - 1e-6
 _BEYOND_REACH = 10
-"""Longest struts: what is farther away from the base is no place of a machine, and need not be looked at closely."""
+"""Multiple of the longest strut: positions farther from the base are out of reach and need no closer check."""
 _DAY = 86400.0
-"""s; no move takes longer."""
+"""s; limit of the duration of a move."""
 
 
 def place(
     program: Program, machine: Machine, machine_from_work: Array
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
-    """The trajectory of a program on a machine, or what stands against it.
+    """The trajectory of a program on a machine, or the errors that prevent it.
 
     Args:
         program: cutter locations in {C}.
-        machine: gives the home pose and the limits of feed and spindle.
-        machine_from_work: (4, 4) work offset D, a rotation with a shift.
+        machine: defines the home pose and the limits of feed and spindle.
+        machine_from_work: (4, 4) work offset D, a rotation and a translation.
 
     Raises:
-        ValueError: the program has 2D cutter compensation that was not applied.
+        ValueError: the program has unapplied 2D cutter compensation.
     """
     if program.side_offset.any():
         raise ValueError("place: expected a program whose cutter compensation was applied, got side offsets")
@@ -80,7 +80,7 @@ def place(
 
 
 def _way(placed: Program, machine: Machine) -> dict[str, Any]:
-    """Columns of the way by row of the program: where each row begins and ends, and how far that is."""
+    """Path columns by row of the program: start, end and length of each row."""
     tip, axis, centre, turn = placed.position, placed.tool_axis, placed.arc_centre, placed.arc_axis
     tool = _tool_by_row(placed)
     axis_before = np.vstack([machine.home_axis, axis[:-1]])
@@ -88,7 +88,7 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
     x, y, z = (axis != axis_before).T
     turns = x | y | z
     angle[turns] = angle_between(axis_before[turns], axis[turns])
-    # At a tool change the platform stands still: the tip of a longer tool begins further down.
+    # At a tool change the platform stands still: the tip of a longer tool starts lower.
     longer = np.diff(lengths_of(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
     tip_before = np.vstack([machine.home_tip, tip[:-1]]) - longer[:, None] * axis_before
     arc = placed.kind == Kind.ARC
@@ -116,13 +116,13 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
 
 
 def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Event, ...]) -> dict[str, Any]:
-    """Columns of the trajectory: the way without the rows that move nothing, and how each row goes over into the next.
+    """Columns of the trajectory: the path without rows that stand still, and the transition from each row to the next.
 
     Args:
         placed: the program in {M}.
         way: its columns of ``_way``.
-        keep: which rows move anything.
-        events: those of the program, at the rows that are kept.
+        keep: rows that move.
+        events: events of the program, at the kept rows.
     """
     rows = slice(None) if keep.all() else keep
     columns = {name: column[rows] for name, column in way.items()}
@@ -138,7 +138,7 @@ def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Ev
 
 
 def _tool_by_row(program: Program) -> Array:
-    """The number of the tool in use on each row, (N,); before the first change the first tool is taken as loaded."""
+    """The number of the tool in use on each row, (N,); before the first change the first tool counts as loaded."""
     changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
     first = int(changes[0].value) if changes else min(program.tools)
     tool = np.full(len(program), first, dtype=np.int32)
@@ -164,7 +164,7 @@ def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array
 
 
 def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterator[Diagnostic]:
-    """What is wrong with single moves: each kind by operation, with its first place."""
+    """Faults of single moves: each kind once per operation, at its first place."""
     angle, arc = way["angle"], way["kind"] == Kind.ARC
     away = norm(way["tip"] - machine.base_joints.mean(axis=0))
     longest = _BEYOND_REACH * machine.strut_stroke[1]
@@ -182,7 +182,7 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
 
 
 def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Diagnostic]:
-    """The tools in use that the spindle does not take, each where it is first in use."""
+    """The tools in use that the spindle does not accept, each at its first use."""
     for used, row in zip(*np.unique(number, return_index=True), strict=True):
         tool, place = program.tools[int(used)], program.place(int(row))
         for what, size, most in (
@@ -196,7 +196,7 @@ def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Dia
 
 
 def _first_of_each(operation: Array, wrong: Array) -> list[int]:
-    """The first of the rows that are wrong in each operation."""
+    """The first faulty row of each operation."""
     rows = np.flatnonzero(wrong)
     return rows[np.unique(operation[rows], return_index=True)[1]].tolist()
 
@@ -207,14 +207,14 @@ def _events_on_kept_rows(events: tuple[Event, ...], keep: Array) -> tuple[Event,
 
 
 def _exact_corners(exact_path: Array, columns: dict[str, Any], tip_before: Array) -> Array:
-    """Whether the motion rests at the end of each segment since a corner there is not to be rounded, (N,)."""
+    """Segments that end with an exact stop because the corner there must not be rounded, (N,)."""
     if not exact_path.any():
         return exact_path
     return corners(columns, tip_before) & (exact_path | np.append(exact_path[1:], False))
 
 
 def _stops(events: tuple[Event, ...], segments: int) -> Array:
-    """Whether the motion rests at the end of each segment, (N,): before an event, and at the end of all."""
+    """Segments that end at standstill, (N,): before an event, and at the end of the program."""
     stops = np.zeros(segments, dtype=bool)
     stops[[event.row - 1 for event in events if event.row > 0]] = True
     stops[-1:] = True

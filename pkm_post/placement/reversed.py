@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reversed: a program whose passes are run the other way, so that climb milling stays climb milling behind a mirror.
+"""Reversed: a program with its passes reversed, so climb milling stays climb milling after a mirror.
 
-A program enters and leaves; no point is added. Each pass is turned round in itself, and the passes keep their sequence,
-so that depths are still cut from the top. Point columns go with the points, feeds and arcs with their segments; an arc
-turns about the opposite axis, and what was left of the path is right of it then.
+Takes and returns a program; no point is added. Each pass is reversed in itself, and the passes keep their order, so
+depths are still cut from the top. Point columns stay with the points, feeds and arcs with their segments; an arc turns
+about the opposite axis, and left of the path becomes right of it.
 
-A pass that ends where it began is still reached and left as before. Another one is reached by the way on which it was
-left, and left by the way on which it was reached. What goes down does so as the plunge did and what goes up as the lift
-did: rapid and feed by height, so the tool never comes down to where such a pass begins by a rapid move.
+A closed pass keeps its approach and departure. An open pass is approached along its old departure path and left along
+its old approach path. Downward moves take rapid and feed by height from the plunge, upward moves from the lift, so the
+tool never reaches the start of such a pass by a rapid move.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from pkm_post.placement.passes import passes, without_plunges
 from pkm_post.placement.reversed_events import misplaced, moved_events
 
 _POINT_COLUMNS = ("position", "tool_axis", "normal", "spin", "exact_stop", "side_offset", "smaller_tool")
-"""What is said of the end of a row: on the row where compensation begins, only its end has the offset yet. All other
-columns are of the way there."""
+"""Columns that describe the end of a row: on the row where compensation begins, only its end has the offset. All other
+columns describe the path to that point."""
 
 
 _POSE = ("position", "tool_axis")
@@ -39,11 +39,11 @@ _POSE = ("position", "tool_axis")
 
 @dataclass(frozen=True)
 class _Part:
-    """What belongs together in the new program.
+    """Rows that stay together in the new program.
 
     Attributes:
         name: "leave", "travel", "enter" of the link with this number, or "pass".
-        number: of the link or the pass.
+        number: number of the link or the pass.
         rows: its rows.
     """
 
@@ -53,12 +53,12 @@ class _Part:
 
 
 def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program with every pass run the other way, or what stands against it (K122 to K125).
+    """The program with every pass reversed, or the errors that prevent it (K122 to K125).
 
-    Doing it twice gives the same program: ``docs/conventions.md`` says where a rapid move may stay a feed move.
+    Two reversals give the same program: ``docs/conventions.md`` states where a rapid move may stay a feed move.
 
     Args:
-        program: cutter locations; a program without passes comes back as it is.
+        program: cutter locations; a program without passes is returned unchanged.
     """
     runs = without_plunges(program, passes(program))
     if not len(runs):
@@ -79,7 +79,7 @@ def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic,
 def _parts(
     program: Program, runs: Array, between: list[Link], whole: Array, leads: Mapping[int, Exchange]
 ) -> list[_Part]:
-    """The new program in its order."""
+    """The parts of the new program in order."""
     kept = _unchanged(whole)
     parts: list[_Part] = []
     tip = -1
@@ -104,15 +104,15 @@ def _parts(
 
 
 def _unchanged(whole: Array) -> Array:
-    """Whether each link is between passes that are closed, (P + 1,)."""
+    """Links between closed passes, (P + 1,)."""
     either: Array = np.append(True, whole) & np.append(whole, True)
     return either
 
 
 def _to(program: Program, link: Link, tip: int, top: int, at_start: bool) -> Rows:
-    """One rapid move to the point above a pass, none where the tool is there already.
+    """One rapid move to the point above a pass, none if the tool is already there.
 
-    At the start of all, what came before the old such point is kept.
+    At the start of the program, rows before the old point above the pass are kept.
     """
     if not at_start and same_pose(program, tip, top):
         return as_is(program, link.travel[:0])
@@ -135,7 +135,7 @@ def _faults(
         if lost:
             yield Diagnostic("K122", program.place(int(runs[number, 0])), lost)
     if not sizes["enter", 0] and not whole[0]:
-        # A path that begins in the material by itself may begin in it at its other end as well; no other one may.
+        # Only a path that already starts in the material may start in it at its other end.
         code = "K122" if len(between[0].approach) else "K123"
         yield Diagnostic(code, program.place(int(runs[0, 1]) - 1), "no lift leads away from the end of this pass")
     for number in np.flatnonzero(~whole).tolist():
@@ -151,7 +151,7 @@ def _faults(
 
 
 def _lost(program: Program, link: Link, leaving: int, entering: int) -> str:
-    """Why the tool could not go from one turned pass to the next, or nothing."""
+    """Why the tool cannot go from one reversed pass to the next, or an empty string."""
     if not np.any(program.kind[link.rows] == Kind.RAPID):
         return "no rapid move leads to this pass"
     if not leaving or not entering:
@@ -162,7 +162,7 @@ def _lost(program: Program, link: Link, leaving: int, entering: int) -> str:
 
 
 def _taken(program: Program, parts: list[Rows]) -> Program:
-    """The rows of all parts as a program, its events still the old ones."""
+    """The rows of all parts as a program, still with the old events."""
     point, way, feed = (np.concatenate([getattr(part, name) for part in parts]) for name in ("point", "way", "feed"))
     back = np.repeat([part.back for part in parts], [len(part.way) for part in parts])
     names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS} - {*_POINT_COLUMNS}

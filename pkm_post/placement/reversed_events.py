@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Events of reversed passes: where they belong when the rows stand in another order.
+"""Events of reversed passes: their places in the new order of rows.
 
-Events of the old program enter, with where the parts of the new one begin; events at new rows leave.
+Takes events of the old program, and the first rows of the parts of the new one; returns events at new rows.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from pkm_post.model import Diagnostic, Event, EventKind, Program
 from pkm_post.placement.links import Link
 
 _ANYWHERE = (EventKind.DWELL, EventKind.STOP)
-"""Events that may stand in the middle of a pass: they belong to a point."""
+"""Events allowed in the middle of a pass: they belong to a point."""
 
 
 def misplaced(program: Program, runs: Array) -> Iterator[Diagnostic]:
-    """K125 for what changes a state in the middle of a pass, where it cannot hold for the same segments."""
+    """K125 for events that change a state in the middle of a pass: reversed, it would apply to other segments."""
     for event in program.events:
         number = int(np.searchsorted(runs[:, 0], event.row)) - 1
         if number >= 0 and event.row < runs[number, 1] and event.kind not in _ANYWHERE:
@@ -35,14 +35,14 @@ def moved_events(
     kept: Array,
     begins: Mapping[tuple[str, int], int],
 ) -> tuple[Event, ...]:
-    """The events where they belong now: within a pass at their point, between two passes after the lift.
+    """The events at their new rows: within a pass at their point, between two passes after the lift.
 
     Args:
         program: the old one.
-        rows: number of rows of the new one.
+        rows: number of rows of the new program.
         runs: (P, 2) the old passes.
         between: the P + 1 old links.
-        kept: (P + 1,) whether a link is as it was.
+        kept: (P + 1,) unchanged links.
         begins: first row of each part of the new program.
     """
     moved = []

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Safe way: from one pose to another over a height at and above which the tip is free.
+"""Safe route: from one pose to another over a height at and above which the tip is free.
 
-The tool leaves along its axis, crosses above the height, and arrives along its axis. Whoever asks for it sees that the
-axes rise. Units: mm, {M}.
+The tool leaves along its axis, crosses above the height, and arrives along its axis. The caller ensures that the axes
+rise. Units: mm, {M}.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ import numpy as np
 from pkm_post.geometry.vectors import Array
 
 FLATTEST = 0.1
-"""Least z of a tool axis that a tool is retracted along: 84 degrees from upright: a height takes ten times its way."""
+"""Smallest z of a tool axis for a retract along it: 84 degrees from upright, where the path is ten times the height."""
 
 _NO_MOVE = 1e-8
-"""mm, rad, and of unit axes."""
+"""mm, rad, and difference of unit axes."""
 
 
 @dataclass(frozen=True)
 class ToolPose:
-    """Where a tool is, or is to go.
+    """Current or target pose of a tool.
 
     Attributes:
         tip: (3,) in {M}, mm.
         axis: (3,) unit tool axis in {M}.
-        spin: of the platform about it, rad; NaN where that is left open.
+        spin: spin of the platform about it, rad; NaN where unspecified.
     """
 
     tip: Array
@@ -39,12 +39,12 @@ class ToolPose:
         return bool(self.tip[2] >= height or self.axis[2] >= FLATTEST)
 
     def is_at(self, other: ToolPose) -> bool:
-        """Whether both are one pose, but for rounding."""
+        """Whether both poses are equal up to rounding."""
         apart = (*(self.tip - other.tip), *(self.axis - other.axis), self.spin - other.spin)
         return bool(np.abs(apart).max() < _NO_MOVE)
 
     def above(self, height: float) -> tuple[ToolPose, ...]:
-        """The pose from which the height is reached along the tool axis; none where the tip is that high already.
+        """The pose at the height, along the tool axis; empty where the tip is already that high.
 
         tip + (height - z) / k axis, with z of the tip and k of the axis along z.
         """
@@ -53,11 +53,11 @@ class ToolPose:
 
 
 def safe_way(start: ToolPose, end: ToolPose, height: float) -> tuple[ToolPose, ...]:
-    """The poses to go through by straight moves, the end with them.
+    """The poses to pass through by straight moves, including the end.
 
     Args:
-        start: where the tool is.
-        end: where it is to go.
+        start: current pose.
+        end: target pose.
         height: z in {M} at and above which the tip is free.
     """
     return (*start.above(height), *end.above(height), end)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Smoothness: whether one segment of the tool's way goes over into the next without a corner.
+"""Smoothness: whether one segment of the pose path continues into the next without a corner.
 
-Enters: the columns of the segments and where each begins. Leaves: a flag by segment. Tip and tool axis count both.
+Takes the columns of the segments and their starts; returns a flag by segment. Both tip and tool axis count.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from pkm_post.geometry.vectors import Array, cross, dot
 from pkm_post.model import Kind
 
 _NO_MOVE = 1e-9
-"""mm: a tip that moves less stands."""
+"""mm: a tip that moves less stands still."""
 _NO_CORNER = 1e-6
-"""rad, and rad/mm of the tool axis: a smaller change is none."""
+"""rad, and rad/mm of the tool axis: smaller changes count as none."""
 _TANGENT = np.radians(0.1)
-"""rad: what the decimals of a program leave of a tangent; an exact path does not stop for it."""
+"""rad: rounding of tangents by the decimals of a program; an exact path does not stop for it."""
 
 
 def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
-    """Whether the tip keeps its direction, and the axis its rate by path length, into the next segment, (N,).
+    """Segments after which the tip keeps its direction, and the axis its rate by path length, (N,).
 
     Args:
         columns: kind, tip, axis, arc_centre, arc_axis, sweep, length and angle of N segments.
-        tip_before: (N, 3) tips where they begin.
-        axis_before: (N, 3) unit tool axes where they begin.
+        tip_before: (N, 3) tips at their starts.
+        axis_before: (N, 3) unit tool axes at their starts.
     """
     at_start, at_end = _tangents(columns, tip_before)
     corner = norm(at_start[1:] - at_end[:-1]) + _jump_of_rate(columns, axis_before)
@@ -37,20 +37,20 @@ def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Ar
 
 
 def corners(columns: dict[str, Any], tip_before: Array) -> Array:
-    """Whether the tip's way has a corner at the end of each segment, (N,); at the end of all it has none.
+    """Segments with a corner of the tip path at their end, (N,); never the last.
 
-    A tip that stands while the tool turns begins and ends with a corner. The tool axis does not count.
+    A tip that stands still while the tool turns has a corner at both ends. The tool axis does not count.
 
     Args:
         columns: kind, tip, arc_centre, arc_axis, sweep of N segments.
-        tip_before: (N, 3) tips where they begin.
+        tip_before: (N, 3) tips at their starts.
     """
     at_start, at_end = _tangents(columns, tip_before)
     return np.append(norm(at_start[1:] - at_end[:-1]) > _TANGENT, False)
 
 
 def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:
-    """How far the rate of the tool axis by path length jumps behind each segment but the last, (N - 1,) in rad/mm."""
+    """Jump of the rate of the tool axis by path length after each segment but the last, (N - 1,) in rad/mm."""
     turns = np.flatnonzero(columns["angle"] > 0)
     before, after = axis_before[turns], columns["axis"][turns]
     length = np.maximum(columns["length"][turns], _NO_MOVE)[:, None]
@@ -61,7 +61,7 @@ def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:
 
 
 def _tangents(columns: dict[str, Any], tip_before: Array) -> tuple[Array, Array]:
-    """Unit tangents of the tip's way where the segments begin and where they end, (N, 3) each; zero where it stands."""
+    """Unit tangents of the tip path at start and end of the segments, (N, 3) each; zero where the tip stands still."""
     way = columns["tip"] - tip_before
     at_start = _directions(way)
     at_end = at_start.copy()
@@ -74,6 +74,6 @@ def _tangents(columns: dict[str, Any], tip_before: Array) -> tuple[Array, Array]
 
 
 def _directions(vectors: Array) -> Array:
-    """(N, 3) vectors at unit length; zero where they are too short to have a direction."""
+    """(N, 3) unit vectors; zero where the vectors are too short to have a direction."""
     length = norm(vectors)
     return vectors / np.where(length > _NO_MOVE, length, np.inf)[:, None]

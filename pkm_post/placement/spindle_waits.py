@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spindle waits: dwells in which the spindle gets to its speed before the motion goes on.
+"""Spindle waits: dwells in which the spindle reaches its speed before the motion continues.
 
-A program enters; the same leaves with a dwell after each change of the spindle's speed, and with the spindle at rest
-before each tool change, which leaves it so [NGC 3.6.3]. The speed changes evenly, as drives do that are set by their
-time from rest to the highest speed and back [VFD-B 01-09].
+Takes a program; returns it with a dwell after each change of the spindle speed, and with the spindle stopped before
+each tool change, which leaves it stopped [NGC 3.6.3]. The speed changes at a constant rate, as in drives set by their
+acceleration and deceleration times [VFD-B 01-09].
 
-Where the machine file states no time, nothing waits.
+Where the machine file states no time, no dwell is added.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ _PER_SECOND = 1000
 
 @dataclass(frozen=True)
 class _Ramp:
-    """How a spindle changes its speed.
+    """Acceleration of a spindle.
 
     Attributes:
-        up: s for each revolution per minute faster.
-        down: s for each slower.
+        up: s per revolution per minute of speed gained.
+        down: s per revolution per minute of speed lost.
     """
 
     up: float
     down: float
 
     def seconds(self, before: float, after: float) -> float:
-        """From one speed to another, signed; the other way round it goes through rest."""
+        """Time from one signed speed to another; a reversal passes through rest."""
         if before * after < 0.0:
             return self.seconds(before, 0.0) + self.seconds(0.0, after)
         faster = abs(after) - abs(before)
@@ -43,11 +43,11 @@ class _Ramp:
 
 
 def with_spindle_waits(program: Program, machine: Machine) -> tuple[Program, tuple[Diagnostic, ...]]:
-    """The program with the waits of its spindle, and cuts with a spindle that a tool change has stopped.
+    """The program with spindle waits, and diagnostics of cuts with a spindle stopped by a tool change.
 
     Args:
         program: with its spindle events and tool changes.
-        machine: the times of its spindle.
+        machine: defines the times of its spindle.
     """
     up = machine.spin_up_time
     if up is None:
@@ -58,7 +58,7 @@ def with_spindle_waits(program: Program, machine: Machine) -> tuple[Program, tup
 
 
 def _waited(events: tuple[Event, ...], ramp: _Ramp) -> Iterator[Event]:
-    speed, coasting = 0.0, 0.0  # as was said last, and that from which the spindle may still be coming to rest
+    speed, coasting = 0.0, 0.0  # last commanded speed, and speed from which the spindle may still be coasting down
     for event in events:
         if event.kind is EventKind.TOOL_CHANGE:
             if speed:

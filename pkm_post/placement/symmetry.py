@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry: the other quarters of a symmetric part, from the cutter locations of the first one.
+"""Symmetry: the other quarters of a symmetric workpiece, from the cutter locations of the first one.
 
-A program and a matrix T_C enter, both in the work frame {C}; the program of the mirrored, turned or shifted part
-leaves. q' = T_C q, k' = R k [paper eq. 12, 13]. The axis of an arc is an axial vector: it becomes det(R) R axis, so
-that a mirror turns arcs the other way round while each of them stays right-handed about its axis.
+Takes a program and a matrix T_C, both in the work frame {C}; returns the program of the mirrored, rotated or translated
+workpiece. q' = T_C q, k' = R k [paper eq. 12, 13]. The axis of an arc is an axial vector: it becomes det(R) R axis, so
+a mirror reverses the sense of arcs while each stays right-handed about its axis.
 
-The order of the rows is kept, and with it what is cut first. Spindle events keep their sense, for the mirror image of
-a right-hand cutter would be a left-hand one: behind a mirror climb milling becomes conventional milling.
+The order of the rows, and so the order of cuts, is kept. Spindle events keep their sense, because the mirror image of a
+right-hand cutter would be a left-hand one: a mirror turns climb milling into conventional milling.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from pkm_post.model import Diagnostic, Place, Program
 from pkm_post.model.columns import by_row
 
 _RIGID = 1e-6
-"""Largest deviation of R^T R from one, and of the last row from 0 0 0 1: matrices are typed with six decimals."""
+"""Largest deviation of R^T R from identity, and of the last row from 0 0 0 1: matrices are typed with six decimals."""
 
 
 def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program as the matrix moves it, or what is wrong with the matrix.
+    """The program transformed by the matrix, or the faults of the matrix.
 
     Args:
         program: cutter locations in {C}.
-        matrix: (4, 4) homogeneous matrix T_C: rotation or mirror, and shift in mm.
+        matrix: (4, 4) homogeneous matrix T_C: rotation or mirror, and translation in mm.
 
     Raises:
         ValueError: the matrix is not (4, 4).
@@ -53,29 +53,29 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
         side_offset=side_offset,
         plane=plane,
         normal=by_row(lambda normals: _turned(normals, turn), program.normal),
-        # A mirror M takes the platform to M R M, which turns about the tool axis the other way.
+        # A mirror M takes the platform to M R M, which reverses the rotation about the tool axis.
         spin=by_row(lambda spin: hand * spin, program.spin),
     )
     return moved, ()
 
 
 def _turned(vectors: Array, turn: Array) -> Array:
-    """(N, 3) vectors turned by a (3, 3) matrix; without the threads that a matrix product of many rows would start."""
+    """(N, 3) vectors times a (3, 3) matrix, without the threads that a matrix product of many rows would start."""
     return np.einsum("nj,ij->ni", vectors, turn)
 
 
 def _unit_or_nan(axes: Array) -> Array:
-    """(N, 3) axes at unit length; NaN on rows that are no arcs."""
+    """(N, 3) unit axes; NaN on rows that are not arcs."""
     return axes / norm(axes)[:, None]
 
 
 def _compensation(program: Program, turn: Array, hand: float) -> tuple[Array | None, Array]:
-    """Plane and side offset of the moved rows, (N,) each; no plane where a compensated one is oblique.
+    """Plane and side offset of the transformed rows, (N,) each; no plane if a compensated one becomes oblique.
 
     Left of a path with tangent t is n x t, n the normal of the plane in the sense of its coordinate. R (n x t) =
     det(R) Rn x Rt, so the side changes with the sign of det(R) times that of Rn along its new coordinate.
     """
-    normal_to = np.argmax(np.abs(turn), axis=0)  # of each of the three planes, whose new normals are the columns
+    normal_to = np.argmax(np.abs(turn), axis=0)  # per plane; the columns of ``turn`` are the new normals
     along = turn[normal_to, np.arange(3)]
     plane = by_row(lambda planes: normal_to[planes], program.plane)
     if not program.side_offset.any():
@@ -116,7 +116,7 @@ def rotation(point: ArrayLike, axis: ArrayLike, angle: float) -> Array:
 
 
 def mirrors(matrix: ArrayLike) -> bool:
-    """Whether the matrix changes the hand: climb milling becomes conventional milling, and the reverse.
+    """Whether the matrix changes handedness: climb milling becomes conventional milling, and vice versa.
 
     Args:
         matrix: (4, 4) homogeneous matrix.
@@ -128,7 +128,7 @@ def mirrors(matrix: ArrayLike) -> bool:
 
 
 def _about(point: ArrayLike, turn: Array) -> Array:
-    """The (4, 4) matrix that turns by (3, 3) ``turn`` and leaves ``point`` where it is."""
+    """The (4, 4) matrix that applies (3, 3) ``turn`` and keeps ``point`` fixed."""
     fixed = np.asarray(point, dtype=np.float64)
     matrix = np.eye(4)
     matrix[:3, :3] = turn
@@ -144,7 +144,7 @@ def _matrix(matrix: ArrayLike) -> Array:
 
 
 def _fault(matrix: Array) -> str:
-    """What keeps the matrix from being rigid, or nothing."""
+    """Why the matrix is not rigid, or an empty string."""
     if not np.all(np.isfinite(matrix)):
         return "it has elements that are no finite number"
     if np.max(np.abs(matrix[3] - [0, 0, 0, 1])) > _RIGID:

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool changes: the way to the tool-change pose of the machine and back, as rapid moves of the program.
+"""Tool changes: the route to the tool-change pose of the machine and back, as rapid moves of the program.
 
-A program in {M} enters; the same leaves with the moves that its tool changes take. They belong to an operation of
-their own, "tool change T2", with the line after the change. The platform stands at the change, so the way goes with
-the length of the tool before to the spindle nose of the pose, and from there with that of the tool after. It leads on
-to the end of the next row if that is a rapid move, else back to where the next row begins: that row is as programmed.
-A program that begins without a tool change crosses to its first point above the safe height as well: "approach".
-
-Where the machine file states no tool-change pose, tools change where they are, and nothing is added.
+Takes a program in {M}; returns it with the moves of its tool changes. They belong to an operation of their own, "tool
+change T2", with the line after the change. The platform stands still at the change, so the route uses the length of the
+old tool up to the spindle nose of the pose, and that of the new tool from there. It leads to the end of the next row if
+that is a rapid move, else back to the start of the next row, which stays as programmed. A program that begins without a
+tool change also crosses to its first point above the safe height: "approach". Where the machine file states no
+tool-change pose, tools change in place, and nothing is added.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from pkm_post.placement.safe_way import FLATTEST, ToolPose, columns, safe_way
 
 Findings = tuple[Diagnostic, ...]
 _Tools = tuple[int, Tool, Tool]
-"""A row before which tools change, the tool before and the tool after."""
+"""A row with a tool change before it, the old tool and the new tool."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +32,9 @@ class _Detour:
 
     Attributes:
         row: the row.
-        name: of the operation they belong to.
-        there: moves that end at the tool-change pose; none of an approach.
-        back: moves from there to where the program goes on.
+        name: name of the operation they belong to.
+        there: moves that end at the tool-change pose; empty for an approach.
+        back: moves from there to where the program continues.
     """
 
     row: int
@@ -45,16 +44,16 @@ class _Detour:
 
     @property
     def moves(self) -> tuple[ToolPose, ...]:
-        """Their ends, in order."""
+        """The ends of all moves, in order."""
         return (*self.there, *self.back)
 
 
 def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Findings]:
-    """The program with the ways of its tool changes, and what stands against them.
+    """The program with the routes of its tool changes, and their diagnostics.
 
     Args:
         program: in {M}.
-        machine: its home, where the program starts, and its tool-change pose.
+        machine: defines home, where the program starts, and the tool-change pose.
     """
     pose = machine.tool_change
     if pose is None:
@@ -71,7 +70,7 @@ def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Find
 
 
 def _tools_at_changes(program: Program) -> Iterator[_Tools]:
-    """Each row before which tools change, with the tool before and the tool after; the first one is taken as loaded."""
+    """Each row with a tool change before it, the old tool and the new tool; the first tool counts as loaded."""
     changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
     loaded = program.tools[int(changes[0].value)] if changes else None
     for row, at_row in groupby(changes, lambda event: event.row):
@@ -81,7 +80,7 @@ def _tools_at_changes(program: Program) -> Iterator[_Tools]:
 
 
 def _pose_before(program: Program, machine: Machine, row: int) -> ToolPose:
-    """Where the tool is at the end of the row before, with the tool it had there."""
+    """Tool pose at the end of the row before, with the tool in use there."""
     if row == 0:
         return ToolPose(machine.home_tip, machine.home_axis, machine.home_spin)
     return _end_of(program, row - 1)
@@ -92,14 +91,14 @@ def _end_of(program: Program, row: int) -> ToolPose:
 
 
 def _goes_on(program: Program, machine: Machine, row: int) -> ToolPose | None:
-    """The pose that a way back leads to: the end of a rapid row, else where the row begins; None at the end."""
+    """Target pose of the route back: the end of a rapid row, else the start of the row; None at the end."""
     if row == len(program):
         return None
     return _end_of(program, row) if program.kind[row] == Kind.RAPID else _pose_before(program, machine, row)
 
 
 def _approach(program: Program, machine: Machine, pose: ToolChange) -> _Detour:
-    """The way from home to the first point; the first row is its last move."""
+    """The route from home to the first point; the first row is its last move."""
     return _Detour(
         0, "approach", (), safe_way(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
     )
@@ -110,7 +109,7 @@ def _change(program: Program, machine: Machine, pose: ToolChange, row: int, befo
     target = _goes_on(program, machine, row)
     way_back = () if target is None else safe_way(back, target, pose.safe_height)
     if target is not None and program.kind[row] == Kind.RAPID:
-        way_back = way_back[:-1]  # the row itself goes there
+        way_back = way_back[:-1]  # the row itself moves there
     way_there = safe_way(_pose_before(program, machine, row), there, pose.safe_height)
     return _Detour(row, f"tool change T{after.number}", way_there, way_back)
 
@@ -125,7 +124,7 @@ def _low_tips(program: Program, pose: ToolChange, changes: tuple[_Tools, ...]) -
 
 
 def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[int]) -> Iterator[Diagnostic]:
-    """Ends of ways before these rows from which no height is gained."""
+    """Diagnostics of route ends before these rows from which no height is gained."""
     for row in rows:
         for end in (_pose_before(program, machine, row), _goes_on(program, machine, row)):
             if end is not None and not end.rises_to(pose.safe_height):
@@ -139,7 +138,7 @@ def _place(program: Program, row: int) -> Place:
 
 
 def _inserted(program: Program, detours: list[_Detour]) -> Program:
-    """The program with the rows of all detours; events from a tool change on take place at its pose."""
+    """The program with the rows of all detours; events from a tool change on occur at its pose."""
     names = list(dict.fromkeys(detour.name for detour in detours))
     ways = [(detour, pose) for detour in detours for pose in detour.moves]
     at = np.array([detour.row for detour, _ in ways])
@@ -158,7 +157,7 @@ def _inserted(program: Program, detours: list[_Detour]) -> Program:
 
 
 def _blank(count: int) -> dict[str, Array]:
-    """The columns that a rapid move says nothing in."""
+    """Defaults of the columns unused by a rapid move."""
     nothing: dict[str, Array] = {
         name: np.full((count, *shape), default) for name, (_, shape, default) in OPTIONAL_COLUMNS.items()
     }
@@ -167,7 +166,7 @@ def _blank(count: int) -> dict[str, Array]:
 
 
 def _moved(events: tuple[Event, ...], detours: list[_Detour]) -> Iterator[Event]:
-    """The events at the rows they have between the new ones."""
+    """The events at their rows after insertion."""
     added, ahead, changed = 0, list(detours), False
     for event in events:
         while ahead and (ahead[0].row < event.row):
