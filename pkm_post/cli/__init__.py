@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and its like.
+"""Command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and other commands.
 
-Exit code 0 when all was done, 1 when the input was refused, memory ran out, or nobody reads the output any more, 2 when
-the arguments make no sense, 130 after Ctrl-C. Each module adds its commands to the parser and runs them.
+Exit code 0 on success, 1 when the input was refused, memory ran out, or the output pipe was closed, 2 for invalid
+arguments, 130 after Ctrl-C. Each module adds its commands to the parser and runs them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pkm_post.out_of_memory import FAULTS, lack_of_memory
 __all__ = ["main"]
 
 _OPTIONAL = ("lark", "serial", "paramiko")
-"""Packages that not every installation has; their doors say what to install."""
+"""Optional packages; their entry points say what to install."""
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -47,12 +47,12 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _not_installed(fault: BaseException) -> str | None:
-    """What to install, where an optional package is missing."""
+    """Installation hint for a missing optional package."""
     return str(fault) if isinstance(fault, ImportError) and fault.name in _OPTIONAL else None
 
 
 def _prepare_streams() -> None:
-    """Give a service, which has no streams, some that lead nowhere; what a stream cannot show it shows as a code."""
+    """Open null streams for a service, which has none; make streams escape characters that they cannot encode."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         stream = getattr(sys, name)
         if stream is None:
@@ -62,11 +62,11 @@ def _prepare_streams() -> None:
 
 
 def _output_is_closed() -> bool:
-    """Whether nobody reads what is printed any more, as behind ``| head``; then the rest of it goes nowhere."""
+    """Whether the output pipe was closed, as by ``| head``; then the remaining output is discarded."""
     try:
         print(flush=True)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at its end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at exit
         return True
     return False
 

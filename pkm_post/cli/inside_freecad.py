@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A FreeCAD document can be read by FreeCAD alone: outside of it a command runs itself inside FreeCADCmd.
+"""Inside FreeCAD: only FreeCAD can read its documents, so elsewhere a command reruns itself inside FreeCADCmd.
 
-Exit code 0 of FreeCAD says little: it ends so where it does not find the script, and so does a program that is no
-FreeCAD. The command therefore ends inside with exit codes of its own, and any other says that it did not get there.
+FreeCAD's exit code 0 is unreliable: it also exits so without finding the script, as does a program that is not FreeCAD.
+The command therefore exits with its own codes inside, and any other code means that it was not reached.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ _TOOLS = _IN_A_WHEEL if _IN_A_WHEEL.is_dir() else _ADDON / "tools"
 _START_INSIDE = str(_PACKAGE / "cli" / "start_inside.py")
 _READ_BY_FREECAD = (".fcstd", ".step", ".stp")
 _START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
-"""As ``-m pkm_post``, wherever the add-on is."""
+"""Equivalent of ``-m pkm_post`` for any location of the add-on."""
 INTERRUPTED = 130
-"""The exit code of what Ctrl-C ended, as shells have it."""
+"""Exit code after Ctrl-C, as in shells."""
 _INSIDE = 64
-"""What is added inside to the exit code of the command line: neither FreeCAD nor the shell has such codes."""
+"""Offset of the command line's exit codes inside: neither FreeCAD nor the shell uses such codes."""
 _CODES = (0, 1, 2)
 _NOT_STARTED, _NOT_DONE = "F140", "F141"
 
 
 def is_inside() -> bool:
-    """Whether this process is FreeCAD's."""
+    """Whether this process is FreeCAD."""
     return "FreeCAD" in sys.modules
 
 
 def needs_freecad(files: Sequence[Path], solids: Sequence[str] = ()) -> bool:
-    """Whether this process cannot read one of the files, by their names, which needs no NumPy.
+    """Whether one of the files needs FreeCAD, judged by name, without NumPy.
 
     Args:
         files: documents and part programs.
@@ -52,7 +52,7 @@ def needs_freecad(files: Sequence[Path], solids: Sequence[str] = ()) -> bool:
 
 
 def run_inside(arguments: Sequence[str]) -> int:
-    """Run the same command inside FreeCADCmd; the exit code."""
+    """Run the same command inside FreeCADCmd and return the exit code."""
     command = command_inside(arguments)
     if not command:
         return 1
@@ -68,9 +68,9 @@ def run_inside(arguments: Sequence[str]) -> int:
 
 
 def command_inside(arguments: Sequence[str]) -> list[str]:
-    """How a command is started inside FreeCADCmd; nothing if there is no FreeCAD, which is said then.
+    """Command line that runs a command inside FreeCADCmd; empty, after a message, if FreeCAD is missing.
 
-    An add-on is loaded as such. A wheel is not: the folder it is in has packages for another Python.
+    An add-on is imported as usual. A wheel is not: its folder contains packages for another Python.
     """
     freecad = freecad_command()
     if not freecad:
@@ -81,21 +81,21 @@ def command_inside(arguments: Sequence[str]) -> list[str]:
 
 
 def command_outside(arguments: Sequence[str]) -> list[str]:
-    """How a command is started in a Python like this one, which is not FreeCAD's."""
+    """Command line that runs a command in a Python like this one, outside FreeCAD."""
     return [sys.executable, "-c", _START, str(_ADDON), *arguments]
 
 
 def as_ended_inside(code: int) -> int:
-    """The exit code of FreeCAD that stands for one of the command line."""
+    """FreeCAD exit code that represents one of the command line."""
     return _INSIDE + code if code in _CODES else code
 
 
 def judged(command: Sequence[str], ended: int) -> tuple[int, str]:
-    """The exit code of the command line that was started, and what is to be said if it did not get to its end.
+    """Exit code of the started command line, and the message if it did not run to its end.
 
     Args:
-        command: what ``command_inside`` or ``command_outside`` gave.
-        ended: the exit code of the process.
+        command: from ``command_inside`` or ``command_outside``.
+        ended: exit code of the process.
     """
     if _START_INSIDE not in command or ended == INTERRUPTED:
         return ended, ""
@@ -105,14 +105,14 @@ def judged(command: Sequence[str], ended: int) -> tuple[int, str]:
 
 
 def not_started(command: Sequence[str], fault: OSError) -> str:
-    """What is to be said of a command that the system does not start."""
+    """Message for a command that the system cannot start."""
     return told(_NOT_STARTED, command[0], fault.strerror or str(fault))
 
 
 def freecad_command(environment: Mapping[str, str] = os.environ, system: str = sys.platform) -> list[str]:
-    """How FreeCADCmd is started: as the user says, by the finder that comes with the add-on, or from the path.
+    """FreeCADCmd command line: from the user's setting, the add-on's finder, or the path.
 
-    The finder is a script for bash. Windows starts none, and a bash on its path is that of another system, WSL.
+    The finder is a bash script. Windows cannot run it, and a bash on its path belongs to another system, WSL.
     """
     if environment.get("FREECADCMD"):
         return [environment["FREECADCMD"]]
@@ -124,7 +124,7 @@ def freecad_command(environment: Mapping[str, str] = os.environ, system: str = s
 
 
 def told(code: str, place: str, found: str) -> str:
-    """A diagnostic as text; without a NumPy, which its table needs, in short."""
+    """Format a diagnostic; in short without NumPy, which the rule table needs."""
     try:
         from pkm_post.model import Diagnostic, Place
     except ImportError:

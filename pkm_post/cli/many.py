@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Many: commands run in processes of their own, several at a time, told one after the other.
+"""Many: run commands in separate processes, several at a time, and print their output in order.
 
-Command lines enter, in an order; what each printed appears in that order, kept together, as soon as all before it have
-ended. Whoever ends this with Ctrl-C ends them all.
+Input: command lines, in order. Output: what each printed, kept together, as soon as all before it have ended. Ctrl-C
+ends them all.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from pkm_post.cli.inside_freecad import INTERRUPTED, judged, not_started
 from pkm_post.cli.progress_line import ProgressLine
 
 _TIME_TO_END = 10.0
-"""Seconds a process has to remove what it began, before it is killed."""
+"""Seconds for a process to clean up before it is killed."""
 _APART = os.name == "posix"
-"""Whether a process can be the first of a group, so that all it started are ended with it."""
+"""Whether a process can lead a process group, so that all its children end with it."""
 
 
 @dataclass
 class _Child:
-    """A command in a process of its own."""
+    """A command in a separate process."""
 
     command: Sequence[str]
     process: subprocess.Popen[str] | None = None
     is_wanted: bool = True
 
     def run(self) -> tuple[int, str, str]:
-        """Run it; exit code, output and errors."""
+        """Run it and return exit code, output and errors."""
         if not self.is_wanted:
             return 1, "", ""
         try:
@@ -55,18 +55,18 @@ class _Child:
             stderr=subprocess.PIPE,
             encoding="utf-8",
             errors="replace",
-            env=os.environ | {"PYTHONIOENCODING": "utf-8"},  # whatever the locale says
+            env=os.environ | {"PYTHONIOENCODING": "utf-8"},  # independent of the locale
             start_new_session=_APART,
         )
 
     def interrupt(self) -> None:
-        """Let it end as if Ctrl-C had been pressed there, so that it leaves nothing half done."""
+        """Interrupt it as by Ctrl-C, so that it cleans up."""
         self.is_wanted = False
         if self.process is not None and self.process.poll() is None:
             self._signal(signal.SIGINT) if _APART else self.process.terminate()
 
     def end(self) -> None:
-        """Wait for its end, not for ever."""
+        """Wait for its end, with a timeout."""
         if self.process is not None:
             try:
                 self.process.wait(_TIME_TO_END)
@@ -75,17 +75,17 @@ class _Child:
 
     def _signal(self, number: int) -> None:
         if self.process is not None:
-            with contextlib.suppress(ProcessLookupError):  # it has ended meanwhile
+            with contextlib.suppress(ProcessLookupError):  # it has already ended
                 os.killpg(self.process.pid, number)
 
 
 def run_many(commands: Sequence[Sequence[str]], at_a_time: int, doing: str) -> int:
-    """Run commands; 0 if all ended with 0, 130 after Ctrl-C, and 1 otherwise.
+    """Run commands; return 0 if all succeeded, 130 after Ctrl-C, and 1 otherwise.
 
     Args:
         commands: command lines.
-        at_a_time: how many processes there may be.
-        doing: what they do, for the terminal.
+        at_a_time: most parallel processes.
+        doing: task shown in the terminal.
     """
     children, line, code = [_Child(command) for command in commands], ProgressLine(doing), 0
     with ThreadPoolExecutor(at_a_time) as pool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands ``check`` and ``convert``: part programs are read, and told of or written in another form."""
+"""The commands ``check`` and ``convert``: read part programs, and report on them or write them in another form."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _target(text: str) -> str:
 
 
 def _tell_misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> bool:
-    """Print what options mean nothing for the files; whether there are some."""
+    """Print the options that do not apply to the files; return whether there are any."""
     faults = misplaced(namespace, files)
     for fault in faults:
         print(fault, file=sys.stderr)

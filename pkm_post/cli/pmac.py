@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands ``pmac``: a program into a Turbo PMAC, started, watched and stopped.
+"""The commands ``pmac``: load a program into a Turbo PMAC, start, monitor and stop it.
 
-Exit code 0 when it was done, 1 when controller, machine or link did not allow it; then the last lines on the standard
-error say why.
+Exit code 0 on success, 1 when controller, machine or link refused; the last lines on the standard error then state the
+reason.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Value = TypeVar("Value")
 
 _STOPS = ("hold", "abort")
-"""They connect by themselves, again and again if need be."""
+"""Stops connect by themselves, and reconnect as needed."""
 
 
 def add_commands(commands: Any) -> None:
@@ -125,7 +125,7 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _session(namespace: argparse.Namespace) -> Session:
-    """A session with the port that was named."""
+    """Open a session on the given port."""
     from pkm_post.pmac_link.session import Leftover, Session
 
     port = replace(
@@ -140,7 +140,7 @@ def _session(namespace: argparse.Namespace) -> Session:
 
 
 def _target(namespace: argparse.Namespace) -> Target | None:
-    """Machine and program that were named; None when they are not in order, which is told."""
+    """Resolve machine and program; None when they have faults, which are printed."""
     from pkm_post.controllers import pmac, power_pmac
     from pkm_post.loading import job_to_load
     from pkm_post.machine_file import machine_named
@@ -158,7 +158,7 @@ def _target(namespace: argparse.Namespace) -> Target | None:
 
 
 def _told(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
-    """The value, after its faults were told."""
+    """Print the faults and return the value."""
     for fault in faults:
         print(fault, file=sys.stderr)
     return value

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the actions of the command ``pmac`` do with a controller that answers; each returns its exit code."""
+"""PMAC actions: the actions of the command ``pmac`` on a connected controller; each returns its exit code."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ _STOP = r"(?:&\d+)?[HA]|#\d+K|P8187\.\.8191=0"
 _NEEDS_NO_RIGHT = re.compile(
     rf"(?:{_QUESTION}|{_STOP})(?: (?:{_QUESTION}|{_STOP}))*|LIST .*|[\w.]+\[[\w.\[\]]+", re.IGNORECASE
 )
-"""Lines of the terminal that ask, stop, or free the variables that say who has the machine."""
+"""Terminal lines that only query, stop, or clear the variables that hold the machine's owner."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """The machine that was named.
+    """The named machine.
 
     Attributes:
         machine: the machine.
@@ -51,7 +51,7 @@ class Target:
 
 @dataclass(frozen=True)
 class JobTarget(Target):
-    """A machine and a program for it.
+    """The named machine and a program for it.
 
     Attributes:
         job: the program file.
@@ -61,7 +61,7 @@ class JobTarget(Target):
 
 
 def probe(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
-    """Say what controller answers; raise what is not set up for the machine."""
+    """Print the controller type; raise on settings that do not match the machine."""
     from pkm_post.pmac_link.faults import RefusedError
     from pkm_post.pmac_link.ready import check_setup
 
@@ -81,7 +81,7 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
 
 
 def _print_motion(session: Session, target: Target | None, is_power: bool) -> None:
-    """Say whether the machine moves; without a machine, of which coordinate system and scale are not known, roughly."""
+    """Print whether the machine moves; approximate without a machine, as coordinate system and scale are unknown."""
     from pkm_post.pmac_link.motion import is_busy, settled_status
     from pkm_post.pmac_link.readout import activity_text
 
@@ -107,7 +107,7 @@ def _show_progress(done: int, lines: int) -> None:
 
 
 def _no_progress(done: int, lines: int) -> None:
-    """Nothing is told where nobody looks."""
+    """Ignore progress where the output is not a terminal."""
 
 
 def start(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
@@ -122,14 +122,14 @@ def start(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
 
 
 def resume(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Go on after a hold."""
+    """Resume after a hold."""
     from pkm_post.pmac_link import operate
 
     return _tell(operate.resume(session, target.settings))
 
 
 def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Tell the state once."""
+    """Print the state once."""
     from pkm_post.pmac_link.status import read_status
 
     return _tell(read_status(session, target.settings))
@@ -143,7 +143,7 @@ def _tell(status: Status) -> int:
 
 
 def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Tell pose and state until the user ends it."""
+    """Print pose and state until the user interrupts."""
     from pkm_post.pmac_link.readout import Readout, pose_text, state_text
     from pkm_post.pmac_link.status import read_status
 
@@ -158,12 +158,12 @@ def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> 
             due = max(due + 1 / namespace.rate, time.monotonic())
             time.sleep(max(due - time.monotonic(), 0))
     except KeyboardInterrupt:
-        pass  # this is how the user ends it
+        pass  # the regular end
     return 0
 
 
 def terminal(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
-    """Send each line once; all but well-known questions and stops need the right to move the machine."""
+    """Send each line once; all but known queries and stops need the right to move the machine."""
     from pkm_post.pmac_link.faults import NotOwnerError, PmacError
     from pkm_post.pmac_link.ownership import take
 
@@ -193,10 +193,10 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "monitor": (monitor, "the same with the pose of the tool, again and again", ("machine",)),
     "terminal": (terminal, "send lines of the standard input, each once", ()),
 }
-"""For each action what it does, in words, and what it needs: a machine or a program that is named."""
+"""For each action its description, and the inputs it needs: a named machine or program."""
 
 OF_POWER_PMAC = ("probe", "hold", "abort", "status", "monitor", "terminal")
-"""What is known of a Power PMAC suffices for these."""
+"""Actions that work with the known features of a Power PMAC."""
 NOT_OF_POWER_PMAC = (
     "how it lists a program back, and what it answers to the rest of what this needs, is not known to this program,"
     " and nothing is sent to a machine on a guess"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""By hand: what the actions that move the machine by hand have in common.
+"""By hand: common parts of the actions that move the machine by hand.
 
-A plan is told, carried out and waited for, and where it has led is told; What ends the command while the machine
-moves holds it.
+A plan is printed, executed and awaited, and the position reached is printed. If the command ends while the machine
+moves, it holds the machine.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from pkm_post.pmac_link.status import Array, Status
 
 _SLOWEST_OVERRIDE = 0.05
-"""A move is waited for as long as it would take at this override, which somebody may set meanwhile."""
+"""A move may take as long as at this override, which an operator may set meanwhile."""
 _START_S = 30.0
-"""Added to that: the approach, and codes of the machine."""
+"""Added to that: the approach, and the machine's own codes."""
 _HELD = "it is held, by somebody or, a jog, because this computer came too late to renew it; resume or abort it"
 
 
 def control_of(session: Session, target: Target, namespace: argparse.Namespace) -> NumericalControl:
-    """The control of a machine with the tool that was said.
+    """Numerical control of a machine with the given tool.
 
     Raises:
-        NotReadyError: the number for moves by hand is that of the jobs.
+        NotReadyError: the program number for moves by hand is that of the jobs.
     """
     from pkm_post.numerical_control.control import NumericalControl
     from pkm_post.pmac_link.faults import NotReadyError
@@ -52,7 +52,7 @@ def carry_out(
     told: tuple[Diagnostic, ...],
     near: float | None = None,
 ) -> int:
-    """Tell a plan, have it carried out, and tell where it has led; ``near`` is as for ``execute``."""
+    """Print a plan, execute it, and print the position reached; ``near`` is as for ``execute``."""
     from pkm_post.numerical_control.execute import off_target
     from pkm_post.pmac_link.near import NEAR_MM
     from pkm_post.pmac_link.readout import pose_text
@@ -76,12 +76,12 @@ def carry_out(
 
 
 def wait_for_end(control: NumericalControl, seconds: float) -> Status:
-    """The state after a move that takes so many seconds at 100 %."""
+    """State after a move that takes this many seconds at 100 %."""
     return control.wait_for_rest(_START_S + seconds / _SLOWEST_OVERRIDE)
 
 
 def ended_elsewhere(status: Status, lengths: Array) -> bool:
-    """Whether a move ended otherwise than at the lengths it leads to, which is told."""
+    """Whether a move ended away from its target lengths, which is printed."""
     from pkm_post.numerical_control.execute import off_target
     from pkm_post.pmac_link.near import NEAR_MM
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The actions of the command ``pmac`` that operate the machine by hand: home, jog, mdi, step, continue, override.
+"""PMAC manual control: the actions home, jog, mdi, step, continue, override of the command ``pmac``.
 
-Each plans what it does first and tells it; what the checks refuse is not sent. What ends the command while something
-moves holds it.
+Each prints its plan first; a plan that fails the checks is not sent. If the command ends while the machine moves, it
+holds the machine.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 _WATCH_S = 0.2
 _THERE_MM = 1e-3
-"""Of a strut; nearer to the start of a program nothing needs to be planned."""
+"""mm of a strut; closer to the start of a program no approach is planned."""
 
 
 def home(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Tell which struts have homes; with a trigger, start the homing of the machine and watch it."""
+    """Print which struts are homed; with a trigger, start the machine's homing and monitor it."""
     import time
 
     from pkm_post.numerical_control.homing import Phase, missing_homes, start_homing
@@ -52,7 +52,7 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
 
 
 def jog(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Move the tool or one strut a little."""
+    """Jog the tool or one strut."""
     control = control_of(session, target, namespace)
     plan, told = control.plan_jog(_jog_of(namespace), namespace.feed / 60)
     return carry_out(session, target, namespace, control, plan, told)
@@ -68,7 +68,7 @@ def _jog_of(namespace: argparse.Namespace) -> Jog:
 
 
 def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Carry out a line of G-code."""
+    """Execute a line of G-code."""
     from pkm_post.numerical_control.mdi import Reading
 
     control = control_of(session, target, namespace)
@@ -77,7 +77,7 @@ def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 
 def approach(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Bring the tool to the start of a program."""
+    """Move the tool to the start of a program."""
     from pkm_post.numerical_control.execute import off_target
     from pkm_post.pmac_link.status import read_status
 
@@ -107,7 +107,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
         print(f"{blocks.shown(number)}; Enter starts it, the end of the input ends here", flush=True)
         if not sys.stdin.readline():
             return 0
-        # Only what comes first is begun by hand; the others begin where the one before them ended.
+        # Only the first line is approached by hand; the others begin where the previous one ended.
         near = namespace.near if number == namespace.block else None
         if carry_out(session, target, namespace, control, *control.plan_step(), near):
             return 1
@@ -116,7 +116,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
 
 
 def go_on(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Go on after a stop (M0, M1) of the program."""
+    """Continue after a stop (M0, M1) of the program."""
     from pkm_post.numerical_control.stops import go_on
     from pkm_post.pmac_link.readout import state_text
 
@@ -127,7 +127,7 @@ def go_on(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
 
 
 def override(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Set how fast time passes in programs."""
+    """Set the time base of programs."""
     from pkm_post.pmac_link import operate
 
     print(f"override {operate.override(session, target.settings, namespace.percent).override:g} %")
@@ -143,17 +143,17 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "continue": (go_on, "go on after a stop (M0, M1) of a program that was run", ("machine", "program")),
     "override": (override, "how fast time passes in programs, in %%", ("machine",)),
 }
-"""As ``pmac_actions.ACTIONS``."""
+"""Same form as ``pmac_actions.ACTIONS``."""
 
 _STARTING = ("run", "stream", "home", "jog", "mdi", "approach", "step", "continue")
 _OF_WHAT_RUNS = ("hold", "resume", "abort", "override", "monitor")
 
 
 def tell_emergency(name: str, connected: bool) -> None:
-    """Say what to do when the link is lost and the machine may be moving.
+    """Print what to do when the link is lost and the machine may be moving.
 
     Args:
-        name: of the action that was carried out.
+        name: of the action.
         connected: whether the controller had answered before.
     """
     from pkm_post.numerical_control.emergency import STEPS

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The arguments of the actions that operate the machine by hand: lengths in mm, angles in degrees, feeds in mm/min."""
+"""Arguments of the manual control actions: lengths in mm, angles in degrees, feeds in mm/min."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pkm_post.argument_types import LONGEST_TOOL, above_zero, between, count, po
 from pkm_post.cli.reading import NO_AXIS_WORDS, axis_words
 
 _HIGHEST_PROGRAM = 999
-"""From 1000 on live the subprograms of the codes."""
+"""Numbers from 1000 on are the subprograms of the codes."""
 _percent = above_zero(100)
 _way = between(-LONGEST_TOOL, LONGEST_TOOL)
 _turn = between(-360, 360)

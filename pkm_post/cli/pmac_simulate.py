@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command ``pmac simulate``: a simulated Turbo PMAC to connect to, until it is interrupted."""
+"""The command ``pmac simulate``: serve a simulated Turbo PMAC until interrupted."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def serve(server: Server, ended: Callable[[], bool]) -> None:
-    """Serve until ``ended`` says so, or until the user interrupts."""
+    """Serve until ``ended`` returns true, or until the user interrupts."""
     try:
         server.run(ended)
     except KeyboardInterrupt:
@@ -74,9 +74,9 @@ def serve(server: Server, ended: Callable[[], bool]) -> None:
 
 
 def _set_up(controller: Controller, file: Path) -> bool:
-    """Carry out the lines of a file; tell the first that is refused.
+    """Execute the lines of a file; print the first that is refused.
 
-    A set-up of a posting is refused where it has changed since. Without a manifest it may be any other file of lines.
+    A set-up from a posting is refused if it has changed since. Without a manifest it may be any other file of lines.
     """
     from pkm_post import manifest
     from pkm_post.controllers import read_text

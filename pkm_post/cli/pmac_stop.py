@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stops from the command line: the actions hold and abort, and what stops a machine when a command that moves it ends.
+"""PMAC stops: the actions hold and abort, and the hold when a command that moves the machine ends.
 
-A stop goes on until the machine is seen at rest. After two seconds without that, people are told what to do, by a timer
-of its own: a link that blocks delays no advice. Ctrl-C ends the trying.
+A stop is retried until the machine is at rest. After two seconds without that, a separate timer prints what to do: a
+blocking link delays no advice. Ctrl-C ends the retries.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from pkm_post.pmac_link.status import Status
 
 _SIGNALS = ("SIGTERM", "SIGHUP", "SIGBREAK")
-"""The end of the process, of its terminal, and of its console on Windows; a system has those that it knows."""
+"""Termination of the process, of its terminal, and of its console on Windows; a system defines some of them."""
 
 
 def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Slow the program down to rest on its path."""
+    """Decelerate the program to rest on its path."""
     from pkm_post.pmac_link import stopping
 
     with advised():
@@ -36,7 +36,7 @@ def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int
 
 
 def abort(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """End the program."""
+    """Abort the program."""
     from pkm_post.pmac_link import stopping
 
     with advised():
@@ -53,7 +53,7 @@ def _print(session: Session, status: Status) -> int:
 
 @contextmanager
 def advised() -> Iterator[None]:
-    """Print what people have to do when the stop inside has not ended in time."""
+    """Print advice for the operator if the stop inside has not ended in time."""
     from pkm_post.numerical_control.emergency import ADVICE_S
 
     timer = threading.Timer(ADVICE_S, _advise)
@@ -73,9 +73,9 @@ def _advise() -> None:
 
 @contextmanager
 def held_at_the_end(session: Session, settings: Settings) -> Iterator[None]:
-    """Hold the machine when the command that moves it is ended: by Ctrl-C, a signal, a closed terminal, any fault.
+    """Hold the machine when the command that moves it ends: by Ctrl-C, a signal, a closed terminal, any fault.
 
-    A fault of the link or of the controller passes as it is: it has its own advice.
+    A fault of the link or of the controller propagates unchanged: it has its own advice.
 
     Raises:
         CancelledError: it was interrupted; the machine is held.
@@ -103,7 +103,7 @@ def _hold(session: Session, settings: Settings) -> None:
 
 @contextmanager
 def signals_interrupt() -> Iterator[None]:
-    """What ends the process otherwise is a KeyboardInterrupt inside, once; a second one does not end the hold."""
+    """Turn termination signals into one KeyboardInterrupt inside; a second signal does not end the hold."""
     ended: list[int] = []
 
     def end(number: int, frame: FrameType | None) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The action ``pmac stream``: a program run from the rotary buffer while it is sent.
+"""The action ``pmac stream``: run a program from the rotary buffer while it is sent.
 
-Ctrl-C lets the machine go on to the next place where it rests; Ctrl-C again, the end of the terminal or of this process
-by a signal hold it on its path and end the program.
+Ctrl-C lets the machine continue to the next point of rest; a second Ctrl-C, the end of the terminal or a signal to this
+process hold it on its path and end the program.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pkm_post.pmac_link.session import Session
 
 ROTARY_WORDS = 2600
-"""Size of the rotary buffer unless the user says otherwise: 200 lines of 13 words."""
+"""Default size of the rotary buffer: 200 lines of 13 words."""
 
 
 def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
@@ -57,12 +57,12 @@ def _show_progress(done: int, sent: int, lines: int) -> None:
 
 
 def _no_progress(done: int, sent: int, lines: int) -> None:
-    """Nothing is told where nobody looks."""
+    """Ignore progress where the output is not a terminal."""
 
 
 @contextmanager
 def _interrupted_once() -> Iterator[Callable[[], bool]]:
-    """Whether the user has pressed Ctrl-C; the second time is a KeyboardInterrupt."""
+    """Yield whether the user has pressed Ctrl-C; the second time raises KeyboardInterrupt."""
     pressed: list[int] = []
 
     def press(number: int, frame: FrameType | None) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The command ``post``: FreeCAD documents, G-code and CL data become certified motion programs.
 
-One file, or --jobs 1, is posted in this process, or in one FreeCAD. Several are posted at the same time, each in a
-process of its own; one that is refused does not stop the others.
+A single file, or --jobs 1, is posted in this process, or in one FreeCAD. Several files are posted in parallel, each in
+its own process; a refused one does not stop the others.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _DOCUMENT = ".fcstd"
 _ONLY = "--only"
-"""The number of the one file that a process posts, from 0."""
+"""Index of the one file that a process posts, from 0."""
 
 
 def add_commands(commands: Any) -> None:
@@ -71,7 +71,7 @@ def _post_files(files: Sequence[Path], namespace: argparse.Namespace, arguments:
 
 
 def _all_there(files: Sequence[Path], namespace: argparse.Namespace) -> int:
-    """Look for the results where they were promised, whichever process was to write them; the exit code."""
+    """Check that the promised results exist, whichever process wrote them; return the exit code."""
     items = [item for file in files for item in _items(file, namespace.job, namespace.also)]
     missing = missing_results(items, namespace.out)
     for path in missing:
@@ -80,7 +80,7 @@ def _all_there(files: Sequence[Path], namespace: argparse.Namespace) -> int:
 
 
 def _faults(namespace: argparse.Namespace) -> list[str]:
-    """Why these files cannot be posted in one call."""
+    """Messages on why these files cannot be posted in one call."""
     files = namespace.files
     if namespace.only is not None and namespace.only >= len(files):
         return [f"argument {_ONLY}: expected a number below {len(files)}, got {namespace.only}"]
@@ -90,7 +90,7 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
 
 
 def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[Item]:
-    """What is posted of a file: a part program, or the jobs of a document, which say for themselves what to write."""
+    """Items of a file: a part program, or the jobs of a document, with their own optional outputs."""
     if file.suffix.lower() != _DOCUMENT:
         return [Item(str(file), file.stem, also)]
     jobs = _jobs_in(file)
@@ -101,7 +101,7 @@ def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[Item]:
 
 
 def _jobs_in(document: Path) -> tuple[Job, ...]:
-    """The CAM jobs of a document; none of one that cannot be read, which is refused where it is to be posted."""
+    """CAM jobs of a document; none of an unreadable one, which is refused when posted."""
     try:
         return read_document(document).jobs
     except (OSError, Damaged):
@@ -109,7 +109,7 @@ def _jobs_in(document: Path) -> tuple[Job, ...]:
 
 
 def _post_in_processes(files: Sequence[Path], solids: Sequence[str], arguments: Sequence[str], at_a_time: int) -> int:
-    """The same command for each file, in a process of its own; what tells which file stands before any ``--``."""
+    """Run the same command for each file in its own process; the file index precedes any ``--``."""
     name, *others = arguments
     commands = []
     for number, file in enumerate(files):
@@ -119,7 +119,7 @@ def _post_in_processes(files: Sequence[Path], solids: Sequence[str], arguments: 
 
 
 def _post_one(file: Path, namespace: argparse.Namespace) -> int:
-    """Post a file and tell what was made, or why nothing was; the exit code."""
+    """Post a file, print the results or the faults, and return the exit code."""
     from pkm_post.model import Refused
     from pkm_post.sources import is_part_program
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Progress line: the last line of a terminal says what is being done and how far it is; elsewhere nothing is said.
+"""Progress line: the last line of a terminal shows the current step and share; elsewhere there is no output.
 
-Steps and shares enter; a line on stderr is written over and over, and is gone when there is something to print.
+Input: steps and shares. A line on stderr is overwritten, and cleared when there is something to print.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ _CLEAR = "\r\x1b[K"
 
 
 class ProgressLine:
-    """The line, for one thing that is being done.
+    """Progress line of one task.
 
     Args:
-        subject: what it is done to.
+        subject: of the task.
     """
 
     def __init__(self, subject: str) -> None:
@@ -23,24 +23,24 @@ class ProgressLine:
         self._is_seen = sys.stderr.isatty()
 
     def __enter__(self) -> ProgressLine:
-        """The line, while something is being done."""
+        """Show the line during the task."""
         return self
 
     def __exit__(self, *raised: object) -> None:
-        """However that ends, nothing is left in the terminal."""
+        """Clear the line, however the task ends."""
         self.clear()
 
     def show(self, step: str, share: float) -> None:
-        """Say the step and the share that is done, 0 to 1; as ``pipeline.Progress``."""
+        """Show the step and its completed share, 0 to 1; as ``pipeline.Progress``."""
         self._write(f"{_CLEAR}{self._subject}: {step} {share:.0%}" if step else _CLEAR)
 
     def print(self, line: str) -> None:
-        """Print a line that stays."""
+        """Print a permanent line."""
         self._write(_CLEAR)
         print(line, flush=self._is_seen)
 
     def clear(self) -> None:
-        """Leave nothing in the terminal."""
+        """Clear the line."""
         self._write(_CLEAR)
 
     def _write(self, text: str) -> None:

@@ -79,7 +79,7 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]:
-    """The programs of a file: that of a part program, or those of the jobs of a document."""
+    """Yield the programs of a file: that of a part program, or those of the jobs of a document."""
     from pkm_post.post_file import prepared_file
     from pkm_post.sources import is_part_program
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command ``reach-map``: how far the tool may lean over the work volume of a machine."""
+"""The command ``reach-map``: feasible tool tilt over the work volume of a machine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pkm_post.argument_types import fitting, number, offset, positive, tool_leng
 _angle = fitting(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
 
 _MOST_PLACES = 1_000_000
-"""A file of them is some tens of megabytes."""
+"""A file with this many is some tens of megabytes."""
 
 
 def add_commands(commands: Any) -> None:

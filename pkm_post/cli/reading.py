@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The arguments that name a part program and say what it does not say itself."""
+"""Arguments that name a part program and add what it does not state itself."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from pkm_post.sources import Reading
 
 NO_AXIS_WORDS = "none"
-"""The default: the tool stands upright."""
+"""The default: the tool axis is vertical."""
 _BESIDE = {"axis_words": NO_AXIS_WORDS, "dwell_unit": "s", "job": None}
-"""Arguments that are for some files alone and not among ``options``, with their defaults."""
+"""Arguments that apply to some files only and are not among ``options``, with their defaults."""
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:
-    """Add what the user may say of a part program; what its tools measure is among ``options``."""
+    """Add the arguments on a part program's dialect; tool dimensions are among ``options``."""
     parser.add_argument(
         "--axis-words",
         type=axis_words,
@@ -41,15 +41,15 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
 
 
 def reading_from(namespace: argparse.Namespace) -> Reading:
-    """What the user said of the part programs."""
+    """Reading options of the part programs."""
     return replace(part_program_from(namespace, namespace.axis_words), dwell_unit=namespace.dwell_unit)
 
 
 def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]:
-    """The options that mean nothing for any of the files, as diagnostics."""
+    """Diagnostics of the options that apply to none of the files."""
     try:
         from pkm_post.model import Diagnostic, Place
-    except ImportError:  # no NumPy, or one for another Python: this command runs itself inside FreeCAD, and looks there
+    except ImportError:  # no NumPy, or one for another Python: this command reruns inside FreeCAD, and checks there
         return []
 
     beside = (name for name, default in _BESIDE.items() if getattr(namespace, name, default) != default)
@@ -59,7 +59,7 @@ def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]
 
 
 def part_program(text: str) -> Path:
-    """The path of a part program that is there."""
+    """Path of an existing part program."""
     from pkm_post.sources import SUFFIXES, is_part_program
 
     file = Path(text)
@@ -71,14 +71,14 @@ def part_program(text: str) -> Path:
 
 
 def one_of(allowed: Collection[str], text: str) -> str:
-    """A word that is allowed."""
+    """An allowed word."""
     if text not in allowed:
         raise argparse.ArgumentTypeError(f"expected one of {', '.join(allowed)}, got {text!r}")
     return text
 
 
 def axis_words(text: str) -> str:
-    """How the tool axis is said, for ``argparse``; it looks at a default as well, where there may be no NumPy."""
+    """Tool axis notation, for ``argparse``, which also converts a default, possibly without NumPy."""
     if text == NO_AXIS_WORDS:
         return text
     from pkm_post.sources import AXIS_WORDS

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Start inside: the command line in FreeCAD's Python, of the package that this file is in.
+"""Start inside: run the command line of this package in FreeCAD's Python.
 
-``run_script.py`` runs this file. FreeCAD has imported the package already where it is an add-on. A wheel lies among
-packages for another Python, so the package alone is imported from there.
+``run_script.py`` runs this file. FreeCAD has already imported the package of an add-on. A wheel is installed among
+packages for another Python, so only the package itself is imported from there.
 """
 
 import importlib.util

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command ``verify``: whether a motion program does what a trajectory file says."""
+"""The command ``verify``: whether a motion program matches a trajectory file."""
 
 from __future__ import annotations
 
