@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Options: what a user may choose, the same words on the command line and in the arguments of a CAM job.
+"""Options: user options, with the same names on the command line and in the arguments of a CAM job.
 
-Nothing else is imported for the table of arguments: FreeCAD reads it for a tooltip.
+The argument table imports nothing else: FreeCAD reads it for a tooltip.
 """
 
 from pkm_post.options.arguments import (

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arguments: the table of what a user may choose, and what was chosen as options in mm and rad.
+"""Arguments: the table of user options, and the parsed values as options in mm and rad.
 
-An argparse parser enters and gets the arguments; what it read becomes ``pipeline.Options``. Degrees end here.
+Input: an argparse parser, which gets the arguments. Output: ``pipeline.Options``. No degrees beyond this module.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
     from pkm_post.surface_speed import SurfaceSpeed
 
 FIXTURE_OF_THE_JOB = "job"
-"""A work offset of this name is the fixture of the CAM job."""
+"""Name of the work offset that stands for the fixture of the CAM job."""
 READING = "reading"
-"""The name of the step before those of the pipeline, for who is told of the progress."""
+"""Name of the progress step before those of the pipeline."""
 
 Pose = tuple[float, float, float, float]
 
 
 def _work_offset(text: str) -> str | Pose:
-    """A name, or x, y, z in mm and the turn about z in degrees."""
+    """A name, or x, y, z in mm and the rotation about z in degrees."""
     words = text.split(",")
     if len(words) == 1:
         return text
@@ -42,7 +42,7 @@ def _work_offset(text: str) -> str | Pose:
 
 
 def _sizes(text: str) -> tuple[float, float | None]:
-    """Diameter and corner radius, None where that is not given."""
+    """Diameter and corner radius, None if omitted."""
     word, comma, corner = text.partition(",")
     diameter = tool_length(word)
     return diameter, between(0, diameter / 2)(corner) if comma else None
@@ -55,12 +55,12 @@ _SPINS = {
     "y-in-plane": "DEG",
     "optimise": "OBJECTIVE",
 }
-"""The rules for the spin by name, each with what may follow it behind ``=``."""
+"""Spin rules by name, each with its operand after ``=``."""
 _OBJECTIVES = ("stroke", "joints", "singular", "weighted")
 HEADED = tuple(rule for rule, value in _SPINS.items() if value == "DEG")
-"""The rules that want a heading."""
+"""Rules that need a heading."""
 SPIN_WORDS = (*(rule for rule in _SPINS if _SPINS[rule] != "OBJECTIVE"), *(f"optimise={one}" for one in _OBJECTIVES))
-"""All that can be chosen for the spin, without headings."""
+"""All choices for the spin, without headings."""
 
 
 def _spin(text: str) -> tuple[str, float, str]:
@@ -76,11 +76,11 @@ def _spin(text: str) -> tuple[str, float, str]:
 
 
 ALSO = ("csv", "halstreamer", "linuxcnc")
-"""What can be written beside the program: two tables of the strut motion, and G-code for LinuxCNC's hexapod."""
+"""Optional files beside the program: two tables of the strut motion, and G-code for LinuxCNC's hexapod."""
 
 
 def _also(text: str) -> tuple[str, ...]:
-    """Names, each once; the word for nothing takes back what a job says."""
+    """Distinct names; the word for nothing cancels a job's choice."""
     chosen = text.split(",") if text != NOTHING else []
     if not set(chosen) <= set(ALSO):
         raise argparse.ArgumentTypeError(f"expected names out of {', '.join(ALSO)}, got {text!r}")
@@ -88,13 +88,13 @@ def _also(text: str) -> tuple[str, ...]:
 
 
 CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "makino", "apt")
-"""Who writes CL data, as ``cldata.DIALECTS`` has them."""
+"""Sources of CL data, as in ``cldata.DIALECTS``."""
 CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell")
-"""What a number of a cycle may be, as ``cldata.CYCLE_VALUES`` has them."""
+"""Meanings of a cycle's numbers, as in ``cldata.CYCLE_VALUES``."""
 
 
 def _cycle_values(text: str) -> tuple[str, ...]:
-    """Names, each at most once, in their order."""
+    """Distinct names, in their order."""
     chosen = tuple(text.split(","))
     if not set(chosen) <= set(CYCLE_VALUES) or len(set(chosen)) < len(chosen):
         raise argparse.ArgumentTypeError(f"expected different names out of {', '.join(CYCLE_VALUES)}, got {text!r}")
@@ -106,7 +106,7 @@ def _surface_speed_or_none(text: str) -> float | None:
 
 
 def _fixture(file: str) -> tuple[str, str]:
-    """A file by its own name: of two layers of options that name it, it counts once."""
+    """A file with its own name: named in two layers of options, it counts once."""
     return file, file
 
 
@@ -257,17 +257,17 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that every way into PKM Post has."""
+    """Add the arguments common to all entry points of PKM Post."""
     _add(parser, _ARGUMENTS)
 
 
 def add_machine(parser: argparse.ArgumentParser) -> None:
-    """Add the argument that names the machine."""
+    """Add the machine argument."""
     _add(parser, ("--machine",))
 
 
 def add_part_program(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that say what a part program does not say itself."""
+    """Add the arguments for what a part program does not state itself."""
     _add(
         parser,
         ("--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values", "--allow-open-end"),
@@ -306,13 +306,13 @@ def options_from(namespace: argparse.Namespace) -> Options:
 
 
 def solid_files(namespace: argparse.Namespace) -> list[str]:
-    """The files of part, stock and fixtures."""
+    """Files of part, stock and fixtures."""
     named = [namespace.part, namespace.stock, *dict(namespace.fixture).values()]
     return [file for file in named if file is not None]
 
 
 def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading:
-    """What a parsed command line says of a part program, beside how its G-code says the tool axis."""
+    """Reading options of a part program, beside the tool axis notation of its G-code."""
     from pkm_post.sources import Reading
 
     return Reading(
@@ -328,12 +328,12 @@ def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading
 
 
 def tools_from(namespace: argparse.Namespace) -> dict[int, Tool]:
-    """By number, the cutters a part program was made for; of two for one tool the last one."""
+    """Cutters of a part program by tool number; the last of several for one tool."""
     return _cutters(namespace.tools)
 
 
 def _cutters(sizes: Iterable[tuple[int, tuple[float, float | None]]]) -> dict[int, Tool]:
-    """Tools of which no more than diameter and corner radius matter, mm."""
+    """Tools defined by diameter and corner radius only, mm."""
     from pkm_post.model import Tool
 
     return {
@@ -343,12 +343,12 @@ def _cutters(sizes: Iterable[tuple[int, tuple[float, float | None]]]) -> dict[in
 
 
 def tool_lengths_from(namespace: argparse.Namespace) -> dict[int, float]:
-    """Gauge lengths by tool number, mm; of two for one tool the last one."""
+    """Gauge lengths by tool number, mm; the last of several for one tool."""
     return dict(namespace.tool_length)
 
 
 def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
-    """The (4, 4) pose of {C} in {M}: an origin and a turn about z."""
+    """The (4, 4) pose of {C} in {M}: an origin and a rotation about z."""
     from pkm_post.placement import rotation
 
     pose = rotation((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.radians(turn_deg))

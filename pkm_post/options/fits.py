@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fits: which options mean something for what is read. One that means nothing is refused: it was typed for a reason.
+"""Fits: which options apply to which input. One that does not apply is refused: it was typed for a reason.
 
-Names of attributes and kinds of files enter; what does not fit leaves, in words, and options without it.
+Input: attribute names and kinds of files. Output: messages on the misfits, and options without them.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pkm_post.options.layers import Given, flag_of
 
 
 class Source(enum.Enum):
-    """What options are given for."""
+    """Kind of input that options are given for."""
 
     GCODE = "G-code"
     CLDATA = "CL data"
@@ -31,14 +31,14 @@ _FOR: dict[str, tuple[Source, ...]] = {
     "tools": _PART_PROGRAMS,
     "unit": _PART_PROGRAMS,
     "allow_open_end": _PART_PROGRAMS,
-    "wear": _PART_PROGRAMS,  # L432 says to whom gives it for G-code what to give instead
+    "wear": _PART_PROGRAMS,  # L432 names the alternative when it is given for G-code
     "job": (Source.JOB,),
 }
-"""By attribute, what an option is for; all others are for everything."""
+"""Input kinds of an option, by attribute; all others apply to everything."""
 
 
 def source_of(file: Path) -> Source:
-    """What a file is, by the end of its name; what is no part program is a document with jobs."""
+    """Kind of a file by its suffix; anything but a part program is a document with jobs."""
     from pkm_post.sources import SUFFIXES, is_part_program
 
     if not is_part_program(file):
@@ -47,7 +47,7 @@ def source_of(file: Path) -> Source:
 
 
 def misfits(names: Iterable[str], sources: Collection[Source]) -> list[str]:
-    """The options that mean nothing for any of the sources, in words."""
+    """Messages on the options that apply to none of the sources."""
     return [
         f"{flag_of(name)} is for {' and '.join(each.value for each in _FOR[name])}"
         for name in names
@@ -56,5 +56,5 @@ def misfits(names: Iterable[str], sources: Collection[Source]) -> list[str]:
 
 
 def fitting(given: Given, source: Source) -> Given:
-    """The options that mean something for a source: of several files each option may be for some of them."""
+    """Options that apply to a source: of several files each option may be for some of them."""
     return {name: value for name, value in given.items() if source in _FOR.get(name, Source)}

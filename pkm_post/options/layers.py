@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers: what a job says, and what a command line says over it, option by option.
+"""Layers: the options of a job, overridden one by one by those of a command line.
 
-Parsed arguments enter, each with a note of what was typed; those of one layer over those of another leave, and every
-option that thereby gets another value. A default overrides nothing.
+Input: parsed arguments, each with a record of what was typed. Output: one layer merged over another, and every option
+whose value changes. A default overrides nothing.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from types import MappingProxyType
 from typing import Any
 
 NOTHING = "none"
-"""Takes back what a job says, where nothing is the default."""
+"""Cancels a job's choice, where nothing is the default."""
 Given = Mapping[str, Any]
-"""What was typed, by the name of the attribute."""
+"""Typed values by attribute name."""
 NOTHING_GIVEN: Given = MappingProxyType({})
 
 
 def add_noted(parser: argparse.ArgumentParser, flag: str, action: str = "store", **words: Any) -> None:
-    """Add an option that notes in ``given`` when it is typed; a switch gets one with ``--no-`` that takes it back."""
+    """Add an option that is recorded in ``given`` when typed; a switch gets one with ``--no-`` that cancels it."""
     if action == "store_true":
         parser.add_argument(flag, f"--no-{flag[2:]}", action=_Noted, nargs=0, default=False, **words)
     else:
@@ -29,12 +29,12 @@ def add_noted(parser: argparse.ArgumentParser, flag: str, action: str = "store",
 
 
 class _Noted(argparse.Action):
-    """Stores a value as argparse does, and notes that it was typed; one with a list for its default may be repeated."""
+    """Store a value as argparse does, and record that it was typed; one with a list default may be repeated."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, value: Any, flag: str | None = None
     ) -> None:
-        """Take one option with its value."""
+        """Store one option with its value."""
         if isinstance(self.default, list):
             value = [*getattr(namespace, self.dest), value]
         elif self.nargs == 0:
@@ -44,13 +44,13 @@ class _Noted(argparse.Action):
 
 
 def given_in(namespace: argparse.Namespace) -> Given:
-    """What was typed of parsed arguments; the rest of them are defaults."""
+    """Typed values of parsed arguments; the rest of them are defaults."""
     given: Given = getattr(namespace, "given", NOTHING_GIVEN)
     return given
 
 
 def layered(below: argparse.Namespace, above: Given) -> argparse.Namespace:
-    """Parsed arguments with some of them replaced; what is said by tool number is replaced for that tool alone."""
+    """Merge typed values over parsed arguments; values by tool number are replaced for that tool only."""
     given = {**given_in(below), **{name: _merged(vars(below).get(name), value) for name, value in above.items()}}
     return argparse.Namespace(**(vars(below) | given | {"given": given}))
 
@@ -61,11 +61,11 @@ def _merged(below: Any, above: Any) -> Any:
 
 @dataclass(frozen=True)
 class Override:
-    """An option that has another value than before.
+    """An option with a changed value.
 
     Attributes:
         flag: its name.
-        before, after: what it said and what it says, as it is typed.
+        before, after: old and new value, as typed.
     """
 
     flag: str
@@ -77,12 +77,12 @@ class Override:
 
 
 def overrides(below: Given, above: Given, whole: bool = False) -> Iterator[Override]:
-    """The options of one layer that change what another one says.
+    """Yield the options of one layer that change values of another one.
 
     Args:
-        below: what was said.
-        above: what goes before it.
-        whole: whether what ``above`` does not say of a tool is taken back.
+        below: the lower layer.
+        above: the layer that takes precedence.
+        whole: whether tool values missing in ``above`` are cancelled.
     """
     for name, value in above.items():
         if name not in below:
@@ -94,7 +94,7 @@ def overrides(below: Given, above: Given, whole: bool = False) -> Iterator[Overr
 
 
 def _by_tool(name: str, before: dict[int, Any], after: dict[int, Any], whole: bool) -> Iterator[Override]:
-    """The tools of which something else is said."""
+    """Yield the tools whose value changes."""
     for number, value in before.items():
         said = shown(name, (number, value))
         taken_back = NOTHING if whole else said
@@ -104,7 +104,7 @@ def _by_tool(name: str, before: dict[int, Any], after: dict[int, Any], whole: bo
 
 
 def flag_of(name: str) -> str:
-    """The option that an attribute is the value of."""
+    """Option name of an attribute."""
     return _FLAGS.get(name, "--" + name.replace("_", "-"))
 
 
@@ -113,7 +113,7 @@ _FLAGS = {"tools": "--tool"}
 
 
 def shown(name: str, value: Any) -> str:
-    """A value as it is typed behind its option; of a repeated option that of one tool."""
+    """Format a value as typed after its option; for a repeated option, that of one tool."""
     return _SHOWN.get(name, _plain)(value)
 
 
@@ -128,7 +128,7 @@ def _plain(value: Any) -> str:
 
 
 def _by_number(entry: tuple[int, Any]) -> str:
-    """What is said of a tool; a corner radius that is not known is left out."""
+    """Format the value of a tool; an unknown corner radius is left out."""
     number, said = entry
     known = [each for each in (said if isinstance(said, tuple) else [said]) if each is not None]
     return f"{number}={','.join(map(_plain, known))}"
@@ -146,4 +146,4 @@ _SHOWN: dict[str, Callable[[Any], str]] = {
     **dict.fromkeys(("tool_length", "tools", "actual_tool", "wear"), _by_number),
     "fixture": lambda entry: str(entry[0]),
 }
-"""What is not shown as the value itself."""
+"""Formats of values that are not shown as they are."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Said: options in mm and rad as they are typed, to compare them with what a job says.
+"""Said: options in mm and rad as they would be typed, to compare them with those of a job.
 
-The way back from ``options_from``: ``pipeline.Options`` enter, values as argparse gives them leave.
+The inverse of ``options_from``. Input: ``pipeline.Options``. Output: values as from argparse.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def said_by(options: Options) -> Given:
-    """What options say, by the name of the attribute; every option is said, defaults as well."""
+    """Values of all options, defaults included, by attribute name."""
     speed = options.surface_speed
     return {
         "work_offset": _offset(options.work_offset),
@@ -42,7 +42,7 @@ def _sizes(tool: Tool) -> tuple[float, float | None]:
 
 
 def _offset(offset: Any) -> Any:
-    """A name; x, y, z and the turn in degrees; or all of a matrix that turns about more than z."""
+    """A name; x, y, z and the rotation in degrees; or a full matrix that rotates about more than z."""
     if isinstance(offset, str):
         return offset
     if offset[2, 2] < 1.0:

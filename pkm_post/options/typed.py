@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Typed: options as one text, quoted as in a shell, as jobs and macros have them."""
+"""Typed: options as one text, quoted as in a shell, as in jobs and macros."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from pkm_post.options.arguments import add_options
 
 
 class TextParser(argparse.ArgumentParser):
-    """Raises a ``ValueError`` where a program of its own would print its usage and end."""
+    """Raise a ``ValueError`` where a program of its own would print its usage and exit."""
 
     def error(self, message: str) -> NoReturn:
-        """What argparse calls with what it does not understand."""
+        """Handle a parse error of argparse."""
         raise ValueError(message)
 
 
 def text_parser(name: str = "options", description: str = "") -> TextParser:
-    """A parser of the options of every door, which takes no abbreviations and prints no help by itself."""
+    """Parser of the common options, without abbreviations and built-in help."""
     parser = TextParser(prog=name, description=description, add_help=False, allow_abbrev=False, usage=argparse.SUPPRESS)
-    vars(parser)["color"] = False  # Python 3.14 would colour the help if there is a terminal
+    vars(parser)["color"] = False  # Python 3.14 would colour the help on a terminal
     add_options(parser)
     return parser
 
 
 def typed(text: str, parser: TextParser | None = None) -> argparse.Namespace:
-    """The options that a text says, the others with their defaults.
+    """Parse options from a text; the others have their defaults.
 
     Raises:
-        ValueError: they are not understood.
+        ValueError: the text is invalid.
     """
     try:
         return (parser or text_parser()).parse_args(shlex.split(text))
