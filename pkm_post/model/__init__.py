@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The ground floor: frozen data that flows through the house, and the faults that stop it."""
+"""Model: frozen data that passes between the packages, and the faults that stop a job."""
 
 from pkm_post.model.diagnostics import RULES, Diagnostic, Place, Refused, Rule, Severity
 from pkm_post.model.event import Event, EventKind

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Certificate: what was asked for, what a program was found to do, and what was not looked at.
+"""Certificate: requested tolerances, measured values of a program, and the coverage of hazards.
 
-Each quantity has its limit, and the moment and the source line where it is worst. Each hazard says how far it is
-covered.
+Each quantity has its limit, and the time and the source line of its worst value. Each hazard has an extent of coverage.
 """
 
 from __future__ import annotations
@@ -16,11 +15,11 @@ from pkm_post.model.program import Array
 
 @dataclass(frozen=True)
 class Tolerances:
-    """What was asked for.
+    """Requested tolerances.
 
     Attributes:
-        tip: how far the tool tip may be from the programmed path, mm.
-        axis: how far the tool axis may be from the programmed one, rad.
+        tip: largest distance of the tool tip from the programmed path, mm.
+        axis: largest angle of the tool axis from the programmed one, rad.
     """
 
     tip: float
@@ -32,14 +31,14 @@ class Finding:
     """One quantity at its worst.
 
     Attributes:
-        code: diagnostic that is given when it does not hold.
-        name: what was measured.
+        code: diagnostic of a violation.
+        name: measured quantity.
         unit: unit of value and limit, as printed.
-        value: the worst value, with what can hide between the moments looked at, in that unit.
-        limit: what it must not exceed there.
-        holds: whether it holds.
-        time: s since the start: the moment where it is worst; of what is known of an interval between two knots as a
-            whole, like the speed of a strut, its start.
+        value: the worst value, including the bound of what samples may miss, in that unit.
+        limit: the limit at that time.
+        holds: whether the value is within the limit.
+        time: s since the start, at the worst value; start of the interval for a value of an interval between two knots
+            as a whole, like the speed of a strut.
         place: the source line that is executed at that time.
     """
 
@@ -53,7 +52,7 @@ class Finding:
     place: Place
 
     def diagnostic(self) -> Diagnostic:
-        """The fault, for a finding that does not hold."""
+        """Diagnostic of a finding that does not hold."""
         found = f"{self.name} {self._with_unit(self.value)}, allowed {self._with_unit(self.limit)}"
         return Diagnostic(self.code, self.place, f"{found}, {self.time:.3f} s after the start")
 
@@ -63,10 +62,10 @@ class Finding:
 
 @dataclass(frozen=True)
 class Figure:
-    """One quantity at its largest, which has no limit.
+    """One quantity without a limit, at its largest.
 
     Attributes:
-        name: what was measured.
+        name: measured quantity.
         unit: as printed.
         value: in that unit.
         time: s since the start.
@@ -81,7 +80,7 @@ class Figure:
 
 
 class Topic(enum.Enum):
-    """What a hazard is about; each topic is one line of what the certificate means."""
+    """Topic of a hazard; each topic is one line in the meaning of the certificate."""
 
     PATH = "tool path"
     LIMITS = "machine limits"
@@ -91,7 +90,7 @@ class Topic(enum.Enum):
 
 
 class Extent(enum.Enum):
-    """How far a hazard is covered: by a bound that holds everywhere, by samples, or not at all."""
+    """Extent of coverage: a bound that holds everywhere, samples, or none."""
 
     PROVEN = "proven"
     SAMPLED = "sampled"
@@ -100,12 +99,12 @@ class Extent(enum.Enum):
 
 @dataclass(frozen=True)
 class Coverage:
-    """How far the certificate covers one hazard.
+    """Coverage of one hazard by the certificate.
 
     Attributes:
-        topic: what it is about.
+        topic: topic of the hazard.
         subject: the hazard, such as "spindle and holder against the part".
-        extent: how far it is covered.
+        extent: extent of coverage.
         detail: against what and how it was checked, or why it was not.
     """
 
@@ -116,7 +115,7 @@ class Coverage:
 
 
 def meaning(coverage: tuple[Coverage, ...]) -> tuple[str, ...]:
-    """What certified means, and what it does not: one line for each topic, by extent."""
+    """Lines on what certified means, and what it does not: one for each topic, by extent."""
     lines = []
     for topic in Topic:
         rows = [row for row in coverage if row.topic is topic]
@@ -131,7 +130,7 @@ def meaning(coverage: tuple[Coverage, ...]) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Certificate:
-    """The result of playing a program.
+    """Result of playing a program.
 
     Attributes:
         findings: one for each quantity, in a fixed order.
@@ -139,11 +138,11 @@ class Certificate:
         intervals: number of cubics played.
         instants: number of poses that were measured.
         time: (K,) s, at the start of each interval.
-        tip_deviation: (K,) largest in the interval by its tolerance, mm.
-        tip_tolerance: (K,) what it may be there, mm: that of the program (G64 P), else what was asked for.
+        tip_deviation: (K,) largest in the interval relative to its tolerance, mm.
+        tip_tolerance: (K,) its tolerance there, mm: that of the program (G64 P), else the requested one.
         axis_deviation: (K,) largest in the interval, rad.
         coverage: one row for each hazard, in the order of the topics.
-        figures: what was measured and has no limit, in a fixed order.
+        figures: measured quantities without a limit, in a fixed order.
     """
 
     findings: tuple[Finding, ...]

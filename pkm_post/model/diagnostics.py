@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Diagnostics: faults of the input, collected while reading and checking, told to people as text.
+"""Diagnostics: faults of the input, collected while reading and checking, reported as text.
 
-Every fault has a code; the table ``RULES`` says for each code how grave it is, what is wrong in general and what to do.
-A diagnostic adds where it was and what was found there. Faults of the caller are ``ValueError`` and do not come here.
+Every fault has a code; the table ``RULES`` has the severity, cause and cure of each. A diagnostic adds the place and
+what was found there. Faults of the caller are ``ValueError`` and not part of this module.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ __all__ = ["RULES", "Diagnostic", "Place", "Refused", "Rule", "Severity", "error
 
 @dataclass(frozen=True)
 class Place:
-    """Where in the input something stands.
+    """Position in the input.
 
     Attributes:
         file: file name as the user gave it.
         operation: name of the CAM operation, empty when the file has none.
-        line: line, or number of the command in its operation, from 1; 0 when it concerns the whole.
-        column: column from 1; 0 when it concerns the whole line.
+        line: line, or number of the command in its operation, from 1; 0 for the whole.
+        column: column from 1; 0 for the whole line.
     """
 
     file: str
@@ -42,7 +42,7 @@ class Diagnostic:
 
     Attributes:
         code: key into ``RULES``.
-        place: where it is.
+        place: position in the input.
         found: what was found there, in the words of the input.
     """
 
@@ -52,7 +52,7 @@ class Diagnostic:
 
     @property
     def severity(self) -> Severity:
-        """How grave it is."""
+        """Severity of the rule."""
         return RULES[self.code].severity
 
     def __str__(self) -> str:
@@ -61,12 +61,12 @@ class Diagnostic:
 
 
 def errors(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """The diagnostics that stop a job."""
+    """Diagnostics that stop a job."""
     return tuple(item for item in diagnostics if item.severity is Severity.ERROR)
 
 
 class Refused(Exception):  # noqa: N818 - it is no error of the program
-    """The job cannot be done because of its input. Raised by pipeline and doors, when all that is wrong is known."""
+    """The job is refused because of its input. Raised by pipeline and entry points, once all faults are known."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)

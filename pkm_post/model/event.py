@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Events: what happens between motions, by row number. The machine is at rest at every one of them.
+"""Events: actions between motions, by row number. The machine is at rest at each of them.
 
 An event at row r takes place before the motion of row r; r = N, one past the last row, is after the last motion.
 """
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 
 class EventKind(enum.IntEnum):
-    """What happens. The numbers are written to trajectory files: they may be added to, never changed."""
+    """Kind of event. Trajectory files store the numbers: kinds may be added, never changed."""
 
     TOOL_CHANGE = 1
     """value: the tool number."""
@@ -27,7 +27,7 @@ class EventKind(enum.IntEnum):
 
 @dataclass(frozen=True)
 class Event:
-    """One happening at a row of a table of motions."""
+    """One event at a row of a table of motions."""
 
     row: int
     kind: EventKind

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The 6-TPS machine: its geometry and limits, as a machine file states them.
+"""The 6-TPS machine: its geometry and limits, as stated in a machine file.
 
 Frames: {M} machine, z up, fixed to the table; {T} platform, origin in the plane its joints are given in, z along the
 tool axis from the tip towards the spindle. Units: mm, rad, s, N.
 
-The length of a strut is the one that its controller counts: the distance of its joint centres, corrected for the turn
-of its screw, less its length offset. Screw lead and offsets are zero unless the file states them; then it is the
-distance.
+The length of a strut is the one that its controller counts: the distance of its joint centres, corrected for the
+rotation of its screw, less its length offset. Screw lead and offsets are zero unless the file states them; then it is
+the distance.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Body:
     """A cylinder about the tool axis that moves with the platform: spindle, holder, or the platform itself.
 
     Attributes:
-        name: how messages call it.
+        name: name in messages.
         radius: mm.
         start: z of one end in {T}, mm; the tool is at negative z.
         end: z of the other end in {T}, mm, above ``start``.
@@ -41,10 +41,10 @@ class Body:
 
 @dataclass(frozen=True)
 class Box:
-    """A box that stands still, with edges along the axes of {M}: table, vice, fixture.
+    """A fixed box with edges along the axes of {M}: table, vice, fixture.
 
     Attributes:
-        name: how messages call it.
+        name: name in messages.
         lowest: (3,) its corner with the least coordinates in {M}, mm.
         highest: (3,) the opposite corner.
     """
@@ -59,13 +59,13 @@ class Box:
 
 @dataclass(frozen=True)
 class ToolChange:
-    """Where tools are changed, and above which height the tool may go there and back.
+    """Tool-change pose, and the safe height for travel to and from it.
 
     Attributes:
         nose: (3,) centre of the spindle nose in {M}, mm: the tip is below it by the gauge length of the tool.
         axis: (3,) unit tool axis in {M}.
         spin: of the platform about it, rad.
-        safe_height: z in {M} at and above which the tip may go from anywhere to anywhere, mm.
+        safe_height: z in {M} at and above which the tip may travel between any two points, mm.
     """
 
     nose: Array
@@ -111,27 +111,27 @@ class Machine:
         axis_speed: highest turning rate of the tool axis, rad/s.
         spindle_speed: highest spindle speed in revolutions per minute.
         work_offsets: for each name (G54, ...) the (4, 4) pose of {C} in {M}.
-        controller: settings of the controller, as the machine file has them.
+        controller: settings of the controller, as in the machine file.
         strut_jerk: highest third rate of strut length, mm/s^3; infinite when no limit is stated.
-        tip_jerk: highest third rate of the place of the tool tip, mm/s^3; infinite when no limit is stated.
+        tip_jerk: highest third rate of the tool tip position, mm/s^3; infinite when no limit is stated.
         length_offset: (6,) mm by which the joints of each strut are farther apart than its controller counts.
         base_joint_kind: ``"universal"`` or ``"spherical"``.
         platform_joint_kind: ``"universal"`` or ``"spherical"``.
         base_axes: (6, 3) unit axes of the universal base joints that are fixed to the base, in {M}; zero if unstated.
         platform_axes: (6, 3) those of the platform joints that are fixed to the platform, in {T}; zero if unstated.
-        screw_lead: way of the nut in one turn of the screw when nothing but the joints keeps the strut's halves from
-            turning against each other, mm; negative for a left-hand screw, zero when a key keeps them.
+        screw_lead: nut travel per turn of the screw when only the joints keep the strut's halves from turning against
+            each other, mm; negative for a left-hand screw, zero with a key.
         tube_radius: of the strut's outer part, fixed to its base joint; zero when strut bodies are not stated.
         tube_length: from the centre of the base joint along the strut.
         rod_radius: of the strut's inner part, fixed to its platform joint.
         rod_length: from the centre of the platform joint along the strut; more than the strut's length when the rod
-            comes out behind the base joint.
+            emerges behind the base joint.
         base_joint_radius: mm around the centre of a base joint in which contact of bodies is no collision.
         platform_joint_radius: the same around a platform joint.
-        clearance: least distance that bodies must keep, mm.
+        clearance: least distance between bodies, mm.
         bodies: cylinders that move with the platform.
-        fixtures: boxes that stand still.
-        rest_tool_length: gauge length of the tool in the rest pose; figures of the home pose are told for it.
+        fixtures: fixed boxes.
+        rest_tool_length: gauge length of the tool in the rest pose; also used for the figures of the home pose.
         home_axis: (3,) unit tool axis in {M} where a program starts.
         home_spin: spin where a program starts.
         spindle_least_speed: lowest spindle speed in revolutions per minute.
@@ -139,15 +139,15 @@ class Machine:
             nothing is stated.
         strut_rigidity: Young's modulus times cross-section of the screw, N: a length l of it has the stiffness
             rigidity / l, in series with ``strut_stiffness``. Infinite when unstated.
-        shortest_interval: between two points that the controller takes, ms.
-        block_rate: most points that the controller takes in any second; infinite when no limit is stated.
-        velocity_gain: (6,) of the position loop of each strut, 1/s: a strut lags by its speed over that; None when
-            nothing is stated.
-        tool_change: where tools are changed; None where the file states nothing, and they change where the tool is.
+        shortest_interval: between two points that the controller accepts, ms.
+        block_rate: most points that the controller accepts in any second; infinite when no limit is stated.
+        velocity_gain: (6,) of the position loop of each strut, 1/s: the lag of a strut is its speed over that; None
+            when nothing is stated.
+        tool_change: tool-change pose; None where the file states none, and tools are changed at the current pose.
         spin_up_time: of the spindle from rest to its highest speed, s; None when it is not stated.
-        spin_down_time: from its highest speed to rest, s; None when it is that of ``spin_up_time``.
-        largest_tool_diameter: that the spindle takes, mm; infinite when no limit is stated.
-        longest_tool: largest gauge length that the spindle takes, mm; infinite when no limit is stated.
+        spin_down_time: from its highest speed to rest, s; None when equal to ``spin_up_time``.
+        largest_tool_diameter: that the spindle accepts, mm; infinite when no limit is stated.
+        longest_tool: largest gauge length that the spindle accepts, mm; infinite when no limit is stated.
     """
 
     name: str

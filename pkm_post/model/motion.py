@@ -40,7 +40,7 @@ class Motion:
         tool_length: (M,) gauge length of the tool in use.
         segment: (M,) the trajectory segment the knot lies on; at a joint the earlier one.
         joint_time: (N,) s, when the end of each of the N trajectory segments is passed.
-        events: what happens, by knot: the motion rests at knot r, the event takes place, the motion goes on.
+        events: by knot: the motion rests at knot r, the event takes place, the motion continues.
     """
 
     time_ms: Array
@@ -63,7 +63,7 @@ class Motion:
         return len(self.time_ms)
 
     def poses(self, rows: slice | Array = slice(None)) -> Poses:
-        """The poses at the knots, or at some, with their rates; second derivatives are not known here and are zero."""
+        """Poses at all or some knots, with their rates; second derivatives are unknown here and zero."""
         tip = self.tip[rows]
         unknown = uniform([0.0] * 3, len(tip))
         return Poses(

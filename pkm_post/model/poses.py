@@ -16,12 +16,12 @@ _NUMBER: RowType = (np.float64, ())
 
 @dataclass(frozen=True)
 class Poses:
-    """Columns of N tool poses in {M}; ``_1`` and ``_2`` are derivatives by one and the same parameter.
+    """Columns of N tool poses in {M}; ``_1`` and ``_2`` are derivatives by the same parameter.
 
     Attributes:
         tip, tip_1, tip_2: (N, 3) tool tip in mm.
         axis, axis_1, axis_2: (N, 3) unit tool axis.
-        spin, spin_1, spin_2: (N,) turn of the platform about the tool axis.
+        spin, spin_1, spin_2: (N,) rotation of the platform about the tool axis.
         tool_length: (N,) gauge length of the tool in use.
         segment: (N,) trajectory segment the pose lies on.
     """

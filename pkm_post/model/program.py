@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program: cutter locations in the work frame {C}, modal state resolved, as they were read.
+"""Program: cutter locations in the work frame {C}, modal state resolved, as read from the source.
 
-Row i moves the tool tip from ``position[i - 1]`` to ``position[i]`` and the tool axis with it. Row 0 says where the
-path begins: it is reached by a rapid move. Units: mm, rad, s, mm/s.
+Row i moves the tool tip from ``position[i - 1]`` to ``position[i]`` and the tool axis with it. Row 0 is the start of
+the path, reached by a rapid move. Units: mm, rad, s, mm/s.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import DTypeLike
 
-from pkm_post.model.columns import Array as Array  # the alias that all rooms use
+from pkm_post.model.columns import Array as Array  # the alias for all packages
 from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.event import Event
@@ -21,7 +21,7 @@ from pkm_post.model.tool import Tool
 
 
 class Kind(enum.IntEnum):
-    """How a row gets to its end. The numbers are written to trajectory files."""
+    """Motion kind of a row. Trajectory files store the numbers."""
 
     RAPID = 0
     LINE = 1
@@ -48,7 +48,7 @@ OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
     "normal": (np.float64, (3,), np.nan),
     "spin": (np.float64, (), np.nan),
 }
-"""Columns that few sources have, each with the value it has without."""
+"""Columns that few sources have, each with its default."""
 
 
 @dataclass(frozen=True)
@@ -67,25 +67,25 @@ class Program:
         events: what happens between rows, in order.
         operations: names of the operations the rows come from.
         tools: the tools used, by number.
-        length_offsets: numbers of the tool length offsets (H) it takes, those of its tools as well.
+        length_offsets: numbers of the tool length offsets (H) in use, those of its tools included.
         source: name of the file the program comes from.
-        source_fingerprint: SHA-256 of the bytes of that file, hexadecimal; empty where it is not known.
-        reading: how the file was taken where it can be taken in two ways, and by which evidence; in words, by subject.
+        source_fingerprint: SHA-256 of the bytes of that file, hexadecimal; empty if unknown.
+        reading: interpretation of an ambiguous file, and its evidence; as text, by subject.
         exact_stop: (N,) whether the motion comes to rest at the end of the row (G61); none does by default.
         exact_path: (N,) whether the corners at both ends of the row are followed and not rounded, so that the motion
             rests there (G61.1); none are by default.
-        tip_tolerance: (N,) how far the tool tip may leave the row, where the program says so (G64 P), mm; 0, the
-            default, leaves it to whoever posts the program.
-        side_offset: (N,) radius of the 2D cutter compensation that the row is programmed with and that is not applied
-            yet, mm: positive to the left of the path (G41), negative to the right (G42), 0 for none, the default.
-        smaller_tool: (N,) whether the row is the way of a tool that is larger than the one it is compensated for, which
-            it leads towards the part; False by default. Such a way bounds no part: nearer to it less is cut.
+        tip_tolerance: (N,) tolerance of the tool tip along the row, where the program states it (G64 P), mm; 0, the
+            default, leaves it to the posting.
+        side_offset: (N,) radius of the 2D cutter compensation that is programmed for the row and not yet applied, mm:
+            positive to the left of the path (G41), negative to the right (G42), 0 for none, the default.
+        smaller_tool: (N,) whether the row is the path of a tool larger than the one it is compensated for, which it
+            leads towards the part; False by default. Such a path bounds no part: closer to it less is cut.
         plane: (N,) the coordinate the compensation's plane is normal to: 2 for XY (G17), the default, 1 for ZX (G18),
             0 for YZ (G19).
         normal: (N, 3) unit surface normal at the contact point, towards the tool, in {C}; NaN, the default, where the
             source gives none.
-        spin: (N,) turn of the platform about the tool axis, from the shortest rotation upright, rad; NaN, the default,
-            where the source gives none.
+        spin: (N,) rotation of the platform about the tool axis, from the shortest rotation upright, rad; NaN, the
+            default, where the source gives none.
     """
 
     kind: Array
@@ -125,5 +125,5 @@ class Program:
         return len(self.kind)
 
     def place(self, row: int) -> Place:
-        """Where row ``row`` stands in the source."""
+        """Position of row ``row`` in the source."""
         return Place(self.source, self.operations[self.operation[row]], int(self.line[row]))

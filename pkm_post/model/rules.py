@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rules: the table of all faults of the input, by code: how grave each is, what is wrong in general and what to do.
+"""Rules: the table of all input faults by code: severity, cause and cure.
 
-A code is a letter for what it is about, a digit for its part, and two digits. Rows stand in the order of the families
-in docs/diagnostics.md, and in each by number. A code that was given out keeps its meaning for ever.
+A code is a letter for the topic, a digit for its part, and two digits. Rows follow the order of the families in
+docs/diagnostics.md, and the number within each. A published code never changes its meaning.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 
 class Severity(enum.Enum):
-    """How grave a fault is: an error stops the job, a warning is shown, and the job goes on."""
+    """Severity of a fault: an error stops the job, a warning is shown and the job continues."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -39,7 +39,7 @@ _TAPPING = _error(
     "tapping needs a feed in step with the spindle, which this machine's programs do not have",
     "leave the threads out and tap them elsewhere, or mill them as helices",
 )
-"""One fault, with a code for each kind of input."""
+"""One rule, with a code for each kind of input."""
 _INTACT_COPY = "take an intact copy of the document, such as the backup beside it (.FCBak)"
 
 RULES: dict[str, Rule] = {

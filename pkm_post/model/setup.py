@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Setup: what is known of a job beside its motions: the part, the stock it is cut from, what holds it, and the tools.
+"""Setup: known data of a job beside its motions: part, stock, fixtures and tools.
 
-Meshes are in the work frame {C}, in mm. What is not known is None or missing; then it is not checked, and the
-certificate says so.
+Meshes are in the work frame {C}, in mm. Unknown items are None or missing; they are not checked, and the certificate
+states that.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ class Mesh:
     """The surface of a solid.
 
     Attributes:
-        source: where it comes from, as messages call it: the name of a file or of an object.
+        source: origin for messages: the name of a file or of an object.
         triangles: (T, 3, 3) corners in {C}, anticlockwise as seen from outside.
-        assumed: whether it was not chosen, such as the box CAM puts around a model: nothing about it is certain.
+        assumed: whether it is a default, such as the box CAM puts around a model: nothing about it is certain.
     """
 
     source: str
@@ -35,7 +35,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Shank:
-    """What a tool is above its cutting edges.
+    """Shape of a tool above its cutting edges.
 
     Attributes:
         start: height above the tip where the cutting edges end and the shank begins, mm.
@@ -48,14 +48,14 @@ class Shank:
 
 @dataclass(frozen=True)
 class Setup:
-    """What is on the table, and what the tools are like above their cutting edges.
+    """Solids on the table, and tool shapes above the cutting edges.
 
     Attributes:
-        part: as it is to be in the end.
-        stock: as it is before the first operation.
-        fixtures: clamps, vice and whatever else stands still.
-        shanks: by tool number, of the tools of which it is known.
-        unknown_corners: numbers of tools whose corner radius is not known.
+        part: the finished part.
+        stock: the stock before the first operation.
+        fixtures: clamps, vice and other fixed solids.
+        shanks: by tool number, where known.
+        unknown_corners: numbers of tools with unknown corner radius.
     """
 
     part: Mesh | None = None
@@ -66,9 +66,9 @@ class Setup:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing that could be run into."""
+        """Whether there is nothing to collide with."""
         return self.part is None and self.stock is None and not self.fixtures
 
 
 NOTHING_KNOWN = Setup()
-"""The setup of a program that comes alone."""
+"""Setup of a program without further data."""

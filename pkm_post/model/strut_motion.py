@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""StrutMotion: six strut lengths and speeds by time; what a controller plays.
+"""StrutMotion: six strut lengths and speeds by time, as played by a controller.
 
-Between two knots each strut follows the one cubic that has the lengths and speeds of both (position-velocity-time,
+Between two knots each strut follows the unique cubic with the lengths and speeds of both (position-velocity-time,
 PVT: a cubic Hermite).
 """
 
@@ -30,7 +30,7 @@ class StrutMotion:
         time_ms: (M,) whole milliseconds since the start, strictly increasing; dwells do not count.
         length: (M, 6) joint-to-joint strut lengths in mm.
         speed: (M, 6) their rates in mm/s.
-        events: what happens, by knot: the motion rests at knot r, the event takes place, the motion goes on.
+        events: by knot: the motion rests at knot r, the event takes place, the motion continues.
     """
 
     time_ms: Array
@@ -45,7 +45,7 @@ class StrutMotion:
         return len(self.time_ms)
 
     def cubics(self, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
-        """The cubics that begin at some knots, as ``geometry.hermite`` takes them.
+        """Cubics that begin at some knots, in the form of ``geometry.hermite``.
 
         Args:
             rows: (N,) the knots; none of them is the last.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A cutting tool: what compensation and kinematics need of it."""
+"""Tool: a cutting tool as needed by compensation and kinematics."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class Tool:
 
     Attributes:
         number: tool number, 0 when the source names none.
-        name: the label shown to people.
+        name: display name.
         diameter: cutter diameter in mm, 0 when unknown: that of the circle where the lines of bottom and side meet.
         corner_radius: corner radius in mm: 0 for a flat end mill, half the diameter for a ball.
         length: gauge length in mm, from the spindle nose to the tip.
         bottom_angle: rise of the bottom from the tip outwards, in rad: 0 for a flat bottom, 31 degrees for a drill
             with a point of 118.
         side_angle: angle of the side to the tool axis in rad, positive where the tool widens upwards.
-        corner_known: whether the source gives the corner radius; where it does not, 0 stands for it: the flat end mill
-            holds every other cutter of its diameter.
+        corner_known: whether the source gives the corner radius; if not, it is 0: the flat end mill contains every
+            other cutter of its diameter.
     """
 
     number: int
@@ -41,7 +41,7 @@ class Tool:
 
 
 def corner_reach(bottom_angle: float, side_angle: float) -> float:
-    """From the centre of a corner of radius 1 out to the circle where the lines of bottom and side meet.
+    """Distance from the centre of a corner of radius 1 out to the circle where the lines of bottom and side meet.
 
     (cos a - sin b) / cos(a + b), from the arc touching both lines; 1 for a flat bottom and an upright side.
 
@@ -53,7 +53,7 @@ def corner_reach(bottom_angle: float, side_angle: float) -> float:
 
 
 def largest_corner(diameter: float, bottom_angle: float = 0.0, side_angle: float = 0.0) -> float:
-    """The corner radius in mm with which the centre of the corner is on the axis: that of a ball.
+    """Corner radius in mm that puts the centre of the corner on the axis: that of a ball.
 
     Args:
         diameter: of the circle where the lines of bottom and side meet, mm.
@@ -64,7 +64,7 @@ def largest_corner(diameter: float, bottom_angle: float = 0.0, side_angle: float
 
 
 def angles_fit(bottom_angle: float, side_angle: float) -> bool:
-    """Whether the lines of bottom and side meet: a bottom angle from 0, and both together below a right angle."""
+    """Whether the lines of bottom and side meet: a bottom angle from 0, and a sum below a right angle."""
     right = math.pi / 2.0
     return 0.0 <= bottom_angle < right and -right < side_angle < right and bottom_angle + side_angle < right
 

@@ -21,9 +21,9 @@ from pkm_post.model.program import MOTION_COLUMNS, Array
 from pkm_post.model.tool import Tool, lengths_of
 
 MOST_SPIN = 1e6
-"""rad: a platform turns by less than a turn; of a larger number too few digits are left to plan with."""
+"""rad: a platform rotates by less than one turn; a larger number leaves too few digits for planning."""
 LEAST_TOLERANCE = 1e-9
-"""mm and rad: a smaller tolerance than a thousandth of a nanometre is a slip, and nothing is planned to it."""
+"""mm and rad: a tolerance below a thousandth of a nanometre is a typing error, and no plan meets it."""
 
 TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
     "tip": (np.float64, (3,)),
@@ -47,12 +47,12 @@ class Trajectory:
         kind: (N,) ``Kind``.
         tip: (N, 3) tool tip at the end of the segment.
         axis: (N, 3) unit tool axis there.
-        spin: (N,) turn of the platform about the tool axis there.
+        spin: (N,) rotation of the platform about the tool axis there.
         feed: (N,) tip speed in mm/s, finite on every row: rapid moves carry the machine's rapid speed.
         arc_centre: (N, 3) centre of the arc; NaN on lines.
         arc_axis: (N, 3) unit axis the arc turns about right-handed; NaN on lines.
         sweep: (N,) angle of the arc, 0 < sweep <= 2 pi; 0 on lines.
-        length: (N,) length of the tip's way.
+        length: (N,) path length of the tip.
         angle: (N,) angle the tool axis turns.
         smooth: (N,) the tip's direction continues into the next segment without a corner.
         exact_stop: (N,) the motion comes to rest at the end of the segment: a feed hold can end there, and work begin.
@@ -69,9 +69,9 @@ class Trajectory:
         machine: name of the machine it was made for.
         machine_fingerprint: SHA-256 of that machine's file, hexadecimal.
         source: name of the file the program came from.
-        source_fingerprint: SHA-256 of that file, hexadecimal; empty where it is not known, the default.
-        tolerances: what was asked for when the trajectory was made; None where nothing was, the default.
-        tip_tolerance: (N,) how far the tool tip may leave the segment, where the program says so (G64 P), mm; 0, the
+        source_fingerprint: SHA-256 of that file, hexadecimal; empty, the default, if unknown.
+        tolerances: requested when the trajectory was made; None, the default, if none were.
+        tip_tolerance: (N,) tolerance of the tool tip along the segment, where the program states it (G64 P), mm; 0, the
             default, stands for that of ``tolerances``.
     """
 
@@ -115,7 +115,7 @@ class Trajectory:
         return len(self.kind)
 
     def place(self, row: int) -> Place:
-        """Where segment ``row`` stands in the source."""
+        """Position of segment ``row`` in the source."""
         return Place(self.source, self.operations[self.operation[row]], int(self.line[row]))
 
     def tool_length(self) -> Array:
@@ -123,13 +123,13 @@ class Trajectory:
         return by_row(lambda tool: lengths_of(self.tools, tool), self.tool)
 
     def tip_tolerances(self, asked: float) -> Array:
-        """How far the tip may leave each segment, (N,) in mm: as the program says, else as was asked for."""
+        """Tip tolerance of each segment, (N,) in mm: that of the program, else the requested one."""
         return by_row(lambda said: np.where(said > 0, said, asked), self.tip_tolerance)
 
     def tip_before(self) -> Array:
         """Tool tip at the start of each segment, (N, 3).
 
-        At a tool change the platform stands still: the tip of the new tool is where its own length puts it.
+        At a tool change the platform is at rest: the tip of the new tool follows from its own length.
         """
         before, length = np.vstack([self.start_tip, self.tip[:-1]]), self.tool_length()
         if not is_uniform(length):
@@ -143,11 +143,11 @@ class Trajectory:
         return shifted(self.start_axis, self.axis)
 
     def axis_at(self, rows: Sequence[int]) -> Array:
-        """Tool axis where events at these rows take place, (M, 3); row N is the end of all."""
+        """Tool axis at events of these rows, (M, 3); row N is the end of the trajectory."""
         return np.vstack([self.start_axis, self.axis])[np.asarray(rows, dtype=np.intp)]
 
     def nose_before(self, rows: Sequence[int]) -> Array:
-        """Centre of the spindle nose where events at these rows take place, (M, 3) mm; row N is the end of all."""
+        """Centre of the spindle nose at events of these rows, (M, 3) mm; row N is the end of the trajectory."""
         at = np.asarray(rows, dtype=np.intp)
         length = self.tool_length()
         tip, length = np.vstack([self.start_tip, self.tip]), np.concatenate([length[:1], length])
