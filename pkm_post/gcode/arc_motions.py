@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arc motions: the arcs among the motions of a program get centre and axis, and those of several turns are cut.
+"""Arc motions: compute centre and axis of each arc of a program, and split multi-turn arcs.
 
-Motions in coordinates of the program enter, in mm, with the blocks they come from; columns of centres and unit axes
-leave, NaN on other rows, and motions of one turn at most, all of whose ends are known.
+Enters: motions in program coordinates, mm, with their source blocks. Leaves: columns of centres and unit axes, NaN on
+rows that are not arcs, and motions of at most one turn whose end points are all known.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from pkm_post.model.columns import uniform
 from pkm_post.model.program import Array
 
 MOST_TURNS = 10_000
-"""An arc of more turns than this is a slip."""
+"""An arc of more turns than this is taken for a programming error."""
 
 
 def arcs_of(blocks: Blocks, modal: Modal, motions: Motions, faults: Findings) -> tuple[Array, Array]:
-    """Centres and axes of the arcs in coordinates of the program, (n, 3) each, NaN on other rows."""
+    """Centres and axes of the arcs in program coordinates, (n, 3) each, NaN on other rows."""
     rows = np.flatnonzero(is_arc(motions.motion))
     if not len(rows):
         return uniform(np.full(3, np.nan), len(motions)), uniform(np.full(3, np.nan), len(motions))
@@ -49,7 +49,7 @@ def arcs_of(blocks: Blocks, modal: Modal, motions: Motions, faults: Findings) ->
 
 
 def _arc_words(blocks: Blocks, modal: Modal, motions: Motions, rows: Array) -> tuple[ArcWords, Array]:
-    """What arcs are programmed with, and whether their starts are known."""
+    """Programmed words of the arcs, and whether their start points are known."""
     block = motions.block[rows]
     scale = modal.scale[block]
     start, known = motions.starts(rows)
@@ -69,7 +69,7 @@ def _arc_words(blocks: Blocks, modal: Modal, motions: Motions, rows: Array) -> t
 def single_turns(
     blocks: Blocks, modal: Modal, motions: Motions, centre: Array, axis: Array
 ) -> tuple[Motions, Array, Array]:
-    """The motions with arcs of several turns cut into arcs of one turn at most."""
+    """Split multi-turn arcs into arcs of at most one turn."""
     arcs = np.flatnonzero(is_arc(motions.motion))
     turns = blocks.word("P")[motions.block[arcs]]
     rows, turns = arcs[turns > 1], turns[turns > 1]
@@ -89,7 +89,7 @@ def single_turns(
 
 
 def known_ones(motions: Motions, columns: list[Array]) -> tuple[Motions, list[Array]]:
-    """The motions without those whose end is not known, and the same of columns of theirs."""
+    """Drop motions with an unknown end point, and the same rows of the given columns."""
     if motions.known.all():
         return motions, columns
     rows = np.flatnonzero(motions.known)
@@ -97,12 +97,12 @@ def known_ones(motions: Motions, columns: list[Array]) -> tuple[Motions, list[Ar
 
 
 def _chosen(motions: Motions, rows: Array, place: Array) -> Motions:
-    """Some of the motions, or some of them several times.
+    """Select motions; a motion may be selected several times.
 
     Args:
-        motions: all of them.
-        rows: (m,) which.
-        place: (n,) where each of them begins among the chosen ones.
+        motions: to select from.
+        rows: (m,) selected rows.
+        place: (n,) index of the first copy of each motion in the selection.
     """
     place = np.append(place, len(rows))
     return replace(
@@ -114,7 +114,7 @@ def _chosen(motions: Motions, rows: Array, place: Array) -> Motions:
 
 
 def lengths(motions: Motions, centre: Array, axis: Array) -> Array:
-    """Ways of the tool tip, (n,), mm; 0 where it is not known."""
+    """Distances travelled by the tool tip, (n,), mm; 0 where unknown."""
     start, known = motions.starts(np.arange(len(motions)))
     way = norm(motions.end - start)
     arc = is_arc(motions.motion)

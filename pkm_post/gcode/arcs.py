@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arcs: centre words or a radius become a centre, and several turns become several arcs.
+"""Arcs: compute the centre from centre words or a radius, and split multi-turn arcs.
 
-Columns in coordinates of the program enter and leave, in mm. An arc lies in one of the three planes; a change of the
-third coordinate makes it a helix. Tolerances are those of LinuxCNC, so that a program that runs there is read here: end
-points may have been rounded to a hundredth of a millimetre or a thousandth of an inch [LinuxCNC, interp_internal.hh].
+Enters and leaves: columns in program coordinates, mm. An arc lies in one of the three planes; a change of the third
+coordinate makes it a helix. Tolerances are those of LinuxCNC, so programs that run there are accepted here: end points
+may have been rounded to a hundredth of a millimetre or a thousandth of an inch [LinuxCNC, interp_internal.hh].
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ from pkm_post.geometry import arc_points, arc_sweep
 from pkm_post.model.program import Array
 
 ROUNDED_MM, ROUNDED_INCH = 0.01, 0.001 * UNITS["inch"]
-"""mm to which the end points of arcs may have been rounded in programs in mm and in inches."""
+"""Permitted rounding of arc end points, mm, in programs in mm and in inches."""
 RADIUS_RELATIVE = 1e-3
-"""Part of the radius that the radii at start and end may differ, where it is more than what rounding makes of it."""
+"""Permitted difference of start and end radius relative to the radius, where it exceeds the rounding error."""
 RADIUS_MOST = 100
-"""How many times as much as rounding makes of it they may differ at most."""
+"""Upper bound of the permitted difference, as a multiple of the rounding error."""
 HALF_CIRCLE = 0.00127
-"""mm that a radius may be less than half the chord."""
+"""mm by which a radius may fall short of half the chord."""
 _NO_RADIUS = 1e-9
 
 
 @dataclass(frozen=True)
 class ArcWords:
-    """What n arcs are programmed with.
+    """Programmed words of n arcs.
 
     Attributes:
-        start: (n, 3) where they begin.
-        end: (n, 3) where they end.
+        start: (n, 3) start points.
+        end: (n, 3) end points.
         plane: (n,) code of the plane.
-        clockwise: (n,) whether they turn clockwise seen from the end of the plane's normal (G2).
-        centre: (n, 3) words I J K in mm, NaN where there is none.
-        absolute: (n,) whether these are coordinates (G90.1) rather than distances from the start.
-        radius: (n,) word R in mm, NaN where there is none.
-        unit: (n,) mm in the unit that they are written in.
+        clockwise: (n,) whether they run clockwise seen from the tip of the plane normal (G2).
+        centre: (n, 3) words I J K in mm, NaN where absent.
+        absolute: (n,) whether I J K are coordinates (G90.1) rather than offsets from the start point.
+        radius: (n,) word R in mm, NaN where absent.
+        unit: (n,) mm per programmed length unit.
     """
 
     start: Array
@@ -55,17 +55,17 @@ class ArcWords:
 
 
 def arc_axes(words: ArcWords) -> Array:
-    """Unit axes that the arcs turn about right-handed, (n, 3)."""
+    """Unit axes of right-handed rotation of the arcs, (n, 3)."""
     axis = np.zeros((len(words.plane), 3))
     axis[np.arange(len(axis)), normal_coordinate(words.plane)] = np.where(words.clockwise, -1.0, 1.0)
     return axis
 
 
 def centres(words: ArcWords) -> tuple[Array, list[tuple[int, str, str]]]:
-    """Centres of arcs, at the height of their start.
+    """Centres of arcs, at the height of their start points.
 
     Returns:
-        (n, 3) centres, and for each arc that is none its index, the code of the fault and what was found.
+        (n, 3) centres, and for each invalid arc its index, the fault code and what was found.
     """
     axes = plane_axes(words.plane)
     start, end = (np.take_along_axis(points, axes, axis=1) for points in (words.start, words.end))
@@ -114,7 +114,7 @@ def _faults(words: ArcWords, start: Array, end: Array, said: Array, flat: Array)
 
 
 def _rounding(unit: Array) -> Array:
-    """By how many mm the radii at start and end differ at most where all three points were rounded, (n,)."""
+    """Largest difference of start and end radius, mm, that rounding of all three points can cause, (n,)."""
     return 2 * np.sqrt(2) * np.where(unit == UNITS["inch"], ROUNDED_INCH, ROUNDED_MM)
 
 
@@ -133,15 +133,15 @@ def _radii(first: float, last: float) -> str:
 
 
 def whole_turns(words: ArcWords, centre: Array, turns: Array) -> tuple[Array, Array, Array]:
-    """Arcs of more than a turn cut where a turn is full.
+    """Split arcs of more than one turn at full turns.
 
     Args:
         words: n arcs.
         centre: (n, 3) their centres.
-        turns: (n,) the P word: how many turns are begun, from 1.
+        turns: (n,) the P word: number of turns begun, from 1.
 
     Returns:
-        index (m,) of the arc each piece belongs to, its start and its end, (m, 3) each.
+        index (m,) of the source arc of each piece, and its start and end, (m, 3) each.
     """
     axis = arc_axes(words)
     count = turns.astype(np.int64)

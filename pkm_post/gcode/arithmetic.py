@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arithmetic: what the operators and functions of expressions do.
+"""Arithmetic: the operators and functions of expressions.
 
-Enters: values. Leaves: values; truth is 1 and 0, angles are degrees as in the program. What has no result is a fault,
-or one of Python's own errors, which whoever applies the table tells as a fault.
+Enters: values. Leaves: values; true is 1 and false is 0, angles are in degrees as in the program. An undefined result
+raises a fault or a built-in Python error, which the caller reports as a fault.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pkm_post.gcode.parameters import ExecutionFault
 
 _EQUAL = 1e-4
-"""Values that differ by less are EQ."""
+"""Values that differ by less compare as EQ."""
 
 
 def _divided(left: float, right: float) -> float:
@@ -24,7 +24,7 @@ def _divided(left: float, right: float) -> float:
 
 
 def _modulo(left: float, right: float) -> float:
-    """The remainder, never negative, whatever the signs."""
+    """The remainder, never negative."""
     if right == 0:
         raise ExecutionFault("G304", f"{left:.10g} mod {right:.10g}")
     rest = math.fmod(left, right)
@@ -40,7 +40,7 @@ def _power(left: float, right: float) -> float:
 
 
 def _rounded(value: float) -> float:
-    """The nearest whole number, halves away from zero."""
+    """The nearest integer, halves rounded away from zero."""
     return math.copysign(math.floor(abs(value) + 0.5), value)
 
 
@@ -61,7 +61,7 @@ OPERATORS: dict[str, Callable[[float, float], float]] = {
     "or": lambda left, right: float(left != 0 or right != 0),
     "xor": lambda left, right: float((left != 0) != (right != 0)),
 }
-"""What the operators do; how tightly they bind is in the grammar."""
+"""Implementation of the operators; the grammar defines their precedence."""
 
 FUNCTIONS: dict[str, Callable[[float], float]] = {
     "abs": abs,
@@ -77,7 +77,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sqrt": math.sqrt,
     "tan": lambda value: math.tan(math.radians(value)),
 }
-"""What the functions of one argument do; angles in degrees."""
+"""Implementation of the functions of one argument; angles in degrees."""
 
 
 def arc_tangent(y: float, x: float) -> float:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Axes: the words that say the tool axis become unit vectors.
+"""Axes: convert tool axis words to unit vectors.
 
-I J K after G43.5 and what other controls write for it, or rotary words in degrees under a declared kinematic, enter as
-columns; unit tool axes in coordinates of the program leave, from the tip towards the spindle, and unit surface normals.
-k = Rz(C) Ry(B) Rx(A) e_z, with zero for an angle that the kinematic has not: (sin B cos C, sin B sin C, cos B) for a BC
-head, (sin A sin C, -sin A cos C, cos A) for an AC head.
+Enters: columns of I J K after G43.5, of its equivalents on other controls, or of rotary words in degrees under a
+declared kinematic. Leaves: unit tool axes in program coordinates, from the tip towards the spindle, and unit surface
+normals. k = Rz(C) Ry(B) Rx(A) e_z, with zero for an angle that the kinematic lacks: (sin B cos C, sin B sin C, cos B)
+for a BC head, (sin A sin C, -sin A cos C, cos A) for an AC head.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ from pkm_post.model.program import Array
 _BY_ANGLES, _BY_VECTOR = 434, 435
 _UPRIGHT = (0.0, 0.0, 1.0)
 _TILTED = 1e-9
-"""rad: a tool axis nearer to upright is upright."""
+"""rad: a tool axis closer to vertical counts as vertical."""
 _ALONG = 1 - 1e-12
-"""Cosine of an angle of a millionth of a radian, which is what six decimals say: a tool that near stands in line."""
+"""Cosine of a millionth of a radian, the resolution of six decimals: a tool axis within this counts as aligned."""
 _LENGTH_ERROR = 1e-3
-"""A normal whose length differs more from 1 is told; less is rounding."""
+"""A normal whose length differs more from 1 is reported; less is rounding."""
 
 
 def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Array:
@@ -40,7 +40,7 @@ def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
     find, code = (_vectors, _BY_VECTOR) if options.axis_words == "vector" else (_angles, _BY_ANGLES)
     axes, said = find(blocks, modal, options, faults)
     if options.axis_words != "RPY":
-        # X Y Z are those of the slides then, and where these bring the tip hangs on the machine.
+        # Without tip control, X Y Z are slide positions, and the tip position depends on the machine.
         idle = modal.moves & (modal.in_force[Group.LENGTH] != code) & ~said
         idle &= (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
         faults.tell_all("G424", idle, lambda row: f"({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
@@ -48,12 +48,12 @@ def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
 
 
 def check_cycles(modal: Modal, axes: Array, faults: Findings) -> None:
-    """Tell holes that are not drilled along the tool: a cycle moves along the normal of its plane, whatever leans.
+    """Report holes not drilled along the tool axis: a cycle always moves along the normal of its plane.
 
     Args:
         modal: codes of N blocks.
-        axes: (N, 3) unit tool axis in coordinates of the program.
-        faults: takes what is found.
+        axes: (N, 3) unit tool axis in program coordinates.
+        faults: collects the faults.
     """
     rows = np.flatnonzero(modal.moves & is_cycle(modal.in_force[Group.MOTION]))
     axis, across = axes[rows], normal_coordinate(modal.in_force[Group.PLANE][rows])
@@ -84,7 +84,7 @@ def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
 
 
 def _component(blocks: Blocks, letter: str, on_arc: Array, in_cycle: Array, faults: Findings) -> Array:
-    """What is said of a component of the tool axis, in the words of any dialect, (N,); K of a cycle repeats it."""
+    """Values of a tool axis component, from the words of any dialect, (N,); K of a cycle is a repeat count."""
     value = np.where(in_cycle, np.nan, blocks.word(letter)) if in_cycle.any() else blocks.word(letter)
     for name in VECTOR_WORDS[letter]:
         if name != letter and name in blocks.words:
@@ -97,13 +97,13 @@ def _component(blocks: Blocks, letter: str, on_arc: Array, in_cycle: Array, faul
 
 
 def _unit(vectors: list[Array]) -> tuple[list[Array], Array]:
-    """Vectors, by component, with unit length, and the length they had; those without any stay as they are."""
+    """Normalise vectors given by component, and return their former lengths; zero vectors are unchanged."""
     length = np.sqrt(vectors[0] ** 2 + vectors[1] ** 2 + vectors[2] ** 2)
     return [component / np.where(length > 0, length, 1.0) for component in vectors], length
 
 
 def surface_normals(blocks: Blocks, faults: Findings) -> Array:
-    """Unit surface normals, (N, 3), NaN where a block gives none: they hold for their own block alone."""
+    """Unit surface normals, (N, 3), NaN where a block gives none: they are not modal."""
     said = [blocks.has(name) for name in NORMAL_WORDS if name in blocks.words]
     if not said:
         return uniform((np.nan, np.nan, np.nan), len(blocks))
@@ -122,14 +122,14 @@ def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings
     words = _rotary_words(blocks, modal, options)
     given: Array = np.any([~np.isnan(word) for word in words.values()], axis=0)
     if options.axis_words != "RPY":
-        # Without G43.4 a machine with such a head would take X Y Z for places of its slides, not of the tip.
+        # Without G43.4 a machine with such a head takes X Y Z as slide positions, not as the tip position.
         inactive = given & (modal.in_force[Group.LENGTH] != _BY_ANGLES)
         faults.tell_all("G414", inactive, lambda row: f"{_first(words, row)} without G43.4")
     return axis_of(_in_rad(modal, words)), given
 
 
 def spins(blocks: Blocks, modal: Modal, options: ReadOptions) -> Array:
-    """Turn of the platform about the tool axis in rad, (N,), from A B C of a hexapod; NaN where no words say it."""
+    """Rotation of the platform about the tool axis in rad, (N,), from A B C of a hexapod; NaN where unspecified."""
     if options.axis_words != "RPY":
         return uniform(np.nan, len(blocks))
     angles = _in_rad(modal, _rotary_words(blocks, modal, options))
@@ -150,7 +150,7 @@ def _in_rad(modal: Modal, words: dict[str, Array]) -> Array:
 
 
 def _first(words: dict[str, Array], row: int) -> str:
-    """The first rotary word of a block, as it is written."""
+    """The first rotary word of a block, as written."""
     return next(f"{letter}{word[row]:g}" for letter, word in words.items() if not np.isnan(word[row]))
 
 

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Blocks: a G-code program as columns, one row per block, before anything is known of what it means.
+"""Blocks: a G-code program as columns, one row per block, before interpretation.
 
-Enters: what the scan found in the text, or what the execution made of it. Leaves: the same, checked and read-only.
-Units: as written (the program's inches or millimetres, degrees, F as it stands there); the resolve step converts.
+Enters: the result of the scan or of the execution. Leaves: the same, checked and read-only. Units: as programmed
+(inches or millimetres, degrees, F as written); the resolve step converts them.
 
-There is a column for each word that the program uses, and none for those it does not: a program of X, Y, Z and F has 37
-bytes for each block.
+Only the words that the program uses have a column: a program of X, Y, Z and F takes 37 bytes per block.
 """
 
 from __future__ import annotations
@@ -27,21 +26,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Blocks:
-    """Columns of N blocks with K G codes and L M codes in all. They are taken over, not copied.
+    """Columns of N blocks with K G codes and L M codes in total. The arrays are not copied.
 
     Attributes:
         line: (N,) line in the file, from 1; strictly increasing in scanned blocks, in any order in executed ones.
-        words: by letter, or by name such as A3 or NX, the (N,) values of a word, NaN where absent; what occurs nowhere
-            has no column, nor have G, M, N and O.
-        g: (K,) G codes in tenths, 10 for G1, 434 for G43.4, in the order of the program.
-        g_row: (K,) the row each stands in, never falling.
-        m: (L,) M codes, whole numbers.
-        m_row: (L,) the row each stands in, never falling.
+        words: by letter, or by name such as A3 or NX, the (N,) values of a word, NaN where absent; unused words and G,
+            M, N and O have no column.
+        g: (K,) G codes in tenths, 10 for G1, 434 for G43.4, in program order.
+        g_row: (K,) row of each G code, non-decreasing.
+        m: (L,) M codes, integers.
+        m_row: (L,) row of each M code, non-decreasing.
         deleted: (N,) whether the block begins with the block delete character ``/``.
-        special: by row, the parsed block of the rows whose values are not known before they are executed or that
-            hold more than plain words: parameters, expressions, assignments, O words.
-            Such a row has no words and codes in the columns.
-        comments: line and text of the comments that speak to the operator, and of those that describe a tool.
+        special: by row, the parsed block of rows whose values are known only at execution or that hold more than plain
+            words: parameters, expressions, assignments, O words. Such a row has no words and codes in the columns.
+        comments: line and text of operator messages and of tool descriptions.
         source: name of the file.
         closed: whether a percent sign closes the file.
     """
@@ -81,7 +79,7 @@ class Blocks:
         return uniform(np.nan, len(self)) if column is None else column
 
     def has(self, letter: str) -> Array:
-        """(N,) whether a block has a word."""
+        """Whether each block has a word, (N,)."""
         column = self.words.get(letter)
         return uniform(False, len(self)) if column is None else ~np.isnan(column)
 
@@ -91,21 +89,21 @@ class Blocks:
         return {letter: value for letter, value in values.items() if value == value}  # NaN is not itself
 
     def g_of(self, row: int) -> Array:
-        """G codes of a row, in tenths, in the order of the block."""
+        """G codes of a row, in tenths, in block order."""
         codes: Array = self.g[self.g_row.searchsorted(row) : self.g_row.searchsorted(row, "right")]
         return codes
 
     def m_of(self, row: int) -> Array:
-        """M codes of a row, in the order of the block."""
+        """M codes of a row, in block order."""
         codes: Array = self.m[self.m_row.searchsorted(row) : self.m_row.searchsorted(row, "right")]
         return codes
 
     def place(self, row: int) -> Place:
-        """Where a row stands in the source."""
+        """Source location of a row."""
         return Place(self.source, line=int(self.line[row]))
 
     def first(self, count: int) -> Blocks:
-        """The first of the blocks, which must be plain, as views."""
+        """The first ``count`` blocks, which must be plain, as views."""
         g, m = (int(rows.searchsorted(count)) for rows in (self.g_row, self.m_row))
         return replace(
             self,
@@ -119,7 +117,7 @@ class Blocks:
         )
 
     def chosen(self, rows: Array) -> Blocks:
-        """Blocks of some rows, which must be plain, in any order and as often as they are named."""
+        """Select rows, which must be plain, in any order and with repetition."""
         g, g_row = codes_of(self.g, self.g_row, rows)
         m, m_row = codes_of(self.m, self.m_row, rows)
         return replace(
@@ -135,7 +133,7 @@ class Blocks:
 
 
 def _taken(name: str, values: Array, dtype: DTypeLike, count: int) -> Array:
-    """A read-only view of a column, not a copy: these are most of the memory that a program takes."""
+    """A read-only view of a column, not a copy: the columns dominate the memory use of a program."""
     column = np.ascontiguousarray(values, dtype=dtype).view()
     if column.shape != (count,):
         raise ValueError(f"Blocks.{name}: expected {(count,)}, got {column.shape}")
@@ -144,7 +142,7 @@ def _taken(name: str, values: Array, dtype: DTypeLike, count: int) -> Array:
 
 
 def codes_of(codes: Array, code_row: Array, rows: Array) -> tuple[Array, Array]:
-    """The codes of a choice of rows, one after the other, and by their place in the choice the rows they stand in."""
+    """The codes of the selected rows, concatenated, and the index into the selection that each belongs to."""
     if not len(codes):
         return codes, code_row
     begin, end = code_row.searchsorted(rows), code_row.searchsorted(rows, "right")

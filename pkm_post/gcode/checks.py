@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Checks: what can be wrong with a block before it is known where the tool is.
+"""Checks: faults of a block that do not depend on the tool position.
 
-Plain blocks and their modal codes enter, faults leave: codes that are not supported, codes that exclude each other,
-words that no code of the block uses, words that are missing or not what they have to be.
+Enters: plain blocks and their modal codes. Leaves: faults: unsupported codes, mutually exclusive codes, words that no
+code of the block uses, and missing or invalid words.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from pkm_post.model.program import Array
 _WHOLE = "HLT"
 _NOT_NEGATIVE = "DFHLQST"
 _LIMIT = 1e9
-"""No length, angle, time or number of a program is larger; beyond it decimals are lost."""
+"""Upper bound of lengths, angles, times and numbers of a program; beyond it decimals are lost."""
 
 _Codes = tuple[str, Array, Array, dict[int, Code]]
-"""Letter, codes, the rows they stand in, and what they mean."""
+"""Letter, codes, their rows, and their definitions."""
 
 
 def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> None:
-    """Tell all that is wrong with single blocks.
+    """Report the faults of individual blocks.
 
     Args:
         blocks: plain blocks.
         modal: their modal codes.
-        options: how they are to be read.
-        faults: takes what is found.
+        options: read options.
+        faults: collects the faults.
     """
     _unknown_codes(blocks, faults)
     _codes_of_one_group(blocks, faults)
@@ -48,7 +48,7 @@ def _codes(blocks: Blocks) -> tuple[_Codes, _Codes]:
 
 
 def _marked(blocks: Blocks, rows: Array) -> Array:
-    """Whether a block is one of some rows, (N,)."""
+    """Mask of the given rows, (N,)."""
     marked = np.zeros(len(blocks), dtype=np.bool_)
     marked[rows] = True
     return marked
@@ -100,19 +100,19 @@ def _words_without_use(blocks: Blocks, modal: Modal, options: ReadOptions, fault
 
 
 def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
-    """Whether the motion of a block takes a word, (N,)."""
+    """Whether the motion of each block uses a word, (N,)."""
     takes = np.zeros(max(G_CODES) + 1, dtype=np.bool_)
     for code, meaning in G_CODES.items():
         if meaning.group is Group.MOTION:
             turns = letter in axis_names(options.axis_words)
             takes[code] = code == 800 or letter in meaning.letters or turns or letter in NORMAL_WORDS
-            if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # of an arc they are its centre, or nothing
+            if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # on an arc they are its centre, or meaningless
                 takes[code] = letter in meaning.letters
     return modal.moves & by_row(takes.__getitem__, modal.in_force[Group.MOTION])
 
 
 def _rows_that_use(letter: str, blocks: Blocks) -> Array:
-    """The rows with a code, other than a motion, that takes a word; a code that is not known may take any."""
+    """Rows with a non-motion code that uses a word; an unknown code may use any word."""
     rows = []
     for _, codes, row, known in _codes(blocks):
         users = [
@@ -125,7 +125,7 @@ def _rows_that_use(letter: str, blocks: Blocks) -> Array:
 
 
 def _tell_words(code: str, wrong: dict[str, Array], blocks: Blocks, faults: Findings) -> None:
-    """Tell blocks with words that they cannot have, all of them at once."""
+    """Report invalid words, one fault per block."""
     if wrong:
         faults.tell_all(
             code,
@@ -135,7 +135,7 @@ def _tell_words(code: str, wrong: dict[str, Array], blocks: Blocks, faults: Find
 
 
 def _word(name: str, value: float) -> str:
-    """A word as it is written: X1, A3=1."""
+    """A word as written: X1, A3=1."""
     return f"{name}={value:g}" if name[-1].isdigit() else f"{name}{value:g}"
 
 
@@ -152,7 +152,7 @@ def _words_missing(blocks: Blocks, modal: Modal, faults: Findings) -> None:
 
 
 def _before_first(blocks: Blocks, letter: str) -> Array:
-    """Whether a block comes before the first one with a word, (N,)."""
+    """Whether each block precedes the first one with a word, (N,)."""
     rows = np.flatnonzero(blocks.has(letter))
     return np.arange(len(blocks)) < (rows[0] if len(rows) else len(blocks))
 
@@ -176,7 +176,7 @@ def _values(blocks: Blocks, modal: Modal, faults: Findings) -> None:
 
 
 def _axis_words(blocks: Blocks, modal: Modal, faults: Findings) -> None:
-    """Axis words that belong to no motion, or to two codes."""
+    """Report axis words that belong to no motion, or to two codes."""
     explicit, motion = modal.explicit[Group.MOTION], modal.in_force[Group.MOTION]
     faults.tell_all("G407", modal.moves & (motion == 800), lambda _: "axis words while no motion is in force (G80)")
     both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)

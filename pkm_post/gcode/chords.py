@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Chords: lines in place of arcs that a writer cannot say.
+"""Chords: lines that replace arcs a writer cannot express.
 
-A program and a choice of its arcs enter; the program with these arcs cut into lines leaves, the tool axis turning along
-with them. mm throughout.
+Enters: a program and a selection of its arcs. Leaves: the program with these arcs split into lines; the tool axis
+rotates along them. mm throughout.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from pkm_post.model import Event, Kind, Program
 from pkm_post.model.program import Array
 
 CHORD_ERROR = 1e-3
-"""mm that chords may leave the arc they replace."""
+"""Chordal deviation from the replaced arc, mm."""
 _COPIED = ("feed", "operation", "line", "side_offset", "smaller_tool", "plane", "spin", "exact_path", "tip_tolerance")
-"""What every chord has of its arc."""
+"""Columns that every chord inherits from its arc."""
 
 
 def with_chords(program: Program, rows: Array) -> Program:
-    """The program with the arcs of some rows replaced by lines that meet them at their ends, within ``CHORD_ERROR``."""
+    """Replace the arcs of some rows by lines within ``CHORD_ERROR`` whose vertices lie on the arc."""
     if not len(rows):
         return program
     count = np.ones(len(program), dtype=np.int64)
@@ -53,7 +53,7 @@ def with_chords(program: Program, rows: Array) -> Program:
 
 
 def _chords(program: Program, rows: Array) -> Array:
-    """How many chords stay within the error: each spans at most 2 acos(1 - e / r)."""
+    """Number of chords that stay within the error: each spans at most 2 acos(1 - e / r)."""
     start, end = program.position[rows - 1], program.position[rows]
     centre, axis = program.arc_centre[rows], program.arc_axis[rows]
     radius = norm(np.cross(start - centre, axis))
@@ -62,7 +62,7 @@ def _chords(program: Program, rows: Array) -> Array:
 
 
 def _on_arcs(program: Program, rows: Array, part: Array) -> tuple[Array, Array]:
-    """Tip and tool axis where arcs have turned by a part of their sweep, (n, 3) each."""
+    """Tip and tool axis at a fraction of the sweep of each arc, (n, 3) each."""
     start, end = program.position[rows - 1], program.position[rows]
     centre, axis = program.arc_centre[rows], program.arc_axis[rows]
     sweep = arc_sweep(start, end, centre, axis)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Codes: which G and M codes there are, the groups they belong to, and the words that go with them.
+"""Codes: the supported G and M codes, their modal groups, and the words they use.
 
-Tables alone, in tenths for G (434 is G43.4). Of one group a block may have one code. The groups are those of RS274NGC
-[LinuxCNC, G codes, modal groups], with a group each for G68 and G51.1, which it has not.
+Tables only; G codes in tenths (434 is G43.4). A block may have one code per group. The groups are those of RS274NGC
+[LinuxCNC, G codes, modal groups], plus a group each for G68 and G51.1, which it lacks.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from enum import Enum
 
 NONE = -1
-"""Stands where a block has no code of a group."""
+"""Marks a block without a code of a group."""
 
 
 class Group(Enum):
-    """Codes that exclude each other; the value is their name in messages."""
+    """Groups of mutually exclusive codes; the value is the name used in messages."""
 
     ONCE = "codes that act once"
     MOTION = "motion"
@@ -41,13 +41,13 @@ class Group(Enum):
 
 @dataclass(frozen=True)
 class Code:
-    """What a code is.
+    """Definition of a code.
 
     Attributes:
-        group: the codes it excludes.
-        letters: words it can have beside those that every block can have.
-        needs: words it must have.
-        takes_axes: whether the axis words of the block are its own and no motion's.
+        group: its modal group.
+        letters: optional words beside those that any block accepts.
+        needs: required words.
+        takes_axes: whether it consumes the axis words of the block instead of the motion.
     """
 
     group: Group
@@ -144,10 +144,10 @@ REFUSED: dict[str, str] = {
     **{f"M{code}": "digital and analogue outputs" for code in (62, 63, 64, 65, 66, 67, 68)},
     **{f"M{code}": "saving and restoring modal states" for code in (70, 71, 72, 73)},
 }
-"""What well-known codes are for that no program for this machine can have."""
+"""Purpose of well-known codes that this machine does not support."""
 
 IN_STEP_WITH_SPINDLE = ("G33", "G33.1", "G74", "G84")
-"""Threads: cut, tapped in step, and tapped left-handed and right-handed."""
+"""Threading codes: thread cutting, rigid tapping, and left-hand and right-hand tapping."""
 
 CYCLES = (730, 810, 820, 830, 850, 860, 890)
 END_OF_CYCLES = 800
@@ -156,5 +156,5 @@ ANY_BLOCK = "FNSTO"
 
 
 def name_of(code: int, letter: str = "G") -> str:
-    """A code as it is written: G43.4 for 434, M6 for 6."""
+    """A code as written: G43.4 for 434, M6 for 6."""
     return f"{letter}{code / 10:g}" if letter == "G" else f"{letter}{code}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cycles: a drilling cycle becomes the moves and dwells it stands for.
+"""Cycles: expand a drilling cycle into moves and dwells.
 
-Where the tool is and the words of one block enter, in mm and in coordinates of the program; rapid and straight moves
-leave, with what happens between them. G73, G81, G82, G83, G85, G86 and G89, in any plane, as RS274NGC has them.
+Enters: the tool position and the words of one block, in mm and program coordinates. Leaves: rapid and linear moves,
+with the events between them. G73, G81, G82, G83, G85, G86 and G89, in any plane, as defined by RS274NGC.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from pkm_post.model import EventKind, Kind
 from pkm_post.model.program import Array
 
 PECK_CLEARANCE = 0.254
-"""mm above the depth reached where a peck begins to feed again, and which G73 retracts by."""
+"""Clearance above the depth reached at which a peck resumes feed, and retract distance of G73, mm."""
 MOST_STROKES = 10_000
-"""A block with more pecks or holes than this is a slip."""
+"""A block with more pecks or holes than this is taken for a programming error."""
 
 DWELLS = (820, 860, 890)
-"""Cycles that wait at the bottom."""
+"""Cycles that dwell at the bottom."""
 _PECKS = (730, 830)
 _STOPS_SPINDLE = 860
 
 
 Words = tuple[float, float, float, float]
-"""R, depth, Q and P of a block, NaN where it has none."""
+"""R, depth, Q and P of a block, NaN where absent."""
 
 
 @dataclass(frozen=True)
 class Hole:
-    """Heights of a cycle: where it feeds from, its bottom, and where it ends, never below the first."""
+    """Heights of a cycle: feed start, bottom, and end, which is never below the feed start."""
 
     top: float
     bottom: float
@@ -43,12 +43,12 @@ class Hole:
 
 @dataclass(frozen=True)
 class Cycle:
-    """The words of a cycle, those that stay in force included; NaN where nothing was said.
+    """The words of a cycle, including the modal ones; NaN where unspecified.
 
     Attributes:
         code: 810 for G81.
-        retract: R, the height the tool feeds from.
-        bottom: word of the coordinate across the plane.
+        retract: R, the height at which the feed starts.
+        bottom: word of the coordinate normal to the plane.
         peck: Q.
         dwell: P, s.
     """
@@ -60,21 +60,21 @@ class Cycle:
     dwell: float = math.nan
 
     def with_words(self, retract: float, bottom: float, peck: float, dwell: float) -> Cycle:
-        """The cycle with new words where there are any."""
+        """Update the cycle with the words that are given."""
         new, old = (retract, bottom, peck, dwell), (self.retract, self.bottom, self.peck, self.dwell)
         return Cycle(self.code, *(before if math.isnan(word) else word for word, before in zip(new, old, strict=True)))
 
 
 @dataclass(frozen=True)
 class Series:
-    """Cycles without another motion between them.
+    """Consecutive cycles without another motion between them.
 
-    The tool may stand at R when the next of them begins (G99). What G98 returns to, and what R is a distance from with
-    G91, is the initial level all the same [LinuxCNC; PUMOTIX].
+    The tool may be at R when the next cycle begins (G99). G98 still returns to the initial level, and with G91 R is
+    still relative to it [LinuxCNC; PUMOTIX].
 
     Attributes:
-        cycle: the last of them, with the words in force.
-        initial: the initial level, the height at which the first of them found the tool.
+        cycle: the last one, with the words in force.
+        initial: the initial level: the tool height at the start of the first cycle.
     """
 
     cycle: Cycle
@@ -82,13 +82,13 @@ class Series:
 
     @classmethod
     def after(cls, before: Series | None, code: int, height: float, words: Words) -> Series:
-        """The series with one more cycle.
+        """Extend the series by one cycle.
 
         Args:
-            before: the series so far; None if another motion was the last one.
-            code: of the cycle.
-            height: where the tool is.
-            words: R, depth, Q and P of its block, NaN where it has none.
+            before: the series so far; None after another motion.
+            code: code of the cycle.
+            height: of the tool.
+            words: R, depth, Q and P of its block, NaN where absent.
         """
         if before is None:
             return cls(Cycle(code).with_words(*words), height)
@@ -99,7 +99,7 @@ class Series:
         """The heights of the last cycle.
 
         Args:
-            relative: whether R is a distance from the initial level, and the depth one from R (G91).
+            relative: whether R is relative to the initial level, and the depth relative to R (G91).
             returns: whether the tool returns to the initial level (G98) rather than to R.
         """
         top = self.cycle.retract + (self.initial if relative else 0.0)
@@ -109,7 +109,7 @@ class Series:
 
 @dataclass
 class Strokes:
-    """The moves of a cycle in the making: by row its kind and end, and (row, kind, value) of what happens before it."""
+    """Builder for the moves of a cycle: kind and end point by row, and events as (row, kind, value) before a row."""
 
     here: Array
     kinds: list[int] = field(default_factory=list)
@@ -117,7 +117,7 @@ class Strokes:
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)
 
     def go(self, kind: Kind, axis: int | tuple[int, int], to: float | Array) -> None:
-        """Move some coordinates, unless the tool is there."""
+        """Move some coordinates, unless the tool is already there."""
         end = self.here.copy()
         end[[axis] if isinstance(axis, int) else list(axis)] = to
         if not np.array_equal(end, self.here):
@@ -126,12 +126,12 @@ class Strokes:
             self.here = end
 
     def happen(self, kind: EventKind, value: float) -> None:
-        """Something happens here."""
+        """Add an event at the current point."""
         self.events.append((len(self.ends), kind, value))
 
 
 def fault_of(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[str, str] | None:
-    """What keeps a cycle from being carried out: code and what was found."""
+    """The fault that prevents a cycle from being executed: code and what was found."""
     name = name_of(cycle.code)
     for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, DWELLS)):
         if cycle.code in codes and math.isnan(value):
@@ -158,15 +158,15 @@ def fault_of(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[
 def strokes(
     cycle: Cycle, hole: Hole, centres: Array, axes: tuple[int, int, int], here: Array, spindle: float
 ) -> Strokes:
-    """The moves of a cycle: up where the tool is too low, across, down to R, and the hole itself.
+    """The moves of a cycle: retract if the tool is too low, traverse, descend to R, and drill the hole.
 
     Args:
-        cycle: what to do.
+        cycle: to expand.
         hole: its heights.
-        centres: (n, 2) places of the holes, by first and second coordinate of the plane.
+        centres: (n, 2) hole positions, by first and second coordinate of the plane.
         axes: first, second and normal coordinate of the plane.
-        here: (3,) where the tool is.
-        spindle: signed speed of the spindle, 1/min.
+        here: (3,) tool position.
+        spindle: signed spindle speed, 1/min.
     """
     made = Strokes(here)
     normal = axes[2]

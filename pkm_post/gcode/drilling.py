@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilling: the blocks of a program that are cycles, and what stays in force from one to the next.
+"""Drilling: the cycle blocks of a program and their modal state.
 
-A block and the place of the tool enter, in mm and coordinates of the program; the strokes of the cycle leave. R, Q, P
-and the depth stay in force as long as the cycle does, the initial level as long as no other motion comes between. L, or
-K as Fanuc has it, repeats the hole, with G91 at the same distance each time [LinuxCNC; Fanuc, canned cycles].
+Enters: a block and the tool position, in mm and program coordinates. Leaves: the strokes of the cycle. R, Q, P and the
+depth are modal as long as the cycle is active, the initial level until another motion intervenes. L, or K on Fanuc,
+repeats the hole, with G91 at the same increment each time [LinuxCNC; Fanuc, canned cycles].
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from pkm_post.model.program import Array
 
 _REPEATS = "LK"
 _SAME_HEIGHT = 1e-9
-"""mm: what going to {C} and back may change of a coordinate."""
+"""mm: round-off of a coordinate transformed to {C} and back."""
 
 
 class Drilling:
-    """The series of cycles in force."""
+    """Tracks the active series of cycles."""
 
     def __init__(
         self, blocks: Blocks, modal: Modal, words: Coordinates, spindle: Array, dwells: Array, faults: Findings
@@ -43,17 +43,17 @@ class Drilling:
 
     @cached_property
     def _interruption(self) -> Array:
-        """Number of the last block up to each one that is in no cycle, (N,): it stays the same in a series."""
+        """Number of the last non-cycle block up to each block, (N,): constant within a series."""
         return np.cumsum(~is_cycle(self._modal.in_force[Group.MOTION]))
 
     def strokes(self, row: int, position: Array, known: Array, frame: Frame) -> Strokes | None:
-        """The strokes of one block, None where it has a fault.
+        """The strokes of one block, None if it has a fault.
 
         Args:
             row: the block.
-            position: (3,) where the tool is.
-            known: (3,) which of its coordinates are known.
-            frame: what these are coordinates of.
+            position: (3,) tool position.
+            known: (3,) which coordinates are known.
+            frame: of these coordinates.
         """
         code = int(self._modal.in_force[Group.MOTION][row])
         axes = PLANES[int(self._modal.in_force[Group.PLANE][row])]
@@ -78,7 +78,7 @@ class Drilling:
         return strokes(series.cycle, hole, centres, axes, position, spindle)
 
     def _follow(self, row: int, code: int, position: Array, frame: Frame) -> Series:
-        """The series with the cycle of this block."""
+        """Extend the series by the cycle of this block."""
         normal = PLANES[int(self._modal.in_force[Group.PLANE][row])][2]
         scale = float(self._modal.scale[row])
         retract, peck = (scale * float(self._said[letter][row]) for letter in "RQ")
@@ -93,7 +93,7 @@ class Drilling:
         return self._series
 
     def _lost_meaning(self, row: int, series: Series, needs_level: bool, frame: Frame) -> str:
-        """What has changed since the words in force were written, so that they may mean something else."""
+        """What has changed since the modal words were programmed and may alter their meaning."""
         name, plane = name_of(series.cycle.code), int(self._modal.in_force[Group.PLANE][row])
         distance, scale = int(self._modal.in_force[Group.DISTANCE][row]), float(self._modal.scale[row])
         if plane != self._plane:
@@ -108,13 +108,13 @@ class Drilling:
         return ""
 
     def _repeats(self, row: int) -> float:
-        """How often the hole is drilled; NaN where two words say it."""
+        """Repeat count of the hole; NaN where two words specify it."""
         said = [float(self._said[letter][row]) for letter in _REPEATS]
         said = [times for times in said if not math.isnan(times)]
         return 1.0 if not said else said[0] if len(said) == 1 else math.nan
 
     def _centres(self, row: int, position: Array, axes: tuple[int, int, int], relative: bool, repeats: int) -> Array:
-        """Places of the holes, (n, 2)."""
+        """Hole positions, (n, 2)."""
         words, here = self._words.at(row)[list(axes[:2])], position[list(axes[:2])]
         if relative:
             return here + np.arange(1, repeats + 1)[:, None] * np.nan_to_num(words)

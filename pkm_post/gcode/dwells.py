@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dwells: how long the tool waits, P of G4 and of the cycles that wait at the bottom.
+"""Dwells: duration from P of G4 and of the cycles that dwell at the bottom.
 
-Blocks and the unit that the user says enter; seconds leave, and what is doubtful about them. P is in seconds for
-LinuxCNC and in milliseconds, without a decimal point, for controls of the kind of Fanuc's [LinuxCNC; Weihong]. With a
-point some of these take it for seconds [Haas], so that it is refused there.
+Enters: blocks and the dwell unit chosen by the user. Leaves: seconds, and warnings about doubtful values. P is in
+seconds on LinuxCNC and in milliseconds, without a decimal point, on Fanuc-style controls [LinuxCNC; Weihong]. With a
+point some of these read seconds [Haas], so it is refused there.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ from pkm_post.model.columns import by_row
 from pkm_post.model.program import Array
 
 LONG = 60.0
-"""s: a dwell that lasts longer may be one of milliseconds."""
+"""s: a longer dwell may be in milliseconds."""
 _POINTED = re.compile(r"P[ \t]*\d*\.", re.IGNORECASE)
 _COMMENT = re.compile(r"\([^)]*\)?|;.*")
 
 
 def dwell_words(blocks: Blocks, options: ReadOptions) -> Array:
-    """P of each block in s, (N,), NaN where it has none; of use where it is that of a dwell."""
+    """P of each block in s, (N,), NaN where absent; meaningful only for dwells."""
     return blocks.word("P") * DWELL_UNITS[options.dwell_unit]
 
 
 def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, text: bytes | str, faults: Findings) -> None:
-    """Tell dwells that may be meant in the other unit.
+    """Report dwells that may be meant in the other unit.
 
     Args:
         blocks: plain blocks.
         modal: their modal codes.
-        options: how they are to be read.
-        text: the program that they were read from: a point behind a whole number stands there alone.
-        faults: takes what is found.
+        options: read options.
+        text: source text of the program: only there is the point after an integer visible.
+        faults: collects the faults.
     """
     rows = _dwells(blocks, modal)
     words = blocks.word("P")[rows]
@@ -55,7 +55,7 @@ def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, text: bytes
 
 
 def _dwells(blocks: Blocks, modal: Modal) -> Array:
-    """The blocks whose P is a time; of those that are executed several times the first time."""
+    """Blocks whose P is a time; only the first execution of each."""
     waits = modal.moves & by_row(lambda codes: np.isin(codes, DWELLS), modal.in_force[Group.MOTION])
     waits[blocks.g_row[blocks.g == 40]] = True
     rows = np.flatnonzero(waits & blocks.has("P"))
@@ -63,6 +63,6 @@ def _dwells(blocks: Blocks, modal: Modal) -> Array:
 
 
 def _both_ways(word: float, unit: str) -> str:
-    """A long dwell in the unit it is read in, and in the other ones."""
+    """A long dwell in the assumed unit and in the alternatives."""
     units = sorted(DWELL_UNITS, key=lambda each: each != unit)
     return f"P{word:g} in " + ", or in ".join(f"{each}: {word * DWELL_UNITS[each]:g} s" for each in units)

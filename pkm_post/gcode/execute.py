@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Execution: from the blocks as written to the blocks as executed.
+"""Execution: turn the blocks as written into the blocks as executed.
 
-Enters: scanned blocks, some of them with parameters, expressions, O words or calls. Leaves: plain blocks in the order
-in which a control executes them, every value computed, every loop and call unrolled; lines and units as in the source.
-A program without any of this is handed on as it is. The meaning is that of RS274NGC as LinuxCNC reads it, and for M98
-and M99 that of Fanuc.
+Enters: scanned blocks, some with parameters, expressions, O words or calls. Leaves: plain blocks in execution order,
+every value computed, every loop and call unrolled; lines and units as in the source. A program without any of these is
+returned unchanged. Semantics are those of RS274NGC as implemented by LinuxCNC, and for M98 and M99 those of Fanuc.
 """
 
 from __future__ import annotations
@@ -32,13 +31,13 @@ def execute(
     """Execute a program.
 
     Args:
-        blocks: the scanned blocks; returned themselves when there is nothing to execute in them.
+        blocks: the scanned blocks; returned unchanged when there is nothing to execute.
         limits: bounds of the execution.
-        block_delete: whether blocks that begin with ``/`` are left out.
+        block_delete: whether to skip blocks that begin with ``/``.
 
     Returns:
-        Plain blocks, or None when there are faults; and the faults: all that can be found before the program runs, or
-        else the one that stopped it.
+        Plain blocks, or None if there are faults; and the faults: all those found before execution, or else the one
+        that stopped it.
     """
     if not blocks.special and not np.isin(blocks.m, SUBPROGRAM_CODES).any():
         return blocks, ()
@@ -61,7 +60,7 @@ def execute(
 
 
 def _statements(blocks: Blocks, left_out: Array) -> tuple[dict[int, Statement], list[tuple[int, ExecutionFault]]]:
-    """The special blocks made ready, by row in the order of the program, and what has no meaning."""
+    """Compile the special blocks, by row in program order, and collect the invalid ones."""
     statements: dict[int, Statement] = {}
     faults: list[tuple[int, ExecutionFault]] = []
     for row, tree in sorted(blocks.special.items()):
@@ -75,7 +74,7 @@ def _statements(blocks: Blocks, left_out: Array) -> tuple[dict[int, Statement], 
 
 
 def _diagnostics(blocks: Blocks, faults: list[tuple[int, ExecutionFault]]) -> tuple[Diagnostic, ...]:
-    """Faults by row as diagnostics by line, each once, in the order of the lines."""
+    """Convert faults by row to unique diagnostics in line order."""
     told = [
         Diagnostic(fault.code, Place(blocks.source, line=int(blocks.line[row]), column=fault.column), fault.found)
         for row, fault in faults

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Executed blocks: the sequence of blocks in the order of execution, while it is being made.
+"""Executed blocks: builder for the sequence of blocks in execution order.
 
-Enters: runs of plain blocks, which are kept by their bounds, and single rows whose values were computed. Leaves: plain
-``Blocks``.
+Enters: runs of plain blocks, stored as ranges, and single rows with computed values. Leaves: plain ``Blocks``.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from pkm_post.model.program import Array
 
 
 class _ComputedRows:
-    """Rows whose values were computed, as growing columns."""
+    """Rows with computed values, as growing columns."""
 
     def __init__(self, blocks: Blocks) -> None:
         self._blocks = blocks
@@ -61,7 +60,7 @@ class _ComputedRows:
 
 
 class ExecutedBlocks:
-    """The blocks that were executed.
+    """The executed blocks.
 
     Args:
         blocks: the scanned blocks.
@@ -71,25 +70,25 @@ class ExecutedBlocks:
         self._blocks = blocks
         self._computed = _ComputedRows(blocks)
         self._parts: list[tuple[int, int, int]] = []
-        """Runs of rows: 0 for scanned or 1 for computed rows, first row, row behind the last."""
+        """Runs of rows: 0 for scanned or 1 for computed rows, first row, row after the last."""
         self._count = 0
 
     def move(self, start: int, stop: int) -> None:
-        """Add scanned blocks as they are.
+        """Add scanned blocks unchanged.
 
         Args:
             start: first row.
-            stop: row behind the last.
+            stop: row after the last.
         """
         if stop > start:
             self._add_part(0, start, stop)
 
     def add(self, source: int, row: Row) -> None:
-        """Add a block that was computed.
+        """Add a computed block.
 
         Args:
-            source: the scanned row that it comes from.
-            row: its words and codes; nothing is added when it has none.
+            source: its scanned row.
+            row: its words and codes; an empty row is ignored.
         """
         if not (row.values or row.g or row.m):
             return
@@ -103,7 +102,7 @@ class ExecutedBlocks:
         self._parts.append((table, start, stop))
 
     def table(self) -> Blocks:
-        """The sequence."""
+        """The sequence as plain blocks."""
         scanned, computed = self._blocks, self._computed.table()
         rows = self._rows()
 
@@ -128,7 +127,7 @@ class ExecutedBlocks:
         )
 
     def _rows(self) -> Array:
-        """The rows of the sequence, those that were computed behind all scanned ones."""
+        """Row indices of the sequence; computed rows are numbered after all scanned ones."""
         table, start, stop = np.array(self._parts, dtype=np.int64).reshape(-1, 3).T
         count = stop - start
         before = np.cumsum(count) - count

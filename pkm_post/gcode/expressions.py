@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Expressions: the values in a block, made ready once and computed as often as the block is executed.
+"""Expressions: the values in a block, compiled once and evaluated at each execution of the block.
 
-Enters: branches of the tree of a block. Leaves: their values, of the unit they are written in; angles of functions are
-degrees, as in the program. An expression becomes a list of steps over a stack, so that the depth of Python's own stack
-does not depend on the program.
+Enters: subtrees of the parse tree of a block. Leaves: their values, in the units as written; angles of functions are in
+degrees, as in the program. An expression compiles to a list of stack operations, so Python's recursion depth does not
+depend on the program.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _Result = TypeVar("_Result")
 
 @dataclass(frozen=True)
 class Expression:
-    """A value to be computed.
+    """A compiled value.
 
     Attributes:
-        steps: what to do on the stack, in order; in the end the value alone is on it.
+        steps: stack operations, in order; they leave only the value on the stack.
         column: where it begins in its block, from 1.
     """
 
@@ -39,13 +39,13 @@ class Expression:
     column: int
 
     def value(self, parameters: Parameters) -> float:
-        """The value now.
+        """Evaluate the expression.
 
         Args:
-            parameters: of the program that runs.
+            parameters: of the running program.
 
         Raises:
-            ExecutionFault: it cannot be computed.
+            ExecutionFault: the value cannot be computed.
         """
         stack: list[float] = []
         for step in self.steps:
@@ -55,7 +55,7 @@ class Expression:
 
 @dataclass(frozen=True)
 class Target:
-    """A parameter that is meant itself and not its value: by name, or by a number that may have to be computed.
+    """A parameter as an assignment target: by name, or by a number that may have to be computed.
 
     Attributes:
         name: of a named parameter, or empty.
@@ -68,7 +68,7 @@ class Target:
     column: int
 
     def resolved(self, parameters: Parameters) -> Name:
-        """Which parameter it is now.
+        """Resolve the parameter.
 
         Raises:
             ExecutionFault: there is no parameter of that number.
@@ -79,14 +79,14 @@ class Target:
 
 
 def expression_of(node: Node) -> Expression:
-    """Make a value ready to be computed.
+    """Compile a value.
 
     Args:
-        node: a branch or leaf of the tree of a block that stands for a value.
+        node: a branch or leaf of the parse tree that represents a value.
     """
     steps: list[Step] = []
     waiting = [node]
-    while waiting:  # a node before its operands, the last of them first: the steps from the last to the first
+    while waiting:  # a node precedes its operands, last operand first: this yields the steps in reverse
         here = waiting.pop()
         step, operands = _step_of(here)
         steps.extend(step)
@@ -95,12 +95,12 @@ def expression_of(node: Node) -> Expression:
 
 
 def target_of(parameter: Node) -> Target:
-    """Make a parameter ready to be assigned.
+    """Compile a parameter as an assignment target.
 
     Args:
         parameter: a ``parameter`` of the tree.
     """
-    assert not isinstance(parameter, str)  # the grammar has a branch of its own for parameters
+    assert not isinstance(parameter, str)  # in the grammar a parameter is always a branch
     (which,) = parameter.children
     column = _column_of_sign(which)
     if isinstance(which, str) and which.type == "NAME":
@@ -109,12 +109,12 @@ def target_of(parameter: Node) -> Target:
 
 
 def plain_name(token: str) -> str:
-    """A name without brackets, case and blanks, which make no difference."""
+    """Normalise a name: strip brackets and blanks, fold case."""
     return "".join(token[1:-1].split()).lower()
 
 
 def column_of_node(node: Node) -> int:
-    """The column where a branch begins, from 1; 0 when that is not known."""
+    """Start column of a branch, from 1; 0 if unknown."""
     while not isinstance(node, str):
         if not node.children:
             return 0
@@ -123,12 +123,12 @@ def column_of_node(node: Node) -> int:
 
 
 def _column_of_sign(which: Node) -> int:
-    """The column of the ``#`` before what tells which parameter it is: the grammar leaves the sign out of the tree."""
+    """Column of the ``#`` before a parameter: the grammar omits the sign from the tree."""
     return max(column_of_node(which) - 1, 0)
 
 
 def _step_of(node: Node) -> tuple[list[Step], list[Node]]:
-    """What a node does to the stack, and the nodes whose values have to be there before, in order."""
+    """The stack operation of a node, and its operand nodes, in order."""
     if isinstance(node, str):
         return [_push(float(node))], []
     if node.data == "signed":
@@ -147,7 +147,7 @@ def _step_of(node: Node) -> tuple[list[Step], list[Node]]:
 
 def _function_step(node: Tree[Token]) -> tuple[list[Step], list[Node]]:
     name, *operands = node.children
-    assert isinstance(name, str)  # the grammar begins every function with its name
+    assert isinstance(name, str)  # in the grammar a function starts with its name
     if name.type == "ATAN":
         return [_combine(arc_tangent, "atan", column_of_node(node))], operands
     if name.type == "EXISTS":
@@ -193,7 +193,7 @@ def _combine(function: Callable[[float, float], float], name: str, column: int) 
 
 
 def _finite(column: int, name: str, function: Callable[..., float], *operands: float) -> float:
-    """A result, if it is a number."""
+    """Apply a function and require a finite result."""
     try:
         value = float(function(*operands))
     except ExecutionFault as fault:
@@ -206,7 +206,7 @@ def _finite(column: int, name: str, function: Callable[..., float], *operands: f
 
 
 def _told_at(column: int, function: Callable[..., _Result], *arguments: object) -> _Result:
-    """What a function gives; its fault gets a column."""
+    """Call a function and add the column to its fault."""
     try:
         return function(*arguments)
     except ExecutionFault as fault:

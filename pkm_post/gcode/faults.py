@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults of blocks: from what lark met to the diagnostic that people read.
+"""Faults of blocks: turn lark errors into readable diagnostics.
 
-Enters: the bytes of a line and lark's report of what was unexpected there. Leaves: a lexical fault (G1xx: a character
-or a number that is none) or a syntax fault (G2xx), with its place, what was found and what was expected, in words.
+Enters: the bytes of a line and lark's report of unexpected input. Leaves: a lexical fault (G1xx: an invalid character
+or number) or a syntax fault (G2xx), with its location, what was found and what was expected, in words.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
 
 MOST_TOLD = 100
-"""Faults that are told one by one; of the others the number is told."""
+"""Faults reported individually; the rest are only counted."""
 
 LONGEST_TO_TRY = 200
-"""Characters. To find out what it would accept, lark before 1.2 copies what it has so far, by recursion."""
+"""Characters. To list the acceptable tokens, lark before 1.2 copies its parser state recursively."""
 
 EXPECTED: dict[str, tuple[str, ...]] = {
     "a number": ("NUMBER",),
@@ -40,7 +40,7 @@ EXPECTED: dict[str, tuple[str, ...]] = {
     "a keyword such as sub, call, if or while": ("O_PLAIN", "O_CONDITION", "O_RESULT", "O_CALL"),
     "the end of the block": ("$END", "<END-OF-FILE>"),
 }
-"""The terminals of the grammar in words, in the order in which they are told."""
+"""The terminals of the grammar in words, in reporting order."""
 
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
@@ -48,7 +48,7 @@ _NUMERIC = "+-.0123456789"
 
 
 class Faults:
-    """The faults of a file, collected in the order of its lines."""
+    """The faults of a file, collected in line order."""
 
     def __init__(self, file: str) -> None:
         self._file = file
@@ -56,12 +56,12 @@ class Faults:
         self._count = 0
 
     def add(self, number: int, line: bytes, unexpected: UnexpectedInput | Fault) -> None:
-        """Note what is wrong with a line.
+        """Add the fault of a line.
 
         Args:
-            number: of the line in the file, from 1.
+            number: line number in the file, from 1.
             line: its bytes.
-            unexpected: what is wrong with it.
+            unexpected: its fault.
         """
         self._count += 1
         if self._count > MOST_TOLD:
@@ -79,7 +79,7 @@ class Faults:
 
 
 def readable(text: bytes) -> str:
-    """Bytes as people wrote them: UTF-8, or Latin-1 where they are not that."""
+    """Decode bytes as UTF-8, with Latin-1 as fallback."""
     try:
         return text.decode("utf-8")
     except UnicodeDecodeError:
@@ -87,7 +87,7 @@ def readable(text: bytes) -> str:
 
 
 def _column(line: bytes, fault: Fault) -> int:
-    """The column of a fault as an editor counts it."""
+    """Column of a fault as counted by an editor."""
     try:
         line.decode("utf-8")
     except UnicodeDecodeError:
@@ -96,7 +96,7 @@ def _column(line: bytes, fault: Fault) -> int:
 
 
 def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
-    """The fault that makes lark stop.
+    """The fault that stopped lark.
 
     Args:
         text: the line, one character per byte.
@@ -110,7 +110,7 @@ def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
 
 
 def _character_fault(text: str, offset: int) -> Fault:
-    """A character that begins no terminal."""
+    """The fault of a character that starts no terminal."""
     character = text[offset]
     if character == "(":
         inner = re.search(r"[()]", text[offset + 1 :])
@@ -120,14 +120,14 @@ def _character_fault(text: str, offset: int) -> Fault:
 
 
 def _shown(text: str, offset: int) -> str:
-    """The character at an offset, by its number if it cannot be printed."""
+    """The character at an offset, as a code point if it is not printable."""
     following = text[offset : offset + 4]
     character = following.encode("latin-1").decode("utf-8", "replace")[0].replace("\ufffd", following[0])
     return f"'{character}'" if character.isprintable() else f"character {ord(character):#04x}"
 
 
 def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
-    """A terminal that does not go on with the block."""
+    """The fault of a terminal that cannot continue the block."""
     at_end = unexpected.token.type == "$END"
     offset = len(text.rstrip()) if at_end else unexpected.token.start_pos or 0
     malformed = _malformed_number(text, offset)
@@ -142,14 +142,14 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
 
 
 def _accepted(text: str, unexpected: UnexpectedToken) -> set[str]:
-    """The terminals that could stand there; in a long block also some that could not."""
+    """Terminals acceptable at this point; in a long block an over-approximation."""
     if len("".join(text.split())) > LONGEST_TO_TRY:
         return set(unexpected.expected)
     return unexpected.accepts or set(unexpected.expected)
 
 
 def _code_and_place(text: str, offset: int, unexpected: UnexpectedToken, accepted: set[str]) -> tuple[str, int]:
-    """The code of a syntax fault, and the offset of what is to blame for it."""
+    """The code of a syntax fault, and the offset of its cause."""
     from lark import Token
 
     within_brackets = bool(_open_brackets(text[:offset]))
@@ -168,7 +168,7 @@ def _code_and_place(text: str, offset: int, unexpected: UnexpectedToken, accepte
 
 
 def _malformed_number(text: str, offset: int) -> Fault | None:
-    """The run of digits, points and signs at an offset, or before it and its blanks, if that is no number."""
+    """The fault of a run of digits, points and signs at or just before an offset that is not a number."""
     in_expression = bool(_open_brackets(text[:offset]))
     for before in (text[:offset], text[:offset].rstrip()):
         start = len(before.rstrip(_NUMERIC))
@@ -184,7 +184,7 @@ def _leading_run(text: str) -> str:
 
 
 def _open_brackets(text: str) -> list[int]:
-    """Where the brackets stand that are not closed in the text."""
+    """Offsets of unclosed brackets in the text."""
     open_at: list[int] = []
     for bracket in re.finditer(r"[][]", text):
         if bracket[0] == "[":
@@ -195,6 +195,6 @@ def _open_brackets(text: str) -> list[int]:
 
 
 def _in_words(terminals: set[str]) -> str:
-    """Terminals as people call them."""
+    """Terminals in words."""
     words = [words for words, names in EXPECTED.items() if terminals.intersection(names)]
     return " or ".join(filter(None, (", ".join(words[:-1]), words[-1])))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Feeds: F in any of its modes becomes a speed of the tool tip.
+"""Feeds: convert F in any feed mode to tool tip speed.
 
-F by block enters, in the unit of its mode: lengths a minute (G94), lengths a turn (G95), or one over the minutes that
-the block takes (G93). Speeds in mm/s leave, by motion. A change of the mode ends an F: the next cutting move needs one.
+Enters: F by block, in the unit of its mode: units per minute (G94), units per revolution (G95), or inverse time in
+1/min (G93). Leaves: speeds in mm/s, by motion. A change of mode cancels F: the next cutting move needs a new one.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ INVERSE_TIME, _BY_TURN = 930, 950
 def feeds(
     blocks: Blocks, modal: Modal, spindle: Array, motions: Motions, way: Array, turns: Array, faults: Findings
 ) -> Array:
-    """Speed of each motion, (n,), mm/s; NaN on rapid ones.
+    """Speed of each motion, (n,), mm/s; NaN on rapids.
 
     Args:
         blocks: the program.
         modal: its modal codes.
-        spindle: (N,) signed speed of the spindle, 1/min.
-        motions: what moves.
-        way: (n,) way of the tip, mm; looked at with G93 alone.
-        turns: (n,) whether the tool axis turns; looked at with G93 alone.
-        faults: takes cutting moves without a feed.
+        spindle: (N,) signed spindle speed, 1/min.
+        motions: of the program.
+        way: (n,) distance travelled by the tip, mm; used with G93 only.
+        turns: (n,) whether the tool axis rotates; used with G93 only.
+        faults: collects cutting moves without a feed.
     """
     mode, word = modal.in_force[Group.FEED_MODE], blocks.word("F")
     rows = np.flatnonzero(blocks.has("F") | changes(mode, mode[0]))
@@ -44,7 +44,7 @@ def feeds(
     if by_time.any():
         value = motions.of_blocks(word)
         speed = np.where(by_time, value * motions.of_blocks(of_block) / 60, speed)
-        # A block that goes nowhere takes no time, whatever G93 says; one that only turns the tool has no tip speed.
+        # A block without motion takes no time, even with G93; one that only rotates the tool has no tip speed.
         still = by_time & (speed == 0) & (value > 0) & ~turns
         moving = np.flatnonzero(cuts & (speed > 0))
         speed = np.where(still, carried(moving, speed[moving], np.nan, len(speed)), speed)

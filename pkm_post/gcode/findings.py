@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults of meaning: what is wrong with blocks that are well written, told by row and in the order of the file.
+"""Semantic faults: faults of syntactically valid blocks, collected by row and reported in file order.
 
-Rows of blocks enter, diagnostics leave. Every faulty block is told, but only the first ones of each kind one by one:
-a program of a million blocks may have the same fault in each.
+Enters: rows of blocks. Leaves: diagnostics. Every faulty block counts, but only the first ones of each kind are
+reported individually: a program of a million blocks may have the same fault in each.
 """
 
 from __future__ import annotations
@@ -19,31 +19,31 @@ from pkm_post.model.diagnostics import errors
 from pkm_post.model.program import Array
 
 _TOLD = 50
-"""How many faults of one code are told with their own place."""
+"""Faults per code reported with their own location."""
 
 
 @dataclass
 class Findings:
-    """The diagnostics of a program, in the making."""
+    """Collects the diagnostics of a program."""
 
     blocks: Blocks
     diagnostics: list[Diagnostic] = field(default_factory=list)
     _count: Counter[str] = field(default_factory=Counter)
 
     def tell(self, code: str, row: int, found: str) -> None:
-        """Add a diagnostic of one block; of the whole file if it has none."""
+        """Add a diagnostic of one block, or of the whole file if there are no blocks."""
         self._count[code] += 1
         if self._count[code] <= _TOLD:
             place = self.blocks.place(row) if len(self.blocks) else Place(self.blocks.source)
             self.diagnostics.append(Diagnostic(code, place, found))
 
     def tell_all(self, code: str, wrong: Array, found: Callable[[int], str]) -> None:
-        """Add a diagnostic of every block that is wrong.
+        """Add a diagnostic for every faulty block.
 
         Args:
-            code: of the diagnostics.
-            wrong: (N,) which blocks are.
-            found: tells what was found in a row.
+            code: diagnostic code.
+            wrong: (N,) mask of faulty blocks.
+            found: returns what was found in a row.
         """
         rows = np.flatnonzero(wrong)
         for row in rows[:_TOLD].tolist():
@@ -55,7 +55,7 @@ class Findings:
         return bool(errors(self.diagnostics))
 
     def in_order(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics in the order of the lines; the last of a code says how many more there are."""
+        """The diagnostics in line order; the last one of a code states how many more there are."""
         diagnostics = sorted(self.diagnostics, key=lambda fault: (fault.place.line, fault.code))
         last = {fault.code: index for index, fault in enumerate(diagnostics)}
         for code, index in last.items():

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Flow: which O words belong together, found before anything is executed.
+"""Flow: match O words before execution.
 
-Enters: the O words of a program by row. Leaves: for each of them the rows it can lead to, and the rows of the
-subprograms; or every O word that belongs to nothing, with its row.
+Enters: the O words of a program by row. Leaves: the jump targets of each O word, and the rows of the subprograms; or
+every unmatched O word, with its row.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ CLOSES: dict[str, str] = {
     "endwhile": "while",
     "endrepeat": "repeat",
 }
-"""O words that close or divide, and what has to be open before them. ``while`` closes a ``do``."""
+"""O words that close or divide a construct, and the O word that must be open. ``while`` closes a ``do``."""
 
 LOOPS = ("while", "do", "repeat")
 
 
 @dataclass
 class Flow:
-    """Where O words lead.
+    """Jump targets of O words.
 
     Attributes:
         subs: by label, the row of ``sub``.
-        programs: by label, the row of an O number alone.
+        programs: by label, the row of a bare O number.
         other_end: of ``sub``, ``while``, ``repeat``, and of ``endwhile``, ``endrepeat`` and a ``while`` that closes a
             ``do``, the row at the other end; of ``else`` and ``elseif`` the row of ``endif``.
         next_branch: of ``if`` and ``elseif`` the next ``elseif``, ``else`` or ``endif``.
@@ -51,7 +51,7 @@ class Flow:
 
 @dataclass
 class _Open:
-    """Something that has begun: its keyword, label, row, the branches of an ``if``, the jumps out of a loop."""
+    """An open construct: its keyword, label, row, the branches of an ``if``, the jumps out of a loop."""
 
     keyword: str
     label: str
@@ -62,24 +62,24 @@ class _Open:
 
 
 class _Linker:
-    """Goes through the O words once and keeps what is open, outermost first.
+    """Links O words in one pass, with a stack of open constructs, outermost first.
 
-    What is open is found by its label, not by a search: a program may have thousands of O words within each other.
+    Open constructs are indexed by label, not searched: a program may nest thousands of O words.
     """
 
     def __init__(self) -> None:
         self.flow = Flow()
         self.open: list[_Open] = []
         self._subs: list[int] = []
-        """Where in ``open`` the subprograms are."""
+        """Indices of the subprograms in ``open``."""
         self._depths: dict[tuple[str, str], list[int]] = {}
-        """By keyword and label, where in ``open`` such things are."""
+        """Indices in ``open`` by keyword and label."""
 
     def take(self, row: int, word: OWord) -> None:
         """Link one O word.
 
         Raises:
-            ExecutionFault: it belongs to nothing.
+            ExecutionFault: the O word is unmatched.
         """
         keyword = word.keyword
         if keyword == "call":
@@ -144,7 +144,7 @@ class _Linker:
             raise ExecutionFault("G312", f"O{_shown(label)} {keyword} outside of its sub")
 
     def _first_within(self, keyword: str, label: str) -> int | None:
-        """Where the outermost of such things is open here, without what is outside of the subprogram."""
+        """Index of the outermost such construct that is open within the current subprogram."""
         depths = self._depths.get((keyword, label), [])
         first = bisect_left(depths, self._subs[-1]) if self._subs else 0
         return depths[first] if first < len(depths) else None
@@ -188,13 +188,13 @@ _BEGIN: dict[str, Callable[[_Linker, int, str, str], None]] = {
 
 
 def link(words: Mapping[int, OWord]) -> tuple[Flow, tuple[tuple[int, ExecutionFault], ...]]:
-    """Find what belongs together.
+    """Match the O words of a program.
 
     Args:
-        words: the O words of a program by row, in the order of the program.
+        words: its O words by row, in program order.
 
     Returns:
-        Where they lead, and what is wrong, by row.
+        Their jump targets, and the faults by row.
     """
     linker = _Linker()
     faults: list[tuple[int, ExecutionFault]] = []

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Frame codes: what G10, G43, G51.1, G52, G54 to G59.3, G68 and G92 do to the frame.
+"""Frame codes: the effect of G10, G43, G51.1, G52, G54 to G59.3, G68 and G92 on the frame.
 
-A block enters with the place of the tool, in coordinates of the program and mm; the offsets in force are changed. The
-order in a block is that of RS274NGC: length offset, work offset, then what acts once.
+Enters: a block with the tool position, in program coordinates and mm. Leaves: updated offsets. The order within a block
+is that of RS274NGC: length offset, work offset, then non-modal codes.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ SETS_OFFSETS = (100, 520, 920, 921, 922, 923)
 """Codes of ``Group.ONCE`` that change the frame."""
 
 TIP_CONTROL = (434, 435)
-"""Codes that make X Y Z those of the tool tip while its axis tilts."""
+"""Codes that make X Y Z tool tip coordinates while the tool axis tilts."""
 
 IN_ORDER = (Group.LENGTH, Group.SYSTEM, Group.ROTATION, Group.MIRROR)
-"""Groups whose codes all change the frame, as they are carried out."""
+"""Groups whose codes all change the frame, in execution order."""
 
 
 def _length_of(tool: Tool | None) -> float:
-    """The gauge length of a tool, mm; 0 of one that has none or whose length is not known."""
+    """The gauge length of a tool, mm; 0 if there is no tool or its length is unknown."""
     return 0.0 if tool is None or math.isnan(tool.length) else tool.length
 
 
 class FrameCodes:
-    """The offsets of a program, and the blocks that change them."""
+    """Applies the blocks that change the offsets of a program."""
 
     def __init__(
         self, blocks: Blocks, modal: Modal, words: Coordinates, tools: Array, options: ReadOptions, faults: Findings
@@ -51,24 +51,24 @@ class FrameCodes:
         self.length_offsets: set[int] = set()
 
     def change(self, row: int) -> bool:
-        """Whether a block changes the frame otherwise than by another tool."""
+        """Whether a block changes the frame other than by a tool change."""
         explicit = self._modal.explicit
         return explicit[Group.ONCE][row] in SETS_OFFSETS or any(explicit[group][row] != NONE for group in IN_ORDER)
 
     def take_tool(self, row: int) -> None:
-        """M6: another gauge length."""
+        """M6: switch to the gauge length of the new tool."""
         tool = tool_in_use(int(self._tools[row]), self._options)
         self.offsets.own_length = _length_of(tool)
 
     def carry_out(self, row: int, group: Group, position: Array, known: Array, moved: bool) -> None:
-        """The code of a group in a block, if it has one.
+        """Execute the code of a group in a block, if present.
 
         Args:
             row: the block.
             group: one of ``IN_ORDER``, or ``Group.ONCE``.
-            position: (3,) where the tool is.
-            known: (3,) which of its coordinates are known.
-            moved: whether there has been a motion.
+            position: (3,) tool position.
+            known: (3,) which coordinates are known.
+            moved: whether a motion has occurred.
         """
         code = int(self._modal.explicit[group][row])
         if group is Group.ONCE and code in SETS_OFFSETS:
@@ -77,7 +77,7 @@ class FrameCodes:
             _ACTS[group](self, row, code, position, known, moved)
 
     def needs_position(self, row: int, known: Array, what: str) -> None:
-        """Tell a block that needs coordinates, (m,), which are not all known."""
+        """Report a block that needs coordinates, (m,), that are not all known."""
         if not known.all():
             self._faults.tell("G416", row, what)
 
@@ -101,7 +101,7 @@ class FrameCodes:
         tool = tool_in_use(number, self._options) if math.isnan(word) else self._options.tool(int(word))
         if tool is None:
             if code in TIP_CONTROL and math.isnan(word):
-                # It says that X Y Z are those of the tip, whatever the length: nothing to be added.
+                # X Y Z are tip coordinates regardless of the length: nothing to add.
                 return
             self._faults.tell("G411", row, "no tool in the spindle" if math.isnan(word) else f"H{word:g}")
             return
@@ -111,7 +111,7 @@ class FrameCodes:
         offsets.length = before + np.array([0.0, 0.0, self._value_of_offset(row, tool, word)])
 
     def _value_of_offset(self, row: int, tool: Tool, word: float) -> float:
-        """The value of H, mm; the length of the tool in the spindle where one of the two is not known."""
+        """The value of H, mm; the length of the tool in the spindle if either length is unknown."""
         in_spindle = tool_in_use(int(self._tools[row]), self._options)
         if not math.isnan(word):
             self.length_offsets.add(int(word))
@@ -124,7 +124,7 @@ class FrameCodes:
     def _system(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
         offsets = self.offsets
         if not offsets.origins and (code == offsets.system or not moved):
-            # The one work offset that a program uses is {C} itself.
+            # The only work offset of a program is {C} itself.
             offsets.origins[code] = np.zeros(3)
         elif code not in offsets.origins:
             self._faults.tell("G412", row, name_of(code))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Happenings: M codes, S and dwells become events between motions.
+"""Happenings: convert M codes, S and dwells to events between motions.
 
-Columns of codes enter, events leave. In a block the tool changes first, then spindle and coolant are switched, then the
-tool waits, then it moves, then the program stops [LinuxCNC, order of execution].
+Enters: columns of codes. Leaves: events. Order within a block: tool change, spindle and coolant, dwell, motion, program
+stop [LinuxCNC, order of execution].
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ Happening = tuple[int, int, EventKind, float]
 """Block, rank in it (negative before its motion, positive after), kind and value."""
 
 InCycle = tuple[int, int, EventKind, float]
-"""Row of the motion it precedes, block, kind and value."""
+"""Row of the following motion, block, kind and value."""
 
 
 def happenings(blocks: Blocks, modal: Modal, tools: Array, spindle: Array, dwells: Array) -> list[Happening]:
-    """What happens beside the motions, by block and rank; ``dwells`` are in s."""
+    """Events outside cycles, by block and rank; ``dwells`` are in s."""
     found: list[Happening] = []
     tool_changes, stops = modal.explicit[Group.CHANGE], modal.explicit[Group.STOP]
     for row in np.flatnonzero(tool_changes == 6).tolist():
@@ -49,7 +49,7 @@ def happenings(blocks: Blocks, modal: Modal, tools: Array, spindle: Array, dwell
 
 
 def _at_the_end(row: int, spindle: Array, found: list[Happening]) -> list[Happening]:
-    """M2 and M30 switch off what is on."""
+    """Events that M2 and M30 imply: spindle and coolant off."""
     coolant = [value for _, _, kind, value in sorted(found, key=lambda one: one[:2]) if kind is EventKind.COOLANT]
     off: list[Happening] = []
     if spindle[row]:
@@ -60,12 +60,12 @@ def _at_the_end(row: int, spindle: Array, found: list[Happening]) -> list[Happen
 
 
 def events(happening: list[Happening], of_cycles: list[InCycle], block: Array) -> tuple[Event, ...]:
-    """All events in order.
+    """Merge all events in order.
 
     Args:
-        happening: what happens beside the motions.
-        of_cycles: what cycles do between their motions.
-        block: (n,) the block of each motion, never falling.
+        happening: events outside cycles.
+        of_cycles: events between the motions of cycles.
+        block: (n,) the block of each motion, non-decreasing.
     """
     blocks = np.array([one[0] for one in happening], dtype=np.int64)
     after = np.array([one[1] > 0 for one in happening], dtype=np.bool_)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lexing of many lines at once: every number becomes one mark, and what is left of a line is its shape.
+"""Lexer for many lines at once: each number becomes a marker, and the rest of a line is its shape.
 
-Enters: the bytes of whole lines, comments blanked. Leaves: the shape of each line, and where the numbers stand. Work is
-done per byte with tables and per number with numpy, never per line.
+Enters: the bytes of whole lines, comments blanked. Leaves: the shape of each line, and the offsets of the numbers. Work
+is done per byte with tables and per number with numpy, never per line.
 
-In a shape letters are upper case and blanks are gone. The digits of G and M codes stay, as they decide what a block
-means, and so do those before a sign of equality, as in A3=0.5; they and line numbers are no numbers then.
+In a shape letters are upper case and blanks are removed. The digits of G and M codes stay, because they determine the
+meaning of a block, as do those before an equals sign, as in A3=0.5; these and line numbers do not count as numbers.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ import numpy as np
 from pkm_post.model.program import Array
 
 MARK = b"\x01"
-"""Stands for a number in a shape."""
+"""Marker of a number in a shape."""
 
 _BLANK = 0x20
 _NUMERIC = b"+-.0123456789"
 _BLANKS = b" \t\f\v"
-_MEANT = b"\nABCDEFGHIJKLMNOPQRSTUVWXYZ/%#=[]<>*_" + _NUMERIC + _BLANKS  # parentheses left by comments are faults
+_MEANT = b"\nABCDEFGHIJKLMNOPQRSTUVWXYZ/%#=[]<>*_" + _NUMERIC + _BLANKS  # leftover parentheses are faults
 
 
 def _table(of: Callable[[int], int]) -> bytes:
@@ -41,19 +41,19 @@ _SHAPE = _table(_in_shape)
 _IS_NUMERIC = _table(lambda byte: byte in _NUMERIC)
 _STAYS = _table(lambda byte: byte not in _NUMERIC + _BLANKS)
 _KEYWORDS = (b"LN", b"TRA")
-"""Beginnings of words of several letters. Where one is met, blanks behind letters stay: L N is not LN."""
+"""Prefixes of multi-letter words. Where one occurs, blanks after letters stay: L N is not LN."""
 _IS_CODE, _IS_LINE_NUMBER = (np.isin(np.arange(256), [ord(letter) for letter in letters]) for letters in ("GM", "N"))
 
 
 @dataclass
 class Lexed:
-    """Lines taken apart.
+    """Lexed lines.
 
     Attributes:
         shapes: the shape of each line.
-        starts: (n,) offset of each number that is no code and no line number.
-        ends: (n,) offset behind it.
-        suspicious: offsets within line numbers that have more than digits; they are not in the shape.
+        starts: (n,) offset of each number except codes and line numbers.
+        ends: (n,) end offset of each number.
+        suspicious: offsets within line numbers that contain non-digits; these are not in the shape.
     """
 
     shapes: list[bytes]
@@ -63,7 +63,7 @@ class Lexed:
 
 
 def lex(text: bytes) -> Lexed:
-    """Take lines apart.
+    """Lex lines.
 
     Args:
         text: whole lines without comments, each with its line feed.
@@ -95,7 +95,7 @@ def lex(text: bytes) -> Lexed:
 
 
 def _before(shape: Array, starts: Array) -> Array:
-    """For each number the last byte before it that is no blank; a line feed before the first byte of the text."""
+    """The last non-blank byte before each number; a line feed at the start of the text."""
     before = np.where(starts > 0, shape[starts - 1], ord("\n"))
     if (before == _BLANK).any():
         last = np.maximum.accumulate(np.where(shape != _BLANK, np.arange(len(shape)), -1))[starts - 1]
@@ -104,7 +104,7 @@ def _before(shape: Array, starts: Array) -> Array:
 
 
 def _runs(starts: Array, numeric: Array) -> Array:
-    """Offsets of all bytes of the numbers that start at given offsets."""
+    """Offsets of all bytes of the numbers at the given start offsets."""
     offsets = [starts]
     while len(offsets[-1]):
         following = offsets[-1] + 1

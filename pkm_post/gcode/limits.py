@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Limits: what the execution of a program may take, so that every execution ends in bounded time and memory.
+"""Limits: resource bounds that let every execution end in bounded time and memory.
 
 Enters: the choice of the user. Leaves: the same, checked.
 """
@@ -14,9 +14,9 @@ class ExecutionLimits:
     """Bounds of an execution.
 
     Attributes:
-        blocks: executed blocks, those included that leave no plain block.
-        operations: values and operators computed in expressions, and G and M codes handed on.
-        depth: levels of subprograms, the main program included.
+        blocks: executed blocks, including those that yield no plain block.
+        operations: values and operators evaluated in expressions, and G and M codes output.
+        depth: call depth, including the main program.
     """
 
     blocks: int = 10_000_000

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lines: the bytes of a file, whatever wrote it, cut into pieces of whole lines of a bounded size; and their comments.
+"""Lines: split the bytes of any file into bounded pieces of whole lines, and extract comments.
 
-Enters: text or bytes with any line ends, with or without a byte order mark. Leaves: pieces whose lines all end with a
-line feed; comments that speak to the operator or describe a tool.
+Enters: text or bytes with any line endings, with or without a byte order mark. Leaves: pieces whose lines all end with
+a line feed; operator messages and tool descriptions in comments.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pkm_post.gcode.faults import readable
 from pkm_post.model.program import Array
 
 PIECE = 128 * 1024
-"""Bytes. The columns of a piece stay in the cache of the processor: larger and smaller pieces are both slower."""
+"""Bytes. The columns of a piece fit in the CPU cache: larger and smaller pieces are both slower."""
 
 _MARK = b"\xef\xbb\xbf"
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
@@ -22,7 +22,7 @@ _SPEAKS = re.compile(rb"[(;]\s*(?:(?:MSG|PRINT|DEBUG)\s*,|TOOL\b|T\s*\d)", re.IG
 
 
 def clean(text: bytes | str) -> bytes:
-    """The bytes of a file without byte order mark, every line with a line feed at its end.
+    """Strip the byte order mark and end every line with a line feed.
 
     Args:
         text: the content of the file.
@@ -35,7 +35,7 @@ def clean(text: bytes | str) -> bytes:
 
 
 def pieces(text: bytes) -> Iterator[bytes]:
-    """Pieces of whole lines, none of them longer than a piece or, for the longest of lines, that line.
+    """Split a file into pieces of whole lines of at most ``PIECE`` bytes, or of one longer line.
 
     Args:
         text: the cleaned bytes of a file.
@@ -48,11 +48,11 @@ def pieces(text: bytes) -> Iterator[bytes]:
 
 
 def without_comments(piece: bytes, spoken: list[tuple[int, str]]) -> bytes:
-    """The piece with blanks in the place of its comments.
+    """Replace the comments of a piece by blanks.
 
     Args:
         piece: whole lines.
-        spoken: gets the offset and the text of the comments that people should see.
+        spoken: collects offset and text of the comments to show.
     """
     if b"(" not in piece and b";" not in piece:
         return piece
@@ -68,7 +68,7 @@ def without_comments(piece: bytes, spoken: list[tuple[int, str]]) -> bytes:
 
 
 def without_lines(piece: bytes, line_start: Array, lines: Array) -> bytes:
-    """The piece with blanks in the place of some of its lines.
+    """Replace some lines of a piece by blanks.
 
     Args:
         piece: whole lines.

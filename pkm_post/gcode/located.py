@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Located: faults of meaning get the column of the word they speak of.
+"""Located: add to semantic faults the column of the word they name.
 
-Blocks keep the line they come from and not where their words stand in it. The text of the program and diagnostics with
-lines enter; the same diagnostics leave, with the column of the first word of their message that stands in that line, or
-of the block where none does. A word is found whatever its blanks, case and zeros: G1 is found as ``g 01``.
+Blocks keep their line number but not the columns of their words. Enters: the program text and diagnostics with lines.
+Leaves: the same diagnostics, with the column of the first word of their message found in that line, or else of the
+block. Matching ignores blanks, case and leading zeros: G1 matches ``g 01``.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ _COMMENT = re.compile(r"\([^)]*\)?|;.*")
 
 
 def located(diagnostics: Iterable[Diagnostic], text: bytes | str) -> tuple[Diagnostic, ...]:
-    """Diagnostics with columns, as far as they have a line and no column yet.
+    """Add columns to diagnostics that have a line but no column.
 
     Args:
-        diagnostics: what was found in a program.
+        diagnostics: of a program.
         text: the program.
     """
     if isinstance(text, bytes):
@@ -40,7 +40,7 @@ def located(diagnostics: Iterable[Diagnostic], text: bytes | str) -> tuple[Diagn
 
 
 def _column(found: str, line: str) -> int:
-    """Column of the word a message speaks of, from 1."""
+    """Column of the word that a message names, from 1."""
     bare = _COMMENT.sub(lambda comment: " " * len(comment.group()), line)
     words = [(match.start() + 1, _word(match)) for match in _IN_TEXT.finditer(bare)]
     for match in _IN_MESSAGE.finditer(found):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Magazine: which tool is in the spindle in each block, how fast it turns, and the compensation made for it.
+"""Magazine: the tool in the spindle, the spindle speed and the cutter compensation of each block.
 
-T, M6, S, M3 to M5, D and G40 to G42 enter as columns; columns leave: tool numbers, signed speeds in 1/min, offsets to
-the left of the path in mm.
+Enters: columns of T, M6, S, M3 to M5, D and G40 to G42. Leaves: columns of tool numbers, signed speeds in 1/min, and
+offsets to the left of the path in mm.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ def tools_in_spindle(blocks: Blocks, modal: Modal, options: ReadOptions, faults:
 
 
 def _given(blocks: Blocks, letter: str, before: float) -> Array:
-    """The last value of a word up to each block, (N,)."""
+    """The modal value of a word in each block, (N,)."""
     rows = np.flatnonzero(blocks.has(letter))
     return carried(rows, blocks.word(letter)[rows], before, len(blocks))
 
 
 def tool_in_use(number: int, options: ReadOptions) -> Tool | None:
-    """The tool of a number; before the first change, that of number 0."""
+    """The tool with a number; tool 0 before the first change."""
     return options.tool(0 if number == NONE else number)
 
 
 def spindle_speeds(blocks: Blocks, modal: Modal) -> Array:
-    """Signed speed of the spindle in each block, (N,), 1/min, positive clockwise, 0 at rest."""
+    """Signed spindle speed in each block, (N,), 1/min, positive clockwise, 0 when stopped."""
     codes = modal.explicit[Group.SPINDLE]
     rows = np.flatnonzero((codes != NONE) | blocks.has("S"))
     speed = _given(blocks, "S", 0.0)[rows]
@@ -51,7 +51,7 @@ def spindle_speeds(blocks: Blocks, modal: Modal) -> Array:
 
 
 def side_offsets(blocks: Blocks, modal: Modal, tools: Array, options: ReadOptions, faults: Findings) -> Array:
-    """Radius of the 2D compensation in force in each block, (N,), mm: positive to the left, negative to the right."""
+    """Radius of the active 2D compensation in each block, (N,), mm: positive to the left, negative to the right."""
     side = modal.explicit[Group.SIDE]
     rows = np.flatnonzero(side != NONE)
     offset = np.zeros(len(rows))
@@ -75,7 +75,7 @@ def _radius(blocks: Blocks, modal: Modal, row: int, number: int, options: ReadOp
 
 
 def _unchanged(blocks: Blocks, modal: Modal, faults: Findings) -> None:
-    """What would change the plane or the frame under a compensated path is a fault."""
+    """Report changes of plane or frame during compensation."""
     on = modal.in_force[Group.SIDE] != 400
     if not on.any():
         return

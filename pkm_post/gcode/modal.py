@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Modal: which code of each group is in force in each block.
+"""Modal: the active code of each group in each block.
 
-Blocks enter, columns of codes leave, in tenths for G (434 is G43.4). A modal code stays in force until another one of
-its group.
+Enters: blocks. Leaves: columns of codes, in tenths for G (434 is G43.4). A modal code stays active until another code
+of its group.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ _DEFAULTS: dict[Group, int] = {
     Group.PATH: 640,
     Group.SYSTEM: 540,
 }
-"""What is in force before a program says anything."""
+"""Active codes at program start."""
 
 
 def carried(rows: Array, values: Array, before: float, count: int) -> Array:
-    """A column of the last value given up to each row, (count,).
+    """Forward-fill a column: the last value given up to each row, (count,).
 
     Args:
-        rows: (k,) where values are given, never falling.
-        values: (k,) which.
-        before: the value before the first of them.
-        count: how many rows there are.
+        rows: (k,) rows with a given value, non-decreasing.
+        values: (k,) the given values.
+        before: the value before the first one.
+        count: number of rows.
     """
     if len(rows) == count:
         return values
@@ -52,7 +52,7 @@ def carried(rows: Array, values: Array, before: float, count: int) -> Array:
 
 
 def changes(column: Array, before: float) -> Array:
-    """Whether a row has another value than the one before it, (n,); ``before`` stands before the first."""
+    """Whether each row differs from the previous one, (n,); ``before`` precedes the first."""
     if is_uniform(column) and (column[:1] == before).all():
         return uniform(False, len(column))
     changed: Array = np.append(before, column[:-1])[: len(column)] != column
@@ -61,14 +61,14 @@ def changes(column: Array, before: float) -> Array:
 
 @dataclass(frozen=True)
 class Modal:
-    """Codes by block. A group of which no code is ever another than at the beginning is a uniform column.
+    """Codes by block. A group that never changes from its initial code is a uniform column.
 
     Attributes:
-        explicit: by group, (N,) the code that stands in the block, ``NONE`` where none does. Of COOLANT, the last.
-        in_force: by modal group, (N,) the code in force in the block, its own included.
-        scale: (N,) mm in one unit of length.
-        moves: (N,) whether the block moves the tool by the motion in force.
-        takes_axes: (N,) the G code other than a motion that the axis words belong to, ``NONE`` where none.
+        explicit: by group, (N,) the code in the block, ``NONE`` where absent; the last one of COOLANT.
+        in_force: by modal group, (N,) the active code in the block, including its own.
+        scale: (N,) mm per length unit.
+        moves: (N,) whether the block moves the tool by the active motion code.
+        takes_axes: (N,) the non-motion G code that consumes the axis words, ``NONE`` where absent.
     """
 
     explicit: dict[Group, Array]
@@ -78,17 +78,17 @@ class Modal:
     takes_axes: Array
 
     def in_mm(self, words: Array) -> Array:
-        """(N,) lengths as written, in mm."""
+        """Convert (N,) lengths as written to mm."""
         return words if is_uniform(self.scale) and (self.scale[:1] == 1).all() else words * self.scale
 
 
 def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str]) -> Modal:
-    """The codes in force in every block.
+    """The active codes of every block.
 
     Args:
-        blocks: plain blocks; codes that are not in the tables are left out.
-        unit: mm in one unit of length before G20 or G21.
-        axis_words: the words that move the tool axis.
+        blocks: plain blocks; codes missing from the tables are ignored.
+        unit: mm per length unit before G20 or G21.
+        axis_words: words that move the tool axis.
     """
     count = len(blocks)
     said = _by_group(blocks)
@@ -105,12 +105,12 @@ def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str]) -> Modal
 
 
 _CODE = np.int16
-"""Type of the known codes in columns."""
+"""Data type of known codes in columns."""
 _NOTHING = (np.empty(0, np.int32), np.empty(0, _CODE))
 
 
 def _by_group(blocks: Blocks) -> dict[Group, tuple[Array, Array]]:
-    """By group the rows in which codes of it stand, and these codes."""
+    """Rows and codes by group."""
     said: dict[Group, tuple[Array, Array]] = {}
     for codes, rows, table in ((blocks.g, blocks.g_row, G_CODES), (blocks.m, blocks.m_row, M_CODES)):
         used = {table[code].group for code in np.unique(codes).tolist() if code in table}
@@ -121,7 +121,7 @@ def _by_group(blocks: Blocks) -> dict[Group, tuple[Array, Array]]:
 
 
 def _scattered(rows: Array, codes: Array, count: int) -> Array:
-    """A column of codes, ``NONE`` in all other rows."""
+    """Scatter codes into a column, ``NONE`` in all other rows."""
     if not len(rows):
         return uniform(NONE, count, _CODE)
     column = np.full(count, NONE, _CODE)
@@ -130,26 +130,26 @@ def _scattered(rows: Array, codes: Array, count: int) -> Array:
 
 
 def is_arc(motion: Array) -> Array:
-    """Whether motions are arcs, (n,)."""
+    """Whether each motion is an arc, (n,)."""
     return by_row(lambda codes: np.isin(codes, ARCS), motion)
 
 
 def is_cycle(motion: Array) -> Array:
-    """Whether motions are cycles, (n,)."""
+    """Whether each motion is a cycle, (n,)."""
     return by_row(lambda codes: np.isin(codes, CYCLES), motion)
 
 
 def _moves(
     blocks: Blocks, explicit: dict[Group, Array], in_force: dict[Group, Array], axis_words: Iterable[str]
 ) -> Array:
-    """Whether a block has words that make it move, (N,)."""
-    # Of an arc the centre or the radius is enough; G1 I J K turns the tool axis, but of an arc these are the centre.
+    """Whether each block has words that cause motion, (N,)."""
+    # On an arc the centre or the radius suffices; G1 I J K rotates the tool axis, but on an arc I J K are the centre.
     moves = _has(blocks, ("X", "Y", "Z", *axis_words)) | (is_arc(in_force[Group.MOTION]) & _has(blocks, "IJKR"))
     return moves | is_cycle(explicit[Group.MOTION])
 
 
 def _has(blocks: Blocks, letters: Iterable[str]) -> Array:
-    """Whether a block has one of the words, (N,)."""
+    """Whether each block has any of the words, (N,)."""
     given = np.zeros(len(blocks), dtype=np.bool_)
     for letter in letters:
         given |= blocks.has(letter)

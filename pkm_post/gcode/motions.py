@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motions: what the blocks of a program move, as columns in the order in which it is carried out.
+"""Motions: the motions of a program as columns in execution order.
 
-Stretches of motions enter, each in one frame and beginning where the tool is; the columns of all of them leave, in
-coordinates of the program and mm. A motion begins where the one before ends, so only the places where a stretch begins
-are kept beside the ends.
+Enters: stretches of motions, each in one frame and starting at the tool position. Leaves: their concatenated columns,
+in program coordinates and mm. A motion starts at the end point of the previous one, so start points are stored per
+stretch only.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from pkm_post.model.program import Array
 
 @dataclass(frozen=True)
 class Stretch:
-    """Motions in one frame.
+    """Consecutive motions in one frame.
 
     Attributes:
-        block: (n,) the block each belongs to.
+        block: (n,) source block of each motion.
         motion: (n,) G code: 0, 10, 20 or 30.
-        end: (n, 3) where it ends.
-        unknown: how many of the ends, the first ones, are not known.
-        begin: (3,) where the first one begins.
-        begin_known: whether that is known.
+        end: (n, 3) end point.
+        unknown: number of leading motions with an unknown end point.
+        begin: (3,) start point of the first motion.
+        begin_known: whether it is known.
         frame: index of the frame.
     """
 
@@ -44,7 +44,7 @@ class Stretch:
     frame: int
 
     def known(self) -> Array:
-        """Whether each end is known, (n,)."""
+        """Whether each end point is known, (n,)."""
         count = len(self.block)
         return np.arange(count) >= self.unknown if self.unknown else uniform(True, count)
 
@@ -54,16 +54,16 @@ class Motions:
     """Columns of n motions in p stretches.
 
     Attributes:
-        block: (n,) the block each belongs to, never falling.
+        block: (n,) source block of each motion, non-decreasing.
         motion: (n,) G code: 0, 10, 20 or 30.
-        end: (n, 3) where it ends, in coordinates of the program, mm.
-        known: (n,) whether its end is known.
+        end: (n, 3) end point in program coordinates, mm.
+        known: (n,) whether the end point is known.
         frame: (n,) index into ``frames``.
-        first: (p,) the motions that begin a stretch.
-        begin: (p, 3) where those begin.
-        begin_known: (p,) whether that is known.
-        frames: the frames the motions are written in.
-        in_cycles: what cycles do between their motions.
+        first: (p,) first motion of each stretch.
+        begin: (p, 3) start point of each stretch.
+        begin_known: (p,) whether it is known.
+        frames: frames of the motions.
+        in_cycles: events between the motions of cycles.
     """
 
     block: Array
@@ -81,7 +81,7 @@ class Motions:
         return len(self.block)
 
     def starts(self, rows: Array) -> tuple[Array, Array]:
-        """Where some of the motions begin, (m, 3), and whether that is known, (m,)."""
+        """Start points of some motions, (m, 3), and whether they are known, (m,)."""
         start, known = self.end[rows - 1], self.known[rows - 1]
         stretch = np.searchsorted(self.first, rows)
         at = np.flatnonzero(np.append(self.first, -1)[stretch] == rows)
@@ -89,7 +89,7 @@ class Motions:
         return start, known
 
     def of_blocks(self, column: Array) -> Array:
-        """A column of blocks by motion; a view where every block is a motion."""
+        """Expand a column of blocks to motions; a view if every block is a motion."""
         if is_uniform(column) and len(column):
             return uniform(column[0], len(self))
         return column[self._choice]
@@ -100,14 +100,14 @@ class Motions:
 
 
 def span(rows: Array) -> Array | slice:
-    """Rows that only rise, as a slice where they have no gap: a slice of a column is no copy."""
+    """Convert increasing rows to a slice if they have no gap: slicing a column makes no copy."""
     if len(rows) and rows[-1] - rows[0] + 1 == len(rows):
         return slice(int(rows[0]), int(rows[-1]) + 1)
     return rows
 
 
 def together(stretches: Sequence[Stretch], frames: Sequence[Frame], in_cycles: list[InCycle]) -> Motions:
-    """The motions of stretches that follow each other."""
+    """Concatenate consecutive stretches."""
     if not stretches:
         none, nowhere, never = np.zeros(0, np.int32), np.zeros((0, 3)), np.zeros(0, np.bool_)
         return Motions(none, none, nowhere, never, none, none, nowhere, never, tuple(frames), in_cycles)

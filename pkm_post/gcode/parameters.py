@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parameters: the memory of a program that runs, as RS274NGC has it.
+"""Parameters: the memory of a running program, as defined by RS274NGC.
 
-Enters: numbers or names of parameters and the values assigned to them. Leaves: their values, in whatever unit the
-program keeps them. ``#1`` to ``#30`` belong to the subprogram that was called, ``#31`` and on to the whole program, and
-all of them start at 0; ``#<name>`` belongs to the subprogram and ``#<_name>`` to the whole program, and they have no
-value before they are assigned. What a control would have to be asked for is refused: it is not known here.
+Enters: numbers or names of parameters and the values assigned to them. Leaves: their values, in the unit the program
+uses. ``#1`` to ``#30`` are local to the called subprogram, ``#31`` and up are global, and all of them start at 0;
+``#<name>`` is local and ``#<_name>`` global, and both are undefined until assigned. Parameters that only the control
+knows are refused.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ HIGHEST = 5601
 """The last numbered parameter."""
 
 ARGUMENTS = 30
-"""How many numbered parameters belong to a subprogram; they begin as the arguments of its call."""
+"""Number of local numbered parameters; the arguments of a call initialise them."""
 
 _WHOLE = 1e-4
-"""How far from a whole number a value may be that stands for one."""
+"""Tolerance for accepting a value as an integer."""
 
 _OF_THE_MACHINE: tuple[tuple[int, int, str], ...] = (
     (5061, 5070, "what was probed"),
@@ -33,7 +33,7 @@ _OF_THE_MACHINE: tuple[tuple[int, int, str], ...] = (
     (5420, 5428, "the current position"),
     (5599, 5601, "a setting of the control"),
 )
-"""First and last number, and what the control keeps there."""
+"""First and last number, and what the control stores there."""
 
 # fmt: off
 _NAMES_OF_THE_MACHINE = frozenset((
@@ -46,17 +46,17 @@ _NAMES_OF_THE_MACHINE = frozenset((
     "_current_pocket", "_selected_tool", "_selected_pocket", "_task", "_remap_level",
 ))
 # fmt: on
-"""Names that the control gives to its own state."""
+"""Names that the control reserves for its own state."""
 
 _OF_A_CALL = ("_value", "_value_returned", "_call_level")
-"""Names that calls of subprograms set, and no assignment."""
+"""Names set by subprogram calls only, not by assignment."""
 
 Name = int | str
-"""What stands behind ``#``: a number, or a name in lower case without blanks."""
+"""What follows ``#``: a number, or a name in lower case without blanks."""
 
 
 class ExecutionFault(Exception):  # noqa: N818 - it is no error of the program
-    """The program cannot go on. Raised while it runs, and told as a diagnostic of the block that it runs.
+    """The program cannot continue. Raised during execution and reported as a diagnostic of the current block.
 
     Attributes:
         code: key into the table of diagnostics.
@@ -71,14 +71,14 @@ class ExecutionFault(Exception):  # noqa: N818 - it is no error of the program
 
 @dataclass
 class _Level:
-    """What belongs to one run of a subprogram: its names, and what the caller had in #1 to #30."""
+    """Call frame of a subprogram: its names, and the caller's values of #1 to #30."""
 
     named: dict[str, float]
     saved: list[float] | None
 
 
 class Parameters:
-    """All parameters of a program that runs."""
+    """All parameters of a running program."""
 
     def __init__(self) -> None:
         self._numbered = [0.0] * (HIGHEST + 1)
@@ -87,14 +87,14 @@ class Parameters:
 
     @property
     def depth(self) -> int:
-        """How many calls deep the program is; 0 in the main program."""
+        """Call depth; 0 in the main program."""
         return len(self._levels) - 1
 
     def value(self, name: Name) -> float:
         """The value of a parameter.
 
         Raises:
-            ExecutionFault: it has none, or the control keeps it for itself.
+            ExecutionFault: it is undefined, or reserved for the control.
         """
         if isinstance(name, int):
             return self._numbered[_numbered(name)]
@@ -105,10 +105,10 @@ class Parameters:
         return value
 
     def assign(self, name: Name, value: float) -> None:
-        """Give a parameter its value.
+        """Assign a value to a parameter.
 
         Raises:
-            ExecutionFault: the control keeps it for itself.
+            ExecutionFault: it is reserved for the control.
         """
         if isinstance(name, int):
             self._numbered[_numbered(name)] = value
@@ -123,10 +123,10 @@ class Parameters:
         return isinstance(name, int) or name in _NAMES_OF_THE_MACHINE or name in self._named(name)
 
     def enter(self, arguments: Sequence[float] | None) -> None:
-        """Begin a subprogram.
+        """Enter a subprogram.
 
         Args:
-            arguments: values of #1 and on; None when the subprogram shares #1 to #30 with its caller, as after M98.
+            arguments: values of #1 and up; None when the subprogram shares #1 to #30 with its caller, as after M98.
         """
         saved = None
         if arguments is not None:
@@ -136,10 +136,10 @@ class Parameters:
         self._global.update(_value=0.0, _value_returned=0.0, _call_level=float(self.depth))
 
     def leave(self, returned: float | None) -> None:
-        """End a subprogram.
+        """Leave a subprogram.
 
         Args:
-            returned: the value it gives back, None if it gives none.
+            returned: its return value, None if there is none.
         """
         saved = self._levels.pop().saved
         if saved is not None:
@@ -155,13 +155,13 @@ class Parameters:
 
 
 def whole(value: float) -> int | None:
-    """The whole number that a value stands for, None if it stands for none."""
+    """The integer a value represents, None if it represents none."""
     number = round(value)
     return number if abs(value - number) < _WHOLE else None
 
 
 def in_range(value: float) -> int:
-    """The number of a parameter.
+    """Convert a value to a parameter number.
 
     Raises:
         ExecutionFault: there is no parameter of that number.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Path modes: what G61, G61.1 and G64 say of the corners of each block.
+"""Path modes: the effect of G61, G61.1 and G64 on the corners of each block.
 
-Blocks and their modal codes enter; columns leave: whether the motion rests at the end (exact stop), whether corners are
-followed rather than rounded (exact path), and how far the tip may leave the path (G64 P), mm. LinuxCNC has the first
-two codes the other way round; a program for its hexapod is taken as it means it. Q of G64, for joining moves that are
-nearly one, is not needed: no moves are joined.
+Enters: blocks and their modal codes. Leaves: columns: whether the motion stops at the end (exact stop), whether corners
+are followed rather than rounded (exact path), and the permitted deviation of the tip from the path (G64 P), mm.
+LinuxCNC swaps the first two codes; a program for its hexapod is read accordingly. Q of G64, which merges nearly
+collinear moves, is not needed: no moves are merged.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def exact_codes(axis_words: str) -> tuple[int, int]:
     """The codes of exact stop and of exact path, in tenths.
 
     Args:
-        axis_words: how the tool axis is said; "RPY" are words of LinuxCNC alone.
+        axis_words: tool axis notation; "RPY" is specific to LinuxCNC.
     """
     return (611, 610) if axis_words == "RPY" else (610, 611)
 
@@ -37,8 +37,8 @@ def path_modes(blocks: Blocks, modal: Modal, axis_words: str, faults: Findings) 
     Args:
         blocks: the program.
         modal: its modal codes.
-        axis_words: how the tool axis is said.
-        faults: takes tolerances that are not taken.
+        axis_words: tool axis notation.
+        faults: collects rejected tolerances.
     """
     stop, path = exact_codes(axis_words)
     in_force = modal.in_force[Group.PATH]
@@ -50,7 +50,7 @@ def path_modes(blocks: Blocks, modal: Modal, axis_words: str, faults: Findings) 
 
 
 def _tolerances(blocks: Blocks, modal: Modal, faults: Findings) -> Array:
-    """By block, mm; 0 where the program gives none."""
+    """Tolerance of each block, mm; 0 where the program gives none."""
     said = modal.explicit[Group.PATH]
     wanted = (said == _TOLERANCE) & blocks.has("P")
     if not wanted.any():
@@ -63,7 +63,7 @@ def _tolerances(blocks: Blocks, modal: Modal, faults: Findings) -> Array:
 
 
 def _belongs_elsewhere(blocks: Blocks, modal: Modal) -> Array:
-    """Whether another code of a block takes its P: a dwell, a cycle, the turns of an arc, (N,)."""
+    """Whether another code of each block uses its P: a dwell, a cycle, the turns of an arc, (N,)."""
     elsewhere: Array = modal.moves & np.isin(modal.in_force[Group.MOTION], _TAKES_P)
     elsewhere[blocks.g_row[np.isin(blocks.g, _TAKES_P)]] = True
     return elsewhere

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Percent signs: where a file ends before its last byte.
+"""Percent signs: find the end of a file that is marked before its last byte.
 
-Enters: the cleaned bytes of a file. Leaves: those up to the percent sign that closes it, and where a block stands
-behind. A file may stand between two lines with a percent sign alone, and what follows the second one is not read [NGC].
-Here the first one may be missing: the first one behind a block closes the file.
+Enters: the cleaned bytes of a file. Leaves: the bytes up to the closing percent sign, and the offset of any block after
+it. A file may be enclosed by two lines with only a percent sign, and text after the second one is ignored [NGC]. Here
+the opening one may be missing: the first percent sign after a block closes the file.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from dataclasses import dataclass
 _NOTHING = rb"(?:[ \t\f\v]|\([^()\n]*\))*+"
 _PERCENT = re.compile(_NOTHING + b"%" + _NOTHING + rb"(?:;[^\n]*)?")
 _BLOCK = re.compile(b"^" + _NOTHING + rb"[^\s;%]", re.MULTILINE)
-"""The beginning of a line that is no comment, no percent sign and not empty."""
+"""The start of a line that is not a comment, not a percent sign and not empty."""
 
 
 @dataclass(frozen=True)
 class Demarcated:
-    """A file by its percent signs.
+    """A file delimited by percent signs.
 
     Attributes:
-        text: whole lines, the closing percent sign included.
+        text: whole lines, including the closing percent sign.
         closed: whether there is one.
-        behind: offset of the first block behind it, -1 if there is none.
+        behind: offset of the first block after it, -1 if there is none.
     """
 
     text: bytes
@@ -33,7 +33,7 @@ class Demarcated:
 
 
 def demarcated(text: bytes) -> Demarcated:
-    """A file up to the percent sign that closes it.
+    """Cut a file at its closing percent sign.
 
     Args:
         text: cleaned, each line with its line feed.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Positions: absolute and relative words in a row become places.
+"""Positions: convert sequences of absolute and incremental words to positions.
 
-Columns of words enter, NaN where a block has none; the coordinate after each block leaves, in the same unit. A word
-sets the coordinate in absolute mode and adds to it in relative mode; between two words it stays.
+Enters: columns of words, NaN where absent. Leaves: the coordinate after each block, in the same unit. A word sets the
+coordinate in absolute mode and adds to it in incremental mode; without a word it is unchanged.
 """
 
 from __future__ import annotations
@@ -18,31 +18,31 @@ from pkm_post.model.program import Array
 
 @dataclass(frozen=True)
 class Coordinates:
-    """Words X Y Z of N blocks in mm, NaN where a block has none: three (N,) columns."""
+    """Words X Y Z of N blocks in mm, NaN where absent: three (N,) columns."""
 
     columns: tuple[Array, Array, Array]
 
     @classmethod
     def of(cls, blocks: Blocks, modal: Modal) -> Coordinates:
-        """Those of plain blocks."""
+        """Extract the coordinates of plain blocks."""
         x, y, z = (modal.in_mm(blocks.word(letter)) for letter in "XYZ")
         return cls((x, y, z))
 
     def at(self, row: int) -> Array:
-        """Those of one block, (3,)."""
+        """The coordinates of one block, (3,)."""
         return np.array([column[row] for column in self.columns])
 
 
 def follow(words: Array, relative: Array, start: float) -> tuple[Array, int]:
-    """A coordinate after each block, and since when it is known.
+    """A coordinate after each block, and the first row where it is known.
 
     Args:
         words: (n,) values of its letter.
-        relative: (n,) whether they are distances (G91).
-        start: the coordinate before.
+        relative: (n,) whether they are incremental (G91).
+        start: the initial coordinate.
 
     Returns:
-        (n,) coordinates, and the first row that has an absolute word, n if none has.
+        (n,) coordinates, and the first row with an absolute word, n if there is none.
     """
     given = ~np.isnan(words)
     if not relative.any():

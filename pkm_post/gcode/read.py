@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Read: from the text of a G-code program to the motions it means, in three steps that know nothing of each other.
+"""Read: convert the text of a G-code program to motions, in three independent steps.
 
-Enters: the content of a file, in the units it is written in. Leaves: a ``Program`` in mm, rad and mm/s, or all
-that is wrong in the first step that cannot be finished: a block that is not understood has no meaning to go on with.
+Enters: the content of a file, in its own units. Leaves: a ``Program`` in mm, rad and mm/s, or all faults of the first
+step that fails: a block that cannot be parsed cannot be processed further.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ def read(
     options: ReadOptions = DEFAULT_OPTIONS,
     limits: ExecutionLimits = DEFAULT_LIMITS,
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program that a G-code file describes.
+    """Read a G-code program.
 
     Args:
         text: content of the file; any bytes.
-        file: its name, for the diagnostics.
-        options: what the program does not say itself.
-        limits: bounds of its loops and calls.
+        file: its name, for diagnostics.
+        options: read options.
+        limits: bounds of loops and calls.
 
     Returns:
-        The program, None if there are errors; and the diagnostics.
+        The program, or None if there are errors; and the diagnostics.
 
     Raises:
         ImportError: lark is not installed.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Resolve: plain blocks become a program.
+"""Resolve: convert plain blocks to a program.
 
-Blocks in the units they are written in enter; columns in mm, mm/s and unit vectors in {C} leave, every modal word
-resolved, cycles as moves, arcs with centre and axis; or what is wrong with the blocks. Moves before X, Y and Z are all
-known go to no place and are folded into the first one whose end is known. What follows M2 or M30 is not read, and
-without them, or a percent sign, a file may have been cut short.
+Enters: blocks in the units as written. Leaves: columns in mm, mm/s and unit vectors in {C}, every modal word resolved,
+cycles as moves, arcs with centre and axis; or the faults of the blocks. Moves before X, Y and Z are all known have no
+end point and are merged into the first one with a known end point. Text after M2 or M30 is ignored; without these or a
+percent sign a file may be truncated.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ from pkm_post.model.program import Array
 _ALONG_AN_AXIS = 1 - 1e-9
 _KIND = np.zeros(31, np.uint8)
 _KIND[[0, 10, 20, 30]] = Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC
-"""By code of a motion."""
+"""Motion kind by G code."""
 
 
 def resolve(
     blocks: Blocks, options: ReadOptions, text: bytes | str = ""
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program that plain blocks describe.
+    """Convert plain blocks to a program.
 
     Args:
-        blocks: blocks without parameters, expressions and O words, in the order in which they are executed.
-        options: what the program does not say itself.
-        text: what they were read from, if it is there: for what columns of numbers do not show.
+        blocks: blocks without parameters, expressions and O words, in execution order.
+        options: read options.
+        text: the source text, if available, for details that the columns do not contain.
 
     Returns:
-        The program, None if there are errors; and the diagnostics in the order of the lines.
+        The program, or None if there are errors; and the diagnostics in line order.
 
     Raises:
         ValueError: the blocks are not plain.
@@ -70,7 +70,7 @@ def resolve(
 
 
 def _read(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
-    """The blocks that are carried out, without deleted ones, up to the end of the program; and whether it has one."""
+    """The blocks to execute, without deleted ones, up to the program end; and whether there is a program end."""
     ends = blocks.m_row[np.isin(blocks.m, ENDS)]
     if options.block_delete:
         ends = ends[~blocks.deleted[ends]]
@@ -82,7 +82,7 @@ def _read(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
 
 
 def _without_spent_ends(blocks: Blocks) -> Blocks:
-    """The blocks without G80 beside G0, G1, G2 or G3, which end a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
+    """Drop G80 beside G0, G1, G2 or G3, which cancel a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
     ends = np.flatnonzero(blocks.g == END_OF_CYCLES)
     if not len(ends):
         return blocks
@@ -92,15 +92,15 @@ def _without_spent_ends(blocks: Blocks) -> Blocks:
 
 @dataclass(frozen=True)
 class _Settings:
-    """What holds in each block beside places and modes.
+    """State of each block beside positions and modes.
 
     Attributes:
         tools: (N,) number of the tool in the spindle.
-        spindle: (N,) signed speed of the spindle, 1/min.
+        spindle: (N,) signed spindle speed, 1/min.
         sides: (N,) radius of the 2D compensation, mm.
-        axes: (N, 3) unit tool axis in coordinates of the program.
+        axes: (N, 3) unit tool axis in program coordinates.
         normals: (N, 3) unit surface normal likewise, or NaN.
-        spins: (N,) turn of the platform about the tool axis, rad, or NaN.
+        spins: (N,) rotation of the platform about the tool axis, rad, or NaN.
     """
 
     tools: Array
@@ -172,7 +172,7 @@ def _frames(motions: Motions) -> RowFrames:
 def _directions(
     blocks: Blocks, modal: Modal, settings: _Settings, motions: Motions, axis: Array, faults: Findings
 ) -> dict[str, Array]:
-    """The columns of a program that frames turn and mirror, but do not shift."""
+    """Program columns that frames rotate and mirror but do not translate."""
     frames = _frames(motions)
     side, plane = _compensation(blocks, modal, motions, frames, settings.sides, faults)
     return {
@@ -186,26 +186,26 @@ def _directions(
 
 
 def _ways(modal: Modal, motions: Motions, centre: Array, axis: Array) -> Array:
-    """Ways of the tool tip, (n,), mm; zeros in a program without G93, where nobody asks for them."""
+    """Distances travelled by the tool tip, (n,), mm; zeros in a program without G93, where they are unused."""
     if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
         return lengths(motions, centre, axis)
     return uniform(0.0, len(motions))
 
 
 def _turns(modal: Modal, axis: Array) -> Array:
-    """Whether the tool axis turns, (n,); all true in a program without G93, where nobody asks for it."""
+    """Whether the tool axis rotates, (n,); all true in a program without G93, where it is unused."""
     if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
         return np.append(True, np.any(axis[1:] != axis[:-1], axis=1))
     return uniform(True, len(axis))
 
 
 def _handed(hand: Array, spin: Array) -> Array:
-    """Spins in {C}: a mirror turns them round."""
+    """Spins in {C}: a mirrored frame inverts their sign."""
     return spin if is_uniform(spin) else hand * spin
 
 
 def _turned(hand: Array, axis: Array) -> Array:
-    """Axes of arcs in {C}, right-handed again where a frame is a mirror image."""
+    """Arc axes in {C}, made right-handed again where the frame is mirrored."""
     return axis if is_uniform(axis) or (hand > 0).all() else hand[:, None] * axis
 
 

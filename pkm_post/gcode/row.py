@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One block: the tree that lark makes of a line, read as a row.
+"""One block: convert the parse tree of a line to a row.
 
-Enters: the bytes of one line. Leaves: what a row of ``Blocks`` holds, nothing for a line that says nothing, or a fault.
-This is the slow way and the reference: the fast way takes it once for every shape of a block that it meets, and for
-the lines that have no plain shape.
+Enters: the bytes of one line. Leaves: the content of a row of ``Blocks``, nothing for an empty line, or a fault. This
+is the slow reference parser: the fast one calls it once per block shape, and for lines without a plain shape.
 """
 
 from __future__ import annotations
@@ -19,25 +18,25 @@ if TYPE_CHECKING:
     from lark import Token, Tree, UnexpectedInput
 
 LONGEST_LINE = 10_000
-"""Bytes. Longer lines are no blocks, whatever is in them."""
+"""Bytes. Longer lines are always rejected."""
 
 DEEPEST_TREE = 100
-"""Levels of an expression, so that whoever walks the tree may do it by recursion."""
+"""Levels of an expression, so recursive tree traversal is safe."""
 
 LARGEST_CODE = 9999.0
 
 DIALECT_CODES: dict[str, tuple[int, ...]] = {"LN": (435, 10), "TRAORI": (435,), "TRAFOOF": (430,)}
-"""Words of other dialects and the G codes, in tenths, that mean the same: G43.5 G1, G43.5 and G43."""
+"""Words of other dialects and the equivalent G codes, in tenths: G43.5 G1, G43.5 and G43."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong with a line.
+    """The fault of a line.
 
     Attributes:
         code: key into the table of diagnostics.
-        offset: bytes of the line before it.
-        found: what was found, in the words of the line.
+        offset: byte offset in the line.
+        found: what was found, as written.
     """
 
     code: str
@@ -47,15 +46,15 @@ class Fault:
 
 @dataclass
 class Row:
-    """What a block holds.
+    """Content of a block.
 
     Attributes:
-        letters: the words in the order of the block.
+        letters: the words in block order.
         values: their values.
         g: G codes in tenths.
         m: M codes.
-        deleted: whether it begins with the block delete character.
-        tree: the block itself, if it holds more than plain words; the other fields are empty then.
+        deleted: whether the block begins with the block delete character.
+        tree: the parse tree if the block holds more than plain words; the other fields are then empty.
     """
 
     letters: list[str] = field(default_factory=list)
@@ -70,14 +69,14 @@ class Row:
 
 
 class _Bad(Exception):  # noqa: N818 - it stays within this file
-    """A fault that the grammar does not see."""
+    """A fault that the grammar does not detect."""
 
     def __init__(self, code: str, token: Token, found: str = "") -> None:
         self.fault = Fault(code, token.start_pos or 0, found or f"'{token}'"[:40])
 
 
 def read_row(line: bytes) -> Row | UnexpectedInput | Fault:
-    """What one line holds; a false row when it holds nothing.
+    """Read one line; an empty line gives a falsy row.
 
     Args:
         line: the line without its end.
@@ -114,14 +113,14 @@ def _row_of(tree: Tree[Token]) -> Row:
 
 
 def dialect_codes(word: str) -> tuple[int, ...]:
-    """The G codes, in tenths, that a terminal such as TRAORI(1) stands for."""
+    """The G codes, in tenths, equivalent to a terminal such as TRAORI(1)."""
     return DIALECT_CODES.get(word.split("(")[0].strip().upper(), ())
 
 
 def _add_word(row: Row, word: Tree[Token], seen: set[str]) -> bool:
-    """Put a word into the row; whether it is a plain one, of a name and a number."""
+    """Add a word to the row; return whether it is plain, a name and a number."""
     name, value = word.children
-    assert isinstance(name, str)  # the grammar begins every word with a terminal
+    assert isinstance(name, str)  # in the grammar a word starts with a terminal
     letter = "".join(name.split()).upper()
     if letter in seen and letter not in "GM":
         raise _Bad("G202", name)
@@ -139,7 +138,7 @@ def _add_word(row: Row, word: Tree[Token], seen: set[str]) -> bool:
 
 
 def _code(name: Token, value: Token, parts: int) -> int:
-    """A G or M code in parts of 1."""
+    """A G or M code as an integer multiple of 1 / ``parts``."""
     number = _finite(value) * parts
     code = round(number)
     if value[0] in "+-" or number > LARGEST_CODE or abs(number - code) > 1e-6:
@@ -155,7 +154,7 @@ def _finite(token: Token) -> float:
 
 
 def _checked(tree: Tree[Token]) -> Tree[Token]:
-    """The tree, if it is not too deep and all its numbers are finite."""
+    """Return the tree if it is not too deep and all its numbers are finite."""
     for token, depth in _leaves(tree):
         if depth > DEEPEST_TREE:
             raise _Bad("G211", token)
@@ -165,7 +164,7 @@ def _checked(tree: Tree[Token]) -> Tree[Token]:
 
 
 def _leaves(tree: Tree[Token]) -> Iterator[tuple[Token, int]]:
-    """The terminals of a tree, from left to right, each with its depth."""
+    """The terminals of a tree, left to right, each with its depth."""
     waiting: list[tuple[Token | Tree[Token], int]] = [(tree, 0)]
     while waiting:
         branch, depth = waiting.pop()

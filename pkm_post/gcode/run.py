@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A run: the program as it is executed, block after block, with its calls and loops.
+"""A run: execute the program block by block, with its calls and loops.
 
-Enters: scanned blocks, the special ones made ready, and where O words lead. Leaves: the executed blocks, in order. Runs
-of plain blocks are one step each. Calls are kept on a list, not on Python's stack, and every block counts against the
+Enters: scanned blocks, the special ones compiled, and the jump targets of O words. Leaves: the executed blocks, in
+order. A run of plain blocks is one step. Calls use a list, not Python's stack, and every block counts against the
 limit.
 """
 
@@ -27,14 +27,14 @@ SUBPROGRAM_CODES = (CALL, RETURN)
 
 @dataclass
 class _Level:
-    """A subprogram that runs.
+    """A running subprogram.
 
     Attributes:
-        back: the row to go on with after it.
-        begin: its first row, for the next pass.
-        passes: how often it still runs after this time; only M98 has more than one.
-        by_m98: whether M98 called it, so that M99 ends it and not ``endsub``.
-        turns: of every ``repeat`` that runs, how often it still runs.
+        back: return row.
+        begin: first row, for the next pass.
+        passes: remaining passes after this one; only M98 has more than one.
+        by_m98: whether M98 called it, so M99 ends it rather than ``endsub``.
+        turns: remaining passes of every active ``repeat``.
     """
 
     back: int
@@ -49,11 +49,11 @@ class Run:
 
     Args:
         blocks: the scanned blocks.
-        statements: the special ones by row, made ready.
-        flow: where O words lead.
-        left_out: (N,) the blocks that are not executed.
+        statements: compiled special blocks by row.
+        flow: jump targets of O words.
+        left_out: (N,) mask of skipped blocks.
         limits: bounds of the execution.
-        executed: takes what is executed.
+        executed: collects the executed blocks.
     """
 
     def __init__(
@@ -77,10 +77,10 @@ class Run:
         """Execute until the program ends.
 
         Args:
-            ruled: the rows that are not just moved, in order; ``row`` is always the row that is executed.
+            ruled: rows that are not simply copied, in order; ``row`` is always the current row.
 
         Raises:
-            ExecutionFault: the program cannot go on at ``row``.
+            ExecutionFault: the program cannot continue at ``row``.
         """
         end = len(self._blocks)
         ruled = [*ruled, end]
@@ -99,7 +99,7 @@ class Run:
         self.row = stop
 
     def _codes(self, begin: int, end: int) -> int:
-        """How many G and M codes stand in plain rows."""
+        """Number of G and M codes in plain rows."""
         bounds = [rows.searchsorted((begin, end)) for rows in (self._blocks.g_row, self._blocks.m_row)]
         return int(sum(last - first for first, last in bounds))
 
@@ -117,7 +117,7 @@ class Run:
             raise ExecutionFault("G308", "subprogram without M99")
 
     def _step(self, row: int) -> int:
-        """Execute a row that is not just moved; which row is next."""
+        """Execute a row that is not simply copied; return the next row."""
         statement = self._statements.get(row)
         if isinstance(statement, OWord):
             return _STEPS[statement.keyword](self, row, statement)
@@ -132,7 +132,7 @@ class Run:
         )
 
     def _finish(self, row: int, done: Row) -> int:
-        """Hand on a computed row, then do what its M codes say about the next one."""
+        """Output a computed row and apply the flow control of its M codes; return the next row."""
         if not done.m:
             self._executed.add(row, done)
             return row + 1
@@ -154,7 +154,7 @@ class Run:
             words = "".join(f" {letter}{done.values[letter]:.10g}" for letter in "PL" if letter in done.values)
             raise ExecutionFault("G316", f"M98{words}")
         label = str(number)
-        # A subprogram with sub and endsub cannot be run by M98: it would not know its arguments.
+        # M98 cannot call a sub/endsub subprogram: it passes no arguments.
         if label not in self._flow.programs:
             raise ExecutionFault("G309", f"M98 P{label}")
         if passes == 0:
@@ -212,7 +212,7 @@ class Run:
         return self._flow.other_end[row]
 
     def _if(self, row: int, word: OWord) -> int:
-        """The first branch whose condition holds."""
+        """Jump to the first branch whose condition is true."""
         while word.values and self._value(word) == 0:
             self.row = row = self._flow.next_branch[row]
             self._spend(1, self._cost[row])

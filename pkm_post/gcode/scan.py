@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Scan: from the text of a G-code program to its blocks as columns; the first step of reading.
+"""Scan: convert the text of a G-code program to columns of blocks; the first step of reading.
 
-Enters: the content of a file, whatever its bytes. Leaves: ``Blocks``, or all that is wrong with its characters and its
-grammar. There are two ways with one result. ``scan_by_block`` gives every line to lark: that is the reference.
-``scan`` lets lark judge one block of every shape, and reads the numbers of all the lines of that shape together; lines
-that lark does not accept, and blocks with more than plain words, go the way of the reference.
+Enters: the content of a file, any bytes. Leaves: ``Blocks``, or all lexical and syntax faults. Two implementations give
+the same result. ``scan_by_block`` parses every line with lark: the reference. ``scan`` parses one block of each shape
+with lark and reads the numbers of all lines of that shape at once; lines that lark rejects, and blocks with more than
+plain words, use the reference.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from pkm_post.model.program import Array
 
 Scanned = tuple[Blocks | None, tuple[Diagnostic, ...]]
 _SHOWN = 40
-"""Characters of a line."""
+"""Characters of a line shown in a message."""
 
 
 def scan(text: bytes | str, file: str) -> Scanned:
-    """The blocks of a G-code program, or the faults of its text.
+    """Scan a G-code program to blocks, or report the faults of its text.
 
     Args:
         text: content of the file.
@@ -47,7 +47,7 @@ def scan(text: bytes | str, file: str) -> Scanned:
 
 
 def scan_by_block(text: bytes | str, file: str) -> Scanned:
-    """The same as ``scan``, line by line through lark.
+    """Reference implementation of ``scan``: parse line by line with lark.
 
     Args:
         text: content of the file.
@@ -73,7 +73,7 @@ def scan_by_block(text: bytes | str, file: str) -> Scanned:
 
 
 def _scanned(whole: bytes, part: Demarcated, table: Table, faults: Faults, file: str) -> Scanned:
-    """The blocks of the table if there are no faults; and what is behind the end of the file."""
+    """The blocks of the table if there are no faults; report any block after the end of the file."""
     told = faults.diagnostics()
     blocks = None if told else table.blocks(file, part.closed)
     if part.behind >= 0:
@@ -83,13 +83,13 @@ def _scanned(whole: bytes, part: Demarcated, table: Table, faults: Faults, file:
 
 
 def _beginning(text: bytes, offset: int) -> str:
-    """The first characters of the line that begins at an offset, as they can be shown."""
+    """The first characters of the line at an offset, in printable form."""
     line = text[offset : text.find(b"\n", offset)][:_SHOWN]
     return "".join(character if character.isprintable() else "?" for character in readable(line).strip())
 
 
 def _scan_piece(piece: bytes, shapes: Shapes, table: Table, faults: Faults) -> None:
-    """Append the blocks of some lines to the table, and their faults to the others."""
+    """Append the blocks of a piece to the table, and its faults to ``faults``."""
     line_start = np.concatenate([[0], np.flatnonzero(np.frombuffer(piece, np.uint8) == ord("\n")) + 1])
     too_long = np.flatnonzero(np.diff(line_start) - 1 > LONGEST_LINE)
     spoken: list[tuple[int, str]] = []
@@ -109,7 +109,7 @@ def _scan_piece(piece: bytes, shapes: Shapes, table: Table, faults: Faults) -> N
 def _read_alone(
     piece: bytes, line_start: Array, shape: Array, first: int, faults: Faults
 ) -> tuple[dict[int, Row], set[int]]:
-    """Read the lines that have no plain shape one by one: their rows, and which of them are faulty."""
+    """Read the lines without a plain shape one by one; return their rows, and which lines are faulty."""
     rows: dict[int, Row] = {}
     faulty: set[int] = set()
     for index in np.flatnonzero(shape == BY_ITSELF).tolist():
@@ -124,7 +124,7 @@ def _read_alone(
 
 
 def _values(text: bytes, lexed: Lexed, line_start: Array, shape: Array) -> Array:
-    """The numbers of all the lines that have a shape. Lines with a number that is none lose theirs."""
+    """The numbers of all lines with a shape; lines with a malformed number lose their shape."""
     values = values_of(text, lexed.starts, lexed.ends)
     wrong = np.concatenate([lexed.suspicious, lexed.starts[~np.isfinite(values)]])
     shape[_lines_at(wrong, line_start)] = BY_ITSELF
@@ -134,5 +134,5 @@ def _values(text: bytes, lexed: Lexed, line_start: Array, shape: Array) -> Array
 
 
 def _lines_at(offsets: Array, line_start: Array) -> Array:
-    """The lines, from 0, that some bytes stand in."""
+    """The lines, from 0, that contain the given offsets."""
     return np.searchsorted(line_start, offsets, side="right") - 1

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes: what blocks hold that differ in nothing but their numbers.
+"""Shapes: the common layout of blocks that differ only in their numbers.
 
-Enters: the shape of a line as the lexer leaves it. Leaves: its number in the table, and for that the letters that its
-numbers belong to and its codes. Real programs have some ten to hundred shapes, so lark judges some hundred blocks of a
-million; nothing is accepted whose shape it has not accepted.
+Enters: the shape of a line from the lexer. Leaves: its index in the table, with the letters of its numbers and its
+codes. Real programs have some ten to hundred shapes, so lark parses some hundred blocks of a million; no block is
+accepted unless lark has accepted its shape.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from pkm_post.gcode.row import Row, read_row
 from pkm_post.model.program import Array
 
 BY_ITSELF = 0
-"""Shape of the lines that are read one by one: those lark does not accept, and those with more than plain words."""
+"""Shape of lines read one by one: those that lark rejects, and those with more than plain words."""
 
 NOTHING = 1
-"""Shape of the lines that say nothing."""
+"""Shape of empty lines."""
 
 
 class Lists:
-    """For each of S shapes a list of whole numbers, all of them in one column.
+    """A list of integers for each of S shapes, stored in one column.
 
     Attributes:
-        count: (S,) how long each list is.
+        count: (S,) length of each list.
     """
 
     def __init__(self, lists: list[list[int]]) -> None:
@@ -36,7 +36,7 @@ class Lists:
         self._all = np.array([number for one in lists for number in one], np.int32)
 
     def of(self, shapes: Array) -> tuple[Array, Array]:
-        """The lists of a column of shapes, one after the other, and the length of each."""
+        """The concatenated lists of a column of shapes, and the length of each."""
         count = self.count[shapes]
         if not len(self._all):
             return self._all, count
@@ -47,15 +47,15 @@ class Lists:
 
 @dataclass(frozen=True)
 class Layouts:
-    """What the blocks of each shape hold, as columns of S shapes.
+    """Layout of the blocks of each shape, as columns of S shapes.
 
     Attributes:
-        filled: (S,) whether there is anything in the block.
-        deleted: (S,) whether it begins with ``/``.
-        count: (S,) how many numbers it has.
-        places: by letter, (S,) which of its numbers belongs to it, from 0; -1 where none does.
-        g: its G codes in tenths.
-        m: its M codes.
+        filled: (S,) whether the block is not empty.
+        deleted: (S,) whether the block begins with ``/``.
+        count: (S,) count of its numbers.
+        places: by letter, (S,) index of its number, from 0; -1 where absent.
+        g: G codes in tenths.
+        m: M codes.
     """
 
     filled: Array
@@ -67,7 +67,7 @@ class Layouts:
 
 
 class Shapes(dict[bytes, int]):
-    """Numbers of shapes; looking up a new one lets lark judge it."""
+    """Indices of shapes; looking up a new shape parses it with lark."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -76,7 +76,7 @@ class Shapes(dict[bytes, int]):
 
     def __missing__(self, shape: bytes) -> int:
         number = BY_ITSELF
-        if b"[" not in shape:  # a code in brackets shows its mark, and a lone number there counts as a plain one
+        if b"[" not in shape:  # a code in brackets contains a marker, and a lone number there counts as plain
             row = read_row(shape.replace(MARK, b" 1 "))
             if isinstance(row, Row) and row.tree is None:
                 number = len(self._rows)
@@ -85,7 +85,7 @@ class Shapes(dict[bytes, int]):
         return number
 
     def layouts(self) -> Layouts:
-        """What the blocks of all shapes met so far hold."""
+        """Layouts of all shapes so far."""
         if len(self._layouts.filled) < len(self._rows):
             self._layouts = _layouts(self._rows)
         return self._layouts

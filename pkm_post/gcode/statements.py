@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Statements: special blocks, made ready once to be executed as often as the program comes to them.
+"""Statements: special blocks, compiled once and executed each time the program reaches them.
 
-Enters: the trees of the blocks. Leaves: for an O word its keyword, label and values; for every other block its words,
-codes and assignments as expressions. Words that switch another dialect on and off become the G codes that mean the
-same.
+Enters: the parse trees of the blocks. Leaves: for an O word its keyword, label and values; for every other block its
+words, codes and assignments as expressions. Words that switch a dialect mode on and off become the equivalent G codes.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     Node = Tree[Token] | Token
 
 _NEAR_A_CODE = 1e-3
-"""How far from a code, in its own parts, a value may be that stands for it."""
+"""Tolerance for accepting a value as a code, in units of its smallest step."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +45,10 @@ class Words:
 
     Attributes:
         values: letter and value.
-        g: G codes, as numbers and not in tenths.
+        g: G codes as written, not in tenths.
         m: M codes.
-        codes: G codes in tenths that stand for words of other dialects.
-        assignments: what is assigned after all values of the block are computed.
+        codes: G codes in tenths that replace words of other dialects.
+        assignments: carried out after all values of the block are computed.
     """
 
     values: list[tuple[str, Expression]] = field(default_factory=list)
@@ -69,10 +68,10 @@ class Words:
         """Compute the block, then assign.
 
         Args:
-            parameters: of the program that runs.
+            parameters: of the running program.
 
         Raises:
-            ExecutionFault: a value cannot be computed or is no value of its word.
+            ExecutionFault: a value cannot be computed or is invalid for its word.
         """
         values = {letter: value.value(parameters) for letter, value in self.values}
         g = tuple([*self.codes, *[_code("G", code, 10, parameters) for code in self.g]])
@@ -88,12 +87,12 @@ class Words:
 
 @dataclass(frozen=True)
 class OWord:
-    """A block that rules which block is next.
+    """A flow control block.
 
     Attributes:
-        keyword: in lower case; ``program`` for a label alone.
-        label: number or name, or what gives the number when the block is executed.
-        values: what stands behind the keyword.
+        keyword: in lower case; ``program`` for a bare label.
+        label: number or name, or an expression that gives the number at execution.
+        values: operands after the keyword.
     """
 
     keyword: str
@@ -111,13 +110,13 @@ Statement = Words | OWord
 
 
 def statement_of(tree: Tree[Token]) -> Statement:
-    """Make a block ready to be executed.
+    """Compile a block.
 
     Args:
-        tree: of the block.
+        tree: parse tree of the block.
 
     Raises:
-        ExecutionFault: it has no meaning.
+        ExecutionFault: the block is invalid.
     """
     words = Words()
     for child in tree.children:
@@ -171,14 +170,14 @@ def _label_of(node: Node) -> str | Expression:
 
 
 def label_of_number(number: float, column: int = 0) -> str:
-    """The label that a number is.
+    """Convert a number to a label.
 
     Args:
-        number: what is written or was computed.
-        column: where, from 1.
+        number: as written or computed.
+        column: of the number, from 1.
 
     Raises:
-        ExecutionFault: it is none.
+        ExecutionFault: the number is not a label.
     """
     label = whole(number)
     if label is None or label < 0:
@@ -187,7 +186,7 @@ def label_of_number(number: float, column: int = 0) -> str:
 
 
 def _code(letter: str, code: Expression, parts: int, parameters: Parameters) -> int:
-    """A G or M code in parts of 1."""
+    """Evaluate a G or M code as an integer multiple of 1 / ``parts``."""
     number = code.value(parameters)
     rounded = round(number * parts)
     if abs(number * parts - rounded) > _NEAR_A_CODE or not 0 <= number <= LARGEST_CODE:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The table of blocks while it grows.
+"""Builder for the table of blocks.
 
-Enters: rows, or the shapes and numbers of many lines. Leaves: ``Blocks``. The words are written where they stay: they
-are most of what a program needs of memory, 8 bytes per block for each letter that it uses.
+Enters: rows, or the shapes and numbers of many lines. Leaves: ``Blocks``. Words are written in place without copies:
+they dominate memory use, 8 bytes per block for each letter in use.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 
 
 class Table:
-    """Blocks in the order of the file.
+    """Blocks in file order.
 
     Attributes:
-        next_line: number of the line that comes next, from 1.
-        comments: line and text of the comments that people should see.
+        next_line: number of the next line, from 1.
+        comments: line and text of the comments to show.
     """
 
     def __init__(self, lines: int) -> None:
-        """Make room for the blocks of so many lines."""
+        """Reserve space for the blocks of ``lines`` lines."""
         self.next_line = 1
         self.comments: list[tuple[int, str]] = []
         self._lines, self._rows = lines, 0
@@ -41,10 +41,10 @@ class Table:
         self._special: dict[int, Tree[Token]] = {}
 
     def add_row(self, row: Row) -> None:
-        """Append what one line holds, if it holds anything.
+        """Append the content of one line unless it is empty.
 
         Args:
-            row: the content of the next line.
+            row: content of the next line.
         """
         line, self.next_line = self.next_line, self.next_line + 1
         if not row:
@@ -55,13 +55,13 @@ class Table:
         self._m.add(np.array(row.m, np.int32), np.full(len(row.m), here.start))
 
     def add_lines(self, shape: Array, layouts: Layouts, values: Array, alone: dict[int, Row]) -> None:
-        """Append what many lines hold.
+        """Append the content of many lines.
 
         Args:
-            shape: (N,) the shape of each line.
-            layouts: what the blocks of each shape hold.
-            values: the numbers of all lines with plain words, in their order.
-            alone: by index of the line the rows that were read one by one.
+            shape: (N,) shape of each line.
+            layouts: block layout of each shape.
+            values: numbers of all lines with plain words, in order.
+            alone: rows read one by one, by line index.
         """
         filled, deleted = layouts.filled[shape], layouts.deleted[shape]
         for index, row in alone.items():
@@ -79,7 +79,7 @@ class Table:
         self.next_line += len(shape)
 
     def _append(self, line: Array, deleted: Array) -> slice:
-        """Append rows; which ones, still without words."""
+        """Append rows without words; return their slice."""
         here = slice(self._rows, self._rows + len(line))
         self._line[here], self._deleted[here] = line, deleted
         for column in self._words.values():
@@ -88,7 +88,7 @@ class Table:
         return here
 
     def _column(self, letter: str) -> Array:
-        """The column of a letter, NaN in all rows so far if it is new."""
+        """The column of a letter; a new one is NaN in all rows so far."""
         if letter not in self._words:
             self._words[letter] = np.empty(self._lines)
             self._words[letter][: self._rows] = np.nan
@@ -152,7 +152,7 @@ class _Codes:
 
 
 def _merged(codes: Array, rows: Array, more: dict[int, list[int]]) -> tuple[Array, Array]:
-    """Codes and their rows, never falling, with those of rows that had none."""
+    """Merge codes of additional rows; rows are non-decreasing."""
     if not more:
         return codes, rows
     new_rows = np.array([row for row, of_row in sorted(more.items()) for _ in of_row], dtype=np.int64)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walk: from block to block, where the tool is.
+"""Walk: track the tool position from block to block.
 
-Blocks with their modal codes enter; motions in coordinates of the program leave, in mm, each with the frame it is
-written in. Motions between two blocks that change the frame, or that move in a way of their own, are followed as
-columns; the loop goes over those blocks alone.
+Enters: blocks with their modal codes. Leaves: motions in program coordinates, mm, each with its frame. Motions between
+two blocks that change the frame or move in a special manner are processed as columns; only those blocks are looped
+over.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _WORKS_ALONE = (280, 281, 300, 301, 530, *SETS_OFFSETS)
 
 
 class Walk:
-    """The tool on its way through the blocks."""
+    """Tracks the tool through the blocks."""
 
     def __init__(
         self,
@@ -56,7 +56,7 @@ class Walk:
         self.known = np.full(3, start is not None)
 
     def motions(self) -> Motions:
-        """Follow all blocks."""
+        """Process all blocks."""
         moves = np.flatnonzero(self.modal.moves).astype(np.int32)
         breaks, done = np.flatnonzero(self._breaks()), 0
         for row, until in zip(breaks.tolist(), np.searchsorted(moves, breaks).tolist(), strict=True):
@@ -69,7 +69,7 @@ class Walk:
         return together(self._stretches, self.frames, self.in_cycles)
 
     def _breaks(self) -> Array:
-        """The blocks that change the frame or move in a way of their own, (N,)."""
+        """Mask of blocks that change the frame or move in a special manner, (N,)."""
         explicit = self.modal.explicit
         breaks = self.modal.moves & is_cycle(self.modal.in_force[Group.MOTION])
         alone = by_row(lambda codes: np.isin(codes, _WORKS_ALONE), explicit[Group.ONCE])
@@ -80,13 +80,13 @@ class Walk:
         return breaks | alone
 
     def _says_again(self) -> Array:
-        """Blocks with a tip control that is in force already, (N,): every LN block has one."""
+        """Mask of blocks that repeat the active tip control, (N,): every LN block does."""
         explicit, length = self.modal.explicit[Group.LENGTH], self.modal.in_force[Group.LENGTH]
         same = np.append(False, length[1:] == length[:-1])[: len(length)]
         return same & np.isin(explicit, TIP_CONTROL) & ~self.blocks.has("H")
 
     def _follow(self, rows: Array) -> None:
-        """Motions of blocks without anything special, all in one frame."""
+        """Add the motions of ordinary blocks, all in one frame."""
         if not len(rows):
             return
         chosen = span(rows)
@@ -98,7 +98,7 @@ class Walk:
         self._add(rows, motion, ends, int(since.max()), since < len(rows))
 
     def _add(self, block: Array, motion: Array, ends: Array, unknown: int, known: Array) -> None:
-        """Add motions in the frame in force; of the last one the coordinates ``known``, (3,), are known."""
+        """Add motions in the active frame; ``known``, (3,), marks the known coordinates of the last one."""
         frame = len(self.frames) - 1
         self._stretches.append(Stretch(block, motion, ends, unknown, self.position, bool(self.known.all()), frame))
         self.position, self.known = ends[-1], known
@@ -107,9 +107,9 @@ class Walk:
     def _change_frame(self, row: int) -> None:
         if self.modal.explicit[Group.CHANGE][row] == 6:
             self.codes.take_tool(row)
-            # The coordinates stay, and with a length offset the tip of the new tool is elsewhere.
+            # The coordinates are unchanged; with a length offset the tip of the new tool is elsewhere.
             self._set_frame()
-        # Only for a block that has such a code: going to {C} and back costs the last digit of the coordinates.
+        # Only for a block with such a code: the transformation to {C} and back costs the last digit.
         if self.codes.change(row):
             place = self.frame.out(self.position)
             for groups in (IN_ORDER, (Group.ONCE,)):
@@ -118,7 +118,7 @@ class Walk:
                 self._rebase(place)
 
     def _rebase(self, place: Array) -> None:
-        """Take the frame in force; the tool stays at its place in {C}, its coordinates become others."""
+        """Switch to the active frame; the tool keeps its position in {C}, and its coordinates change."""
         mixed = self.frame.oblique()
         self._set_frame()
         mixed |= self.frame.oblique()
@@ -132,10 +132,10 @@ class Walk:
             self.frame = frame
             self.frames.append(frame)
 
-    # what moves in a way of its own
+    # special motions
 
     def _moves_by_itself(self, row: int) -> bool:
-        """Carry out a block that moves otherwise than along its words; whether it was one."""
+        """Execute a block with a special motion; return whether it was one."""
         once = int(self.modal.explicit[Group.ONCE][row])
         if once == 530 and self.modal.moves[row]:
             self._machine_move(row)
@@ -151,7 +151,7 @@ class Walk:
         return True
 
     def _go(self, row: int, motions: list[int], places: list[Array], known: Array) -> None:
-        """Straight moves of one block to (3,) places in coordinates of the program."""
+        """Linear moves of one block to (3,) positions in program coordinates."""
         if places:
             rows, unknown = np.full(len(places), row, np.int32), 0 if known.all() else len(places)
             self._add(rows, np.array(motions, np.int16), np.array(places), unknown, known)
@@ -168,7 +168,7 @@ class Walk:
         self._to(row, int(self.modal.in_force[Group.MOTION][row]), words)
 
     def _to(self, row: int, motion: int, words: Array) -> None:
-        """Move to coordinates in {C}, NaN for those that stay."""
+        """Move to coordinates in {C}; NaN leaves a coordinate unchanged."""
         said = ~np.isnan(words)
         mixed = self.frame.oblique()
         known = self.known | said
@@ -178,7 +178,7 @@ class Walk:
         self._go(row, [motion], [self.frame.into(place)], known)
 
     def _home(self, row: int, code: int) -> None:
-        """G28, G30: over the point of the words, if there are any, to the reference point, in the axes of the words."""
+        """G28, G30: move via the programmed point, if any, to the reference point, in the programmed axes."""
         home = self.home[code]
         if home is None:
             self.faults.tell("G413", row, name_of(code))

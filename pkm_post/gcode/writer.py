@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Writer: a program becomes G-code that says the same, one block for each row.
+"""Writer: convert a program to equivalent G-code, one block per row.
 
-A ``Program`` (mm, rad, mm/s) enters, text leaves: mm or inch, degrees, feed a minute. It is modal: a word is written
-where its value, as rounded, is new, and again after a tool change. Reading the text gives the program back within the
-decimals. What a form of G-code cannot say is refused, or replaced and told; nothing is dropped in silence.
+Enters: a ``Program`` (mm, rad, mm/s). Leaves: text: mm or inch, degrees, feed per minute. The text is modal: a word is
+written where its rounded value changes, and again after a tool change. Reading the text restores the program within the
+decimals. What a form of G-code cannot express is refused, or replaced and reported; nothing is dropped silently.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ def write(
 
     Args:
         program: any; row 0 is written as a rapid move.
-        form: how the tool axis is said.
+        form: tool axis notation.
         decimals: of coordinates, centres and diameters.
         axis_decimals: of vectors, and of angles in degrees.
-        inch: whether lengths are in inches (G20).
+        inch: whether to write lengths in inches (G20).
 
     Returns:
-        The text, or None when the form cannot say the program, and what was found.
+        The text, or None if the form cannot express the program; and the diagnostics.
 
     Raises:
-        ValueError: a place, tool axis, feed, radius or tolerance is not a finite number.
+        ValueError: a position, tool axis, feed, radius or tolerance is not finite.
     """
     _require_numbers(program)
     fault = impossible_axis(program.tool_axis, form)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arcs that text can say.
+"""Arcs that G-code text can express.
 
-A program and the decimals of its text enter. Centres leave that still fit both ends of their arcs when all three are
-rounded, and which arcs G2 and G3 cannot say. mm throughout.
+Enters: a program and the decimals of its text. Leaves: centres that still fit both end points of their arcs when all
+three are rounded, and the arcs that G2 and G3 cannot express. mm throughout.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from pkm_post.model import Kind, Program
 from pkm_post.model.program import Array
 
 RADIUS_ERROR = 2e-3
-"""mm that the radii at both ends of a written arc may differ: below what readers allow (LinuxCNC 0.0028 mm)."""
+"""Permitted difference of start and end radius of a written arc, mm: below reader limits (LinuxCNC 0.0028 mm)."""
 AXIS_ERROR = 1e-9
-"""A tool axis that changes less along an arc does not turn."""
+"""A tool axis that changes less along an arc counts as constant."""
 SWEEP_ERROR = 1.0
-"""rad: an arc turns into a full circle, or the other way round, when its rounded ends do or do not meet."""
+"""rad: rounding that makes the end points coincide, or not, turns an arc into a full circle or vice versa."""
 
 
 @dataclass(frozen=True)
 class WrittenArcs:
-    """The arcs of a program as text can say them.
+    """The arcs of a program as expressed in text.
 
     Attributes:
-        row: (n,) their rows, rising.
-        plane: (n,) the coordinate that their plane is normal to.
-        offset: (n, 3) centre less start, a whole number of ``unit``s; zero along the normal.
-        clockwise: (n,) whether they turn clockwise, G2.
-        sayable: (n,) whether the text would be the arc.
+        row: (n,) their rows, increasing.
+        plane: (n,) the coordinate normal to their plane.
+        offset: (n, 3) centre minus start, an integer multiple of ``unit``; zero along the normal.
+        clockwise: (n,) whether they run clockwise, G2.
+        sayable: (n,) whether the text reproduces the arc.
     """
 
     row: Array
@@ -43,12 +43,12 @@ class WrittenArcs:
 
 
 def written_arcs(program: Program, unit: float, may_turn: bool) -> WrittenArcs:
-    """How the arcs of a program read in text.
+    """Express the arcs of a program in text.
 
     Args:
         program: any.
-        unit: the last decimal of the text, mm.
-        may_turn: whether the tool axis can be said along with an arc.
+        unit: resolution of the text, mm.
+        may_turn: whether tool axis words can accompany an arc.
     """
     row = np.flatnonzero(program.kind == Kind.ARC)
     row = row[row > 0]
@@ -75,7 +75,7 @@ def written_arcs(program: Program, unit: float, may_turn: bool) -> WrittenArcs:
 
 
 def _fitting(start: Array, end: Array, centre: Array, across: Array, unit: float) -> Array:
-    """Centres moved along the chord until they are as far from the end as from the start, where rounding cost that."""
+    """Shift centres along the chord to restore equal start and end radii after rounding."""
     chord = np.where(across, end - start, 0.0)
     middle = np.where(across, (start + end) / 2 - centre, 0.0)
     square = dot(chord, chord)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The forms of G-code that a program can be written in, and the words by which each says the tool axis.
+"""The forms of G-code that a program can be written in, and the tool axis words of each.
 
-Unit tool axes in {C} enter, columns of words leave: components of the vector, or angles in degrees under a kinematic,
-chosen so that they go on from row to row. The formulas are those of ``axes.py``, the other way round. Where angles that
-go evenly from row to row lead a control off the great circle between two tool axes, it is told how far.
+Enters: unit tool axes in {C}. Leaves: columns of words: vector components, or angles in degrees under a kinematic,
+continuous from row to row. The formulas invert those of ``axes.py``. Where linear interpolation of the angles leaves
+the great circle between two tool axes, the deviation is reported.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from pkm_post.geometry import along, angle_between, towards, untwisted
 from pkm_post.model.program import Array
 
 POLE = 2e-6
-"""rad: a tool axis nearer to +z or -z does not turn C. Vectors with six decimals have no direction within this."""
+"""rad: a tool axis closer to +z or -z does not rotate C. Vectors with six decimals have no azimuth within this."""
 
 
 SWING = np.radians(0.1)
-"""rad that the tool axis may leave the great circle between two rows before it is told."""
+"""Deviation of the tool axis from the great circle between two rows, rad, above which it is reported."""
 
 _LOOKED_AT = (0.25, 0.5, 0.75)
-"""Parts of a move where its tool axis is compared with the great circle."""
+"""Fractions of a move at which its tool axis is compared with the great circle."""
 
 
 class Form(Enum):
-    """How the tool axis is said; the values are what people type."""
+    """Tool axis notation; the values are those of the command line."""
 
     VECTOR = "vector"
     """I J K after G43.5."""
@@ -41,18 +41,18 @@ class Form(Enum):
     LINUXCNC = "linuxcnc"
     """A B C of LinuxCNC's hexapod: R = Rz(C) Ry(B) Rx(A) takes z to k, with the spin of the program."""
     PLAIN = "3axis"
-    """No words: the tool axis is upright on every row."""
+    """No words: the tool axis is vertical on every row."""
 
 
 @dataclass(frozen=True)
 class AxisWords:
-    """What a form writes for the tool axis.
+    """Tool axis words of a form.
 
     Attributes:
         letters: of the words.
-        follows: the code that switches tool length compensation on.
-        as_vector: whether the words are said all or none, and not at all with an arc, where they are its centre.
-        values: from (N, 3) unit axes and (N,) spins to (N, len(letters)) words.
+        follows: the code that enables tool length compensation.
+        as_vector: whether the words are written all or none, and never with an arc, where they are its centre.
+        values: maps (N, 3) unit axes and (N,) spins to (N, len(letters)) words.
     """
 
     letters: str
@@ -70,7 +70,7 @@ def _nothing(axis: Array, spin: Array) -> Array:
 
 
 def _ac(axis: Array, spin: Array) -> Array:
-    # k = (sin A sin C, -sin A cos C, cos A): C is a quarter turn ahead of the azimuth of k.
+    # k = (sin A sin C, -sin A cos C, cos A): C leads the azimuth of k by a quarter turn.
     return _head(axis, np.pi / 2)
 
 
@@ -79,10 +79,10 @@ def _bc(axis: Array, spin: Array) -> Array:
 
 
 def _head(axis: Array, lead: float) -> Array:
-    """Tilt and turn of a head in degrees, (N, 2), with C unbroken.
+    """Tilt and rotation of a head in degrees, (N, 2), with continuous C.
 
-    An axis has two answers, (tilt, C) and (-tilt, C + half a turn). The one whose C is nearer to the row before is
-    taken: through the pole the tilt changes its sign and C goes on.
+    An axis has two solutions, (tilt, C) and (-tilt, C + half a turn). The one whose C is closer to the previous row is
+    chosen: through the pole the tilt changes sign and C is continuous.
     """
     level = np.hypot(axis[:, 0], axis[:, 1])
     azimuth = _filled(np.arctan2(axis[:, 1], axis[:, 0]), level < POLE)
@@ -93,10 +93,10 @@ def _head(axis: Array, lead: float) -> Array:
 
 
 def _filled(azimuth: Array, at_pole: Array) -> Array:
-    """Azimuths with those at the pole filled in from their neighbours.
+    """Fill in azimuths at the pole from their neighbours.
 
-    The first row of a stretch at the pole keeps the azimuth before it, its others have the one after it: where C must
-    turn, it turns while the tool stands upright.
+    The first row of a stretch at the pole keeps the azimuth before it, the others take the one after it: a necessary
+    rotation of C happens while the tool is vertical.
     """
     known = np.flatnonzero(~at_pole)
     if not len(known):
@@ -127,15 +127,15 @@ FORMS: dict[Form, AxisWords] = {
 
 
 def swings(axis: Array, spin: Array, form: Form) -> Array:
-    """How far angles that go evenly from row to row lead the tool axis off its great circle, (N,), rad.
+    """Deviation of the tool axis from its great circle under linear interpolation of the angles, (N,), rad.
 
-    Row i holds that of the move to it. It is 0 for forms that have no angles, and measured where both ways have done
-    the same part, so a lag counts as well.
+    Row i holds the deviation of the move to it. It is 0 for forms without angles, and is measured at equal fractions of
+    both motions, so lag counts as well.
 
     Args:
         axis: (N, 3) unit tool axes.
-        spin: (N,) turns about them, rad, or NaN.
-        form: how they are said.
+        spin: (N,) rotations about them, rad, or NaN.
+        form: tool axis notation.
     """
     swing = np.zeros(len(axis))
     words = FORMS[form]
@@ -156,7 +156,7 @@ _LEVEL, _UPSIDE_DOWN = "the tool axis is {:.6f} deg from upright", "the tool axi
 
 
 def impossible_axis(axis: Array, form: Form) -> tuple[int, str, str] | None:
-    """The first row whose tool axis a form cannot say, with the code of the fault and what was found; or None."""
+    """The first row whose tool axis a form cannot express, with the fault code and what was found; or None."""
     if form is Form.PLAIN:
         level = np.hypot(axis[:, 0], axis[:, 1])
         tilted = np.flatnonzero((level > POLE) | (axis[:, 2] < 0))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Blocks as text: columns of words and codes become lines.
+"""Blocks as text: format columns of words and codes as lines.
 
 Rows with the same words and codes share one template. The templates of some thousand rows are joined and filled with
-all their numbers at once, so that no Python runs for a single block. Every number has all its decimals, and so a point:
-some controls take a number without one for thousandths.
+all their numbers at once, so no Python code runs per block. Every number has all its decimals, and so a point: some
+controls read a number without one as thousandths.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ def block_texts(words: list[Word], codes: Codes, between: Mapping[int, str]) -> 
     """The text of all blocks, in pieces.
 
     Args:
-        words: in the order of the text.
-        codes: before the words, with P after that of the path and D after that of the compensation.
-        between: whole lines before some rows.
+        words: in text order.
+        codes: written before the words, with P after the path code and D after the compensation code.
+        between: whole lines to insert before some rows.
     """
     columns = [codes.tolerance, codes.diameter, *words]
     templates, of_row = _templates(columns, codes)
@@ -43,7 +43,7 @@ def block_texts(words: list[Word], codes: Codes, between: Mapping[int, str]) -> 
 
 
 def _templates(columns: list[Word], codes: Codes) -> tuple[Array, Array]:
-    """The distinct templates, and for each row (N,) which one is its own."""
+    """The distinct templates, and the template index of each row, (N,)."""
     radices = [len(TEXTS[group]) for group in Codes.ORDER] + [2] * len(columns)
     digits = [getattr(codes, group) for group in Codes.ORDER] + [word.said for word in columns]
     key = np.zeros(len(codes.motion), dtype=np.int64)
@@ -64,7 +64,7 @@ def _template(key: int, radices: list[int], columns: list[Word]) -> str:
         for word, said in zip(columns, digits[len(Codes.ORDER) :], strict=True)
     ]
     parts = [code["plane"], code["side"], diameter, code["motion"], *words]
-    if tolerance:  # in a line by itself: P has a meaning with other codes as well
+    if tolerance:  # on a separate line: other codes use P as well
         return f"{code['path']} {tolerance}\n" + _line(parts)
     return _line([code["path"], *parts])
 

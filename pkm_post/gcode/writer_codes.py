@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Codes of the blocks that say a program: corners, plane, cutter compensation and motion, where they change.
+"""Codes of the written blocks: path mode, plane, cutter compensation and motion, where they change.
 
-A ``Program`` whose arcs can be said enters; columns of places in the table ``TEXTS`` leave, with the words P and D that
-go with codes.
+Enters: a ``Program`` whose arcs can be expressed. Leaves: columns of indices into the table ``TEXTS``, with the words P
+and D of the codes.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from pkm_post.model import Program
 from pkm_post.model.program import Array
 
 _FINER = 2
-"""More decimals of a tolerance than of coordinates: it may be smaller than their last one."""
+"""Extra decimals of a tolerance: it may be smaller than the resolution of coordinates."""
 _BLEND = 1
-"""The place of G64, which is in force at the beginning, in ``TEXTS``."""
+"""Index in ``TEXTS`` of G64, which is active at program start."""
 
 
 @dataclass(frozen=True)
 class Codes:
-    """Codes of each row by their place in ``TEXTS``, (N,) each.
+    """Codes of each row as indices into ``TEXTS``, (N,) each.
 
     Attributes:
         path: rounded corners, exact stop or exact path.
         plane: of arcs and of cutter compensation.
         side: cutter compensation.
-        motion: how the row gets to its end.
+        motion: motion code of the row.
         tolerance: the word that goes with ``path``.
         diameter: the word that goes with ``side``.
     """
@@ -43,30 +43,30 @@ class Codes:
     tolerance: Word
     diameter: Word
 
-    # The plane is chosen before compensation begins, which then holds it.
+    # The plane is selected before compensation starts and is then locked.
     ORDER = ("path", "plane", "side", "motion")
 
 
 TEXTS: dict[str, tuple[str, ...]] = {
     "path": ("", "G64", "G61", "G61.1"),
     "plane": ("", "G19", "G18", "G17"),
-    # LinuxCNC refuses a compensation that starts while another one is on.
+    # LinuxCNC refuses to start compensation while it is already active.
     "side": ("", "G40", "G41.1", "G42.1", "G40\nG41.1", "G40\nG42.1"),
     "motion": ("", "G0", "G1", "G2", "G3"),
 }
-"""For each group of codes its texts; the first one stands for no code."""
+"""Texts of each code group; the first one means no code."""
 
 _XY = 2
-"""The plane that is in force at the beginning, by its normal."""
+"""The active plane at program start, by its normal."""
 
 
 def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple[int, int]) -> Codes:
-    """The codes of all rows, as ``words_of`` gives the words.
+    """The codes of all rows; ``words_of`` returns the words.
 
     Args:
-        program: its arcs can all be said.
-        arcs: how its arcs are said.
-        numbers: how numbers are written.
+        program: a program whose arcs can all be expressed.
+        arcs: its written arcs.
+        numbers: number format.
         exact: the codes of exact stop and exact path, in tenths.
     """
     always, restart = np.ones(len(program), dtype=np.bool_), tool_changes(program)
@@ -77,7 +77,7 @@ def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple
     rows = np.flatnonzero(needs_plane)
     new_plane = scattered(rows, changed(plane[rows], _XY), len(program))
 
-    # A change of plane under a compensated path ends the compensation, and it begins again.
+    # A change of plane during compensation ends the compensation and restarts it.
     was_on = np.append(False, compensated[:-1])[: len(program)]
     new_side = changed(diameter, 0.0) | (compensated & was_on & new_plane)
     side = np.where(compensated, np.where(diameter > 0, 2, 3) + 2 * was_on, 1)
@@ -96,7 +96,7 @@ def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple
 
 
 def _path(program: Program, numbers: Numbers, exact: tuple[int, int]) -> tuple[Array, Word]:
-    """The code for corners by its place in ``TEXTS``, and P with it; both where one of them is new."""
+    """The path mode code as index into ``TEXTS``, and its P; both are written where either changes."""
     stop, path = (TEXTS["path"].index(f"G{code / 10:g}") for code in exact)
     code = np.select([program.exact_stop, program.exact_path], [stop, path], _BLEND)
     decimals = numbers.decimals + _FINER

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What stands between the blocks of a written program: heading, comments, and a line for each event.
+"""Lines between the blocks of a written program: heading, comments, and one line per event.
 
-A ``Program`` enters, lines leave, by the row that they stand before. Dwells in s, spindle in revolutions a minute.
+Enters: a ``Program``. Leaves: lines by the row that follows them. Dwells in s, spindle in revolutions per minute.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ _MODES = "{unit} G17 G90 G94 G40 G49 G80 G64\n"
 _COOLANT = {0: "M9", 1: "M8", 2: "M7"}
 _STOP = {0: "M0", 1: "M1"}
 _AT_TIP = ("G43.4", "G43.5")
-"""Codes that must be cancelled before a tool change."""
+"""Tip control codes to cancel before a tool change."""
 _LONGEST_COMMENT = 200
 """Characters; LinuxCNC reads lines of 255."""
 
 
 def heading(program: Program, form: Form, inch: bool) -> str:
-    """The lines before the first block: where it comes from, the tools, the modes."""
+    """The lines before the first block: source, tools, modes."""
     tools = [program.tools[number] for number in sorted(program.tools)]
     lines = [
         _comment(f"from {program.source}"),
@@ -43,7 +43,7 @@ def heading(program: Program, form: Form, inch: bool) -> str:
 
 
 def between_blocks(program: Program, form: Form) -> dict[int, str]:
-    """Whole lines by the row they stand before; those by the number of rows stand after the last one."""
+    """Whole lines by the row that follows them; the row count as key places lines after the last row."""
     lines: dict[int, str] = {}
     for row in _first_rows(program):
         lines[row] = _comment(f"operation: {program.operations[program.operation[row]]}")
@@ -54,7 +54,7 @@ def between_blocks(program: Program, form: Form) -> dict[int, str]:
 
 
 def _first_rows(program: Program) -> list[int]:
-    """Rows where another operation begins."""
+    """First rows of operations."""
     changes = np.append(True, np.diff(program.operation) != 0)[: len(program)]
     rows: list[int] = np.flatnonzero(changes).tolist()
     return rows
@@ -77,17 +77,17 @@ def _spindle(speed: float) -> str:
 _EVENTS: dict[EventKind, Callable[[float], str]] = {
     EventKind.SPINDLE: _spindle,
     EventKind.COOLANT: lambda value: _COOLANT[int(value)] + "\n",
-    EventKind.DWELL: lambda seconds: f"G4 P{seconds:.4f}\n",  # without a point some controls take it for ms
+    EventKind.DWELL: lambda seconds: f"G4 P{seconds:.4f}\n",  # without a point some controls read it as ms
     EventKind.STOP: lambda value: _STOP[int(value)] + "\n",
 }
 
 
 def _short(value: float) -> str:
-    """A number with up to four decimals, without zeros at the end."""
+    """A number with up to four decimals, without trailing zeros."""
     return f"{value:.4f}".rstrip("0").rstrip(".")
 
 
 def _comment(text: str) -> str:
-    """A comment that every control reads: ASCII, one line, not too long, no parentheses within."""
+    """A comment that every control accepts: ASCII, one line, limited length, no nested parentheses."""
     plain = text[:_LONGEST_COMMENT].translate({ord("("): "[", ord(")"): "]"}).encode("ascii", "replace").decode("ascii")
     return "(" + "".join(character if character.isprintable() else " " for character in plain) + ")\n"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words of the blocks that say a program: their rounded values, and on which rows they are written.
+"""Words of the written blocks: their rounded values, and the rows on which they are written.
 
-A ``Program`` whose arcs can be said enters; columns leave, lengths in the unit of the text, angles in degrees, feeds a
-minute. A word is written where its rounded value is another than the last one written, and anew after a tool change, so
-that work can begin there.
+Enters: a ``Program`` whose arcs can be expressed. Leaves: columns, lengths in the unit of the text, angles in degrees,
+feeds per minute. A word is written where its rounded value differs from the last one written, and again after a tool
+change, so a program can be restarted there.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ FEED_DECIMALS = 3
 
 @dataclass(frozen=True)
 class Numbers:
-    """How numbers are written.
+    """Number format.
 
     Attributes:
         decimals: of lengths.
         axis_decimals: of vectors and of angles in degrees.
-        scale: mm in the unit of length of the text.
+        scale: mm per length unit of the text.
     """
 
     decimals: int
@@ -37,7 +37,7 @@ class Numbers:
 
     @property
     def unit(self) -> float:
-        """The last decimal of lengths, mm."""
+        """Resolution of lengths, mm."""
         return self.scale * 10.0**-self.decimals
 
 
@@ -47,9 +47,9 @@ class Word:
 
     Attributes:
         letter: of the word.
-        decimals: that it is written with.
+        decimals: number of decimals written.
         values: (N,) rounded to these decimals.
-        said: (N,) whether it is written.
+        said: (N,) whether the word is written.
     """
 
     letter: str
@@ -59,13 +59,13 @@ class Word:
 
 
 def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers: Numbers) -> list[Word]:
-    """The words of all rows but those that go with codes, in the order of the text.
+    """The words of all rows except those that accompany codes, in text order.
 
     Args:
-        program: its arcs can all be said.
-        axis_words: how the tool axis is said.
-        arcs: how its arcs are said.
-        numbers: how numbers are written.
+        program: a program whose arcs can all be expressed.
+        axis_words: tool axis words.
+        arcs: its written arcs.
+        numbers: number format.
     """
     always, restart = np.ones(len(program), dtype=np.bool_), tool_changes(program)
 
@@ -85,25 +85,25 @@ def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers
         _say_together(axes)
     centres = _centres(arcs, numbers, len(program))
     feed = word("F", feed_as_written(program, numbers), FEED_DECIMALS, cutting(program))
-    # A block without a place to go is no motion: it says at least where it stays.
+    # A block without coordinates is not a motion: write at least the unchanged position.
     tips[0].said[~np.any([one.said for one in (*tips, *axes, *centres)], axis=0)] = True
     return [*tips, *axes, *centres, feed]
 
 
 def feed_as_written(program: Program, numbers: Numbers) -> Array:
-    """Feeds in the unit of the text a minute, rounded as F is, (N,)."""
+    """Feeds in text units per minute, rounded like F, (N,)."""
     return rounded(program.feed * (60 / numbers.scale), FEED_DECIMALS)
 
 
 def _say_together(words: list[Word]) -> None:
-    """Write all words of a vector where one of them is new: some controls take a missing one for zero."""
+    """Write all words of a vector where any of them changes: some controls read a missing one as zero."""
     together = np.any([word.said for word in words], axis=0)
     for word in words:
         word.said[:] = together
 
 
 def _centres(arcs: WrittenArcs, numbers: Numbers, count: int) -> list[Word]:
-    """I J K of arcs: both coordinates of their plane, always."""
+    """I J K of arcs: always both coordinates of their plane."""
     offset = rounded(arcs.offset / numbers.scale, numbers.decimals)
     return [
         Word(
