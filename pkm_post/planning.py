@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planning: from a trajectory to tool poses by time, and from those to strut motion.
+"""Planning: from a trajectory to tool poses in time, and from those to strut motion.
 
-What the planner needs of the machine is computed first, as arrays along the path: the planner sees no machine and
-kinematics sees no planner. This module brings the two together.
+Machine limits are first computed as arrays along the path: the planner is independent of the machine, and kinematics
+is independent of the planner. This module connects the two.
 """
 
 from __future__ import annotations
@@ -42,29 +42,29 @@ from pkm_post.workers import workers
 _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
 _WINDOWS_MS = (4, 8, 16, 32, 64, 128)
-"""Windows of time that are tried for a plan with a limit of jerk; the one with the shortest motion is taken."""
+"""Averaging windows to try for a plan with a jerk limit; the one with the shortest motion is used."""
 LONGEST_MOTION = 7 * 86_400.0
-"""s: a week, which has five million points and more."""
+"""s: a week, which amounts to five million points and more."""
 _MOST_ROUNDS = 8
-"""How often a motion is planned once more, slower, for its controller; the certificate refuses what is left."""
+"""Most rounds of slower planning for the controller; the certificate refuses what remains."""
 _STATIONS_AT_ONCE = 4096
-"""Stations in one pass: what is computed for them stays in the processor's cache."""
+"""Stations in one pass: their working arrays stay in the processor's cache."""
 _KNOTS_AT_ONCE = 4096
-"""Knots whose poses are computed in one pass: their derivatives take more memory than what is kept."""
+"""Knots in one pass: the derivatives of their poses take more memory than the result."""
 _MARKS_AT_ONCE = 512
-"""Marks of a stretch of the motion, about a minute, whose points are looked for by themselves."""
+"""Marks in a stretch of the motion, about a minute, whose knots are determined separately."""
 
 
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
-    """The path with rounded corners that the tool will follow."""
+    """The path with rounded corners that the tool follows."""
     return ToolPath.of(trajectory, _for_corners(trajectory, tolerances.tip), _FOR_CORNERS * tolerances.axis)
 
 
 def _for_corners(trajectory: Trajectory, asked: float) -> Array:
-    """How far the tip may leave each segment at corners, (N,) mm.
+    """Corner tolerance of the tip on each segment, (N,) mm.
 
-    Where the program allows more than was asked for, corners get all of what is more: cubics and decimals keep to
-    what was asked for.
+    Where the program allows more than requested, corners get all of the excess: cubics and decimals keep to the
+    requested tolerance.
     """
     allowed = trajectory.tip_tolerances(asked)
     tight = np.minimum(allowed, asked)
@@ -74,11 +74,11 @@ def _for_corners(trajectory: Trajectory, asked: float) -> Array:
 def plan_feed(
     path: ToolPath, trajectory: Trajectory, machine: Machine
 ) -> tuple[Schedule | None, tuple[Diagnostic, ...]]:
-    """When the tool is where on the path, None if that takes too long; and what of the path the machine cannot reach.
+    """The schedule of a path, None if the motion takes too long; and diagnostics of unreachable poses.
 
     Args:
         path: the path with rounded corners.
-        trajectory: names the places of faults.
+        trajectory: provides the places of faults.
         machine: geometry and limits.
     """
     most = PathBounds.of(path)
@@ -91,7 +91,7 @@ def plan_feed(
 
 
 class _TooLongError(Exception):
-    """A motion takes longer than can be planned: how long, and the segment that takes the most of it."""
+    """A motion takes longer than can be planned: its duration, and the segment that takes longest."""
 
     def __init__(self, seconds: float, segment: int) -> None:
         self.seconds, self.segment = seconds, segment
@@ -99,10 +99,10 @@ class _TooLongError(Exception):
 
 
 def _schedule(path: ToolPath, machine: Machine, most: PathBounds) -> Schedule:
-    """When the tool is where on a path with these bounds.
+    """The schedule of a path with these bounds.
 
     Raises:
-        _TooLongError: the points that its motion needs are more than there is memory for.
+        _TooLongError: the motion needs more points than fit into memory.
     """
     if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
         return _without_jumps(path, machine)
@@ -115,8 +115,8 @@ def _schedule(path: ToolPath, machine: Machine, most: PathBounds) -> Schedule:
 
 
 def _check_duration(s: Array, square: Array, marks: Stations) -> None:
-    """Refuse a motion that takes too long, before anything as long as it is made."""
-    with np.errstate(divide="ignore", over="ignore"):  # a speed squared may be too small for a number
+    """Refuse a motion that takes too long, before arrays of its length are allocated."""
+    with np.errstate(divide="ignore", over="ignore"):  # a speed squared may underflow
         times = cell_times(s, square)
         seconds = float(times.sum())
     if not seconds <= LONGEST_MOTION:
@@ -126,7 +126,7 @@ def _check_duration(s: Array, square: Array, marks: Stations) -> None:
 
 
 def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
-    """The way through stations, straight from one to the next; and the segments they lie on."""
+    """The pose path through stations, straight from one to the next; and their segments."""
 
     def seen(rows: slice) -> tuple[Array, ...]:
         found = glimpse_within(path, marks.segment[rows], marks.u[rows])
@@ -136,7 +136,7 @@ def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
 
 
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
-    """The schedule for a machine with limits of jerk."""
+    """The schedule for a machine with jerk limits."""
     marks = stations(path)
     poses = path.within(marks.segment, marks.u)
     bounded = bounded_by(machine, poses)
@@ -152,7 +152,7 @@ def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
 
 
 def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Array, Array, Array]]:
-    """How long the motion takes under ceilings that were made for a window, s; the window; and its course."""
+    """The duration of the motion under ceilings made for a window, s; the window; and the feed profile."""
     square = speed_profile(ceilings.s, ceilings.square, ceilings.along)
     runs = int(ceilings.rest.sum()) - 1
     duration = float(cell_times(ceilings.s, square).sum()) + runs * window_ms / 1000
@@ -162,16 +162,16 @@ def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Arr
 def interpolate(
     path: ToolPath, schedule: Schedule, events: tuple[Event, ...], machine: Machine, tolerances: Tolerances
 ) -> Motion:
-    """Tool poses at the whole milliseconds that the controller is given points for.
+    """Tool poses at the knots, the whole milliseconds at which the controller gets points.
 
-    Where the controller does not take points so fast, the motion is planned once more, with a lower feed there.
+    Where points exceed the block rate of the controller, the motion is replanned with a lower feed.
 
     Args:
         path: the path with rounded corners.
-        schedule: when the tool is where.
-        events: what happens, by trajectory row.
-        machine: decides how far the controller's cubics stray between two points.
-        tolerances: what was asked for.
+        schedule: position along the path by time.
+        events: auxiliary instructions by trajectory row.
+        machine: determines how far the controller's cubics deviate between two points.
+        tolerances: the requested tolerances.
     """
     motion, factor = _interpolated(path, schedule, events, machine, tolerances)
     for _ in range(_MOST_ROUNDS):
@@ -189,7 +189,7 @@ def interpolate(
 def _interpolated(
     path: ToolPath, schedule: Schedule, events: tuple[Event, ...], machine: Machine, tolerances: Tolerances
 ) -> tuple[Motion, Array]:
-    """The motion of a schedule; and by what factor the controller wants segments to be slower, (N,)."""
+    """The motion of a schedule; and the speed factors of segments that the controller requires, (N,)."""
     marks, shortest = even_marks(schedule.rests_ms), machine.shortest_interval
     stretches = [marks[first : first + _MARKS_AT_ONCE + 1] for first in range(0, len(marks) - 1, _MARKS_AT_ONCE)]
 
@@ -226,9 +226,9 @@ def _interpolated(
 
 
 def _too_coarse(found: Array, cubics: Cubics, shortest: int) -> Array:
-    """Starts and ends of intervals that the controller does not take shorter and that are not good enough, (2, R) ms.
+    """Starts and ends of intervals that cannot be cut for the controller but are out of tolerance, (2, R) ms.
 
-    Of one millisecond there is nothing shorter.
+    Intervals of one millisecond are exempt, as nothing is shorter.
     """
     start, end = found[:-1], found[1:]
     rows = np.flatnonzero((end - start < 2 * shortest) & (end - start > 1))
@@ -237,7 +237,7 @@ def _too_coarse(found: Array, cubics: Cubics, shortest: int) -> Array:
 
 
 def _slower(motion: Motion, coarse: Array, block_rate: float) -> Array:
-    """By what factor each segment is to be slower for the controller, (N,)."""
+    """Speed factors of segments for the controller, (N,)."""
     factor = factors_of_crowds(motion.time_ms, motion.segment, block_rate, len(motion.joint_time))
     begin, end = (np.searchsorted(motion.joint_time, ms / 1000) for ms in coarse)
     for first, last in zip(begin, np.minimum(end, len(factor) - 1), strict=True):
@@ -246,7 +246,7 @@ def _slower(motion: Motion, coarse: Array, block_rate: float) -> Array:
 
 
 def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> tuple[Event, ...]:
-    """Events by the knot at which they happen, a rest each, instead of the row of the trajectory."""
+    """Events by knot, each at a rest, instead of by trajectory row."""
     rest_of_row = np.searchsorted(schedule.rest_joints, [event.row for event in events])
     knot = np.searchsorted(time_ms, schedule.rests_ms[rest_of_row])
     return tuple(Event(int(row), event.kind, event.value) for row, event in zip(knot, events, strict=True))
