@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Speed limits: how fast a machine may run a path at its stations, computed only where it may matter.
+"""Speed limits: limits of a machine along a path at its stations, computed only where they may matter.
 
-What a segment is made of bounds the derivatives on it, and these bound what the machine has to do. A plan under such
-rough limits is allowed under the true ones, so that the true plan is nowhere below it: where the rough plan runs at the
-feed, so does the true one, and nothing finer is computed there. Enters: a path and a machine. Leaves: the segments to
-look at closely, and at stations the highest speed squared and acceleration along the path, mm and s.
+The parameters of a segment bound its derivatives, and these bound the demand on the machine. A plan under such rough
+limits is also valid under the exact ones, so the exact plan is nowhere slower: where the rough plan runs at the feed,
+so does the exact one, and finer limits are not computed. Enters: a path and a machine. Leaves: the segments that need
+exact limits, and at stations the highest speed squared and acceleration along the path, mm and s.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from pkm_post.kinematics import strut_rate_bounds, strut_rates
 from pkm_post.model import Machine, Poses
 
 _SPEED_SHARE = 0.95
-"""Share of the speeds of struts and tool axis that is planned: the controller's cubics swing a little about it."""
+"""Share of the speeds of struts and tool axis that is planned: the controller's cubics oscillate slightly about it."""
 _TIP_SHARE = 0.98
-"""Share of the acceleration of the tip that is planned: the cubics take a little more, up to ``ROUNDED_SHARE``."""
+"""Share of the tip acceleration that is planned: the cubics take slightly more, up to ``ROUNDED_SHARE``."""
 _AT_FEED = 1e-6
-"""Part of the speed squared by which a plan at the feed may be below it by rounding."""
+"""Share of the speed squared by which rounding may put a plan at the feed below it."""
 _LONGER = 1.002
-"""By how much the tip may go farther than the path length and count as going as far: the certificate allows 1.01."""
+"""Factor by which the tip may travel farther than the path length without a lower feed; the certificate allows 1.01."""
 _STRAIGHT = 0.01, 1e-4
-"""mm and rad: by how much a path may leave its segments in blends and still be taken as straight between its joints."""
+"""mm and rad: deviation from the segments in blends up to which a path counts as straight between its joints."""
 _STATIONS_AT_ONCE = 4096
-"""Stations in one pass: what is computed for them stays in the processor's cache."""
+"""Stations in one pass: their working arrays stay in the processor's cache."""
 
 Pair = tuple[Array, Array]
 
 
 def bent(path: ToolPath, most: PathBounds) -> Array:
-    """Segments that the path leaves so far in blends that it is not straight between its joints, (N,).
+    """Segments whose blends deviate too far for the path to count as straight between its joints, (N,).
 
-    A blend of the half width d and the curvature c at its joint leaves the segments by c d^2 / 4.
+    A blend of half width d and curvature c at its joint leaves the segments by c d^2 / 4.
     """
     square = np.maximum(path.blend[1:], path.blend[:-1]) ** 2 / 4
     tip, axis = _STRAIGHT
@@ -43,7 +43,7 @@ def bent(path: ToolPath, most: PathBounds) -> Array:
 
 
 def below_feed(path: ToolPath, square: Array, along: Array) -> Array:
-    """Segments on which the plan may be below the feed, (N,), by rough limits of each segment, (N,)."""
+    """Segments on which the plan may be below the feed, (N,), from rough limits of each segment, (N,)."""
     joint_square, joint_along = (
         np.concatenate([one[:1], np.minimum(one[1:], one[:-1]), one[-1:]]) for one in (square, along)
     )
@@ -53,15 +53,15 @@ def below_feed(path: ToolPath, square: Array, along: Array) -> Array:
 
 
 def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machine: Machine) -> Pair:
-    """Highest speed squared and acceleration at stations, (M,) each: true ones on close segments, else rough ones.
+    """Highest speed squared and acceleration at stations, (M,) each: exact on close segments, else rough.
 
-    Where a close segment meets another one, the rough limits hold.
+    Where a close segment meets one that is not, the rough limits apply.
 
     Args:
         path: N segments.
-        marks: all stations of close segments, and of others at least their joints.
-        close: (N,) which segments are looked at closely.
-        rough: limits of speed squared and acceleration that hold all over each segment, (N,) each.
+        marks: all stations of close segments, and at least the joints of the others.
+        close: (N,) which segments get exact limits.
+        rough: limits of speed squared and acceleration that hold on the whole of each segment, (N,) each.
         machine: the limits.
     """
     following = _following(path, marks.segment, marks.u)
@@ -69,7 +69,7 @@ def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machin
     inner = close[marks.segment] & close[following]
     rows = np.flatnonzero(close[marks.segment] | close[following])
     for first in range(0, len(rows), _STATIONS_AT_ONCE):
-        # with the neighbours of the block, whose curvature counts
+        # includes the neighbours of the block, whose curvature matters
         begin = max(first - 1, 0)
         block = rows[begin : first + _STATIONS_AT_ONCE + 1]
         segment, u = marks.segment[block], marks.u[block]
@@ -83,11 +83,11 @@ def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machin
 
 
 def feed_at(path: ToolPath, poses: Poses, u: Array) -> Array:
-    """Feed by path length at stations, (M,); at a joint the lower one of its two segments.
+    """Feed by path length at stations, (M,); at a joint the lower feed of its two segments.
 
     Args:
         path: the path.
-        poses: those at the stations.
+        poses: poses at the stations.
         u: (M,) path lengths of the stations on their segments.
     """
     lower = np.minimum(path.feed[poses.segment], path.feed[_following(path, poses.segment, u)])
@@ -95,28 +95,28 @@ def feed_at(path: ToolPath, poses: Poses, u: Array) -> Array:
 
 
 def rough_feed(path: ToolPath, most: PathBounds) -> Array:
-    """Feed by path length that is allowed all over each segment, (N,)."""
+    """Feed by path length that is allowed on the whole of each segment, (N,)."""
     return _of_tip(path.feed, most.tip_1)
 
 
 def _of_tip(feed: Array, way: Array) -> Array:
-    """Speeds by path length where the tip goes by more than that: in blends with arcs."""
+    """Feed by path length, lowered where the tip travels farther than the path length: in blends with arcs."""
     return feed / np.maximum(1.0, way / _LONGER)
 
 
 def _following(path: ToolPath, segment: Array, u: Array) -> Array:
-    """The segment behind each station, (M,): the next one at a joint, else its own."""
+    """The segment after each station, (M,): the next one at a joint, else its own."""
     return np.minimum(segment + (u == path.segments.extent[segment]), len(path.feed) - 1)
 
 
 def bounded_by(machine: Machine, poses: Poses) -> tuple[Bounded, ...]:
-    """What a machine limits, at poses with derivatives by path length."""
+    """The quantities that a machine limits, at poses with derivatives by path length."""
     _, first, second = strut_rates(machine, poses)
     return _limited(machine, (first, second), (poses.tip_1, poses.tip_2), (poses.axis_1, poses.axis_2))
 
 
 def roughly_bounded(machine: Machine, path: ToolPath, most: PathBounds) -> tuple[Bounded, ...]:
-    """What a machine limits, as the largest sizes on each segment."""
+    """The quantities that a machine limits, as bounds on each segment."""
     tip, axis = (most.tip_1, most.tip_2), (most.axis_1, most.axis_2)
     spin = most.spin_1, most.spin_2
     struts = strut_rate_bounds(machine, tip, axis, spin, most.half_tilt, path.tool_length)
@@ -128,7 +128,7 @@ def _column(sizes: Pair) -> Pair:
 
 
 def _limited(machine: Machine, struts: Pair, tip: Pair, axis: Pair) -> tuple[Bounded, ...]:
-    """What a machine limits, by first and second derivatives by path length."""
+    """The quantities that a machine limits, from first and second derivatives by path length."""
     return (
         Bounded(
             first=struts[0],
