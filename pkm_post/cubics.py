@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cubics: how well what the controller plays between two points follows the plan.
+"""Cubics: how well the controller's interpolation between two points follows the plan.
 
 Enters: path, schedule and machine, then starts and ends of intervals in whole ms. Leaves: the worst of the deviations
-of tip and axis, of speed and acceleration of tip and struts, and of the turning rate, each by what it may be.
+of tip and axis, of speed and acceleration of tip and struts, and of the turning rate, each relative to its limit.
 
-The plan is compared with the cubics of the tool at the joints of the path and between them, without kinematics. What
-the struts' cubics do differently, the drift, is bounded, and where the bound says too little, measured and added.
+The plan is compared with the cubics of the tool at the joints of the path and between them, without kinematics. The
+difference to the struts' cubics, the drift, is bounded; where the bound is too coarse, it is measured and added.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from pkm_post.model import Machine, Poses
 from pkm_post.model.certificate import Tolerances
 
 _SHARE_OF_TOLERANCES = 0.4
-"""What the controller's cubics may use; as much is for corners, the rest for decimals and between the places."""
+"""Share for the controller's cubics; corners get the same, decimals and the gaps between places get the rest."""
 _SPEED_SWING = 0.005
-"""Part of the feed by which the controller's cubics may be faster than it."""
+"""Share of the feed by which the controller's cubics may exceed it."""
 _GAPS = 8
-"""Places are no farther apart than in so many even gaps of an interval."""
+"""Places are no farther apart than this many even gaps of an interval."""
 _LITTLE = 0.1
-"""Part of what the cubics may use: a drift with a bound below it is left to that rest."""
+"""Share of the cubics' tolerance: a drift bounded below it is left to the remaining tolerance."""
 _PLACES_AT_ONCE = 16384
-"""Places looked at in one pass: the working arrays of one pass stay in the processor's cache."""
+"""Places in one pass: the working arrays of one pass stay in the processor's cache."""
 
 _Off = Callable[[Intervals, ToolCubics, Array], Array]
 
 
 def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
-    """Poses by time at whole ms, (N,); on a path with one attitude their second derivatives are left out, zero."""
+    """Poses by time at whole ms, (N,); on a path with constant attitude second derivatives are omitted (zero)."""
     s, speed, acceleration = schedule.at(ms / 1000)
     if path.attitude is None:
         return by_time(path.at(s), speed, acceleration)
@@ -48,22 +48,22 @@ def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
 
 
 class Cubics:
-    """How well the controller's cubics follow the plan in one stretch; what was found at an end of one is kept."""
+    """How well the controller's cubics follow the plan in one stretch; poses at ends of intervals are cached."""
 
     def __init__(
         self, path: ToolPath, schedule: Schedule, machine: Machine, tolerances: Tolerances, marks: Array
     ) -> None:
-        """Of a plan.
+        """Prepare a stretch of a plan.
 
         Args:
             path: the path with rounded corners.
-            schedule: when the tool is where.
+            schedule: position along the path by time.
             machine: the geometry and the limits of its struts.
-            tolerances: what was asked for.
-            marks: (K,) whole ms; the stretch is from the first to the last.
+            tolerances: the requested tolerances.
+            marks: (K,) whole ms; the stretch runs from the first to the last.
         """
         self._path, self._schedule, self._machine, self._tolerances = path, schedule, machine, tolerances
-        said = path.tip_tolerance  # the program may ask for less, not allow more
+        said = path.tip_tolerance  # the program may tighten the tolerance, not widen it
         self._tip_tolerance = np.where(said > 0, np.minimum(said, tolerances.tip), tolerances.tip)
         self._little = _LITTLE * _SHARE_OF_TOLERANCES * self._tip_tolerance.min()
         self._first = marks[0]
@@ -76,9 +76,9 @@ class Cubics:
         self._at_joint = self._plan(joints, path.segments.extent[joints]) if len(joints) else np.empty((6, 0))
 
     def error(self, start: Array, end: Array) -> Array:
-        """What intervals of whole ms, (N,), make of what they may; more than 1 is too much.
+        """Worst value of intervals of whole ms, (N,), relative to its limit; above 1 the interval is too long.
 
-        Of an interval that is too long it is what was seen until that was known.
+        For an interval that is too long it is the value at which the check stopped.
         """
         intervals = Intervals.of(self._schedule.joint_time, start, end)
         cubics = self._tool_cubics(self._rows(start), self._rows(end), intervals.duration)
@@ -89,7 +89,7 @@ class Cubics:
         return worst
 
     def _closely(self, intervals: Intervals, cubics: ToolCubics) -> Array:
-        """What the machine and the places between the joints say of intervals that hold at their joints."""
+        """Check machine limits and the places between joints, for intervals that hold at their joints."""
         demand = self._demand(intervals, cubics)
         feed = np.maximum(self._path.feed[intervals.first], self._path.feed[intervals.last])
         swing = (demand.tip_speed / feed - 1) / _SPEED_SWING
@@ -102,7 +102,7 @@ class Cubics:
         return np.asarray(np.maximum.reduce([demand.limits, swing, off]))
 
     def _in_passes(self, off: _Off, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
-        """What is off in intervals, (N,), some of them at once."""
+        """Deviations of intervals, (N,), computed in blocks."""
         worst, places = np.empty(len(intervals)), np.cumsum(intervals.last - intervals.first + _GAPS)
         bounds = np.flatnonzero(np.diff(places // _PLACES_AT_ONCE, prepend=-1, append=-1))
         for begin, end in itertools.pairwise(bounds):
@@ -111,7 +111,7 @@ class Cubics:
         return worst
 
     def _demand(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
-        """What the machine makes of intervals; a drift that is little counts as none."""
+        """Demand of intervals on the machine; a small drift counts as zero."""
         if self._path.attitude is None:
             return self._measured(intervals, cubics)
         bound = bounded_demand(self._machine, float(self._path.attitude[2][0]), cubics, intervals.duration)
@@ -120,7 +120,7 @@ class Cubics:
         return known.but(rows, self._measured(intervals[rows], cubics[rows])) if len(rows) else known
 
     def _measured(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
-        """The same by the kinematics of both ends and of the middle."""
+        """The same, from the kinematics of both ends and of the middle."""
         ms, row = np.unique(np.concatenate([intervals.start, intervals.end]), return_inverse=True)
         poses = poses_at(self._path, self._schedule, ms)
         ends, (first, last) = Ends.of(self._machine, poses), np.split(row, 2)
@@ -130,7 +130,7 @@ class Cubics:
         return measured_demand(self._machine, ends[first], ends[last], cubics, inside, intervals.duration)
 
     def _off_at_joints(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
-        """The most that is off at joints by what it may be, (N,), with drifts of tip and axis, (2, N)."""
+        """Largest deviation at joints by tolerance, (N,), with drifts of tip and axis, (2, N)."""
         joints = intervals.at_joints(self._schedule.joint_time)
         plan = self._at_joint[:, joints.segment - self._first_joint]
         tolerance = np.minimum(*(self._tip_tolerance[joints.segment + side] for side in (0, 1)))
@@ -145,7 +145,7 @@ class Cubics:
         return places.most(self._off(places, cubics, plan, tolerance, drift), len(intervals))
 
     def _off(self, places: Places, cubics: ToolCubics, plan: Array, tolerance: Array, drift: Array) -> Array:
-        """How far the tool is from the plan at places, (M,), by what it may be there."""
+        """Deviation of the tool from the plan at places by tolerance, (M,)."""
         tool = cubics[places.row].at(places.share)
         tip_drift, axis_drift = drift[:, places.row]
         worst = (length_of(*(tool[:3] - plan[:3])) + tip_drift) / tolerance
@@ -156,19 +156,19 @@ class Cubics:
         return np.asarray(worst / _SHARE_OF_TOLERANCES)
 
     def _plan(self, segment: Array, u: Array) -> Array:
-        """Tip, and where the attitude moves axis, at path lengths u of segments, (3, M) or (6, M)."""
+        """Tip, and axis unless the attitude is constant, at path lengths u of segments, (3, M) or (6, M)."""
         seen = glimpse_within(self._path, segment, u)
         return np.asarray(seen.tip.T if self._path.attitude else np.concatenate([seen.tip.T, seen.axis.T]))
 
     def _tool_cubics(self, first: Array, last: Array, duration: Array) -> ToolCubics:
-        """Between known places, by their rows."""
+        """Cubics between known places, given their rows."""
         begin, end = self._place[:, first], self._place[:, last]
-        if self._path.attitude is None:  # at a tool change the platform stands still: its tip is that of the new tool
+        if self._path.attitude is None:  # at a tool change the platform stands still: take the tip of the new tool
             begin[:3] += (self._tool_length[first] - self._tool_length[last]) * begin[3:6]
         return ToolCubics.between(begin, self._rate[:, first], end, self._rate[:, last], duration)
 
     def _rows(self, ms: Array) -> Array:
-        """The rows of what is known at whole ms, each of them once; what is not known yet is found out."""
+        """Rows of cached places at unique whole ms; missing ones are computed."""
         unknown = ms[self._row[ms - self._first] < 0]
         if len(unknown):
             self._row[unknown - self._first] = len(self._tool_length) + np.arange(len(unknown))
