@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Verify: whether a motion program that lies somewhere still does what a trajectory file says.
+"""Verify: whether an existing motion program still follows its trajectory file.
 
-The text of a program, a trajectory file and a machine enter; the report leaves, as posting would have written it.
-Nothing is planned: what the program does is followed from its lengths and speeds, and compared with the trajectory, so
-that a program holds or does not hold whatever planner has made it.
+Enters: the text of a program, a trajectory file and a machine. Leaves: the report, as posting would have written it.
+Nothing is planned: the motion is reconstructed from the strut lengths and speeds of the program and compared with the
+trajectory, so the verdict does not depend on the planner.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ Texts = Sequence[tuple[str, str]]
 
 
 def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
-    """Certify a program that was written before, and look whether its files are those that were posted together.
+    """Certify an existing program, and check that its files were posted together.
 
     Args:
         program: the motion program, or the first of its parts.
-        trajectory: the trajectory file it was made from; it says what tolerances were asked for.
+        trajectory: the trajectory file it was made from; it states the requested tolerances.
         machine: the machine it was made for.
 
     Returns:
         The report, whose certificate holds, and warnings.
 
     Raises:
-        Refused: a file cannot be read or is faulty, the certificate does not hold, or files are not as their manifest
-            or the heading of the program says.
+        Refused: a file cannot be read or is faulty, the certificate does not hold, or files differ from their manifest
+            or from the heading of the program.
     """
     found, faults = controller_settings(machine)
     if found is None:
@@ -49,7 +49,7 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str,
 
 
 def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
-    """The same of the texts of all parts of a program, by file name, which were read from its files."""
+    """The same for the texts of all parts of a program, by file name, as read from its files."""
     listed = tuple(dict.fromkeys(one for file in (program, trajectory) for one in manifest.check(file)[1]))
     changed = tuple(
         Diagnostic("C109", Place(name), "the lines give another one")
@@ -67,7 +67,7 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
 
 
 def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
-    """The report on a program that holds."""
+    """The report on a program whose certificate holds."""
     planned, faults = trajectory_file.read(trajectory)
     if planned is None:
         raise Refused(faults)
@@ -90,7 +90,7 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
 
 
 def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> None:
-    """Refuse a trajectory of another machine, or one that its machine cannot have been posted for."""
+    """Refuse a trajectory of another machine, or one beyond the limits of the machine."""
     another = machine_fault(planned, machine, name)
     if another:
         raise Refused([another])
@@ -100,7 +100,7 @@ def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> Non
 
 
 def _played(texts: Texts, machine: Machine) -> StrutMotion:
-    """The motion of a program in all its parts."""
+    """The motion of all parts of a program."""
     found, faults = controller_settings(machine)
     if found is None:
         raise Refused(faults)
