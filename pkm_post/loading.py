@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Loading: a program file is read for the controller when its very bytes are certified for this machine.
+"""Loading: read a program file for the controller if its exact bytes are certified for this machine.
 
-The file of a program, or of one of its parts, and a machine enter. What goes to the controller leaves, or why nothing
-does. Bytes are certified when the heading of the program, the report and the manifest beside it and the trajectory file
-agree about them by SHA-256, and about the machine file; else when ``verify`` holds at this moment. Command line, panel
-and macros go through here.
+Enters: the file of a program, or of one of its parts, and a machine. Leaves: the job for the controller, or the reasons
+against it. Bytes are certified if the heading of the program, its report, its manifest and the trajectory file agree on
+their SHA-256 and on the machine file; else if ``verify`` passes now. Command line, panel and macros load programs
+through this module.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Findings = tuple[Diagnostic, ...]
 
 _log = logging.getLogger(__name__)
 _MOST_BYTES = 1 << 28
-"""Of a report that is read."""
+"""Largest report that is read."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Certified:
     """The bytes of a program file that are certified for a machine.
 
     Attributes:
-        text: of the file, with LF at the end of its lines.
-        digest: SHA-256 of it.
-        verified_now: whether they were verified at this moment, as the files beside them did not agree.
+        text: text of the file, with LF line ends.
+        digest: SHA-256 of the text.
+        verified_now: whether it was verified just now, as the accompanying files did not agree.
     """
 
     text: str
@@ -46,14 +46,14 @@ class Certified:
 
 
 def certified(program: Path, machine: Machine) -> tuple[Certified | None, Findings]:
-    """Whether a program file is certified for a machine.
+    """Check whether a program file is certified for a machine.
 
     Args:
-        program: the file of a motion program, or of one of its parts; its other files lie beside it.
-        machine: to run it on.
+        program: the file of a motion program, or of one of its parts; its other files are in the same folder.
+        machine: the machine to run it on.
 
     Returns:
-        Its bytes, or None and why they are not certified.
+        Its bytes, or None and the reasons why they are not certified.
     """
     text, faults = read_text(program)
     return (None, faults) if text is None else _certified(program, text, machine)
@@ -62,13 +62,13 @@ def certified(program: Path, machine: Machine) -> tuple[Certified | None, Findin
 def job_to_load(
     program: Path, machine: Machine, settings: Settings, uncertified: bool = False
 ) -> tuple[Job | None, Findings]:
-    """A program file as what goes to a Turbo PMAC.
+    """Convert a program file to a job for a Turbo PMAC.
 
     Args:
         program: the file of a motion program, or of one of its parts.
-        machine: to run it on.
-        settings: of its controller.
-        uncertified: take it also where nothing shows that it is certified; that is logged, with what stands against it.
+        machine: the machine to run it on.
+        settings: settings of its controller.
+        uncertified: accept it without proof of certification; this is logged with the reasons.
     """
     text, faults = read_text(program)
     if text is None:
@@ -116,13 +116,13 @@ def _certified(program: Path, text: str, machine: Machine) -> tuple[Certified | 
 
 
 def _first_part(program: Path, number: int) -> Path:
-    """The file of the first part, after which the others and the files beside them are named."""
+    """The file of the first part, which names the other parts and the accompanying files."""
     stem = program.stem.removesuffix(f"-part{number}") if number > 1 else program.stem
     return program.with_name(stem + program.suffix)
 
 
 def _reasons(program: Path, text: str, machine: Machine, first: Path, part: tuple[int, int]) -> Iterator[str]:
-    """Why the files do not show by themselves that a program is certified."""
+    """Reasons why the files alone do not prove that a program is certified."""
     seal = program_seal.has_its_seal(text)
     if not seal:
         yield "its heading states no SHA-256" if seal is None else "its heading states another SHA-256"
@@ -159,7 +159,7 @@ def _reasons_of_report(
 
 
 def _json(file: Path) -> Any:
-    """The content of a file of JSON; None where it has none."""
+    """The content of a JSON file; None if it cannot be read."""
     try:
         with file.open("rb") as stream:
             return json.loads(stream.read(_MOST_BYTES))
@@ -168,7 +168,7 @@ def _json(file: Path) -> Any:
 
 
 def _entry(content: Any, *names: str) -> Any:
-    """What is under these names in nested tables; None where nothing is."""
+    """The value under these names in nested tables; None if there is none."""
     for name in names:
         content = content.get(name) if isinstance(content, dict) else None
     return content
