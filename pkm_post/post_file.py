@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post file: from a part program, G-code or CL data, to a certified motion program.
 
-A file and what is chosen for it enter; the files of the pipeline leave. All faults of the file and of the machine file
-are collected before anything is refused. What a part program seldom says is asked for: how long its tools are.
+Enters: a file and its options. Leaves: the files of the pipeline. All faults of the file and of the machine file are
+collected before anything is refused. Tool lengths, which a part program rarely states, are required as options.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from pkm_post.options import (
 from pkm_post.sources import AS_WRITTEN, Reading, read_part_program
 
 _ASKED_FOR = "L411"
-"""The warning that 0 was taken for a gauge length: here each tool needs one, and J113 asks for it."""
+"""The warning that a gauge length defaulted to 0: posting requires one for each tool, and J113 requests it."""
 _NO_LENGTHS: Mapping[int, float] = {}
 
 
@@ -52,15 +52,15 @@ def post_file(
     """Post a part program.
 
     Args:
-        file: G-code or CL data, told apart by what its name ends with.
+        file: G-code or CL data, distinguished by the suffix.
         machine: name of a machine that comes with PKM Post, or path of a machine file.
-        out: folder for the results; their stem is that of the file.
-        options: what the user chose; if nothing, or the fixture of a job, the work offset is G54.
-        tool_lengths: gauge lengths by tool number that go before those of the file, mm.
-        reading: what the file does not say itself.
-        log: takes a line for each step.
-        progress: is told of each step when it begins; what it raises ends the work, and nothing is written.
-        arguments: options as they are typed, or parsed.
+        out: folder for the results, which take the stem of the file.
+        options: the user's choices; without them, or with the fixture of a job, the work offset is G54.
+        tool_lengths: gauge lengths by tool number that override those of the file, mm.
+        reading: what the file does not state itself.
+        log: receives a line for each step.
+        progress: called at the start of each step; an exception from it aborts the run, and nothing is written.
+        arguments: options as typed, or parsed.
 
     Raises:
         Refused: something in the file, the machine file or the folder does not allow it; nothing was written.
@@ -79,7 +79,7 @@ def prepared_file(
     reading: Reading = AS_WRITTEN,
     arguments: str | Given = "",
 ) -> pipeline.Prepared:
-    """A part program with its machine and all that posting needs, and what was found in them; as ``post_file``."""
+    """A part program with its machine and all inputs of posting, and their diagnostics; arguments as ``post_file``."""
     if options is not None and arguments:
         raise ValueError("expected options or arguments, got both")
     given = _given(arguments, Path(file))
@@ -98,10 +98,10 @@ def prepared_file(
 
 
 def _given(arguments: str | Given, file: Path) -> Given:
-    """Options that are typed.
+    """The options given as arguments.
 
     Raises:
-        Refused: they are not understood, J117.
+        Refused: they cannot be parsed, J117.
     """
     try:
         return given_in(typed(arguments)) if isinstance(arguments, str) else arguments
@@ -110,7 +110,7 @@ def _given(arguments: str | Given, file: Path) -> Given:
 
 
 def _said(reading: Reading, chosen: Namespace) -> Reading:
-    """How a file is to be read, by what was typed where it was."""
+    """How to read a file; typed options override ``reading``."""
     typed_ones = part_program_from(chosen, reading.axis_words)
     return replace(reading, **{name: getattr(typed_ones, name) for name in given_in(chosen) if hasattr(reading, name)})
 
@@ -121,7 +121,7 @@ def _with_lengths(program: Program, lengths: Mapping[int, float]) -> Program:
 
 
 def _replaced(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
-    """J125 for each gauge length of the file that another one goes before."""
+    """J125 for each gauge length of the file that is overridden."""
     for number, tool in program.tools.items():
         if tool.length > 0 and lengths.get(number, tool.length) != tool.length:
             told = Override(flag_of("tool_length"), f"{tool.length:.12g} of T{number}", _shown(number, lengths))
@@ -129,7 +129,7 @@ def _replaced(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagno
 
 
 def _unknown(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
-    """J126 for each gauge length whose number the program neither calls nor takes an offset of."""
+    """J126 for each gauge length whose number the program uses neither as a tool nor as an offset."""
     for number in sorted(set(lengths) - {*program.tools, *program.length_offsets}):
         called = ", ".join(f"T{each}" for each in sorted(program.tools))
         told = f"{flag_of('tool_length')} {_shown(number, lengths)}, the program has {called}"
@@ -147,7 +147,7 @@ def _missing_lengths(program: Program) -> Iterator[Diagnostic]:
 
 
 def _at_first_fixture(options: pipeline.Options) -> pipeline.Options:
-    """The options; a part program has no job whose fixture could be meant."""
+    """The options with G54 in place of the fixture of a job, as a part program has no job."""
     if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
         return replace(options, work_offset="G54")
     return options
