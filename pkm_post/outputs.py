@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Outputs: what is written beside a motion program, and files that come in parts.
+"""Outputs: files written beside a motion program, and files in several parts.
 
-Texts enter and are written next to each other; a certified motion becomes a table, a trajectory becomes a program for
-LinuxCNC. Nothing here is certified but what is read back and measured.
+Texts are written side by side; a certified motion becomes a table, a trajectory becomes a program for LinuxCNC. Only
+files that are read back and measured are certified.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from pkm_post.model.columns import pieces
 Findings = tuple[Diagnostic, ...]
 
 _CHARACTERS_AT_ONCE = 1 << 20
-"""Of a text that is written: it need not be there a second time as bytes."""
+"""Characters written at once, which avoids a second copy of the whole text as bytes."""
 _FOR_LINUXCNC = "-linuxcnc.ngc"
 _SETUPS = tuple(controller.SETUP_SUFFIX for controller in CONTROLLERS.values())
 
 
 def left_over(program: Path, names: Collection[str], earlier: Collection[str] = ()) -> Findings:
-    """The warning that files of an earlier result are beside a new one, or nothing.
+    """The warning that files of an earlier result remain beside a new one, or nothing.
 
-    Memory that was smaller made more parts, the program may have had another suffix, and what was wished for beside it
-    may have changed: such files look as if they belonged to the new program.
+    A smaller memory gives more parts, the program may have had another suffix, and the additional files may have
+    changed: leftovers look as if they belonged to the new program.
 
     Args:
         program: path of the motion program.
-        names: the files of its folder that were made with it.
-        earlier: those that were made by the posting before, as its manifest lists them.
+        names: the files of this posting in its folder.
+        earlier: the files of the previous posting, as listed in its manifest.
     """
     endings = (program.suffix, _FOR_LINUXCNC, *_SETUPS, *(table.SUFFIX for table in TABLES.values()))
     kin = re.compile("|".join(_with_parts(program.stem + ending) for ending in endings))
@@ -52,7 +52,7 @@ def _with_parts(name: str) -> str:
 
 
 def write_parts(path: Path, texts: tuple[str, ...]) -> list[str]:
-    """Write the parts of a file; their names."""
+    """Write the parts of a file and return their names."""
     names = part_names(path.name, len(texts))
     for name, text in zip(names, texts, strict=True):
         with path.with_name(name).open("w", encoding="ascii", newline="\n") as file:
@@ -66,13 +66,13 @@ def read_parts(path: Path, names: list[str]) -> list[tuple[str, str]]:
 
 
 def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str]) -> tuple[str, Findings]:
-    """Write a table of a motion; what was found when it was read back and measured.
+    """Write a table of a motion; return the result of reading it back and measuring it.
 
     Args:
-        path: of the motion program; the table takes its stem.
+        path: path of the motion program; the table takes its stem.
         table: the kind of table.
-        played: the motion that was certified.
-        heading: lines that say where it comes from.
+        played: the certified motion.
+        heading: lines that state its origin.
     """
     target = path.with_name(path.stem + table.SUFFIX)
     names = write_parts(target, table.texts(played, heading))
@@ -80,7 +80,7 @@ def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str
 
 
 def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float) -> Findings:
-    """Write the trajectory for a control that has the kinematics and plans for itself."""
+    """Write the trajectory for a control with its own kinematics and planner."""
     text, found = linuxcnc_text(trajectory, tip_tolerance)
     if text is not None:
         path.with_name(path.stem + _FOR_LINUXCNC).write_text(text, encoding="ascii", newline="\n")
@@ -88,12 +88,12 @@ def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float)
 
 
 def linuxcnc_text(trajectory: Trajectory, tip_tolerance: float) -> tuple[str | None, Findings]:
-    """The trajectory as G-code for LinuxCNC's hexapod: X Y Z A B C in {M}, or what stands against it.
+    """The trajectory as G-code for LinuxCNC's hexapod: X Y Z A B C in {M}, or None with diagnostics.
 
     Args:
-        trajectory: what is to be driven.
-        tip_tolerance: how far the tool tip may be from the path where the program does not say it, mm. It is written as
-            P of G64: without one LinuxCNC rounds corners as far as its speed needs.
+        trajectory: the trajectory to run.
+        tip_tolerance: path tolerance of the tool tip where the program states none, mm. It is written as P of G64:
+            without P LinuxCNC rounds corners as far as its speed requires.
     """
     text, found = write(_as_program(trajectory, tip_tolerance), Form.LINUXCNC)
     told = "(coordinates of the machine frame, work offsets are zero; not certified)\n"
