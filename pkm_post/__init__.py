@@ -5,7 +5,7 @@ __version__ = "0.1.0"
 
 
 def post_job(job, machine=None, out=".", **choices):  # type: ignore[no-untyped-def]
-    """Post a CAM job from a macro: the same as ``pkm_post.freecad_app.post_job.post_job``.
+    """Post a CAM job from a macro; same as ``pkm_post.freecad_app.post_job.post_job``.
 
     Args:
         job: the CAM job, a document object.
@@ -14,7 +14,7 @@ def post_job(job, machine=None, out=".", **choices):  # type: ignore[no-untyped-
         choices: arguments, options, tool_lengths, log and progress of that function.
 
     Raises:
-        pkm_post.model.Refused: as that function, and F130 where memory runs out.
+        pkm_post.model.Refused: as that function, and F130 if memory runs out.
     """
     from pkm_post.freecad_app.post_job import post_job as post
     from pkm_post.out_of_memory import memory_or_refused
@@ -24,19 +24,19 @@ def post_job(job, machine=None, out=".", **choices):  # type: ignore[no-untyped-
 
 
 def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-def]
-    """Post whatever can be posted: a CAM job, a FreeCAD document, G-code or CL data.
+    """Post any supported source: a CAM job, a FreeCAD document, G-code or CL data.
 
-    A job is posted with the arguments it keeps. What is said here goes before them, and is told by J125.
+    A job is posted with its stored arguments. Arguments given here override them, which J125 reports.
 
     Args:
         source: a CAM job, a document object, or the path of a file. A FreeCAD document (``.FCStd``) needs FreeCAD;
-            G-code and CL data do not, and are told apart by what the name ends with.
+            G-code and CL data do not, and are distinguished by the suffix.
         machine: name of a machine that comes with PKM Post, or path of a machine file; None for that of the job, or for
             the example machine.
         out: folder for the results.
         choices: ``arguments`` (text as on the command line, option by option) or ``options``
-            (``pkm_post.pipeline.Options``, which stand in for all that the job says), ``tool_lengths`` (mm by tool
-            number), ``log`` (takes a line for each step) and ``progress`` (``pkm_post.pipeline.Progress``) for all;
+            (``pkm_post.pipeline.Options``, which replace all settings of the job), ``tool_lengths`` (mm by tool
+            number), ``log`` (receives a line for each step) and ``progress`` (``pkm_post.pipeline.Progress``) for all;
             ``job_name`` for documents, ``reading`` (``pkm_post.sources.Reading``) for part programs.
 
     Returns:
@@ -44,8 +44,7 @@ def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-d
 
     Raises:
         pkm_post.model.Refused: something in the input or the folder does not allow it, or there is not enough memory
-            (F130). Of a document with several jobs, those posted before stay posted; of anything else nothing was
-            written.
+            (F130). If a document has several jobs, those already posted remain; otherwise nothing was written.
         ValueError: the suffix of the file is not known, or there are both arguments and options.
     """
     from os import PathLike
