@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pipeline: the one way through the house, from a program to files that a controller and a person can use.
+"""Pipeline: the single route from a program to files for the controller and the user.
 
-``steps`` alone knows the order of the steps. Either every file is written and certified, or none is there.
+Only ``steps`` defines the order of the steps. Either all files are written and certified, or none.
 """
 
 from pkm_post.pipeline.frame import Posted

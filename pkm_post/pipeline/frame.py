@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Frame: what is the same for all steps of a run, and what is left when they are done."""
+"""Frame: what all steps of a run share, and the result of the run."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from pkm_post.pipeline.run import Findings
 
 @dataclass(frozen=True)
 class Posted:
-    """What was made.
+    """The result of posting.
 
     Attributes:
         program: the motion program, or the first of its parts.
-        files: everything that was written, the program included.
+        files: all files written, including the program.
         report: the content of the report file.
         diagnostics: warnings.
-        parts: the files of the motion program, in the order in which they run.
+        parts: the files of the motion program, in order of execution.
     """
 
     program: Path
@@ -35,14 +35,14 @@ class Posted:
 
 @dataclass(frozen=True)
 class Frame:
-    """What all steps need to know.
+    """What all steps share.
 
     Attributes:
-        path: of the motion program; the other files take its folder and its stem.
-        machine: that the program is for.
-        controller: of the machine.
-        settings: of the controller, of a class of its own.
-        options: what the user chose.
+        path: path of the motion program; the other files take its folder and its stem.
+        machine: the machine of the program.
+        controller: the controller of the machine.
+        settings: settings of the controller, of its own class.
+        options: the user's choices.
     """
 
     path: Path
@@ -53,9 +53,9 @@ class Frame:
 
     @property
     def tolerances(self) -> Tolerances:
-        """What was asked for."""
+        """The requested tolerances."""
         return self.options.tolerances
 
     def beside(self, ending: str) -> Path:
-        """The path of another file."""
+        """The path of an accompanying file."""
         return self.path.with_name(self.path.stem + ending)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Known set-up: what is known of part, stock and fixtures: files that the user names go before what the job says."""
+"""Known set-up: the known part, stock and fixtures; files named by the user override those of the job."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ from pkm_post.pipeline.options import NO_MESH, Options
 
 
 def known_setup(options: Options, program: Program | None) -> tuple[Setup, tuple[Diagnostic, ...]]:
-    """The set-up of a program, and what is wrong with the files of it.
+    """The set-up of a program, and diagnostics of its files.
 
     Args:
-        options: the files, and what the job says.
-        program: knows of which tools the corner is not known, which a trajectory file does not keep; None if it has
-            errors.
+        options: the files, and the set-up of the job.
+        program: knows the tools with unknown corners, which a trajectory file does not store; None if it has errors.
     """
     files, found = options.mesh_files, list[Diagnostic]()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Options: what a user may choose for a program, in mm and rad."""
+"""Options: the user's choices for a program, in mm and rad."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from pkm_post.spin import ZERO_TORSION, Policy
 from pkm_post.surface_speed import SurfaceSpeed
 
 LINUXCNC = "linuxcnc"
-"""The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is no table of the motion."""
+"""The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is not a table of the motion."""
 
 NO_MESH = "none"
-"""In place of a file: the mesh is not known, whatever the job says."""
+"""Instead of a file: the mesh is unknown, even if the job has one."""
 
 
 @dataclass(frozen=True)
 class MeshFiles:
-    """Files with meshes of the set-up; they stand in for what the job says, and so does ``NO_MESH``.
+    """Files with meshes of the set-up; they replace the meshes of the job, and so does ``NO_MESH``.
 
     Attributes:
-        part: of the finished part; None where nothing is said.
-        stock: of the stock before the first operation; None where nothing is said.
-        fixtures: of what holds it.
+        part: mesh of the finished part; None to use that of the job.
+        stock: mesh of the stock before the first operation; None to use that of the job.
+        fixtures: meshes of the fixtures.
     """
 
     part: str | None = None
@@ -40,20 +40,20 @@ class MeshFiles:
 
 @dataclass(frozen=True)
 class Options:
-    """What a user may choose.
+    """The user's choices.
 
     Attributes:
         work_offset: name of a work offset in the machine file, or the (4, 4) pose of {C} in {M}.
-        tip_tolerance: how far the tool tip may be from the programmed path, mm.
-        axis_tolerance: how far the tool axis may be from the programmed one, rad.
+        tip_tolerance: largest deviation of the tool tip from the programmed path, mm.
+        axis_tolerance: largest deviation of the tool axis from the programmed one, rad.
         spin: how the platform turns about the tool axis.
         contours: how 2D cutter compensation (G41, G42, CUTCOM) is applied.
-        actual_tools: by number, tools whose cutters are others than those the program was made for; a program with
+        actual_tools: by number, tools whose cutters differ from those the program was made for; a program with
             surface normals is compensated for them.
-        surface_speed: how fast the cutting edge is to move over the work; None leaves the spindle as programmed.
-        also: what is written beside the program: names of ``controllers.TABLES``, and ``LINUXCNC``.
-        mesh_files: files of what collisions are looked for with.
-        setup: what is known of that without files, as of a CAM job.
+        surface_speed: cutting speed to keep; None leaves the spindle as programmed.
+        also: additional outputs: names of ``controllers.TABLES``, and ``LINUXCNC``.
+        mesh_files: mesh files of the bodies in the collision check.
+        setup: the set-up known without files, as from a CAM job.
     """
 
     work_offset: str | Array = "G54"

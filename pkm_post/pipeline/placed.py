@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Placed: a program as the trajectory that its machine is to follow.
+"""Placed: a program as a trajectory on its machine.
 
-A program in {C} enters; it leaves compensated, on the machine, in {M}, with its spin, or what stands against it.
+Enters: a program in {C}. Leaves: the compensated trajectory on the machine, in {M}, with its spin, or diagnostics.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Findings = tuple[Diagnostic, ...]
 
 
 def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple[Trajectory | None, Findings]:
-    """The program compensated, on the machine, with its spin; or what stands against it."""
+    """The compensated program on the machine, with its spin; or None with diagnostics."""
     offset, told = work_offset(machine, options)
     moved, faults = compensate(program, options.contours, options.actual_tools)
     told += faults
@@ -41,7 +41,7 @@ def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple
 
 
 def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findings]:
-    """The work offset that was chosen, (4, 4), or why there is none."""
+    """The chosen work offset, (4, 4), or None with diagnostics."""
     chosen = options.work_offset
     if not isinstance(chosen, str):
         return np.asarray(chosen, dtype=np.float64), ()

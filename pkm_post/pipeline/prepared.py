@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Prepared: all that a run of the pipeline starts from, whatever door it came by.
+"""Prepared: the inputs of a pipeline run, for every entry point.
 
-A program, its machine and the options enter, with what was found in reading them. No document and no file of the user
-is needed any more, so a run can go on in any thread.
+Enters: a program, its machine and the options, with the diagnostics from reading them. Documents and user files are no
+longer needed, so a run can continue in any thread.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class Prepared:
 
     Attributes:
         program: cutter locations in {C}; None if it has errors.
-        machine: that it runs on; None if its file has errors.
-        options: what was chosen.
-        found: in reading them.
+        machine: the machine it runs on; None if its file has errors.
+        options: the user's choices.
+        found: diagnostics from reading them.
     """
 
     program: Program | None
@@ -40,14 +40,14 @@ class Prepared:
         """Program and machine.
 
         Raises:
-            Refused: there is an error in one of them or in the options.
+            Refused: one of them or the options have an error.
         """
         if self.program is None or self.machine is None or errors(self.found):
             raise Refused(self.found)
         return self.program, self.machine
 
     def placed(self) -> tuple[Trajectory, Findings]:
-        """The trajectory in {M}, and all that was found.
+        """The trajectory in {M}, and all diagnostics.
 
         Raises:
             Refused: it cannot be read or placed.
@@ -61,6 +61,6 @@ class Prepared:
         """Post it to a motion program of this name; the other files take its stem.
 
         Raises:
-            Refused: something does not allow it; nothing was written.
+            Refused: an input has an error; nothing was written.
         """
         return post(self.program, self.machine, program_path, self.options, log, self.found, progress)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run: what goes with the steps of one run: what is told, how far it is, and what was found.
+"""Run: log, progress and diagnostics of one run.
 
-Lines and shares leave through the calls that were given; warnings are kept, errors stop the run.
+Log and progress are callbacks; warnings are collected, errors stop the run.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from pkm_post.model.diagnostics import errors
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
 Log = Callable[[str], None]
-"""Takes a line."""
+"""Receives a line."""
 Progress = Callable[[str, float], None]
-"""Takes the name of the step that begins, and the share of the work that is done, 0 to 1; at the end an empty name and
-1. What it raises stops the run, and nothing is left behind."""
+"""Receives the name of the step that begins, and the completed share of the work, 0 to 1; at the end an empty name and
+1. An exception from it stops the run, and no files remain."""
 
 
 def quiet(line: str) -> None:
@@ -31,19 +31,19 @@ def quiet(line: str) -> None:
 
 
 def unwatched(step: str, share: float) -> None:
-    """Tell nobody how far the run is, and never stop it."""
+    """Ignore progress, and never stop the run."""
 
 
 @dataclass
 class Run:
-    """One run through the pipeline: says what it does, times it, and stops at errors.
+    """One run through the pipeline: logs and times its steps, and stops at errors.
 
     Attributes:
-        log: takes a line for each step.
-        progress: is told at the beginning of each step.
-        shares: how much of the work each step is, by its name, in any unit.
-        warnings: found so far.
-        raised_outside: what log or progress raised, if that could be taken for a fault of our own files.
+        log: receives a line for each step.
+        progress: called at the start of each step.
+        shares: share of the work of each step, by name, in any unit.
+        warnings: warnings so far.
+        raised_outside: OSError from log or progress, which must not be mistaken for a fault of the written files.
     """
 
     log: Log
@@ -53,13 +53,13 @@ class Run:
     raised_outside: OSError | None = None
 
     def accept(self, diagnostics: Findings) -> None:
-        """Keep warnings, stop at errors."""
+        """Collect warnings, stop at errors."""
         if errors(diagnostics):
             raise Refused((*self.warnings, *diagnostics))
         self.warnings.extend(diagnostics)
 
     def value(self, result: tuple[T | None, Findings]) -> T:
-        """The value of a step that may have found faults."""
+        """The value of a step that may return diagnostics."""
         value, diagnostics = result
         self.accept(diagnostics)
         if value is None:
@@ -68,7 +68,7 @@ class Run:
 
     @contextlib.contextmanager
     def step(self, name: str) -> Iterator[list[str]]:
-        """Tell that a step begins; log it at its end with its time and what it adds to the list."""
+        """Report the start of a step; at its end log its time and the notes added to the list."""
         give_back_memory()
         self._tell(self.progress, name, self._done_before(name))
         told: list[str] = []
@@ -81,12 +81,12 @@ class Run:
         self._tell(self.log, f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(told)}")
 
     def print(self, lines: Iterable[str]) -> None:
-        """Log lines beside those of the steps."""
+        """Log additional lines."""
         for line in lines:
             self._tell(self.log, line)
 
     def end(self) -> None:
-        """Tell that all steps are done."""
+        """Report that all steps are done."""
         self._tell(self.progress, "", 1.0)
 
     def _tell(self, call: Callable[..., None], *what: object) -> None:
@@ -103,7 +103,7 @@ class Run:
 
 
 def give_back_memory() -> None:
-    """Give what is free back to the system: glibc keeps what columns of some megabytes leave between others."""
+    """Return free memory to the system: glibc keeps the gaps that columns of some megabytes leave between others."""
     if sys.platform == "linux":
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # other C libraries have none
         if trim is not None:

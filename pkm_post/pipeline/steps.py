@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Steps: the order in which a program becomes files, and each step by itself.
+"""Steps: the order of the steps from a program to files, and the steps themselves.
 
-A program and a machine enter; the files leave, all of them or none. A step takes what the steps before it made, and
-the frame: what is the same for all of them.
+Enters: a program and a machine. Leaves: the files, all of them or none. A step takes the results of earlier steps, and
+the frame, which all steps share.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from pkm_post.report import plots, summary
 from pkm_post.unwritten import unwritten
 
 SUFFIX = ".pmc"
-"""How the name of a motion program ends."""
+"""Suffix of a motion program."""
 _TRAJECTORY, _FEED_PLAN, _INTERPOLATION = "trajectory", "reach and feed plan", "interpolation"
 _COLLISIONS = "collisions"
 _PROGRAM, _CERTIFICATE, _REPORT = "motion program", "certificate", "report"
@@ -41,9 +41,9 @@ _SHARES = {
     _TRAJECTORY: 0.1, _FEED_PLAN: 1.0, _COLLISIONS: 1.0, _INTERPOLATION: 1.5, _PROGRAM: 0.1, _CERTIFICATE: 1.0,
     _REPORT: 1.0,
 }  # fmt: skip
-"""The steps in their order, and roughly how long each takes beside the others."""
+"""The steps in order, with their approximate relative durations."""
 _SHARE_OF_ANOTHER = 0.2
-"""The same for a file beside the program."""
+"""The same for an additional output."""
 
 
 def post(
@@ -58,16 +58,16 @@ def post(
     """Make a certified motion program, with its trajectory, set-up file and report beside it.
 
     Args:
-        program: cutter locations in {C}; None if what it was to be read from has errors.
+        program: cutter locations in {C}; None if its source has errors.
         machine: the machine to run it on; None if its file has errors.
-        program_path: where the motion program goes; the other files take its stem.
-        options: what the user chose.
-        log: takes a line for each step.
-        found: what was found in reading these; it is told with what is found here.
-        progress: is told of each step when it begins; what it raises ends the run, and nothing is written.
+        program_path: path of the motion program; the other files take its stem.
+        options: the user's choices.
+        log: receives a line for each step.
+        found: diagnostics from reading these; returned with those found here.
+        progress: called at the start of each step; an exception from it aborts the run, and nothing is written.
 
     Raises:
-        Refused: something in the input, or the place to write to, does not allow it; nothing was written.
+        Refused: the input has an error, or the folder cannot be written; nothing was written.
     """
     options = options or Options()
     setup, faults = known_setup(options, program)
@@ -92,7 +92,7 @@ def post(
 
 
 def _posted(run: Run, program_path: Path, names: list[str], parts: list[str], report: dict[str, Any]) -> Posted:
-    """What is told of the files, made before they appear: nothing can fail afterwards."""
+    """The result, made before the files appear, so that nothing can fail afterwards."""
     earlier = manifest.listed(program_path.parent, program_path.stem)
     run.accept(outputs.left_over(program_path, names, earlier))
     files, programs = (tuple(program_path.parent / name for name in each) for each in (names, parts))
@@ -100,7 +100,7 @@ def _posted(run: Run, program_path: Path, names: list[str], parts: list[str], re
 
 
 def step_names(options: Options | None = None) -> tuple[str, ...]:
-    """The steps that a run with these options takes, in their order."""
+    """The steps of a run with these options, in order."""
     return tuple(_shares(options or Options()))
 
 
@@ -115,7 +115,7 @@ def _another(name: str) -> str:
 def _all_steps(
     run: Run, program: Program, machine: Machine, path: Path, options: Options, setup: Setup
 ) -> tuple[list[str], dict[str, Any]]:
-    """The steps in their order; the names of the parts of the program, and the content of the report."""
+    """Run the steps in order; return the names of the parts of the program, and the content of the report."""
     frame = Frame(path, machine, *run.value(controller_settings(machine)), options)
     trajectory = _stored_trajectory(run, frame, program)
     motion, names, covered = _written_program(run, frame, trajectory, setup)
@@ -131,7 +131,7 @@ def _trajectory_hash(frame: Frame) -> str:
 
 
 def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
-    """The trajectory as its file says it: what is planned is what was stored."""
+    """The trajectory as read back from its file: the plan is made from the stored data."""
     with run.step(_TRAJECTORY) as told:
         trajectory = run.value(trajectory_file.read(_store(run, frame, program)))
         told.append(f"{len(trajectory)} segments")
@@ -139,7 +139,7 @@ def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
 
 
 def _store(run: Run, frame: Frame, program: Program) -> Path:
-    """Place a program and write its trajectory; the path of the file."""
+    """Place a program and write its trajectory; return the path of the file."""
     placed = run.value(trajectory_of(program, frame.machine, frame.options))
     stored = frame.beside(".pkmt")
     trajectory_file.write(replace(placed, tolerances=frame.tolerances), stored)
@@ -149,9 +149,9 @@ def _store(run: Run, frame: Frame, program: Program) -> Path:
 def _written_program(
     run: Run, frame: Frame, trajectory: Trajectory, setup: Setup
 ) -> tuple[Motion, list[str], tuple[Coverage, ...]]:
-    """The plan, the names of the parts of the program, and what was checked.
+    """The plan, the names of the parts of the program, and the coverage.
 
-    What the plan is made from and the struts are gone when the program is read back: a long one needs the memory.
+    Schedule and struts are freed before the program is read back: a long one needs the memory.
     """
     motion, struts, covered = _planned(run, frame, trajectory, setup)
     return motion, _motion_program(run, frame, trajectory, struts), covered
@@ -160,18 +160,18 @@ def _written_program(
 def _planned(
     run: Run, frame: Frame, trajectory: Trajectory, setup: Setup
 ) -> tuple[Motion, StrutMotion, tuple[Coverage, ...]]:
-    """Tool poses and strut lengths by time, and what was checked."""
+    """Tool poses and strut lengths by time, and the coverage."""
     tool_path, schedule = _feed_plan(run, frame, trajectory)
     covered = _collisions(run, frame, trajectory, setup)
     return *_interpolation(run, frame, trajectory, tool_path, schedule), covered
 
 
 def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath, Schedule]:
-    """The path with rounded corners, and when the tool is where on it."""
+    """The path with rounded corners, and its schedule."""
     with run.step(_FEED_PLAN) as told:
         tool_path = planning.tool_path(trajectory, frame.tolerances)
         schedule, faults = planning.plan_feed(tool_path, trajectory, frame.machine)
-        if errors(faults):  # where the machine cannot even stand at home, moving the part is no cure
+        if errors(faults):  # if home itself is out of reach, moving the part does not help
             faults = (*home_faults(frame.machine, frame.machine.name), *faults)
         schedule = run.value((schedule, faults))
         told.append(f"{schedule.rests_ms[-1] / 1000:.1f} s of motion")
@@ -179,7 +179,7 @@ def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath
 
 
 def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) -> tuple[Coverage, ...]:
-    """What runs into part, stock and fixtures; what was checked, for the certificate."""
+    """Check collisions with part, stock and fixtures; return the coverage for the certificate."""
     with run.step(_COLLISIONS) as told:
         collisions = find_collisions(trajectory, frame.machine, setup, frame.tolerances)
         run.accept(collisions.faults)
@@ -190,7 +190,7 @@ def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) ->
 def _interpolation(
     run: Run, frame: Frame, trajectory: Trajectory, tool_path: ToolPath, schedule: Schedule
 ) -> tuple[Motion, StrutMotion]:
-    """Tool poses and strut lengths by time, which the controller can take."""
+    """Tool poses and strut lengths by time, valid for the controller."""
     with run.step(_INTERPOLATION) as told:
         motion = planning.interpolate(tool_path, schedule, trajectory.events, frame.machine, frame.tolerances)
         struts = planning.strut_motion(motion, frame.machine)
@@ -200,7 +200,7 @@ def _interpolation(
 
 
 def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
-    """Write the program and the set-up it relies on; the names of its parts."""
+    """Write the program and the set-up it relies on; return the names of its parts."""
     with run.step(_PROGRAM) as told:
         controller, settings, machine = frame.controller, frame.settings, frame.machine
         records = program_seal.record_lines(_trajectory_hash(frame), machine.fingerprint)
@@ -217,7 +217,7 @@ def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: Stru
 def _certificate(
     run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
 ) -> tuple[StrutMotion, Certificate, dict[str, Any]]:
-    """The program read back from its text, what it does, and what the report says of the bytes of both files."""
+    """The program read back from its text, its certificate, and the hashes of both files for the report."""
     with run.step(_CERTIFICATE) as told:
         played, digests = _read_back(run, frame)
         measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
@@ -228,7 +228,7 @@ def _certificate(
 
 
 def _read_back(run: Run, frame: Frame) -> tuple[StrutMotion, list[str]]:
-    """The motion of the program and the hashes of its parts; the texts are gone when it is measured."""
+    """The motion of the program and the hashes of its parts; the texts are freed before it is measured."""
     texts = run.value(read_texts(frame.path, frame.controller))
     played = run.value(frame.controller.read_parts(texts, frame.settings))
     return played, [program_seal.digest(text) for _, text in texts]
@@ -244,7 +244,7 @@ def _report(
     reading: tuple[str, ...],
     files: dict[str, Any],
 ) -> dict[str, Any]:
-    """Write the report as JSON and picture; its content."""
+    """Write the report as JSON and as a picture; return its content."""
     with run.step(_REPORT) as told:
         machine, tolerances = frame.machine, frame.tolerances
         report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files)
@@ -257,7 +257,7 @@ def _report(
 
 
 def _write_another(run: Run, frame: Frame, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
-    """Write a file that was asked for beside the program."""
+    """Write an additional output."""
     with run.step(_another(name)) as told:
         if name == LINUXCNC:
             run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
