@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Animated PNG: pictures of a film made one file that browsers and viewers play.
+"""Animated PNG: combine frames into one file that browsers and viewers play.
 
-PNG files of one size and kind enter, in their order; one animated PNG leaves. The pictures are not compressed anew:
-their data is taken over as it is, in the chunks that PNG has for animations. Programs that know no animated PNG show
-the first picture. [PNG third edition]
+Enters: PNG files of one size and kind, in order. Leaves: one animated PNG. The frames are not recompressed: their data
+is copied into the animation chunks of PNG. Programs without support for animated PNG show the first frame.
+[PNG third edition]
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from pathlib import Path
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _START, _HEAD = 33, slice(16, 29)
-"""Bytes up to the end of the first chunk, and where its content is: size and kind."""
+"""Bytes up to the end of the first chunk, and the range of its content: size and kind."""
 _KIND_AT, _PALETTE = 25, 3
-"""Where the kind of the pixels is told, and the kind that is not taken: its colours would be told elsewhere."""
+"""Position of the colour type, and the unsupported type: its colours are stored in another chunk."""
 _LARGEST = 65535
-"""Of both halves of the fraction of a second that a picture is shown."""
+"""Largest numerator and denominator of the frame duration in seconds."""
 
 
 def animate(pictures: Sequence[Path], target: Path, per_second: float) -> None:
-    """Write an animated PNG that plays for ever.
+    """Write an animated PNG that loops for ever.
 
     Args:
         pictures: PNG files of the same width, height and kind of pixels.
-        target: gets the animation.
-        per_second: pictures for each second.
+        target: path of the animation.
+        per_second: frames per second.
 
     Raises:
-        ValueError: there is no picture, one is no PNG file or has a palette, or they differ in size or kind.
+        ValueError: there is no picture, one is not a PNG file or has a palette, or they differ in size or kind.
     """
     if not pictures:
         raise ValueError("expected pictures, got none")
@@ -42,14 +42,14 @@ def animate(pictures: Sequence[Path], target: Path, per_second: float) -> None:
         file.write(_SIGNATURE + _chunk(b"IHDR", head))
         file.write(_chunk(b"acTL", struct.pack(">II", len(pictures), 0)))
         file.write(_chunk(b"fcTL", _control(0, head, shown)) + _chunk(b"IDAT", _data(pictures[0])))
-        for number, picture in enumerate(pictures[1:], start=1):  # both chunks of a picture are counted
+        for number, picture in enumerate(pictures[1:], start=1):  # both chunks of a frame take a sequence number
             file.write(_chunk(b"fcTL", _control(2 * number - 1, head, shown)))
             file.write(_chunk(b"fdAT", struct.pack(">I", 2 * number) + _data(picture)))
         file.write(_chunk(b"IEND", b""))
 
 
 def _head(pictures: Sequence[Path]) -> bytes:
-    """What all pictures say of their size and kind; read of all of them, before anything is written."""
+    """The common size and kind of all pictures; all headers are read before anything is written."""
     heads = []
     for picture in pictures:
         with picture.open("rb") as file:
@@ -63,7 +63,7 @@ def _head(pictures: Sequence[Path]) -> bytes:
 
 
 def _control(number: int, head: bytes, shown: Fraction) -> bytes:
-    """How a picture is shown: all of it, for how long, and it takes the place of what was there."""
+    """Frame control: the whole picture, its duration, and that it replaces the previous one."""
     width, height = struct.unpack(">II", head[:8])
     return struct.pack(">IIIIIHHBB", number, width, height, 0, 0, shown.numerator, shown.denominator, 0, 0)
 
@@ -82,5 +82,5 @@ def _split(content: bytes) -> Iterator[tuple[bytes, bytes]]:
 
 
 def _chunk(kind: bytes, content: bytes) -> bytes:
-    """A chunk: its length, kind, content, and the check sum over the last two."""
+    """A chunk: its length, kind, content, and the checksum of the last two."""
     return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plots: the report's picture.
+"""Plots: the picture of the report.
 
-Path in 3D with the tool axes, strut lengths and speeds over time with their limits, and the deviations that the
-certificate found. Without matplotlib there is a warning instead of a picture.
+It shows the path in 3D with the tool axes, strut lengths and speeds over time with their limits, and the deviations
+from the certificate. Without matplotlib there is a warning instead.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from pkm_post.model import Diagnostic, Kind, Machine, Motion, Place, StrutMotion
 from pkm_post.model.certificate import Certificate, Tolerances
 
 _MATPLOTLIB = ("matplotlib.backends.backend_agg", "matplotlib.figure", "mpl_toolkits.mplot3d")
-"""What pictures are drawn with; the last is what 3D axes come from."""
+"""Required modules; the last provides 3D axes."""
 _LIMIT = {"color": "0.3", "linestyle": "--", "linewidth": 0.8}
 _AXES_SHOWN = 150
 _AXIS_DRAWN = 15.0
 """mm"""
 _COLUMNS = 1000
-"""Of dots, more than a plot over time has: of what falls into one, the picture shows the lowest and the highest."""
+"""Columns of pixels, more than a plot over time has; each shows the minimum and maximum of its values."""
 _PATH = (0.03, 0.02, 0.87, 0.88)
 _PLOTS_OVER_TIME = {"left": 0.09, "right": 0.99, "bottom": 0.06, "top": 0.92, "hspace": 0.16}
-"""Shares of their parts of the figure; to have them looked for takes as long as to draw it."""
+"""Shares of the subfigure; an automatic layout takes as long as drawing it."""
 
 
 def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
-    """The warning that a picture is not made, or nothing.
+    """The warning that no picture is drawn, or nothing.
 
-    Importing what is installed may raise anything: a matplotlib that was built for another NumPy does.
+    The import may raise anything, as with a matplotlib built for another NumPy.
     """
     try:
         for module in _MATPLOTLIB:
@@ -53,16 +53,16 @@ def draw(
     certificate: Certificate,
     tolerances: Tolerances,
 ) -> tuple[Diagnostic, ...]:
-    """Draw the report's picture to a PNG file.
+    """Draw the picture of the report to a PNG file.
 
     Args:
-        path: where it goes.
+        path: path of the file.
         trajectory: the programmed path.
         machine: its limits are drawn.
         motion: the planned motion.
-        struts: the program as it was read back.
-        certificate: what it was found to do.
-        tolerances: what was asked for.
+        struts: the program as read back.
+        certificate: certificate of the program.
+        tolerances: the requested tolerances.
     """
     missing = missing_matplotlib(path)
     if missing:
@@ -85,14 +85,14 @@ def draw(
 
 
 def save(figure: Any, path: Path, **how: Any) -> None:
-    """Save a picture; what a name has in a script that the font lacks is drawn as boxes, which needs no warning."""
+    """Save a picture; characters that the font lacks are drawn as boxes, without a warning."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", r"Glyph \d+ .* missing", UserWarning)
         figure.savefig(path, metadata={"Software": None}, **how)
 
 
 def _path(axes: Any, trajectory: Trajectory, motion: Motion) -> None:
-    """The tip's way by operation, rapid moves thin, and some of the tool axes."""
+    """Draw the path of the tip by operation, rapid moves thin, and some of the tool axes."""
     operation = trajectory.operation[motion.segment]
     rapid = trajectory.kind[motion.segment] == Kind.RAPID
     for number, name in enumerate(trajectory.operations):
@@ -147,10 +147,10 @@ def _deviations(axes: Any, certificate: Certificate, tolerances: Tolerances) -> 
 
 
 def shown(time: Array, values: Array) -> tuple[Array, Array]:
-    """A line over increasing times, or the lowest and highest value of each column of dots where there are more."""
+    """A line over increasing times, or the minimum and maximum of each column of pixels if it has more points."""
     if len(time) <= 2 * _COLUMNS:
         return time, values
     first = np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], _COLUMNS)))
     both = np.stack([np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)], axis=1)
-    both[1::2] = both[1::2, ::-1].copy()  # up one column and down the next: half the ink of up in every one
+    both[1::2] = both[1::2, ::-1].copy()  # alternate up and down: half the ink of going up in every column
     return np.repeat(time[first], 2), both.ravel()

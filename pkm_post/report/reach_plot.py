@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The picture of a reach map: levels of height, each with the angle by which the tool may lean."""
+"""The picture of a reach map: horizontal slices, each with the angle by which the tool may tilt."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> tuple[Diagn
     """Draw a reach map on a grid to a PNG file.
 
     Args:
-        path: where it goes.
+        path: path of the file.
         machine: name of the machine.
-        tip: (N, 3) places of a grid in {M}, mm.
-        cone: (N,) half angles, rad, negative where there is none.
+        tip: (N, 3) grid points in {M}, mm.
+        cone: (N,) half angles, rad; negative for unreachable points.
     """
     missing = missing_matplotlib(path)
     if missing:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Summary: the report as plain data, as JSON, and as the lines that head a motion program.
+"""Summary: the report as plain data, as JSON, and as the heading of a motion program.
 
-The data holds no times of day and no paths: the same job gives the same bytes.
+The data has no timestamps and no paths: the same job gives the same bytes.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ from pkm_post.model import EventKind, Kind, Machine, Motion, StrutMotion, Trajec
 from pkm_post.model.certificate import Certificate, Coverage, Figure, Finding, Tolerances, meaning
 
 _FORMAT = 1
-"""Version of the report's layout, for programs that read it."""
+"""Version of the report's layout, for programs that parse it."""
 _AS_IT_IS = "axis values are strut lengths in mm, speeds in mm/s; do not edit: the program is certified as it is"
 
 
 def heading(trajectory: Trajectory) -> list[str]:
-    """What a motion program says of itself in its first lines."""
+    """The first lines of a motion program, which describe it."""
     return [*origin(trajectory), _start(trajectory), _AS_IT_IS]
 
 
 def hashes(programs: Sequence[str], trajectory: str) -> dict[str, Any]:
-    """What the report says of the files it is about, by the SHA-256 of each; line ends of programs do not count."""
+    """The SHA-256 of each file for the report; line ends of programs are ignored."""
     return {"programs_sha256": list(programs), "trajectory_sha256": trajectory}
 
 
 def _start(trajectory: Trajectory) -> str:
-    """The pose that the program has to begin from."""
+    """The start pose of the program."""
     tool = trajectory.tools[int(trajectory.tool[0])]
     x, y, z, i, j, k = (f"{value + 0.0:.6g}" for value in (*trajectory.start_tip, *trajectory.start_axis))
     spin = math.degrees(trajectory.start_spin)
@@ -44,7 +44,7 @@ def _start(trajectory: Trajectory) -> str:
 
 
 def origin(trajectory: Trajectory) -> list[str]:
-    """What any file says in its first lines of where it comes from."""
+    """The first lines of any file, which state its origin."""
     tools = ", ".join(f"T{tool.number} {tool.name} length {tool.length:g} mm" for tool in _tools(trajectory))
     return [
         f"PKM Post {pkm_post.__version__}: {trajectory.source}",
@@ -102,9 +102,9 @@ def report(
 
 
 def machining_time(trajectory: Trajectory, motion: Motion) -> dict[str, Any]:
-    """How long the program takes, in all and by operation, s; changes of tools and stops for people not counted.
+    """Machining time of the program, total and by operation, s; without tool changes and operator stops.
 
-    The times of motion add up to that of the written program.
+    The motion times add up to that of the written program.
     """
     segment_time = np.diff(motion.joint_time, prepend=0.0)
     cutting = trajectory.kind != Kind.RAPID
@@ -123,7 +123,7 @@ def machining_time(trajectory: Trajectory, motion: Motion) -> dict[str, Any]:
 
 
 def hold_points(trajectory: Trajectory, motion: Motion) -> dict[str, list[Any]]:
-    """When and at the end of which line the motion rests, in columns: a feed hold can end there, and work begin."""
+    """Columns of times and source lines at which the motion rests: a feed hold can end there, and work resume."""
     rows = np.flatnonzero(trajectory.exact_stop)
     return {
         "time_s": _rounded(motion.joint_time[rows], 3),
@@ -138,7 +138,7 @@ def write(content: dict[str, Any], path: Path) -> None:
 
 
 def verdict(certificate: Certificate) -> list[str]:
-    """What a person wants to know first."""
+    """The figures that matter most to the user."""
     return [
         f"{finding.name} {finding.value:.3g} of {finding.limit:.3g} {finding.unit}"
         for finding in certificate.findings
@@ -179,7 +179,7 @@ def _tools(trajectory: Trajectory) -> list[Any]:
 
 
 def _by_column(of: Callable[[Array], float], points: Array) -> list[float]:
-    """The least or the greatest of each column; numpy takes ten times as long along the first axis."""
+    """The minimum or maximum of each column; numpy takes ten times as long along the first axis."""
     return [_rounded(of(column), 3) for column in points.T]
 
 
@@ -188,5 +188,5 @@ def _rounded(value: Array | float, decimals: int) -> Any:
 
 
 def _significant(value: float) -> float:
-    """Six digits: what differs behind them is rounding of the arithmetic, and of no use to anybody."""
+    """Round to six digits; further digits are rounding errors of the arithmetic."""
     return float(f"{value:.6g}")
