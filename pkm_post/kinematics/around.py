@@ -81,7 +81,7 @@ class _Stretches:
         travel, turn = np.cumsum(way.travel), np.cumsum(way.turn())
         number = np.floor((travel + _longest_arm(machine, way) * turn) / _STRETCH)
         ends = np.unique(np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1, [len(way) - 1]]))
-        begin, end = ends[: max(len(ends) - 1, 1)], ends[min(len(ends) - 1, 1) :]  # a way of one row has no extent
+        begin, end = ends[: max(len(ends) - 1, 1)], ends[min(len(ends) - 1, 1) :]  # a path of one row has no extent
         row = (begin + end) // 2
         farther = [np.maximum(sums[row] - sums[begin], sums[end] - sums[row]) for sums in (travel, turn)]
         return cls(row, farther[0], farther[1])

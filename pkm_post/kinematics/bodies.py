@@ -69,7 +69,7 @@ def has_strut_bodies(machine: Machine) -> bool:
 
 
 def lever_of_rod(machine: Machine, shortest: float) -> float:
-    """Greatest speed of a strut point, at the far end of a long rod, relative to its platform joint."""
+    """Greatest speed ratio of a strut point to its platform joint: that of the far end of a long rod."""
     return max(1.0, machine.rod_length / shortest - 1.0)
 
 

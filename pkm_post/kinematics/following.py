@@ -28,7 +28,7 @@ def follow(machine: Machine, lengths: Array, tool_length: Array, tip: Array, rot
     Args:
         machine: the geometry.
         lengths: (N, 6) strut lengths as the controller counts them, in order along the path, mm.
-        tool_length: (N,) gauge lengths, mm; where it changes, the platform stands still.
+        tool_length: (N,) gauge lengths, mm; where it changes, the platform is at rest.
         tip: (3,) tip of the first tool near the first row.
         rotation: (3, 3) rotation of the platform there.
     """

@@ -57,7 +57,7 @@ def reach_margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
 
 
 def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> tuple[Array, ...]:
-    """Margins of a chunk; for singular poses, smallest singular value and sign of the determinant instead."""
+    """Margins of a chunk; in place of ``singular``, smallest singular value and sign of the determinant."""
     placed = Placed.of(machine, (tip, axis, spin, tool_length))
     length, jacobian = placed.lengths(), placed.scaled_jacobian()
     determinant = np.linalg.det(jacobian)

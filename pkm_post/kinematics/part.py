@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Part: workpiece as a mesh of triangles, boxes or points in {M}, and its distance from cylinders.
 
-The triangles are kept in a hierarchy of balls. A ball farther away than the nearest triangle so far, or than the
-distance of interest, is skipped. Units: mm.
+The triangles are kept in a hierarchy of bounding spheres, the balls. A ball farther away than the nearest triangle so
+far, or than the distance of interest, is skipped. Units: mm.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _BOX_FACES = np.array(
 
 @dataclass(frozen=True)
 class Part:
-    """T triangles, and balls around them, around 16 neighbours, around 16 of these, and so on.
+    """T triangles, and bounding spheres of each, of 16 neighbours, of 16 of these, and so on.
 
     Attributes:
         triangles: (T, 3, 3) corners, sorted so that neighbours in space are close in order.

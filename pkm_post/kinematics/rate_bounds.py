@@ -18,7 +18,7 @@ from pkm_post.kinematics.checks import arms_from_tip
 from pkm_post.model import Machine
 
 _NEARER = 0.99
-"""Rounded corners and cubics may make a strut a little shorter than the path that is proven to be within the stroke."""
+"""Rounded corners and cubics may make a strut slightly shorter than on the path that is proven within the stroke."""
 
 Pair = tuple[Array, Array]
 
