@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface paths: passes of a cutter over a parametric surface, with its tool axes, as a program."""
+"""Surface paths: passes of a cutter over a parametric surface, with tool axes, as a program."""
 
 from pkm_post.surface_path.cover import cover
 from pkm_post.surface_path.moves import program_of

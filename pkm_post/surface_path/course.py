@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Course: points of passes in the parameters of a surface, as columns.
+"""Course: points of passes in surface parameters, as columns.
 
-Patterns make it, trimming cuts it, ordering turns and joins it, stepping refines it. Rows of one run are travelled one
-after the other on the surface; between runs the tool is lifted. Rows of a link join two passes of a run.
+Patterns create it, trimming cuts it, ordering reverses and joins it, stepping refines it. The tool travels the rows of
+one run consecutively on the surface; between runs it is lifted. Rows of a link join two passes of a run.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pkm_post.geometry.vectors import cross
 from pkm_post.surface_path.surface import Array, Patch, Span, Surface
 
 _ROUNDS = 8
-"""Newton steps to a plane: the error is squared by each."""
+"""Newton steps to a plane: each squares the error."""
 _ON_PLANE = 1e-9
 _STEEP = 1e-6
-"""Share of the surface's slope against a plane below which it counts as parallel to it."""
+"""Relative slope of the surface against a plane below which it counts as parallel to it."""
 
 
 @dataclass(frozen=True)
@@ -27,12 +27,12 @@ class Course:
     """Columns of N points, in the order of travel within each pass.
 
     Attributes:
-        u: (N,) first parameter; runs on beyond the range where that is closed.
+        u: (N,) first parameter; continues beyond the range if that is closed.
         v: (N,) second parameter.
-        number: (N,) of the pass, counted in the direction of the stepover.
-        run: (N,) what is travelled without lifting the tool; rows of one run are together.
-        sense: (N,) 1 where the feed has the direction that the pattern gives, -1 where it has the opposite one.
-        link: (N,) share of the way of a link that is behind this row, NaN where the row belongs to a pass.
+        number: (N,) number of the pass, counted in the direction of the stepover.
+        run: (N,) number of the run, travelled without lifting the tool; rows of one run are contiguous.
+        sense: (N,) 1 where the feed has the direction of the pattern, -1 where it is opposite.
+        link: (N,) completed share of a link at this row, NaN where the row belongs to a pass.
     """
 
     u: Array
@@ -44,7 +44,7 @@ class Course:
 
     @classmethod
     def of(cls, u: Array, v: Array, number: Array, run: Array | None = None) -> Course:
-        """A course in the direction of the pattern, each pass a run unless runs are given."""
+        """A course in the direction of the pattern; each pass is a run unless runs are given."""
         rows = len(u)
         return cls(u, v, number, number if run is None else run, np.ones(rows), np.full(rows, np.nan))
 
@@ -52,32 +52,32 @@ class Course:
         return len(self.u)
 
     def taken(self, rows: Array) -> Course:
-        """The rows with these indices, or a mask."""
+        """The rows selected by indices or a mask."""
         return Course(*(getattr(self, column.name)[rows] for column in fields(self)))
 
     @staticmethod
     def joined(parts: list[Course]) -> Course:
-        """Courses one after the other; their runs keep their numbers."""
+        """Concatenated courses; their runs keep their numbers."""
         return Course(*(np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(Course)))
 
     def with_rows(self, behind: Array, rows: Course) -> Course:
-        """The course with further rows, each right behind the row with the index given, in order."""
+        """The course with additional rows, each directly after the row with the given index, in order."""
         return Course(
             *(np.insert(getattr(self, item.name), behind + 1, getattr(rows, item.name)) for item in fields(self))
         )
 
     def numbered(self, run: Array) -> Course:
-        """The course with these runs."""
+        """The course with the given runs."""
         return replace(self, run=run)
 
 
 @dataclass(frozen=True)
 class Pattern:
-    """The kind of lines that passes are: of constant v, or in parallel planes.
+    """The lines of the passes: constant v, or sections by parallel planes.
 
     Attributes:
         plane: (3,) unit normal of the planes; None for lines along u.
-        level: (P,) for each pass its place along that normal, mm; its v for lines along u.
+        level: (P,) position of each pass along that normal, mm; its v for lines along u.
     """
 
     plane: Array | None
@@ -88,7 +88,7 @@ class Pattern:
         return patch.along_u if self.plane is None else cross(patch.normal, self.plane)
 
     def settled(self, surface: Surface, u: Array, v: Array, number: Array) -> tuple[Array, Array]:
-        """The nearest points on the lines of the passes with these numbers, (N,) each.
+        """The nearest points on the lines of the passes with the given numbers, (N,) each.
 
         On a border of the surface a point stays on that border.
         """
@@ -105,7 +105,7 @@ class Pattern:
 
 
 def _free(span: Span, values: Array) -> Array:
-    """Which values are not on an end of an open range."""
+    """Values that are not at an end of an open range."""
     if span.closed:
         return np.ones(len(values), dtype=bool)
     free: Array = (values > span.first) & (values < span.last)
@@ -113,7 +113,7 @@ def _free(span: Span, values: Array) -> Array:
 
 
 def _to_plane(patch: Patch, plane: Array, off: Array, free_u: Array, free_v: Array) -> tuple[Array, Array]:
-    """Steps in u and v against the slope of the surface, in its own measure, so that the distance to the plane is 0."""
+    """Newton steps in u and v along the slope of the surface, in its metric, to distance 0 from the plane."""
     slope_u, slope_v = dot(patch.along_u, plane) * free_u, dot(patch.along_v, plane) * free_v
     scale_u, scale_v = (np.maximum(dot(each, each), 1e-300) for each in (patch.along_u, patch.along_v))
     steepness = slope_u**2 / scale_u + slope_v**2 / scale_v

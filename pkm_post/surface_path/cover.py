@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cover: a surface, a cutter and settings become the poses of the cutter along all passes over the surface."""
+"""Cover: poses of a cutter along all passes over a surface."""
 
 from __future__ import annotations
 
@@ -23,31 +23,31 @@ from pkm_post.surface_path.surface import Array, Surface
 from pkm_post.surface_path.trimming import thinned, trimmed
 
 _NODES = (17, 513)
-"""Fewest and most points that a pass is begun with."""
+"""Least and most initial points of a pass."""
 _EVERY = 4
-"""Of the points that trimming looks at, one in so many is a point that stepping begins with."""
+"""Stepping starts with every fourth point of those used by trimming."""
 _LINK = 3.0
 """Links along the surface are at most this many stepovers long."""
 
 
 def quiet(share: float) -> None:
-    """Tell nobody how far the work is."""
+    """Ignore progress."""
 
 
 def cover(
     surface: Surface, cutter: Cutter, settings: Settings, place: Place, progress: Progress = quiet
 ) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
-    """The poses of a cutter on its way over a surface.
+    """The poses of a cutter along its path over a surface.
 
     Args:
-        surface: what is to be touched, once all over.
+        surface: the surface to cover.
         cutter: a ball, bull nose or flat end mill.
         settings: pattern, tolerances, tool axis.
         place: what diagnostics name.
-        progress: is told how much is done, from 0 to 1; it may raise to stop the work.
+        progress: called with the completed share, from 0 to 1; may raise to abort.
 
     Returns:
-        The poses, in the order of travel, their runs counted from 0; None when there are errors. And what was found.
+        The poses, in order of travel, their runs counted from 0; None when there are errors. And the diagnostics.
 
     Raises:
         ValueError: the cutter is tapered or a lens.
@@ -73,7 +73,7 @@ def cover(
 
 
 def _pattern(surface: Surface, cutter: Cutter, settings: Settings) -> tuple[Pattern, float]:
-    """The lines in the order in which they are cut, and the widest distance of two; NaN where there is none."""
+    """The lines in the order of cutting, and the largest distance of neighbours; NaN if there is none."""
     chosen = settings.stepover, cutter, settings.rule
     if settings.lines is Lines.PLANES:
         plane = unit(np.asarray(settings.plane, dtype=np.float64))
@@ -84,7 +84,7 @@ def _pattern(surface: Surface, cutter: Cutter, settings: Settings) -> tuple[Patt
 
 
 def _passes(surface: Surface, pattern: Pattern, cutter: Cutter, settings: Settings) -> Course:
-    """The passes before they are trimmed."""
+    """The untrimmed passes."""
     if pattern.plane is not None:
         course = sections(surface, pattern.plane, pattern.level)
         u, v = pattern.settled(surface, course.u, course.v, course.number)
@@ -96,7 +96,7 @@ def _passes(surface: Surface, pattern: Pattern, cutter: Cutter, settings: Settin
 
 
 def _nodes(surface: Surface, v: Array, cutter: Cutter) -> int:
-    """How many points a pass needs to be half a cutter radius apart."""
+    """Number of points of a pass for a spacing of half a cutter radius."""
     u, places = np.linspace(surface.u.first, surface.u.last, 65), v[:: max(len(v) // 16, 1)]
     all_u, all_v = (each.ravel() for each in np.meshgrid(u, places))
     points = surface.at(all_u, all_v).point.reshape(len(places), len(u), 3)
@@ -106,7 +106,7 @@ def _nodes(surface: Surface, v: Array, cutter: Cutter) -> int:
 
 
 def _in_order(surface: Surface, pattern: Pattern, course: Course, settings: Settings) -> Course:
-    """The pieces in the order and the directions of travel."""
+    """The pieces in the order and direction of travel."""
     backwards = np.zeros(len(course), dtype=bool)
     if settings.cut_mode is not CutMode.AS_IT_COMES:
         first = course.taken(course.number == course.number[0]) if settings.order is Order.ZIGZAG else course

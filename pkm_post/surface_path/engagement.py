@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Engagement: how wide a pass may be for a height of scallops, and the gap a moving cutter leaves.
+"""Engagement: width of passes for a scallop height, and the gap that a moving cutter leaves.
 
-Contact normals, tool axes, feed directions and the curvature of the surface across the feed enter; widths leave. All in
-mm and 1/mm.
+Takes contact normals, tool axes, feed directions and the curvature of the surface across the feed; returns widths. All
+in mm and 1/mm.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ _FLAT_ON_IT = 1e-9
 def effective_radius(normal: Array, axis: Array, feed: Array, cutter: Cutter) -> Array:
     """Radii of the profile that a moving cutter leaves, across its feed, at the contact point, (N,).
 
-    The cutter swept along t leaves the outline of its shadow along t. The curvature of a shadow is the Gaussian
-    curvature by the normal curvature along t. The corner has curvatures 1/r along its meridian and
-    1/(r + e / sin gamma) round the axis, so the radius is (r + e / sin gamma) cos^2 beta + r sin^2 beta.
+    The cutter swept along t leaves its silhouette along t. The curvature of a silhouette is the Gaussian curvature
+    divided by the normal curvature along t. The corner has curvatures 1/r along its meridian and 1/(r + e / sin gamma)
+    around the axis, so the radius is (r + e / sin gamma) cos^2 beta + r sin^2 beta.
 
     Args:
         normal: (N, 3) unit normals.
@@ -48,18 +48,18 @@ def effective_radius(normal: Array, axis: Array, feed: Array, cutter: Cutter) ->
 
 
 def scallop_width(radius: Array, curvature: Array, height: float) -> Array:
-    """Distances of neighbouring passes along the surface that leave scallops of this height, (N,).
+    """Distances of neighbouring passes along the surface for a scallop height, (N,).
 
     On a circle of curvature c the profiles of radius R, half a pass to each side, meet at the height h where
     sin^2(c L / 4) = c^2 (2 R h - h^2) / (4 (1 + c R) (1 + c h)). On a plane L = 2 sqrt(2 R h - h^2).
 
     Args:
-        radius: (N,) of the profile of the cutter, R; where h is more than R, the pass is 2 R wide.
-        curvature: (N,) of the surface across the feed, c, positive where it is convex.
-        height: of the scallops, h.
+        radius: (N,) radius of the cutter profile, R; where h exceeds R, the pass is 2 R wide.
+        curvature: (N,) curvature of the surface across the feed, c, positive where it is convex.
+        height: scallop height, h.
 
     Returns:
-        The distances L; NaN where the profile does not fit into a hollow, 1 + c R <= 0.
+        The distances L; NaN where the profile does not fit into a concave area, 1 + c R <= 0.
     """
     shallow = np.minimum(height, radius)
     square = np.maximum(2.0 * radius * shallow - np.square(shallow), 0.0)
@@ -73,21 +73,21 @@ def scallop_width(radius: Array, curvature: Array, height: float) -> Array:
 
 
 def pass_width(normal: Array, axis: Array, feed: Array, curvature: Array, cutter: Cutter, height: float) -> Array:
-    """Distances of neighbouring passes that leave scallops of this height with a cutter that leans, (N,).
+    """Distances of neighbouring passes for a scallop height with a tilted cutter, (N,).
 
-    The profile of a leaning cutter is round near the contact and rises no steeper than its flat bottom; the wider of
-    both answers holds, and no pass is wider than the bottom with the corner up to that height.
+    The profile of a tilted cutter is round near the contact and rises no steeper than its flat bottom. The larger of
+    both widths applies, limited to the width of the bottom with the corner up to that height.
 
     Args:
         normal: (N, 3) unit normals.
         axis: (N, 3) unit tool axes.
         feed: (N, 3) unit tangents.
-        curvature: (N,) of the surface across the feed, positive where it is convex.
+        curvature: (N,) curvature of the surface across the feed, positive where it is convex.
         cutter: the corner of the cutter.
-        height: of the scallops.
+        height: scallop height.
 
     Returns:
-        The distances; NaN where the cutter does not fit into a hollow.
+        The distances; NaN where the cutter does not fit into a concave area.
     """
     r, e = cutter.corner_radius, cutter.radial_offset
     low = min(height, r)
@@ -105,7 +105,7 @@ def pass_width(normal: Array, axis: Array, feed: Array, curvature: Array, cutter
 def gap(tip: Array, axis: Array, point: Array, normal: Array, cutter: Cutter) -> Array:
     """Distances from the tangent planes of the surface to the lowest point of the cutter above them, (N,).
 
-    Negative where the cutter goes below the plane: then it cuts into the surface there.
+    Negative where the cutter goes below the plane and gouges the surface.
 
     Args:
         tip: (N, 3) tool tips.

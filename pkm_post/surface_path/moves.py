@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Moves: the poses along the passes become a program: rapid moves, approach, lead, passes, lead, retract.
+"""Moves: a program from the poses along the passes: rapid moves, approach, lead-in, passes, lead-out, retract.
 
-Between two runs the tool goes back along its axis, in the space that it came from, up to a plane; there it stands
-up, crosses, leans again and goes down along its next axis. Units: mm, mm/s.
+Between two runs the tool retracts along its axis, through the space it has cleared, up to a plane; there it turns
+upright, crosses, tilts again and descends along its next axis. Units: mm, mm/s.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from pkm_post.surface_path.tool_axis import clamped
 
 _UP = np.array([0.0, 0.0, 1.0])
 _FLATTEST = math.sin(math.radians(5.0))
-"""Rise of the tool axis below which the way along it up to the plane would be too long."""
+"""Rise of the tool axis below which the path along it up to the plane would be too long."""
 _NO_NORMAL = np.full(3, np.nan)
 
 
 @dataclass(frozen=True)
 class _Rows:
-    """Columns of the program in the making."""
+    """Columns of the program under construction."""
 
     kind: Array
     tip: Array
@@ -36,7 +36,7 @@ class _Rows:
 
     @classmethod
     def of(cls, kind: Kind, tip: Array, axis: Array, feed: float, normal: Array = _NO_NORMAL) -> _Rows:
-        """Rows of one kind and feed; an axis or a normal may stand for all."""
+        """Rows of one kind and feed; a single axis or normal applies to all."""
         rows = len(tip)
         return cls(
             np.full(rows, kind),
@@ -48,15 +48,15 @@ class _Rows:
 
 
 def program_of(covered: list[Poses], settings: Settings, place: Place) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program that visits all poses.
+    """The program through all poses.
 
     Args:
-        covered: the poses of each surface, in the order of travel.
+        covered: the poses of each surface, in order of travel.
         settings: planes, leads, feeds.
-        place: file and operation that the program is said to come from.
+        place: file and operation named as the source of the program.
 
     Returns:
-        The program, without events and tools; None when the tool cannot be lifted somewhere, and why.
+        The program, without events and tools, or None when the tool cannot be lifted somewhere; and the diagnostics.
     """
     runs = [(poses, rows) for poses in covered for rows in _runs(poses)]
     parts: list[_Rows] = []
@@ -73,7 +73,7 @@ def program_of(covered: list[Poses], settings: Settings, place: Place) -> tuple[
 def _visit(
     poses: Poses, rows: Array, come: float, leave: float, settings: Settings, place: Place
 ) -> tuple[list[_Rows], list[Diagnostic]]:
-    """Down from a plane, along a run, and up to a plane; and what keeps the tool from that."""
+    """Rows down from a plane, along a run, and up to a plane; and their diagnostics."""
     first, last = int(rows[0]), int(rows[-1])
     lead_in, lead_out = _lead(poses, first, -1.0, settings)[::-1], _lead(poses, last, 1.0, settings)
     begin = lead_in[0] if len(lead_in) else poses.tip[first]
@@ -98,7 +98,7 @@ def _runs(poses: Poses) -> list[Array]:
 
 
 def _lead(poses: Poses, row: int, sense: float, settings: Settings) -> Array:
-    """Tips from a pose away from the surface, nearest first: along the feed, or on a quarter circle off the surface."""
+    """Lead tips from a pose outwards, nearest first: along the feed, or on a quarter circle off the surface."""
     length, along, off = settings.lead_length, sense * poses.frame.feed[row], poses.normal[row]
     if settings.lead_move is LeadMove.NONE or length == 0.0:
         return np.zeros((0, 3))
@@ -111,15 +111,15 @@ def _lead(poses: Poses, row: int, sense: float, settings: Settings) -> Array:
 
 
 def _on_plane(tip: Array, axis: Array, height: float) -> Array:
-    """The place of the tip where it comes along its axis to a plane of constant z."""
+    """The intersection of the tool axis through the tip with a plane of constant z."""
     place: Array = tip + (height - tip[2]) / axis[2] * axis
     return place
 
 
 def _descent(begin: Array, axis: Array, height: float, settings: Settings, normal: Array) -> list[_Rows]:
-    """Standing up above, then leaning, then down along the axis, the last piece with the feed.
+    """Upright on the plane, then tilted, then down along the axis, the last piece at plunge feed.
 
-    The normal is that of the contact where the descent ends, NaN if it ends in a lead.
+    The normal belongs to the contact where the descent ends, NaN if it ends in a lead.
     """
     above = _on_plane(begin, axis, height)
     resting = _resting(settings)
@@ -132,20 +132,20 @@ def _descent(begin: Array, axis: Array, height: float, settings: Settings, norma
 
 
 def _ascent(end: Array, axis: Array, height: float, settings: Settings) -> list[_Rows]:
-    """Up along the axis, then standing up."""
+    """Up along the axis, then upright."""
     above = _on_plane(end, axis, height)[None]
     resting = _resting(settings)
     return [_Rows.of(Kind.RAPID, above, axis, np.nan), _Rows.of(Kind.RAPID, above, resting, np.nan)]
 
 
 def _resting(settings: Settings) -> Array:
-    """The tool axis between runs: upright, or as near to it as the cone allows."""
+    """The tool axis between runs: upright, or as close to it as the cone allows."""
     rule = settings.rule
     return clamped(_UP[None], np.asarray(rule.cone_axis, dtype=np.float64), rule.cone)[0]
 
 
 def _lift_faults(axis: Array, tip: Array, height: float, place: Place) -> list[Diagnostic]:
-    """What keeps the tool from being lifted along its axis to the plane."""
+    """Faults that prevent a retract along the tool axis to the plane."""
     if axis[2] < _FLATTEST:
         return [Diagnostic("N304", place, f"{math.degrees(math.asin(axis[2])):.1f} degrees above the horizontal")]
     if tip[2] > height:
@@ -167,6 +167,6 @@ def _program(parts: list[_Rows], place: Place) -> Program:
 
 
 def _moving(tip: Array, axis: Array) -> Array:
-    """Which rows go somewhere: neither place nor axis is that of the row before."""
+    """Rows that move: tip or axis differs from the row before."""
     still = (np.abs(np.diff(tip, axis=0)).max(axis=1) < 1e-9) & (np.abs(np.diff(axis, axis=0)).max(axis=1) < 1e-9)
     return np.concatenate([[True], ~still])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ordering: which way each pass is travelled, and which passes follow each other without lifting the tool.
+"""Ordering: travel direction of each pass, and passes linked without lifting the tool.
 
-Pieces of passes enter in the order of the stepover; a course in the order of travel leaves. A cutter that turns
-clockwise, seen from the spindle, climbs where the material is on its right.
+Takes pieces of passes in the order of the stepover; returns a course in order of travel. A cutter that turns clockwise,
+seen from the spindle, climbs where the material is on its right.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from pkm_post.surface_path.surface import Array, Surface, unit_or_nan
 from pkm_post.surface_path.tool_axis import AxisRule, tool_axes
 
 _LOOKS = 17
-"""Points of a link that have to be on the face."""
+"""Points of a link checked to be on the face."""
 _SAME = 1e-3
-"""mm within which a line that ends where it begins is closed."""
+"""mm between the ends of a line within which it is closed."""
 
 
 def turned(course: Course, backwards: Array) -> Course:
-    """The course with some passes travelled the other way, their pieces in the order of travel.
+    """The course with some passes reversed, their pieces in order of travel.
 
     Args:
         course: pieces in the order of the pattern.
-        backwards: (N,) for each row whether its pass is turned round; the same for all rows of a pass.
+        backwards: (N,) for each row whether its pass is reversed; equal for all rows of a pass.
     """
     rows = np.arange(len(course))
     along = np.where(backwards, -rows, rows)
@@ -39,17 +39,17 @@ def turned(course: Course, backwards: Array) -> Course:
 
 
 def climbs(surface: Surface, pattern: Pattern, course: Course, rule: AxisRule, into_rising: float) -> bool:
-    """Whether a course mostly climbs, travelled as it is by a cutter that turns clockwise.
+    """Whether a course mostly climbs, with a cutter that turns clockwise.
 
-    Material is below the surface, towards -n, and where the next passes will be, towards s. With the right of the
-    feed t x k, the passes climb where (s - n) . (t x k) > 0 on the mean: beside a wall -n decides, on a floor s.
+    Material is below the surface, towards -n, and on the side of the next passes, towards s. With the right of the feed
+    t x k, the passes climb where the mean of (s - n) . (t x k) > 0: beside a wall -n decides, on a floor s.
 
     Args:
         surface: the surface.
         pattern: the lines.
         course: passes, all in one direction.
-        rule: of the tool axis.
-        into_rising: 1 when the passes follow each other with rising v or level, -1 when with falling.
+        rule: rule of the tool axis.
+        into_rising: 1 when passes follow each other with rising v or level, -1 when falling.
     """
     patch = surface.at(course.u, course.v)
     feed = np.nan_to_num(unit_or_nan(pattern.direction(patch)) * course.sense[:, None])
@@ -62,15 +62,15 @@ def climbs(surface: Surface, pattern: Pattern, course: Course, rule: AxisRule, i
 
 
 def linked(surface: Surface, course: Course, longest: float, zigzag: bool) -> Course:
-    """The course with neighbouring passes joined along the surface where that is short and stays on the face.
+    """The course with neighbouring passes linked along the surface where the link is short and stays on the face.
 
-    Passes in one direction are joined at the seam of closed lines alone: a link back along the surface would cut the
-    other way.
+    Passes in one direction are linked only at the seam of closed lines: a link back along the surface would cut in the
+    opposite direction.
 
     Args:
         surface: the surface.
-        course: pieces in the order of travel.
-        longest: length of a link along the surface, mm; the tool is lifted where it would be longer.
+        course: pieces in order of travel.
+        longest: longest link along the surface, mm; otherwise the tool is lifted.
         zigzag: whether passes alternate.
     """
     course = _seams_passed(surface, course)
@@ -92,7 +92,7 @@ def linked(surface: Surface, course: Course, longest: float, zigzag: bool) -> Co
 
 
 def _seams_passed(surface: Surface, course: Course) -> Course:
-    """The course with each run shifted by whole turns, to begin as near as it can to the end of the one before."""
+    """The course with each run shifted by whole turns, to begin as close as possible to the end of the one before."""
     jump = np.concatenate([[False], course.run[:-1] != course.run[1:]])
     columns = {}
     for name, span in (("u", surface.u), ("v", surface.v)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Poses: where the tool is along a course, and how far straight moves between may be off. Units: mm, rad."""
+"""Poses: tool poses along a course, and tolerances of the straight moves between them. Units: mm, rad."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from pkm_post.surface_path.turning import Frame
 
 @dataclass(frozen=True)
 class Tolerances:
-    """What a straight move may be off between its ends.
+    """Allowed deviation of a straight move between its ends.
 
     Attributes:
-        chord: distance of the cutter from the surface, above it or into it, and of the line between contact points
-            from the way of the contact on the surface, mm.
-        axis: angle of the tool axis from the one that the rule asks for, rad.
+        chord: distance of the cutter from the surface, above it or into it, and of the line between contact points from
+            the path of the contact on the surface, mm.
+        axis: angle of the tool axis from the one required by the rule, rad.
     """
 
     chord: float = 0.01
@@ -31,7 +31,7 @@ class Tolerances:
 
 @dataclass(frozen=True)
 class Poses:
-    """The tool at N rows of a course.
+    """Tool poses at N rows of a course.
 
     Attributes:
         course: the rows.
@@ -40,7 +40,7 @@ class Poses:
         frame: directions of feed and tilt.
         axis: (N, 3) unit tool axes.
         tip: (N, 3) tool tips.
-        clamped: (N,) whether the axis was moved into its cone.
+        clamped: (N,) whether the axis was clamped to its cone.
     """
 
     course: Course

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sections: the lines in which parallel planes cut a surface, as a course in (u, v).
+"""Sections: lines of intersection of a surface with parallel planes, as a course in (u, v).
 
-The height of the surface above a plane is taken on a grid; where it changes its sign along the edge of a cell, the line
-crosses that edge. Cell by cell the crossings are joined two by two, then chained to lines. Stepping settles the
-points on the planes. What is smaller than a cell of the grid is not seen.
+The height of the surface above a plane is sampled on a grid; where it changes sign along a cell edge, the line crosses
+that edge. The crossings of each cell are joined in pairs, then chained to lines. Stepping settles the points on the
+planes. Features smaller than a grid cell are missed.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ _GRID = (129, 129)
 
 
 def sections(surface: Surface, plane: Array, level: Array) -> Course:
-    """The lines of all planes, each a run of its own; closed ones end where they begin.
+    """The lines of all planes, each its own run; closed lines end where they begin.
 
     Args:
-        surface: the surface, taken without its trimming.
+        surface: the surface; its trimming is ignored.
         plane: (3,) unit normal of the planes.
-        level: (P,) places of the planes along the normal, mm.
+        level: (P,) positions of the planes along the normal, mm.
     """
     grid = Grid.over(surface, *_GRID)
     height = grid.shaped(dot(grid.patch.point, plane)).copy()
@@ -46,7 +46,7 @@ def sections(surface: Surface, plane: Array, level: Array) -> Course:
 
 
 def _in_direction(surface: Surface, plane: Array, course: Course) -> Course:
-    """The lines, each in the direction of the pattern: the normal of the planes is on its right, seen from outside."""
+    """The lines, each in the direction of the pattern: the plane normal is on its right, seen from outside."""
     patch = surface.at(course.u, course.v)
     step = np.diff(patch.point, axis=0)
     same = course.run[:-1] == course.run[1:]
@@ -58,7 +58,7 @@ def _in_direction(surface: Surface, plane: Array, course: Course) -> Course:
 
 
 def _crossings(grid: Grid, height: Array) -> tuple[Array, Array, Array]:
-    """Where the line crosses the edges of cells, by number of the edge, and the pairs of edges that it joins.
+    """Crossings of the line with cell edges, by number of the edge, and the pairs of edges that it joins.
 
     An edge along u has the number of its first node, one along v that of its node plus the number of nodes.
     """
@@ -78,7 +78,7 @@ def _crossings(grid: Grid, height: Array) -> tuple[Array, Array, Array]:
 
 
 def _joined_edges(height: Array, above: Array) -> Array:
-    """Pairs of edges joined within a cell, (K, 2). In a saddle the mean of the corners tells which belong together."""
+    """Pairs of edges joined within a cell, (K, 2). In a saddle the mean of the corners decides."""
     rows, columns = height.shape
     corner = [above[:-1, :-1], above[1:, :-1], above[1:, 1:], above[:-1, 1:]]
     node = np.arange(rows * columns).reshape(rows, columns)[:-1, :-1]
@@ -90,7 +90,7 @@ def _joined_edges(height: Array, above: Array) -> Array:
     for first, second in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)):
         both = (many == 2) & crossed[first] & crossed[second]
         pairs.append(np.column_stack([side[first][both], side[second][both]]))
-    # The corner between two sides is cut off where it differs from the middle of the saddle.
+    # A corner is cut off where its sign differs from that of the middle of the saddle.
     for first, second, between in ((0, 1, 1), (1, 2, 2), (2, 3, 3), (3, 0, 0)):
         both = (many == 4) & (corner[between] != middle)
         pairs.append(np.column_stack([side[first][both], side[second][both]]))
@@ -98,7 +98,7 @@ def _joined_edges(height: Array, above: Array) -> Array:
 
 
 def _same_seams(surface: Surface, pairs: Array) -> Array:
-    """The pairs, with edges on the end of a closed range named as those on its beginning."""
+    """The pairs, with edges at the end of a closed range renumbered as those at its start."""
     rows, columns = _GRID
     kind, node = np.divmod(pairs, rows * columns)
     i, j = np.divmod(node, columns)
@@ -111,10 +111,10 @@ def _same_seams(surface: Surface, pairs: Array) -> Array:
 
 
 def _chains(pairs: Array, u: Array, v: Array) -> list[Array]:
-    """Edges in the order of each line; open lines first, closed ones with their first edge again at the end.
+    """Edges in the order of each line; open lines first, closed ones with their first edge repeated at the end.
 
-    Closed lines begin where u is least, so that neighbours begin side by side. A line is a chain of links of which each
-    knows its neighbours alone, so this goes step by step.
+    Closed lines begin at their smallest u, so neighbours begin side by side. A line is a linked list, so it is followed
+    step by step.
     """
     beside: dict[int, list[int]] = {}
     for first, second in pairs.tolist():
@@ -135,7 +135,7 @@ def _chains(pairs: Array, u: Array, v: Array) -> list[Array]:
 
 
 def _unrolled(surface: Surface, u: Array, v: Array) -> tuple[Array, Array]:
-    """A line across a seam, its parameters running on."""
+    """A line across a seam, with continuous parameters."""
     if surface.u.closed:
         u = np.unwrap(u, period=surface.u.width)
     if surface.v.closed:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Settings: what a user chooses of a surface path, beside the faces and the cutter.
+"""Settings: user options of a surface path, apart from the faces and the cutter.
 
-The names of the choices are the words that people read; they are stored in documents.
+The values of the choices are shown to users and stored in documents.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pkm_post.surface_path.tool_axis import AxisRule
 
 
 class Lines(enum.Enum):
-    """What the passes run along."""
+    """Lines that the passes follow."""
 
     ALONG_U = "Along U"
     ALONG_V = "Along V"
@@ -23,7 +23,7 @@ class Lines(enum.Enum):
 
 
 class Order(enum.Enum):
-    """How passes follow each other."""
+    """Order of the passes."""
 
     ZIGZAG = "Zigzag"
     ONE_WAY = "One way"
@@ -31,7 +31,7 @@ class Order(enum.Enum):
 
 
 class CutMode(enum.Enum):
-    """Which side of the feed the material is on; in a zigzag this is said of its first pass."""
+    """Climb or conventional milling; in a zigzag it applies to the first pass."""
 
     CLIMB = "Climb"
     CONVENTIONAL = "Conventional"
@@ -39,7 +39,7 @@ class CutMode(enum.Enum):
 
 
 class LeadMove(enum.Enum):
-    """How the cutter comes to the surface and leaves it."""
+    """Lead move of the cutter to and from the surface."""
 
     NONE = "None"
     TANGENT = "Tangent"
@@ -48,25 +48,25 @@ class LeadMove(enum.Enum):
 
 @dataclass(frozen=True)
 class Settings:
-    """How faces are to be covered. Units: mm, mm/s, rad.
+    """Options for covering faces. Units: mm, mm/s, rad.
 
     Attributes:
-        safe_height: z of the plane in which the tool goes from one run to the next.
-        clearance_height: z of the plane in which it comes and leaves.
-        feed: of the tip while cutting.
-        plunge_feed: of the tip on the last piece down to the surface.
-        lines: what the passes run along.
-        order: how they follow each other.
+        safe_height: z of the plane in which the tool moves from one run to the next.
+        clearance_height: z of the plane of the first approach and the last retract.
+        feed: feed of the tip while cutting.
+        plunge_feed: feed of the tip on the last piece down to the surface.
+        lines: lines that the passes follow.
+        order: order of the passes.
         plane: (3,) normal of the parallel planes, of any length.
-        reversed: whether the passes begin at the other side.
-        stepover: how far passes are apart.
-        tolerances: of the straight moves.
-        rule: of the tool axis.
+        reversed: whether the passes begin at the opposite side.
+        stepover: distance of neighbouring passes.
+        tolerances: tolerances of the straight moves.
+        rule: rule of the tool axis.
         cut_mode: climb or conventional.
-        clockwise: how the spindle turns, seen from the spindle.
-        lead_move: how the cutter comes and leaves.
+        clockwise: whether the spindle turns clockwise, seen from the spindle.
+        lead_move: shape of lead-in and lead-out.
         lead_length: length of a straight lead, radius of an arc.
-        approach: distance above the surface, along the tool axis, where rapid motion ends.
+        approach: distance above the surface, along the tool axis, at which rapid motion ends.
     """
 
     safe_height: float

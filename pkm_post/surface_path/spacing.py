@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spacing: where the passes lie, so that none is farther from the next than allowed anywhere along it.
+"""Spacing: positions of the passes, nowhere farther apart than allowed.
 
-The surface on a grid enters; the values of v of the passes, or the levels of their planes, leave. At each v the worst
-place along the line decides how many passes a unit of v needs; the passes share the integral of that evenly. So each
-distance is kept at every place of the grid, and all of them shrink alike until whole passes fit.
+Takes the surface on a grid; returns the values of v of the passes, or the levels of their planes. At each v the worst
+place along the line determines the pass density per unit of v; the passes divide its integral evenly. So every grid
+point keeps its allowed distance, and all distances shrink alike to fit a whole number of passes.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ from pkm_post.surface_path.tool_axis import AxisRule, tool_axes
 _GRID = (49, 97)
 _LEVELS = 128
 _FLATTEST = 0.05
-"""Sine of the angle between surface and planes below which planes get no closer: a flat place has no line in them."""
+"""Sine of the angle between surface and planes below which planes get no closer: a parallel area has no section."""
 _LOOKS = (65, 129)
 _HALVINGS = 30
 _POINT = 1e-6
-"""mm: a line that is shorter is a pole, or the tip of a face."""
+"""mm: a shorter line is a pole, or the tip of a face."""
 
 
 @dataclass(frozen=True)
 class Stepover:
-    """How far passes are apart: at most ``distance``, or so that scallops are at most ``scallop`` high, mm.
+    """Distance of passes: at most ``distance``, or for scallops at most ``scallop`` high, mm.
 
     Attributes:
         distance: largest distance of neighbouring passes along the surface; None where the scallops decide.
-        scallop: largest height of what is left between passes; None where the distance decides.
+        scallop: largest scallop height between passes; None where the distance decides.
     """
 
     distance: float | None = None
@@ -51,9 +51,9 @@ class Stepover:
 
 
 def widths(surface: Surface, grid: Grid, pattern: Pattern, stepover: Stepover, cutter: Cutter, rule: AxisRule) -> Array:
-    """Allowed distances of passes at the points of a grid, (M * N,); NaN where the cutter does not fit into a hollow.
+    """Allowed distances of passes at grid points, (M * N,); NaN where the cutter does not fit into a concave area.
 
-    The cutter may come from either side: the narrower width counts.
+    The cutter may travel in either direction: the smaller width counts.
     """
     if stepover.distance is not None:
         return np.full(len(grid.inside), stepover.distance)
@@ -71,9 +71,9 @@ def widths(surface: Surface, grid: Grid, pattern: Pattern, stepover: Stepover, c
 
 
 def passes_along_u(surface: Surface, stepover: Stepover, cutter: Cutter, rule: AxisRule) -> tuple[Array, float]:
-    """Values of v of passes along u, (P,), and the widest distance, NaN if there is none somewhere.
+    """Values of v of passes along u, (P,), and the largest distance, NaN if one is undefined.
 
-    The borders are passes; where one is but a point, the first pass is half a step away from it.
+    The borders are passes; where a border is a single point, the first pass is half a step away from it.
     """
     surface = _face_alone(surface)
     grid = Grid.over(surface, *_GRID)
@@ -85,17 +85,17 @@ def passes_along_u(surface: Surface, stepover: Stepover, cutter: Cutter, rule: A
     across = norm(grid.patch.along_v - dot(grid.patch.along_v, feed)[:, None] * feed)
     need = np.max(grid.shaped(np.where(grid.inside, across / allowed, 0.0)), axis=0)
     first, last = (0.0 if length > _POINT else 0.5 for length in _lengths_on_borders(grid))
-    need[[0, -1]] = np.where([first, last], need[[1, -2]], need[[0, -1]])  # at a pole a line has no direction
+    need[[0, -1]] = np.where([first, last], need[[1, -2]], need[[0, -1]])  # a line has no direction at a pole
     return _shares(grid.v, need, first, last, surface.v.closed), widest
 
 
 def levels_of_planes(
     surface: Surface, plane: Array, stepover: Stepover, cutter: Cutter, rule: AxisRule
 ) -> tuple[Array, float]:
-    """Levels of parallel planes, (P,) in mm along their normal; and the widest distance, NaN if one has none.
+    """Levels of parallel planes, (P,) in mm along their normal; and the largest distance, NaN if one is undefined.
 
-    The first and last plane are half a pass inside the surface. Planes hardly cut a flat place that is parallel to
-    them: there they are closer by no more than a factor of 20.
+    The first and last plane are half a pass inside the surface. Planes barely intersect an area nearly parallel to
+    them: there they are closer by a factor of 20 at most.
     """
     grid = Grid.over(surface, *_GRID)
     allowed = widths(surface, grid, Pattern(plane, np.zeros(1)), stepover, cutter, rule)
@@ -115,7 +115,7 @@ def levels_of_planes(
 
 
 def _lengths_on_borders(grid: Grid) -> tuple[float, float]:
-    """How long the face is along the first and along the last line of a grid, mm; nothing at a pole or a tip."""
+    """Lengths of the face along the first and the last line of a grid, mm; 0 at a pole or a tip."""
     inside = grid.shaped(grid.inside)
     steps = norm(np.diff(grid.shaped(grid.patch.point), axis=0)) * (inside[1:] & inside[:-1])
     length = np.sum(steps, axis=0)
@@ -123,7 +123,7 @@ def _lengths_on_borders(grid: Grid) -> tuple[float, float]:
 
 
 def _face_alone(surface: Surface) -> Surface:
-    """The surface with the range of v that the face fills: to where the last of many points on a line leaves it."""
+    """The surface with the range of v that the face fills: up to where the last of many points on a line leaves it."""
     u, v = (
         np.linspace(span.first, span.last, count) for span, count in zip((surface.u, surface.v), _LOOKS, strict=True)
     )
@@ -143,7 +143,7 @@ def _face_alone(surface: Surface) -> Surface:
 
 
 def _halved(reached: Callable[[float], bool], within: float, beyond: float) -> float:
-    """The last value that is reached on the way from one that is to one that is not."""
+    """The last reached value between one that is reached and one that is not, by bisection."""
     for _ in range(_HALVINGS):
         middle = (within + beyond) / 2
         within, beyond = (middle, beyond) if reached(middle) else (within, middle)
@@ -151,26 +151,26 @@ def _halved(reached: Callable[[float], bool], within: float, beyond: float) -> f
 
 
 def _widest(allowed: Array, grid: Grid) -> float:
-    """The widest distance that is not without a limit; NaN where the cutter does not fit somewhere."""
+    """The largest finite distance; NaN where the cutter does not fit somewhere."""
     on_face = allowed[grid.inside & ~np.isposinf(allowed)]
     return float(np.max(on_face, initial=0.0))
 
 
 def _widened(values: Array) -> Array:
-    """Each value or a greater one beside it: a band need not hold the worst place near its ends."""
+    """Maximum of each value and its neighbours: the worst place near the ends of a band may lie outside it."""
     padded = np.concatenate([values[:1], values, values[-1:]])
     return np.maximum.reduce([padded[:-2], padded[1:-1], padded[2:]])
 
 
 def _shares(places: Array, need: Array, first: float, last: float, closed: bool) -> Array:
-    """Places that share the integral of the need evenly, in steps of one or less.
+    """Places that divide the integral of the need evenly, in steps of one or less.
 
     Args:
-        places: (N,) where the need is known, rising.
-        need: (N,) passes by unit of place.
-        first: how much of a step lies before the first pass: 0 for a pass on the border.
-        last: how much of a step lies behind the last one.
-        closed: whether the last place is the first one again; then no pass is made there.
+        places: (N,) places of known need, rising.
+        need: (N,) passes per unit of place.
+        first: share of a step before the first pass: 0 for a pass on the border.
+        last: share of a step after the last pass.
+        closed: whether the last place equals the first; then it gets no pass.
     """
     between = (need[1:] + need[:-1]) / 2 * np.diff(places)
     so_far = np.concatenate([[0.0], np.cumsum(between)])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stepping: points are put between those of a course until straight moves keep both tolerances.
+"""Stepping: points inserted into a course until straight moves keep both tolerances.
 
-The course enters; poses leave, one for each row: contact points, normals, tool axes and tips. Between two rows the
-machine moves the tip on a line and turns the axis on a great circle. At places between, the cutter in that pose is held
-against the tangent plane of the surface, and its axis against the one that is wanted there.
+Takes a course; returns poses, one per row: contact points, normals, tool axes and tips. Between two rows the machine
+moves the tip on a line and turns the axis on a great circle. At places between, the cutter in that pose is compared
+with the tangent plane of the surface, and its axis with the required one.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from pkm_post.surface_path.tool_axis import AxisRule, tool_axes
 from pkm_post.surface_path.turning import Links, frame_of
 
 _SHARES = (0.25, 0.5, 0.75)
-"""Where between two rows the tolerances are looked at; a new row comes in the middle."""
+"""Places between two rows where the tolerances are checked; a new row goes in the middle."""
 _SHORTEST = 1e-3
-"""mm: two contacts that are nearer are not divided further; there the surface has an edge."""
+"""mm: moves between closer contacts are not divided further; there the surface has an edge."""
 _EDGE = math.radians(1.0)
 _ROUNDS = 40
 
@@ -36,14 +36,14 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class Stepping:
-    """What decides the pose at a place of the surface.
+    """Everything that determines the pose at a point of the surface.
 
     Attributes:
         surface: the surface.
         pattern: the lines of the passes.
         cutter: the corner of the cutter.
-        rule: of the tool axis.
-        tolerances: of straight moves.
+        rule: rule of the tool axis.
+        tolerances: tolerances of straight moves.
         place: what diagnostics name.
     """
 
@@ -57,14 +57,14 @@ class Stepping:
     def poses(
         self, course: Course, progress: Progress = lambda share: None
     ) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
-        """The course with as many rows as the tolerances need, and the tool at each.
+        """Refine the course to the tolerances and compute the pose at each row.
 
         Args:
-            course: passes in the order of travel, settled on the pattern.
-            progress: is told from time to time how much is done, from 0 to 1; it may raise to stop the work.
+            course: passes in order of travel, settled on the pattern.
+            progress: called from time to time with the completed share, from 0 to 1; may raise to abort.
 
         Returns:
-            The poses, or None when the cutter cannot touch the surface somewhere; and what was found.
+            The poses, or None when the cutter cannot touch the surface somewhere; and the diagnostics.
         """
         patch = self.surface.at(course.u, course.v)
         open_ = course.run[:-1] == course.run[1:]
@@ -89,7 +89,7 @@ class Stepping:
         return found, (*faults, *self._edges(found))
 
     def _at(self, course: Course, patch: Patch) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
-        """The tool at rows whose patch is known."""
+        """Poses at rows of known patch."""
         travel = np.gradient(patch.point, axis=0) if len(course) > 1 else patch.along_u
         frame = frame_of(self.pattern, course, patch, travel)
         before, after = _passes_beside(course)
@@ -102,13 +102,13 @@ class Stepping:
         return Poses(course, patch.point, patch.normal, frame, axis, tip, clamped), faults
 
     def _divisible(self, found: Poses) -> Array:
-        """Which moves are worth a row in the middle: long ones, and those of links that turn the tool on the spot."""
+        """Moves that may be divided: long ones, and those of links that turn the tool in place."""
         turns = angle_between(found.axis[:-1], found.axis[1:]) > self.tolerances.axis
         moves: Array = (norm(np.diff(found.point, axis=0)) > _SHORTEST) | (_links(found.course) & turns)
         return moves
 
     def _looked_at(self, found: Poses, behind: Array) -> tuple[Course, Patch, Array]:
-        """The rows in the middle of moves, the surface there, and which moves do not keep the tolerances."""
+        """The rows in the middle of moves, the surface there, and the moves that exceed the tolerances."""
         course = found.course
         left, right = course.taken(behind), course.taken(behind + 1)
         is_link = _links(course)[behind]
@@ -128,7 +128,7 @@ class Stepping:
         return middle, middle_patch, fails
 
     def _fails(self, found: Poses, behind: Array, between: Course, patch: Patch, links: Links, share: float) -> Array:
-        """Which moves are too far off at a place between their ends, (n,)."""
+        """Moves that exceed the tolerances at a place between their ends, (n,)."""
         chord = found.point[behind + 1] - found.point[behind]
         way = patch.point - found.point[behind]
         square = dot(chord, chord)
@@ -146,7 +146,7 @@ class Stepping:
         return fails
 
     def _edges(self, found: Poses) -> tuple[Diagnostic, ...]:
-        """A warning where the surface has edges: contacts side by side with normals that are not."""
+        """A warning where the surface has edges: adjacent contacts with different normals."""
         near = (found.course.run[:-1] == found.course.run[1:]) & (norm(np.diff(found.point, axis=0)) <= _SHORTEST)
         angle = angle_between(found.normal[:-1], found.normal[1:])
         edges = np.flatnonzero(near & (angle > _EDGE))
@@ -158,7 +158,7 @@ class Stepping:
 
 
 def _first_of_each(faults: tuple[Diagnostic, ...], point: Array) -> tuple[Diagnostic, ...]:
-    """The first fault of each kind, with its contact point instead of a row, of which nobody knows."""
+    """The first fault of each kind, with its contact point instead of an internal row number."""
     firsts = {fault.code: fault for fault in reversed(faults)}
     return tuple(
         replace(first, place=replace(first.place, line=0), found=_told(point[first.place.line - 1], first.found))
@@ -171,21 +171,21 @@ def _told(point: Array, found: str) -> str:
 
 
 def _links(course: Course) -> Array:
-    """Which moves are of links, from the end of a pass to the beginning of the next, (N - 1,)."""
+    """Moves of links, from the end of a pass to the start of the next, (N - 1,)."""
     in_link = ~np.isnan(course.link)
     links: Array = (course.number[1:] != course.number[:-1]) | in_link[1:] | in_link[:-1]
     return links
 
 
 def _link_share(before: Array, after: Array, share: float) -> Array:
-    """Shares of the way of links between rows, which end where passes begin."""
+    """Interpolated shares of links between rows; a link ends where a pass begins."""
     first, last = np.where(np.isnan(before), 0.0, before), np.where(np.isnan(after), 1.0, after)
     part: Array = first + share * (last - first)
     return part
 
 
 def _passes_beside(course: Course) -> tuple[Array, Array]:
-    """For each row the last row of a pass that is not behind it, and the first that is not before it, (N,) each."""
+    """For each row the last pass row not after it, and the first pass row not before it, (N,) each."""
     rows = np.arange(len(course))
     in_pass = np.isnan(course.link)
     before = np.maximum.accumulate(np.where(in_pass, rows, 0))
@@ -194,7 +194,7 @@ def _passes_beside(course: Course) -> tuple[Array, Array]:
 
 
 def _open_again(open_: Array, behind: Array) -> Array:
-    """Which moves have to be looked at next: both halves of those that were divided, and no others."""
+    """Moves to check next: only both halves of the divided ones."""
     divided = np.zeros(len(open_), dtype=bool)
     divided[behind] = True
     return np.repeat(divided, np.where(divided, 2, 1))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface: what a pattern of passes needs to know of a face, wherever it comes from.
+"""Surface: interface of a face for patterns of passes, whatever its source.
 
-Two functions of columns (u, v) enter; points, normals and derivatives leave. A face of OpenCASCADE, a formula in a
-test and the same face with u and v exchanged are all the same to the patterns. Units: mm; u and v have their own.
+Takes two functions of columns (u, v); returns points, normals and derivatives. Patterns treat a face of OpenCASCADE, a
+formula in a test and the same face with u and v exchanged alike. Units: mm; u and v have their own.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from pkm_post.geometry.vectors import cross
 Array = np.ndarray[Any, np.dtype[Any]]
 
 _NO_LENGTH = 1e-9
-"""mm below which a line of the surface is a point: a pole."""
+"""mm below which a line of the surface is a pole."""
 
 _DIFFERENCE = 1e-4
-"""Share of the range between the two parameters whose normals are compared for a curvature."""
+"""Step of the finite difference of normals for a curvature, as a share of the range."""
 
 
 @dataclass(frozen=True)
 class Span:
-    """The range of a parameter; where it is closed, its end is its beginning again."""
+    """The range of a parameter; if closed, its end coincides with its start."""
 
     first: float
     last: float
@@ -39,17 +39,17 @@ class Span:
 
     @property
     def width(self) -> float:
-        """From the first value to the last."""
+        """Difference of the last and the first value."""
         return self.last - self.first
 
     def within(self, values: Array) -> Array:
-        """The values brought into the range: round the closed way, or to its nearer end."""
+        """The values brought into the range: wrapped if it is closed, else clamped."""
         if self.closed:
             return self.first + np.mod(values - self.first, self.width)
         return np.clip(values, self.first, self.last)
 
     def kept(self, values: Array) -> Array:
-        """The values, but none beyond an end of an open range; a closed one may be run through many times."""
+        """The values, clamped to an open range; in a closed range they may make many turns."""
         return values if self.closed else np.clip(values, self.first, self.last)
 
 
@@ -87,16 +87,16 @@ class Surface:
     v: Span
 
     def at(self, u: Array, v: Array) -> Patch:
-        """The surface at columns of parameters; closed ones may run on beyond their range."""
+        """The surface at columns of parameters; closed ones may exceed their range."""
         return Patch(*self.evaluate(self.u.within(u), self.v.within(v)))
 
     def holds(self, u: Array, v: Array) -> Array:
-        """Whether pairs belong to the face, (N,)."""
+        """Pairs that belong to the face, (N,)."""
         found: Array = np.asarray(self.inside(self.u.within(u), self.v.within(v)), dtype=bool)
         return found
 
     def exchanged(self) -> Surface:
-        """The same surface with u for v and v for u; the normals stay."""
+        """The same surface with u and v exchanged; the normals stay."""
 
         def evaluate(u: Array, v: Array) -> tuple[Array, Array, Array, Array]:
             point, normal, along_u, along_v = self.evaluate(v, u)
@@ -107,13 +107,13 @@ class Surface:
 
 @dataclass(frozen=True)
 class Grid:
-    """The surface at every u with every v: patch and mask are (M * N, ...), row after row of equal u.
+    """The surface at all pairs of u and v: patch and mask are (M * N, ...), row by row of equal u.
 
     Attributes:
-        u: (M,) evenly over the range, both ends included.
+        u: (M,) evenly spaced over the range, both ends included.
         v: (N,) likewise.
         patch: the surface there.
-        inside: (M * N,) whether the face is there.
+        inside: (M * N,) whether the point is on the face.
     """
 
     u: Array
@@ -135,7 +135,7 @@ class Grid:
 
 
 def unit_or_nan(vectors: Array) -> Array:
-    """Vectors scaled to unit length; NaN where one has none."""
+    """Vectors scaled to unit length; NaN where one is zero."""
     length = norm(vectors)[:, None]
     scaled: Array = vectors / np.where(length > _NO_LENGTH, length, np.nan)
     return scaled
@@ -162,7 +162,7 @@ def normal_curvatures(surface: Surface, u: Array, v: Array, patch: Patch, direct
 
 
 def _change_of_normal(span: Span, values: Array, normal_at: Callable[[Array], Array]) -> Array:
-    """Derivative of the normal by a parameter, by a difference about the value, or to one side of it at an end."""
+    """Derivative of the normal by a parameter, by a central difference, or one-sided at an end."""
     step = _DIFFERENCE * span.width
     before, after = values - step, values + step
     if not span.closed:
@@ -172,7 +172,7 @@ def _change_of_normal(span: Span, values: Array, normal_at: Callable[[Array], Ar
 
 
 def _components(patch: Patch, direction: Array) -> tuple[Array, Array]:
-    """Shares a and b with direction = a Su + b Sv in the tangent plane; NaN at a pole."""
+    """Components a and b of direction = a Su + b Sv in the tangent plane; NaN at a pole."""
     across = cross(patch.along_u, patch.along_v)
     area = dot(across, across)
     area = np.where(area > _NO_LENGTH**2, area, np.nan)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool axis: from the surface normal by lead and tilt, then into the cone that the machine allows.
+"""Tool axis: from the surface normal by lead and tilt, then clamped to the cone that the machine allows.
 
-Normals and directions of feed enter, unit tool axes leave. Angles in rad. Lead leans the tool forward in the
-direction of feed, tilt leans it to a side.
+Takes normals and feed directions; returns unit tool axes. Angles in rad. Lead tilts the tool forward in the feed
+direction, tilt tilts it sideways.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from pkm_post.surface_path.surface import Array, unit_or_nan
 
 @dataclass(frozen=True)
 class AxisRule:
-    """How the tool leans.
+    """Rule of the tool axis.
 
     Attributes:
-        lead: angle from the normal forward, in the direction of feed.
-        tilt: angle from there to the side, by default to the left of the direction of feed seen from outside.
-        cone_axis: middle of the cone that the tool axis stays in, of any length.
+        lead: angle from the normal forward, in the feed direction.
+        tilt: angle from there to the side, by default to the left of the feed direction seen from outside.
+        cone_axis: axis of the cone that the tool axis stays in, of any length.
         cone: half angle of that cone; pi for no limit.
     """
 
@@ -45,17 +45,18 @@ class AxisRule:
 def tool_axes(normal: Array, feed: Array, rule: AxisRule, side: Array | None = None) -> tuple[Array, Array]:
     """Tool axes along sin(lead) t + cos(lead) (cos(tilt) n + sin(tilt) s), clamped to the cone.
 
-    Clamped axes are the nearest ones of the cone: on the great circle from the axis of the cone to the wanted one,
-    so that they move steadily when the wanted ones do; but for one that points straight away from the cone.
+    Clamped axes are the nearest ones in the cone: on the great circle from the axis of the cone to the required one.
+    They are continuous where the required ones are, except opposite to the cone.
 
     Args:
         normal: (N, 3) unit normals n.
-        feed: (N, 3) directions of feed; what they have across the normal is t.
+        feed: (N, 3) feed directions; t is the component normal to n.
         rule: lead, tilt and cone.
-        side: (N, 3) unit tangents s that the tilt leans to; left of the feed, n x t, if there are none.
+        side: (N, 3) unit tangents s to which the tool tilts; left of the feed, n x t, by default.
 
     Returns:
-        Unit axes (N, 3), NaN where the feed has no direction and the axis depends on it; and which were clamped, (N,).
+        Unit axes (N, 3), NaN where the feed has no direction and the axis depends on it; and flags of clamped ones,
+        (N,).
     """
     if rule.lead == 0.0 and rule.tilt == 0.0:
         wanted = normal
@@ -67,7 +68,7 @@ def tool_axes(normal: Array, feed: Array, rule: AxisRule, side: Array | None = N
 
 
 def clamped(wanted: Array, cone_axis: Array, cone: float) -> tuple[Array, Array]:
-    """The nearest axes inside a cone, (N, 3), and which of them had to be moved, (N,)."""
+    """The nearest axes inside a cone, (N, 3), and flags of the clamped ones, (N,)."""
     middle = np.broadcast_to(unit(cone_axis), wanted.shape)
     away = angle_between(middle, wanted)
     outside = away > cone

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Trimming: passes are cut into pieces where the face ends, at its border or at a hole.
+"""Trimming: passes cut into pieces at the border of the face and at holes.
 
-A course enters and leaves, its runs divided. The border between a point inside and its neighbour outside is found
-by halving. What is narrower than the distance of two neighbouring points is not seen.
+Takes a course; returns it with its runs divided. The border between a point inside and its neighbour outside is found
+by bisection. Features narrower than the point spacing are missed.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ _HALVINGS = 40
 
 
 def trimmed(surface: Surface, pattern: Pattern, course: Course) -> Course:
-    """The pieces of a course that lie on the face, each a run, their ends on its border.
+    """The pieces of a course on the face, each a run with its ends on the border.
 
     Args:
         surface: the surface, with the face as its inside.
-        pattern: what the points are settled on.
-        course: passes, before they are turned or joined.
+        pattern: the lines on which points are settled.
+        course: passes, before they are reversed or linked.
     """
     if not len(course):
         return course
@@ -36,7 +36,7 @@ def trimmed(surface: Surface, pattern: Pattern, course: Course) -> Course:
 
 
 def thinned(course: Course, every: int) -> Course:
-    """The first and last row of each run and every so many between: trimming needs more points than stepping does."""
+    """The first and last row of each run and every n-th between: trimming needs more points than stepping."""
     if not len(course):
         return course
     rows = np.arange(len(course))
@@ -46,7 +46,7 @@ def thinned(course: Course, every: int) -> Course:
 
 
 def _border(surface: Surface, pattern: Pattern, course: Course, crossing: Array, inside: Array) -> Course:
-    """The last points inside on the way between the rows at the crossings and those behind them."""
+    """The last points inside between the rows at the crossings and the next rows."""
     before, after = course.taken(crossing), course.taken(crossing + 1)
     within = inside[crossing]
     near_u, near_v = np.where(within, before.u, after.u), np.where(within, before.v, after.v)

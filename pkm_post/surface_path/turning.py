@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Turning: the direction of feed and the side of the tilt, along passes and in the links between them.
+"""Turning: feed direction and side of the tilt, along passes and in the links between them.
 
-Along a pass both are the pattern's. In a link the feed turns about the normal, at the end of a zigzag by way of the
-link's own direction, so that a tool with lead goes round its contact as a walking stick does. Over the normal it would
-have to tip from one side of its bottom to the other at once. The side stays where it is.
+Along a pass both follow the pattern. In a link the feed turns about the normal, at the end of a zigzag through the
+direction of the link, so a tool with lead swivels around its contact. Through the normal it would tip from one side of
+its bottom to the other at once. The side does not change.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pkm_post.surface_path.course import Course, Pattern
 from pkm_post.surface_path.surface import Array, Patch
 
 _REVERSAL = math.radians(150.0)
-"""Turn of the feed from which on a link decides which way round it goes."""
+"""Turn of the feed from which the link defines the sense of rotation."""
 _NO_DIRECTION = 1e-9
 
 
@@ -28,8 +28,8 @@ class Frame:
     """Unit tangents at N contacts.
 
     Attributes:
-        feed: (N, 3) in the direction of feed.
-        side: (N, 3) to where the tool tilts: left of the lines of the pattern, whichever way they are travelled.
+        feed: (N, 3) in the feed direction.
+        side: (N, 3) to which the tool tilts: left of the lines of the pattern, whatever the travel direction.
     """
 
     feed: Array
@@ -40,7 +40,7 @@ class Frame:
         return Frame(self.feed[rows], self.side[rows])
 
     def with_links(self, links: Links, normal: Array, share: Array) -> Frame:
-        """The frame, turned where a share of a link is given and not NaN."""
+        """The frame, turned where the share of a link is not NaN."""
         linking = ~np.isnan(share)
         if not linking.any():
             return self
@@ -52,12 +52,12 @@ class Frame:
 
 @dataclass(frozen=True)
 class Links:
-    """What N links join.
+    """Ends of N links.
 
     Attributes:
-        leaving: where a pass ends.
-        coming: where the next one begins.
-        way: (N, 3) from one contact to the other.
+        leaving: frame where a pass ends.
+        coming: frame where the next one begins.
+        way: (N, 3) vector from one contact to the other.
     """
 
     leaving: Frame
@@ -69,7 +69,7 @@ class Links:
         return Links(self.leaving.taken(rows), self.coming.taken(rows), self.way[rows])
 
     def at(self, normal: Array, share: Array) -> Frame:
-        """The frame where a share of the way is done."""
+        """The frame at a completed share of the link."""
         first, last = (_across(frame.feed, normal) for frame in (self.leaving, self.coming))
         angle = np.arctan2(dot(cross(first, last), normal), dot(first, last))
         round_by = np.where(dot(cross(first, self.way), normal) < 0.0, -1.0, 1.0)
@@ -83,7 +83,7 @@ class Links:
 
 
 def frame_of(pattern: Pattern, course: Course, patch: Patch, travel: Array) -> Frame:
-    """The frame along passes: the pattern's, or that of travel where it has no direction, as on a flat top.
+    """The frame along passes: that of the pattern, or of travel where the pattern has no direction, as on a flat top.
 
     Args:
         pattern: the lines.
@@ -98,7 +98,7 @@ def frame_of(pattern: Pattern, course: Course, patch: Patch, travel: Array) -> F
 
 
 def _across(vectors: Array, normal: Array) -> Array:
-    """Unit vectors of what the vectors have across the normals."""
+    """Unit vectors of the components across the normals."""
     across = vectors - dot(vectors, normal)[:, None] * normal
     unit: Array = across / np.maximum(norm(across)[:, None], 1e-300)
     return unit
