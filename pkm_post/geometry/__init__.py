@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Geometry: arrays in, arrays out. Nothing here knows of machines, tools or files."""
+"""Geometry: arrays in, arrays out; independent of machines, tools and files."""
 
 from pkm_post.geometry.arcs import arc_points, arc_sweep
 from pkm_post.geometry.great_circle import along, along_rates, angle_between, towards

@@ -8,11 +8,11 @@ import numpy as np
 from pkm_post.geometry.vectors import Array, cross, dot, norm
 
 _SAME_DIRECTION = 1e-9
-"""Angle in rad below which start and end count as the same place of the circle: a full turn."""
+"""Angle in rad below which start and end count as the same point of the circle: a full circle."""
 
 
 def arc_sweep(start: Array, end: Array, centre: Array, axis: Array) -> Array:
-    """Angles an arc turns from start to end, 0 < sweep <= 2 pi; a full turn where both have one direction.
+    """Sweep angles of arcs from start to end, 0 < sweep <= 2 pi; a full circle where both have the same direction.
 
     Args:
         start: (..., 3) start points.
@@ -42,7 +42,7 @@ def arc_points(start: Array, centre: Array, axis: Array, angle: Array, rise: Arr
 
 
 def across(vectors: Array, axis: Array) -> Array:
-    """The part of (..., 3) vectors across the unit axes."""
+    """The components of (..., 3) vectors across the unit axes."""
     return vectors - dot(vectors, axis)[..., None] * axis
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cells: points in space sorted into groups of near ones, so that a search may pass over what is far from a group."""
+"""Cells: points in space grouped by proximity, so a search can skip what is far from a group."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ def cells(points: Array, about: int) -> list[Array]:
     """Rows of the points, by cell of a grid in space.
 
     Args:
-        points: (N, 3), on a surface or so: the grid has as many cells along a side as it would need for that.
-        about: how many points a cell should have.
+        points: (N, 3), roughly on a surface: the number of grid cells along a side is chosen for that case.
+        about: target number of points per cell.
 
     Returns:
-        For each cell that has points their rows, ascending.
+        For each non-empty cell the rows of its points, ascending.
     """
     if not len(points):
         return []

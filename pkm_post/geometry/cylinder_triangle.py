@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cylinder and triangle: how far a solid cylinder is from a triangle, and the point of the triangle that is nearest.
+"""Cylinder and triangle: distance of a solid cylinder from a triangle, and the nearest point of the triangle.
 
-The distance from the cylinder is convex over the plane of the triangle. So its least place is where it is least in the
-whole plane, if that is inside the triangle, and otherwise on an edge. ``separation`` proves gaps faster and may tell
-too small a one; here the distance is exact to a tenth of a micron. Lengths in mm.
+The distance from the cylinder is convex over the plane of the triangle. So its minimum is that of the whole plane if it
+is inside the triangle, and otherwise on an edge. ``separation`` proves gaps faster but may return a smaller one; here
+the distance is exact to a tenth of a micron. Lengths in mm.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pkm_post.geometry.separation import Cylinders
 from pkm_post.geometry.vectors import Array, cross, dot, norm
 
 _FLAT = 1e-12
-"""mm^2: a triangle of less area has no plane, and is as good as its edges."""
+"""mm^2: a triangle of less area has no plane and is represented by its edges."""
 
 
 def nearest_of_triangle(cylinders: Cylinders, triangles: Array) -> tuple[Array, Array]:
@@ -47,7 +47,7 @@ def _frames(axis: Array) -> Array:
 
 
 def _nearest_in_plane(corners: Array, radius: Array, half: Array) -> Array:
-    """A point of the plane of each triangle that is as near to the cylinder as any, (N, 3), in the cylinder's frame."""
+    """A nearest point of the plane of each triangle to the cylinder, (N, 3), in the cylinder's frame."""
     normal = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = norm(normal)
     normal = np.divide(normal, length[:, None], out=np.zeros_like(normal), where=length[:, None] > _FLAT)
@@ -55,14 +55,15 @@ def _nearest_in_plane(corners: Array, radius: Array, half: Array) -> Array:
     share = np.divide(radius, across, out=np.zeros_like(across), where=across > _FLAT)
     farthest = np.column_stack([share * normal[:, 0], share * normal[:, 1], np.copysign(half, normal[:, 2])])
     height, reach = dot(normal, corners[:, 0]), dot(normal, farthest)
-    # The farthest point and its opposite are in the cylinder, and so is what the plane cuts off the way between.
+    # The farthest point and its opposite are in the cylinder, and so is the intersection of the plane with their
+    # segment.
     part = np.clip(np.divide(height, reach, out=np.zeros_like(height), where=reach > 0), -1.0, 1.0)
     on_body = part[:, None] * farthest
     return on_body + (height - dot(normal, on_body))[:, None] * normal
 
 
 def _inside(corners: Array, points: Array) -> Array:
-    """Whether points of the planes are in the triangles, (N,); those of no area have none."""
+    """Whether points of the planes are in the triangles, (N,); False for triangles of no area."""
     edges = np.roll(corners, -1, axis=1) - corners
     normal = cross(edges[:, 0], edges[:, 1])
     sides = dot(cross(edges, points[:, None] - corners), normal[:, None])

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Distances: how far bodies are apart, batch first; the bodies are segments, boxes, cylinders and points.
+"""Distances: distances between segments, boxes, cylinders and points, batch first.
 
-Boxes have edges along the axes. Cylinders are solid, with flat ends, and are given where they lie along z: points are
-brought into the frame of the cylinder first. What is touched or overlapped is at distance 0. Lengths in mm. All
-leading dimensions are broadcast.
+Boxes are axis-aligned. Cylinders are solid, with flat ends, along z: points are transformed into the frame of the
+cylinder first. Touching or overlapping bodies are at distance 0. Lengths in mm. All leading dimensions are broadcast.
 """
 
 from __future__ import annotations
@@ -15,14 +14,14 @@ import numpy as np
 from pkm_post.geometry.vectors import Array, dot, norm
 
 _HALVINGS = 24
-"""Leaves a strut of a metre 60 nm long; the distance is known better than that."""
+"""Bisections reduce a strut of a metre to 60 nm; the distance is more accurate than that."""
 
 
 def segment_to_segment(start: Array, end: Array, other_start: Array, other_end: Array) -> Array:
     """Distances of segments, (...); the closest points are found by clamping [Ericson2005].
 
-    Of almost parallel segments, within 1e-8 rad, any pair of points that face each other may be taken as the closest,
-    which is wrong by no more than this angle times their length.
+    For almost parallel segments, within 1e-8 rad, any pair of facing points may be taken as the closest; the error is
+    at most this angle times their length.
 
     Args:
         start: (..., 3) one end of the first segment.
@@ -56,7 +55,7 @@ def segment_to_box(start: Array, end: Array, lowest: Array, highest: Array) -> A
     Args:
         start: (..., 3) one end of the segment.
         end: (..., 3) the other end.
-        lowest: (..., 3) corner of the box with the least coordinates.
+        lowest: (..., 3) corner of the box with the smallest coordinates.
         highest: (..., 3) the opposite corner.
     """
 
@@ -81,7 +80,7 @@ def nearest_to_cylinder(
     Args:
         start: (..., 3) one end of the segment in the frame of the cylinder.
         end: (..., 3) the other end.
-        radius: of the cylinder.
+        radius: radius of the cylinder.
         low: z of its lower end.
         high: z of its upper end.
     """
@@ -89,7 +88,7 @@ def nearest_to_cylinder(
 
 
 def _from_cylinder(point: Array, radius: Array | float, low: Array | float, high: Array | float) -> Array:
-    """From the nearest point of each cylinder to points, (..., 3)."""
+    """Vectors from the nearest point of each cylinder to points, (..., 3)."""
     out = np.hypot(point[..., 0], point[..., 1])
     share = np.maximum(_quotient(out - radius, out), 0.0)
     z = point[..., 2]
@@ -97,10 +96,10 @@ def _from_cylinder(point: Array, radius: Array | float, low: Array | float, high
 
 
 def _nearest(start: Array, end: Array, away: Callable[[Array], Array]) -> Array:
-    """The point of each segment that is nearest to a convex body, (..., 3), by halving.
+    """The point of each segment that is nearest to a convex body, (..., 3), by bisection.
 
-    Half the square of the distance is convex along the segment, and its slope is away . direction, where ``away``
-    leads from the nearest point of the body to a point.
+    Half the squared distance is convex along the segment, and its slope is away . direction, where ``away`` is the
+    vector from the nearest point of the body to a point.
     """
     way = end - start
     shape = np.broadcast_shapes(start.shape, end.shape, away(start).shape)[:-1]
@@ -109,7 +108,7 @@ def _nearest(start: Array, end: Array, away: Callable[[Array], Array]) -> Array:
         middle = (low + high) / 2
         rising = dot(away(start + middle[..., None] * way), np.broadcast_to(way, (*shape, 3))) > 0
         low, high = np.where(rising, low, middle), np.where(rising, middle, high)
-    # Where the slope never changes its sign, the nearest point is an end, and must be met to the last digit.
+    # Where the slope never changes sign, the nearest point is an end, and must be exact to the last digit.
     share = np.where(high == 1.0, 1.0, low)
     return start + share[..., None] * way
 

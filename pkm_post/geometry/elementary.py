@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Elementary surfaces: feet of perpendiculars on plane, cylinder, cone, sphere and torus, in closed form.
 
-Points (N, 3) in mm and the sizes of a surface enter; feet (N, 3) and unit normals (N, 3) leave, NaN where a point has
-no single foot: on the axis of a cylinder, for example. Normals point away from the axis or the centre, those of a
-plane along its axis. All surfaces are unbounded.
+Takes points (N, 3) in mm and the dimensions of a surface; returns feet (N, 3) and unit normals (N, 3), NaN where a
+point has no unique foot: on the axis of a cylinder, for example. Normals point away from the axis or the centre, those
+of a plane along its axis. All surfaces are unbounded.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def cylinder_feet(points: Array, centre: Array, axis: Array, radius: float) -> F
 
 
 def cone_feet(points: Array, apex: Array, axis: Array, half_angle: float) -> Feet:
-    """Feet on the double cone about the unit axis, on the side of the apex where the point is.
+    """Feet on the double cone about the unit axis, on the same side of the apex as the point.
 
     Args:
         points: (N, 3).
@@ -55,7 +55,7 @@ def cone_feet(points: Array, apex: Array, axis: Array, half_angle: float) -> Fee
 
 
 def torus_feet(points: Array, centre: Array, axis: Array, major: float, minor: float) -> Feet:
-    """Feet on the torus about the unit axis: the middle of its tube, of radius minor, runs on a circle, major."""
+    """Feet on the torus about the unit axis: tube of radius minor around a circle of radius major."""
     _, across = _parts(points - centre, axis)
     middle = centre + major * _direction(across)
     normals = _direction(points - middle)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Great circles: how a unit vector turns from one direction to another by the shortest way.
+"""Great circles: shortest rotation of a unit vector from one direction to another.
 
 A direction k near c is written as the tangent vector a at c (a . c = 0) whose length is the angle between them:
 k = cos|a| c + sin|a| a/|a|. Great circles through c are the straight lines a = s w. Arrays are (..., 3).
@@ -12,11 +12,11 @@ import numpy as np
 from pkm_post.geometry.vectors import Array, dot, length_of, norm
 
 _SERIES_BELOW = 1e-4
-"""Squared angle in rad^2 below which power series replace the quotients that would lose all their digits."""
+"""Squared angle in rad^2 below which power series replace quotients that suffer cancellation."""
 
 
 def angle_between(left: Array, right: Array) -> Array:
-    """Angles between unit vectors in rad, exact for small and for nearly straight ones."""
+    """Angles between unit vectors in rad, accurate near 0 and near pi."""
     x, y, z = left[..., 0], left[..., 1], left[..., 2]
     u, v, w = right[..., 0], right[..., 1], right[..., 2]
     sine = np.sqrt(np.square(y * w - z * v) + np.square(z * u - x * w) + np.square(x * v - y * u))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cubic Hermite segments: what a controller plays between two position-velocity-time points.
+"""Cubic Hermite segments: the motion of a controller between two position-velocity-time points.
 
 p(t) = p0 + v0 t + c2 t^2 + c3 t^3 with c2 = (3 d - (2 v0 + v1) T) / T^2, c3 = (-2 d + (v0 + v1) T) / T^3, d = p1 - p0:
-the one cubic with these ends. Positions and speeds are (N, 6), durations T (N,); the share of the duration that has
-gone is (M,), the same for all, or (N, M), which gives (N, M, 6).
+the unique cubic with these end conditions. Positions and speeds are (N, 6), durations T (N,); the elapsed share of the
+duration is (M,), the same for all, or (N, M), which gives (N, M, 6).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pkm_post.geometry.vectors import Array
 
 
 def _coefficients(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array]:
-    """c2 T^2 and c3 T^3, each (N, 6): in units of length, so that nothing is divided by a short time."""
+    """c2 T^2 and c3 T^3, each (N, 6): in units of length, to avoid division by a short time."""
     distance = p1 - p0
     span = duration[:, None]
     return 3 * distance - (2 * v0 + v1) * span, -2 * distance + (v0 + v1) * span
@@ -55,6 +55,6 @@ def hermite_columns(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array,
 
 
 def hermite_column_speeds(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array, share: Array) -> Array:
-    """Their speeds, (C, M, N)."""
+    """Speeds of C columns, (C, M, N)."""
     _, linear, square, cube = hermite_powers(p0, v0, p1, v1, duration)[:, :, None]
     return np.asarray((linear + share * (2 * square + 3 * share * cube)) / duration)

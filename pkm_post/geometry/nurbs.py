@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """NURBS: points and derivatives of rational B-spline surfaces, for many parameters at once.
 
-Degrees, knots, poles and weights enter as one surface; arrays of parameters u, v enter, and points with their first
-and second derivatives leave. The basis functions come from the recursion of de Boor and Cox, their derivatives from
-those of lower degree [Piegl1997, sections 2.2 and 2.3], those of the quotient from the product rule [Piegl1997, section
-4.5].
+Takes a surface of degrees, knots, poles and weights, and arrays of parameters u, v; returns points with their first and
+second derivatives. The basis functions come from the Cox-de Boor recursion, their derivatives from those of lower
+degree [Piegl1997, sections 2.2 and 2.3], those of the quotient from the product rule [Piegl1997, section 4.5].
 """
 
 from __future__ import annotations
@@ -18,10 +17,10 @@ from numpy.typing import ArrayLike
 from pkm_post.geometry.vectors import Array
 
 _TOGETHER = 4096
-"""Parameters evaluated at a time: what they gather of poles stays small beside the memory there is."""
+"""Parameters evaluated at a time: limits the memory for gathered poles."""
 
 _ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
-"""Derivatives by u and v, in the order they leave."""
+"""Derivatives by u and v, in the order of the result."""
 
 
 @dataclass(frozen=True)
@@ -30,9 +29,9 @@ class NurbsSurface:
 
     Attributes:
         degrees: degree along u and along v, at least 1.
-        knots: all knots along u (M + degree + 1,) and along v, ascending, each as often as its multiplicity.
+        knots: all knots along u (M + degree + 1,) and along v, ascending, repeated by multiplicity.
         poles: (M, N, 3) control points, along u and along v.
-        weights: (M, N) weights above 0, all 1 where the surface is not rational.
+        weights: (M, N) positive weights, all 1 where the surface is not rational.
     """
 
     degrees: tuple[int, int]
@@ -54,7 +53,7 @@ class NurbsSurface:
         return np.array([(k[p], k[-p - 1]) for k, p in zip(self.knots, self.degrees, strict=True)])
 
     def breaks(self, direction: int) -> Array:
-        """The different knots along u (0) or v (1), between which the surface is smooth."""
+        """The distinct knots along u (0) or v (1), between which the surface is smooth."""
         knots, degree = self.knots[direction], self.degrees[direction]
         return np.unique(knots[degree : len(knots) - degree])
 
@@ -66,7 +65,7 @@ class NurbsSurface:
         """Points S and their derivatives at pairs of parameters.
 
         Args:
-            u: (N,) parameters within the bounds; outside, the outermost piece is continued.
+            u: (N,) parameters within the bounds; outside, the outermost piece is extrapolated.
             v: (N,) parameters, one for each u.
             order: 0 for S, 1 for S, Su, Sv, 2 for S, Su, Sv, Suu, Suv, Svv.
 
@@ -100,14 +99,14 @@ class NurbsSurface:
 
 
 def basis(knots: Array, degree: int, at: Array, order: int) -> tuple[Array, Array]:
-    """The basis functions that are not zero at some parameters, with their derivatives.
+    """The nonzero basis functions at parameters, with their derivatives.
 
     N_i of degree h is (t - t_i) N_i / (t_{i+h} - t_i) + (t_{i+h+1} - t) N_{i+1} / (t_{i+h+1} - t_{i+1}), and its k-th
     derivative h times the difference of the same quotients of (k-1)-th derivatives, with N of degree h - 1.
 
     Args:
         knots: (M,) ascending.
-        degree: of the functions.
+        degree: degree of the functions.
         at: (N,) parameters.
         order: highest derivative.
 
@@ -117,7 +116,7 @@ def basis(knots: Array, degree: int, at: Array, order: int) -> tuple[Array, Arra
     last_span = int(np.searchsorted(knots, knots[-degree - 1], side="left")) - 1
     span = np.clip(np.searchsorted(knots, at, side="right") - 1, degree, last_span)
     near = knots[span + np.arange(-degree, degree + 2)[:, None]]
-    values = np.zeros((order + 1, degree + 2, len(at)))  # the last of the functions stays 0
+    values = np.zeros((order + 1, degree + 2, len(at)))  # the last function stays 0
     values[0, degree] = 1.0
     for height in range(1, degree + 1):
         start, end = near[degree - height : degree + 2], near[degree : degree + height + 2]
@@ -130,7 +129,7 @@ def basis(knots: Array, degree: int, at: Array, order: int) -> tuple[Array, Arra
 
 
 def _quotients(piece: Array, wanted: list[tuple[int, int]]) -> Array:
-    """Derivatives of the surface from those of poles times weights, and of the weights: (len(wanted), N, 3)."""
+    """Derivatives of the surface from those of the weighted poles and of the weights: (len(wanted), N, 3)."""
     above, below = piece[..., :3], piece[..., 3:]
     found: dict[tuple[int, int], Array] = {}
     for k, m in sorted(wanted, key=sum):

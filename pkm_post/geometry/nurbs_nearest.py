@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Nearest points of NURBS surfaces: feet of perpendiculars from many points at once.
+"""Nearest points on NURBS surfaces: feet of perpendiculars from many points at once.
 
-A surface and points in mm enter; parameters (u, v) of the feet leave, and which of them are to be trusted. Samples of
-the surface give the start, Newton's method on the squared distance the foot: beside the border, where the surface ends
-before the perpendicular, the foot is on the border.
+Takes a surface and points in mm; returns parameters (u, v) of the feet, and flags of the converged ones. Samples of the
+surface give the initial guess, Newton's method on the squared distance the foot. Where the surface ends before the
+perpendicular, the foot is on the border.
 """
 
 from __future__ import annotations
@@ -17,35 +17,35 @@ from pkm_post.geometry.nurbs import NurbsSurface
 from pkm_post.geometry.vectors import Array, dot
 
 _SAMPLES = 6000
-"""At most so many samples of the surface."""
+"""Most samples of the surface."""
 
 _SAMPLES_PER_POLE = 4
-"""Samples along a direction for each pole along it."""
+"""Samples per pole along a direction."""
 
 _POINTS_PER_CELL = 200
-"""Points on a surface that are compared with samples at a time, about."""
+"""Approximate number of points on a surface that are compared with samples at a time."""
 
 _ITERATIONS = 30
 _SMALL = 1e-5
-"""Newton's step in mm that is taken even if the distance grows: so near its minimum, that is rounding."""
+"""Newton step in mm that is taken even if the distance grows: this close to the minimum, growth is rounding."""
 
 _ARRIVED = 1e-8
-"""Newton's step in mm that is the last one: its error is of the order of its square."""
+"""Newton step in mm that is the last one: its error is of the order of its square."""
 
 Closed = tuple[bool, bool]
 
 
 def nearest(surface: NurbsSurface, points: Array, closed: Closed = (False, False)) -> tuple[Array, Array]:
-    """Parameters of the points of a surface that are nearest to given points.
+    """Parameters of the points of a surface nearest to given points.
 
     Args:
         surface: in mm.
-        points: (N, 3) finite points in mm; their feet are found where no other part of the surface is about as near.
-        closed: whether the surface runs on smoothly from its last u to its first, and from its last v.
+        points: (N, 3) finite points in mm; a foot is found where no other part of the surface is similarly close.
+        closed: whether the surface continues smoothly from its last u to its first, and likewise for v.
 
     Returns:
-        Parameters (N, 2), and whether the distance has its minimum there (N,). Where it has not, the search did not
-        arrive, at a crease for example.
+        Parameters (N, 2), and whether the distance has its minimum there (N,). Otherwise the search did not converge,
+        at a crease for example.
     """
     bounds = surface.bounds
     at = _seeds(surface, points)
@@ -81,7 +81,7 @@ def samples(surface: NurbsSurface) -> tuple[Array, Array]:
 
 
 def _evenly(breaks: Array, count: int) -> Array:
-    """About ``count`` parameters, as many in each span."""
+    """About ``count`` parameters, equally many in each span."""
     inside = max(2, math.ceil(count / (len(breaks) - 1)))
     return np.interp(np.arange((len(breaks) - 1) * inside + 1) / inside, np.arange(len(breaks)), breaks)
 
@@ -89,8 +89,8 @@ def _evenly(breaks: Array, count: int) -> Array:
 def _seeds(surface: NurbsSurface, points: Array) -> Array:
     """Parameters (N, 2) of the nearest samples.
 
-    Points of one cell of space are done together: a sample that is farther from their middle than the nearest one, by
-    more than twice the radius of the cell, is not the nearest to any of them.
+    Points of one cell are processed together: a sample farther from the cell centre than the nearest one, by more than
+    twice the radius of the cell, is not the nearest to any of them.
     """
     parameters, grid = samples(surface)
     chosen = np.zeros(len(points), dtype=np.int64)
@@ -106,7 +106,7 @@ def _seeds(surface: NurbsSurface, points: Array) -> Array:
 
 
 def _step(found: Array, points: Array, at: Array, bounds: Array, closed: Closed) -> Array:
-    """Newton's step (N, 2) for |S - q|^2 / 2; the step of Gauss and Newton where the distance is not convex."""
+    """Newton step (N, 2) for |S - q|^2 / 2; a Gauss-Newton step where the distance is not convex."""
     s, su, sv, suu, suv, svv = found
     away = s - points
     slope = np.column_stack([dot(su, away), dot(sv, away)])
@@ -123,14 +123,14 @@ def _step(found: Array, points: Array, at: Array, bounds: Array, closed: Closed)
 
 
 def _held(slope: Array, at: Array, bounds: Array, closed: Closed) -> Array:
-    """Parameters (N, 2) that stand at the border of the surface and would leave it."""
+    """Parameters (N, 2) at the border of the surface that would leave it."""
     leaves = ((at <= bounds[:, 0]) & (slope > 0)) | ((at >= bounds[:, 1]) & (slope < 0))
     held: Array = leaves & ~np.array(closed)
     return held
 
 
 def _within(at: Array, bounds: Array, closed: Closed) -> Array:
-    """Parameters taken round where the surface is closed, and to the border where it ends."""
+    """Parameters wrapped where the surface is closed, and clamped to the border otherwise."""
     low, high = bounds.T
     around = low + np.mod(at - low, high - low)
     return np.where(closed, around, np.clip(at, low, high))

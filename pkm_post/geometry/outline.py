@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Outline: which points of a plane lie within closed lines, holes left out.
+"""Outline: points of a plane within closed lines, excluding holes.
 
-Points (N, 2) and the segments of the lines enter, in any order and sense; whether points are inside leaves, and which
-of them are too near to a segment to be sure. A ray along the first coordinate crosses the lines an odd number of times
-from inside.
+Takes points (N, 2) and the segments of the lines, in any order and sense; returns flags of inside points, and of points
+too close to a segment to decide. From inside, a ray along the first coordinate crosses the lines an odd number of
+times.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ import numpy as np
 from pkm_post.geometry.vectors import Array
 
 _TOGETHER = 256
-"""Points whose rays are followed at a time: neighbours along the second coordinate, which few segments cross."""
+"""Points whose rays are traced at a time: neighbours along the second coordinate, with few segments to cross."""
 
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 
 def within(points: Array, segments: Array, margins: Array) -> tuple[Flags, Flags]:
-    """Whether points are within closed lines, and whether that is in doubt.
+    """Flags of points within closed lines, and of points in doubt.
 
     Args:
         points: (N, 2).
@@ -45,7 +45,7 @@ def within(points: Array, segments: Array, margins: Array) -> tuple[Flags, Flags
 
 
 def _crossings(points: Array, segments: Array) -> Array:
-    """How many segments cross the ray of each point, (N,)."""
+    """Number of segments that cross the ray of each point, (N,)."""
     x, y = points[:, :1], points[:, 1:]
     x0, y0, x1, y1 = segments.T
     passes = (y0 > y) != (y1 > y)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Separation: a plane between a cylinder and a body with corners proves how far they are apart at least.
+"""Separation: lower bound of the distance of a cylinder and a polyhedron by a separating plane.
 
-For any direction n, the bodies are no nearer to each other than their shadows on n are. The directions that are tried
-are those in which bodies meet: normals of faces, the axis of the cylinder, across the axis and an edge, and from the
-cylinder to a corner. Faces, flat ends, sides and corners are met exactly. For a rim that comes to an edge, the edges'
-points nearest to the rim are tried as well, twice over; it may still be farther away than is told, and never
-nearer. Where the bodies overlap, the number is negative. Lengths in mm.
+For any direction n, the bodies are no closer than their projections on n. The tested directions are those in which
+bodies touch: normals of faces, the axis of the cylinder, across the axis and an edge, and from the cylinder to a
+corner. Faces, flat ends, sides and corners are exact. For a rim at an edge, the points of the edges nearest to the rim
+are tested as well, in two iterations; the true distance may exceed the result, but is never less. Where the bodies
+overlap, the result is negative. Lengths in mm.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pkm_post.geometry.vectors import Array, cross, dot, norm
 
 TRIANGLE_EDGES = np.array([[0, 1], [1, 2], [2, 0]])
 _SHORT = 1e-12
-"""mm: what is shorter has no direction."""
+"""mm: a shorter vector has no direction."""
 _ROUNDS = 2
 
 
@@ -27,7 +27,7 @@ class Cylinders:
     """N solid cylinders with flat ends, anywhere in space.
 
     Attributes:
-        middle: (N, 3) their middles.
+        middle: (N, 3) their centres.
         axis: (N, 3) their unit axes.
         half: (N,) half their lengths.
         radius: (N,) their radii.
@@ -42,7 +42,7 @@ class Cylinders:
         return len(self.middle)
 
     def take(self, rows: Array | slice) -> Cylinders:
-        """Some of them."""
+        """The cylinders of the given rows."""
         return Cylinders(self.middle[rows], self.axis[rows], self.half[rows], self.radius[rows])
 
 
@@ -52,13 +52,13 @@ def cylinder_to_corners(cylinders: Cylinders, corners: Array, faces: Array, edge
 
 
 def separate(cylinders: Cylinders, corners: Array, faces: Array, edges: Array) -> tuple[Array, Array]:
-    """The same with the directions (N, 3) from cylinder to body in which these distances are seen.
+    """The same bounds with their directions (N, 3) from cylinder to body.
 
     Args:
         cylinders: the cylinders.
         corners: (N, C, 3) corners of the bodies.
-        faces: (N, F, 3) normals of their faces, and edges, of any length; zero rows are left out.
-        edges: (E, 2) which two corners each edge joins.
+        faces: (N, F, 3) normals of their faces, and edges, of any length; zero rows are ignored.
+        edges: (E, 2) the two corners of each edge.
     """
     axes, from_middle = cylinders.axis[:, None, :], corners - cylinders.middle[:, None, :]
     centre = from_middle.mean(axis=1, keepdims=True)
@@ -75,7 +75,7 @@ def separate(cylinders: Cylinders, corners: Array, faces: Array, edges: Array) -
 
 
 def _widest_gap(cylinders: Cylinders, from_middle: Array, tried: Array) -> tuple[Array, Array]:
-    """The widest gap (N,) that directions (N, D, 3) of any length show, and its direction (N, 3) to the body."""
+    """The widest gap (N,) over directions (N, D, 3) of any length, and its direction (N, 3) to the body."""
     lengths = norm(tried)
     long = lengths > _SHORT
     directions = np.divide(tried, lengths[..., None], out=np.zeros_like(tried), where=long[..., None])
@@ -90,7 +90,7 @@ def _widest_gap(cylinders: Cylinders, from_middle: Array, tried: Array) -> tuple
 
 
 def shadow(cylinders: Cylinders, direction: Array) -> Array:
-    """How far the cylinders reach from their middles in unit directions (N, 3), (N,)."""
+    """Half extents of the cylinders in unit directions (N, 3), (N,)."""
     return _shadow(dot(direction, cylinders.axis), cylinders.half, cylinders.radius)
 
 
@@ -99,7 +99,7 @@ def _shadow(along: Array, half: Array, radius: Array) -> Array:
 
 
 def _out_of(cylinders: Cylinders, points: Array) -> Array:
-    """From the cylinders to points (N, K, 3) that are given from their middles."""
+    """Vectors from the cylinders to points (N, K, 3) given relative to their centres."""
     axes, half, radius = cylinders.axis[:, None, :], cylinders.half[:, None], cylinders.radius[:, None]
     high = dot(points, axes)
     out = points - high[..., None] * axes
@@ -108,7 +108,7 @@ def _out_of(cylinders: Cylinders, points: Array) -> Array:
 
 
 def _rim(cylinders: Cylinders, direction: Array) -> Array:
-    """The point of each cylinder that is farthest in a direction (N, 3), from its middle."""
+    """The farthest point of each cylinder in a direction (N, 3), relative to its centre."""
     along = dot(direction, cylinders.axis)
     side = direction - along[:, None] * cylinders.axis
     share = cylinders.radius / np.maximum(norm(side), _SHORT)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Torsion: the turn of a frame about its own z axis, beyond the shortest rotation that takes it there.
+"""Torsion: rotation of a frame about its own z axis, beyond the shortest rotation that tilts it.
 
 Rmin(z -> k) = I + [v] + [v]^2 / (1 + kz), v = z x k, is the rotation without torsion. [Bonev2002]
 """
@@ -11,9 +11,9 @@ import numpy as np
 from pkm_post.geometry.vectors import Array, dot
 
 _STRAIGHT_DOWN = 1e-9
-"""Of 1 + kz."""
+"""Threshold of 1 + kz."""
 _ALMOST_DOWN = np.pi / 2 - 1e-3
-"""Half of the highest tilt that has a bound of the turn; a platform does not come near it."""
+"""Half of the largest tilt with a bound of the turn; a platform does not come close to it."""
 
 
 def tilt(axis: Array) -> Array:
@@ -22,12 +22,12 @@ def tilt(axis: Array) -> Array:
 
 
 def turn_by_tilt(highest: Array) -> Array:
-    """By how much a frame turns about its z axis, at most, for each radian that this axis turns by, (N,).
+    """Largest rotation of a frame about its z axis per radian of rotation of this axis, (N,).
 
     A frame without torsion turns by w = k x k' + tau k with |tau| <= tan(tilt / 2) |k'|.
 
     Args:
-        highest: (N,) rad, the highest tilt there is.
+        highest: (N,) rad, the largest tilt.
     """
     return np.tan(np.minimum(highest / 2, _ALMOST_DOWN))
 
@@ -47,13 +47,13 @@ def untwisted(axis: Array) -> tuple[Array, Array]:
 
 
 def fill_frame(x: Array, y: Array, axis: Array, spin: Array) -> None:
-    """Write the x and y axes of frames, each a vector in a column, (3, N).
+    """Write the x and y axes of frames as columns, (3, N).
 
     Args:
         x: where the x axes are written, (3, N).
         y: where the y axes are written, (3, N).
         axis: (3, N) the z axes, unit, none of them pointing straight down.
-        spin: (N,) rad, the turns about these, beyond the shortest rotations.
+        spin: (N,) rad, the rotations about these, beyond the shortest rotations.
 
     Raises:
         ValueError: an axis points straight down, where the shortest rotation is not unique.
@@ -71,11 +71,11 @@ def fill_frame(x: Array, y: Array, axis: Array, spin: Array) -> None:
 
 
 def torsion(axis: Array, x: Array) -> Array:
-    """The turn about unit axes that takes the x axis without torsion to directions, (N,) rad within half a turn.
+    """The rotation about unit axes from the x axis without torsion to directions, (N,) rad within half a turn.
 
     Args:
         axis: (N, 3) unit axes.
-        x: (N, 3) directions of any length; what they have along the axes does not count.
+        x: (N, 3) directions of any length; components along the axes are ignored.
     """
     straight, across = untwisted(axis)
     angle: Array = np.arctan2(dot(x, across), dot(x, straight))

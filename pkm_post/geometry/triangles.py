@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Triangles: meshes (T, 3, 3) cut into small pieces, whether they enclose a solid, and which points are inside.
+"""Triangles: meshes (T, 3, 3): subdivision, closedness, volume, and points inside.
 
 Units: mm.
 """
@@ -12,12 +12,12 @@ from pkm_post.geometry.gather import numbered
 from pkm_post.geometry.vectors import Array, cross, dot, norm
 
 _CORNER = 1e-5
-"""mm: corners this near to each other are one."""
+"""mm within which corners coincide."""
 _POINTS_AT_ONCE = 4_000_000
 
 
 def cut_small(triangles: Array, longest: float) -> Array:
-    """The same surface in triangles none of whose edges is longer than ``longest``."""
+    """The same surface in triangles with no edge longer than ``longest``."""
     done = []
     while len(triangles):
         edges = norm(np.roll(triangles, -1, axis=1) - triangles)
@@ -32,7 +32,7 @@ def cut_small(triangles: Array, longest: float) -> Array:
 
 
 def is_closed(triangles: Array) -> bool:
-    """Whether the triangles enclose a solid: each edge is run once in either direction, as often as the other."""
+    """Whether the triangles enclose a solid: each edge is used equally often in both directions."""
     corners = np.round(triangles.reshape(-1, 3) / _CORNER).astype(np.int64)
     _, number = np.unique(corners, axis=0, return_inverse=True)
     start = number.reshape(-1, 3)
@@ -44,17 +44,17 @@ def is_closed(triangles: Array) -> bool:
 
 
 def volume(triangles: Array) -> float:
-    """What a closed mesh encloses, mm^3; negative where its triangles turn inwards."""
+    """Volume of a closed mesh, mm^3; negative where its triangles face inwards."""
     a, b, c = triangles.transpose(1, 0, 2)
     return float(dot(a, cross(b, c)).sum() / 6)
 
 
 def inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
-    """Which points of a grid a closed mesh encloses, (X, Y, Z); solids that overlap count as one.
+    """Points of a grid inside a closed mesh, (X, Y, Z); overlapping solids count as one.
 
-    From each place in the plane a ray goes up: the triangles it meets below a point, those turned up counted against
-    those turned down, are as many when the point is outside. A ray that meets an edge or a corner counts as if it stood
-    a hair further along y, and much less before it along x; so of the triangles about it, it meets the right ones.
+    From each point in the plane a ray goes up: a point is outside if as many triangles below it face up as face down. A
+    ray through an edge or a corner is treated as shifted by an infinitesimal amount along +y, and by much less along
+    -x, so it meets the right ones of the adjacent triangles.
 
     Args:
         triangles: (T, 3, 3) of a closed mesh.
@@ -70,7 +70,7 @@ def inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
 
 
 def _crossings(triangles: Array, x: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Where vertical rays meet triangles: number of the ray, height, and 1 or -1 as the triangle turns, (K,) each."""
+    """Intersections of vertical rays with triangles: ray number, height, and 1 or -1 by orientation, (K,) each."""
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     begin, end = (
         np.stack([np.searchsorted(x, one[:, 0], side="right"), np.searchsorted(y, one[:, 1])], axis=1)
@@ -95,7 +95,7 @@ def _crossings(triangles: Array, x: Array, y: Array) -> tuple[Array, Array, Arra
 
 
 def _left(p: Array, q: Array, point: Array) -> tuple[Array, Array]:
-    """Whether points are to the left of edges from p to q, and twice the area with its sign, the same in both runs."""
+    """Whether points are left of edges from p to q, and twice the signed area, identical for both edge directions."""
     swapped = (p[:, 0] > q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] > q[:, 1]))
     first, last = np.where(swapped[:, None], q, p), np.where(swapped[:, None], p, q)
     along, across = last[:, :2] - first[:, :2], point - first[:, :2]

@@ -22,7 +22,7 @@ def norm(vectors: Array) -> Array:
 
 
 def length_of(x: Array, y: Array, z: Array) -> Array:
-    """Lengths of vectors given by their columns; the same to the last digit, whatever other rows there are."""
+    """Lengths of vectors given by their columns; bitwise independent of other rows."""
     return np.asarray(np.sqrt(x * x + y * y + z * z))
 
 
@@ -39,7 +39,7 @@ def unit(vectors: Array) -> Array:
 
 
 def cross(left: Array, right: Array) -> Array:
-    """Vector products of (..., 3) vectors, written out: several times faster than numpy's own on small rows."""
+    """Vector products of (..., 3) vectors, written out: several times faster than np.cross on small rows."""
     x, y, z = left[..., 0], left[..., 1], left[..., 2]
     u, v, w = right[..., 0], right[..., 1], right[..., 2]
     return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
