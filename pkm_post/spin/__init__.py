@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spin: the turn of the platform about the tool axis, which cuts nothing and moves every strut."""
+"""Spin: rotation of the platform about the tool axis, which cuts nothing and moves every strut."""
 
 from pkm_post.spin.apply import with_spin
 from pkm_post.spin.optimise import least_shares, optimise

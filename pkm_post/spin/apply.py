@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Apply: give a trajectory the spin that a policy asks for.
+"""Apply: the spin of a policy, applied to a trajectory.
 
-A trajectory enters as it was placed, with the spin of the part program or none; the same with another spin leaves.
+Takes a trajectory as placed, with the spin of the part program or none; returns it with another spin.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from pkm_post.spin.policy import Policy, Rule
 from pkm_post.spin.rules import spin_in_plane
 
 _SAME = 1e-6
-"""mm, and of unit axes: a tool that ends so near to the tool-change pose stands there."""
+"""mm, and difference of unit axes: a tool this close to the tool-change pose is there."""
 
 
 def with_spin(
     trajectory: Trajectory, machine: Machine, policy: Policy
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
-    """The trajectory with the spin of a policy, or where the policy does not tell it.
+    """The trajectory with the spin of a policy, or diagnostics where the policy leaves it undefined.
 
-    At the tool-change pose it is that of the machine file, whatever the policy.
+    At the tool-change pose the spin is that of the machine file, whatever the policy.
 
     Args:
         trajectory: at least one segment.
         machine: geometry and limits, for a search.
-        policy: what is wanted.
+        policy: rule of the spin and its parameters.
     """
     turned, told = _by_policy(trajectory, machine, policy)
     return (None if turned is None else _as_tools_change(turned, machine)), told
 
 
 def _as_tools_change(trajectory: Trajectory, machine: Machine) -> Trajectory:
-    """The trajectory with the spin of the tool-change pose where tools change."""
+    """The trajectory with the spin of the tool-change pose at tool changes."""
     pose = machine.tool_change
     if pose is None:
         return trajectory

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Course: the best way through a field of scores, one value at each node, by dynamic programming.
+"""Course: the best path through a field of scores, one value at each node, by dynamic programming.
 
-Candidates and their scores at nodes along a path enter, with how far the value may change from one node to the next;
-one candidate per node leaves. The worst score on the way is as high as it can be; of all courses with that worst
-score it is one that changes least. A choice at one node that looks best there may lead into a dead end: that is why
-all nodes are decided together.
+Takes candidates and their scores at nodes along a path, and limits of the change between nodes; returns one candidate
+per node. The course maximises the worst score, and among all courses with that worst score minimises the change. The
+best choice at one node may lead into a dead end, so all nodes are decided together.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ import numpy as np
 from pkm_post.geometry.vectors import Array
 
 _SLACK = 1e-9
-"""Relative room in comparisons of computed steps, and absolute in scores."""
+"""Tolerance in comparisons: relative for computed steps, absolute for scores."""
 
 
 def best_course(candidates: Array, scores: Array, start: float, limit: Array, extent: Array) -> Array:
@@ -22,10 +21,10 @@ def best_course(candidates: Array, scores: Array, start: float, limit: Array, ex
 
     Args:
         candidates: (K, M) values to choose from at each node.
-        scores: (K, M) how good each of them is.
+        scores: (K, M) scores of the candidates.
         start: the value before the first node.
         limit: (K,) largest change from the node before.
-        extent: (K,) length of the way from the node before; the sum of change^2 / extent is made small.
+        extent: (K,) path length from the node before; the sum of change^2 / extent is minimised.
 
     Raises:
         ValueError: no course keeps within the limits.
@@ -36,7 +35,7 @@ def best_course(candidates: Array, scores: Array, start: float, limit: Array, ex
 
 
 def _worst_score(before: Array, candidates: Array, scores: Array, limit: Array) -> float:
-    """The highest worst score of any course."""
+    """The largest worst score of any course."""
     best = np.full(candidates.shape[1], np.inf)
     for node, score in enumerate(scores):
         change = np.abs(candidates[node][:, None] - before[node])
@@ -48,7 +47,7 @@ def _worst_score(before: Array, candidates: Array, scores: Array, limit: Array) 
 
 
 def _least_change(before: Array, candidates: Array, allowed: Array, limit: Array, extent: Array) -> Array:
-    """Of the courses through allowed candidates the one that changes least, as indices (K,)."""
+    """The course of least change through allowed candidates, as indices (K,)."""
     nodes, choices = candidates.shape
     came_from = np.empty((nodes, choices), dtype=np.int32)
     cost = np.zeros(choices)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Optimise: the spin along a whole path that leaves the machine most room.
+"""Optimise: the spin along a whole path with the largest margins.
 
-A trajectory enters; the same with another spin leaves. First the worst place of the path is made as good as it can be,
-then the spin is turned no more than that needs. The search is coarse first and is refined about its result.
-[Merlet2000]
+Takes a trajectory; returns it with another spin. The search first maximises the score at the worst place of the path,
+then minimises the change of spin that this needs. It starts coarse and is refined around its result. [Merlet2000]
 """
 
 from __future__ import annotations
@@ -21,10 +20,10 @@ from pkm_post.spin.samples import Samples
 from pkm_post.spin.shares import score, shares
 
 _REFINEMENT = 4
-"""Each search has steps this much finer than the one before, and looks as far as one step of that."""
+"""Each search refines the step by this factor, within one step of the previous search."""
 _REFINEMENTS = 2
 _BLOCK = 1 << 16
-"""Poses per pass, samples times candidates: what is in memory at a time."""
+"""Poses per pass, samples times candidates: limits memory."""
 
 
 def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Trajectory:
@@ -33,7 +32,7 @@ def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Trajec
     Args:
         trajectory: at least one segment; its spin at the start stays.
         machine: geometry and limits.
-        policy: what to make as large as possible, and how far and how fast the spin may turn.
+        policy: objective, and range and rate of the spin.
     """
     samples, home = Samples.of(trajectory), trajectory.start_spin
     node_s = samples.row_s[_nodes(samples.row_s, policy.step / policy.rate)]
@@ -52,14 +51,14 @@ def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Trajec
 
 
 def least_shares(trajectory: Trajectory, machine: Machine) -> Array:
-    """What is left at the worst places of a trajectory, (3,): stroke, joints, distance to singular poses."""
+    """Least shares over a trajectory, (3,): stroke, joints, distance to singular poses."""
     samples = Samples.of(trajectory)
     left = shares(machine, samples.tip, samples.axis, samples.spin, samples.tool_length)
     return np.asarray(left.min(axis=0))
 
 
 def _nodes(row_s: Array, least: float) -> list[int]:
-    """Segments whose ends are nodes: each the first one that is far enough from the node before, and the last."""
+    """Segments whose ends are nodes: each the first far enough from the node before, and the last."""
     nodes, at, last = [], 0.0, len(row_s) - 1
     while at + least < row_s[-1]:
         nodes.append(min(int(np.searchsorted(row_s, at + least)), last))
@@ -70,9 +69,9 @@ def _nodes(row_s: Array, least: float) -> list[int]:
 
 
 def _scores(samples: Samples, node_s: Array, machine: Machine, policy: Policy, candidates: Array) -> Array:
-    """How good each candidate is at each node, (K, M): the worst of the samples that are nearest to it."""
+    """Score of each candidate at each node, (K, M): the worst of the samples nearest to the node."""
     halfway = (np.append(0.0, node_s[:-1]) + node_s) / 2
-    # What is nearest to the start of the path has the spin of the start.
+    # Samples nearest to the start of the path have the spin of the start.
     chosen = np.flatnonzero(samples.s >= halfway[0])
     node = np.searchsorted(halfway, samples.s[chosen], side="right") - 1
     choices = candidates.shape[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Policy: what the user wants of the spin."""
+"""Policy: user options of the spin."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pkm_post.spin.shares import JOINTS, SINGULAR, STROKE
 
 
 class Rule(enum.Enum):
-    """Where the spin comes from."""
+    """Source of the spin."""
 
     ZERO = "zero"
     """Zero torsion: the platform takes the shortest rotation from upright."""
@@ -22,9 +22,9 @@ class Rule(enum.Enum):
     Y_IN_PLANE = "y-in-plane"
     """The y axis of the platform stays parallel to a vertical plane."""
     FILE = "file"
-    """The part program says it; zero torsion where it does not."""
+    """Spin from the part program; zero torsion where it gives none."""
     OPTIMISED = "optimise"
-    """The whole path is searched for the spin that leaves most room."""
+    """Spin with the largest margins, by a search over the whole path."""
 
 
 OBJECTIVES: Mapping[str, Mapping[int, float]] = MappingProxyType(
@@ -35,18 +35,18 @@ OBJECTIVES: Mapping[str, Mapping[int, float]] = MappingProxyType(
         "weighted": {STROKE: 1.0, JOINTS: 1.0, SINGULAR: 1.0},
     }
 )
-"""By name the weight of each share; a share without a weight need only be above zero."""
+"""Weights of the shares by name; a share without a weight only has to be above zero."""
 
 
 @dataclass(frozen=True)
 class Policy:
-    """A rule and its numbers.
+    """A rule and its parameters.
 
     Attributes:
-        rule: where the spin comes from.
-        heading: of the plane of a rule that has one, rad from x towards y.
-        objective: what is to be as large as possible, a key of ``OBJECTIVES``.
-        rate: largest change of the spin by path length, rad/mm; a degree that the tool axis turns counts as 1 mm.
+        rule: source of the spin.
+        heading: heading of the plane of a rule that has one, rad from x towards y.
+        objective: quantity to maximise, a key of ``OBJECTIVES``.
+        rate: largest change of the spin by path length, rad/mm; a degree of tool axis rotation counts as 1 mm.
         widest: largest difference from the spin at home, rad. Beyond 90 degrees lies a singular pose.
         step: first step of the search, rad; it is refined to a sixteenth.
     """

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Rules: the spin that keeps an axis of the platform parallel to a vertical plane.
 
-Tool axes enter, spins leave, in rad. A rule looks at one pose alone: it knows no limits of the machine. Keeping the x
-axis of the platform in the vertical plane of the heading C is the same as keeping the angle C of R = Rz(C) Ry(B) Rx(A).
+Takes tool axes; returns spins, in rad. A rule uses one pose at a time and ignores the limits of the machine. Keeping
+the x axis of the platform in the vertical plane of the heading C is the same as keeping the angle C of R = Rz(C) Ry(B)
+Rx(A).
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from pkm_post.geometry import norm, torsion
 from pkm_post.geometry.vectors import Array, cross
 
 _NO_DIRECTION = 1e-6
-"""Below this sine the tool axis is at right angles to the plane, and no direction in it is across the axis."""
+"""Below this sine the tool axis is normal to the plane, which leaves the spin undefined."""
 
 
 def spin_in_plane(axis: Array, heading: float, of_y: bool = False) -> Array:
@@ -21,11 +22,11 @@ def spin_in_plane(axis: Array, heading: float, of_y: bool = False) -> Array:
 
     Args:
         axis: (N, 3) unit tool axes in {M}, in order along the path.
-        heading: where the x axis of the platform points when the tool is upright, rad from x towards y.
-        of_y: whether it is the y axis that stays in its plane, instead of the x axis.
+        heading: direction of the x axis of the platform when the tool is upright, rad from x towards y.
+        of_y: whether the y axis stays in its plane instead of the x axis.
 
     Returns:
-        The spins; NaN where the tool axis is at right angles to the plane, which leaves the spin open.
+        The spins; NaN where the tool axis is normal to the plane, which leaves the spin undefined.
     """
     cosine, sine = np.cos(heading), np.sin(heading)
     kept = cross(axis, np.array([cosine, sine, 0.0])) if of_y else cross(np.array([-sine, cosine, 0.0]), axis)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Samples: poses along a trajectory at which a spin is judged, close enough to tell what the machine has left between.
+"""Samples: poses along a trajectory at which a spin is evaluated, dense enough to represent the margins between them.
 
-A trajectory enters; columns of poses by path length leave. Units: mm, rad.
+Takes a trajectory; returns columns of poses by path length. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import Trajectory
 
 _APART = 10.0
-"""mm between samples on a long segment; a degree that the tool axis turns counts as 1 mm."""
+"""mm between samples on a long segment; a degree of tool axis rotation counts as 1 mm."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Samples:
         tip: (S, 3) tool tip in {M}.
         axis: (S, 3) unit tool axis in {M}.
         tool_length: (S,) gauge length of the tool in use.
-        spin: (S,) that of the trajectory, rad.
-        segment: (S,) that each sample lies on.
+        spin: (S,) spin of the trajectory, rad.
+        segment: (S,) segment of each sample.
         row_s: (N,) path length at the end of each segment.
     """
 
@@ -42,7 +42,7 @@ class Samples:
 
     @classmethod
     def of(cls, trajectory: Trajectory) -> Samples:
-        """The samples of a trajectory; the end of each segment is one of them."""
+        """The samples of a trajectory, including the end of each segment."""
         segments = Segments.of(trajectory)
         count = np.ceil(segments.extent / _APART).astype(np.int64)
         segment = np.repeat(np.arange(len(segments)), count)

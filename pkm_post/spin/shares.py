@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shares: how much of what the machine allows is left at a pose, as numbers that can be compared with each other.
+"""Shares: margins of a pose as comparable, dimensionless numbers.
 
-Tool poses enter; for each of them three shares leave. 1 is the best there can be, 0 is the limit, less is beyond it.
+Takes tool poses; returns three shares for each. 1 is the optimum, 0 is the limit, negative is beyond it.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ STROKE, JOINTS, SINGULAR = range(3)
 """Columns of the shares."""
 
 _CHUNK = 16384
-"""Poses per pass: the working arrays of one pass stay in the processor's cache."""
+"""Poses per pass: the working arrays fit the processor's cache."""
 
 
 def shares(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
-    """What is left at poses, (N, 3).
+    """Shares at poses, (N, 3).
 
-    The stroke has all left in its middle, a joint at its rest axis, and the Jacobian where all its singular values
-    are equal: the smallest one is then its Frobenius norm by the root of 6. Beyond a singular pose, where the
-    determinant has another sign than at home, the share is negative as well.
+    The share is 1 at mid-stroke, for a joint at its rest axis, and for the Jacobian where all its singular values are
+    equal: the smallest is then its Frobenius norm divided by the root of 6. Beyond a singular pose, where the
+    determinant has the opposite sign to home, the share is negative as well.
 
     Args:
         machine: geometry and limits.
@@ -46,11 +46,11 @@ def shares(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: 
 
 
 def score(left: Array, weights: Mapping[int, float]) -> Array:
-    """One number for each row of shares, (N,): a pose beyond a limit is worse than any within all of them.
+    """One score for each row of shares, (N,): a pose beyond a limit scores less than any within all of them.
 
     Args:
         left: (N, 3) shares.
-        weights: of the columns that count; the others need only be above zero.
+        weights: weights of the columns that count; the others only have to be above zero.
     """
     worst = left.min(axis=1)
     columns = list(weights)
@@ -83,6 +83,6 @@ def _singular(machine: Machine, jacobian: Array) -> Array:
 
 
 def _side_of_home(machine: Machine) -> float:
-    """Sign of the determinant at the home pose, with the tip of a tool of no length in its place."""
+    """Sign of the determinant at the home pose, for a tool of zero length."""
     pose = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin]), np.zeros(1)
     return float(np.sign(np.linalg.det(scaled_jacobian(machine, *pose)))[0])
