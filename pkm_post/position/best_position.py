@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Best position: the work offset that makes the worst pose of a whole job as good as it can be.
+"""Best position: the work offset that maximises the score of the worst pose of a whole job.
 
-A trajectory enters with the work offset it was placed with; another work offset leaves, with what the machine has left
-before and after. The job counts with its mirrored and turned copies, since they are in the trajectory; the way from
-the home pose to its first point does not. Only a few poses decide: the search knows these alone, and whenever its
-result makes another pose the worst one, that pose joins them.
+Takes a trajectory with the work offset it was placed with; returns another work offset, with the margins before and
+after. The job includes its mirrored and rotated copies, since they are in the trajectory; it excludes the path from the
+home pose to its first point. Only a few poses are decisive: the search uses this active set, and whenever its result
+makes another pose the worst one, that pose is added.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pkm_post.spin.samples import Samples
 from pkm_post.spin.shares import STROKE, score, shares
 
 FREEDOMS = "xyzabc"
-"""Shifts along and turns about the axes of {M} through the middle of the job, by letter."""
+"""Translations along and rotations about the axes of {M} through the middle of the job, by letter."""
 
 _FIRST_STEP = np.array([80.0, 80.0, 80.0, *np.radians([10.0, 10.0, 30.0])])
 _LAST_STEP = np.array([0.1, 0.1, 0.1, *np.radians([0.02, 0.02, 0.02])])
@@ -30,17 +30,17 @@ _FIRST_POSES = 40
 _POSES_THAT_JOIN = 8
 _ROUNDS = 50
 _EQUAL = 1e-6
-"""Difference of scores that is none."""
+"""Score difference that counts as zero."""
 
 
 @dataclass(frozen=True)
 class Position:
-    """What the search found.
+    """Result of the search.
 
     Attributes:
         machine_from_work: (4, 4) the work offset.
-        before: (3,) least shares of stroke, joints and distance to singular poses with the work offset as it was.
-        after: (3,) the same with the one found.
+        before: (3,) least shares of stroke, joints and distance to singular poses with the original work offset.
+        after: (3,) the same with the new work offset.
     """
 
     machine_from_work: Array
@@ -60,7 +60,7 @@ class _Job:
     tool_length: Array
 
     def shares(self, moves: Array, rows: Array) -> Array:
-        """Shares of some poses after each of some moves, (P, R, 3), for moves (P, 6)."""
+        """Shares of the given poses after each move, (P, R, 3), for moves (P, 6)."""
         matrices = np.array([_matrix(move, self.middle) for move in moves])
         turned = matrices[:, :3, :3].transpose(0, 2, 1)
         tip = self.tip[rows] @ turned + matrices[:, None, :3, 3]
@@ -84,12 +84,11 @@ def best_position(
         trajectory: a job on the machine; its spin is kept at every pose.
         machine: geometry and limits.
         free: letters of ``FREEDOMS`` that may change.
-        weights: which shares count, by column; the stroke if nothing is said.
-        fixed: (N,) whether a segment stays on the machine when the part moves: those of tool changes; none if nothing
-            is said.
+        weights: weights of the shares, by column; the stroke by default.
+        fixed: (N,) segments that stay on the machine when the workpiece moves: those of tool changes; none by default.
 
     Raises:
-        ValueError: a letter is not known, or there is none.
+        ValueError: a letter is unknown, or there is none.
     """
     if not free or set(free) - set(FREEDOMS):
         raise ValueError(f"free: expected letters of {FREEDOMS!r}, got {free!r}")
@@ -97,7 +96,7 @@ def best_position(
     every, weights = np.arange(len(job.tip)), weights or {STROKE: 1.0}
     chosen = np.array([letter in free for letter in FREEDOMS])
     move, active = np.zeros(6), _first_poses(job)
-    # Whether or not the rounds suffice, what is told of the result is measured at every pose.
+    # Even if the rounds do not suffice, the reported result is evaluated at every pose.
     for _ in range(_ROUNDS):
 
         def worst(moves: Array, rows: Array = active) -> Array:
@@ -118,7 +117,7 @@ def best_position(
 
 
 def _job(trajectory: Trajectory, machine: Machine, fixed: Array) -> _Job:
-    """The poses that move with the part; of a segment from home or a tool change, its end."""
+    """The poses that move with the workpiece; only the end of a segment from home or a tool change."""
     samples = Samples.of(trajectory)
     from_elsewhere, at_end = np.append(True, fixed[:-1]), np.append(np.diff(samples.segment) > 0, True)
     rows = ~fixed[samples.segment] & (~from_elsewhere[samples.segment] | at_end)
@@ -128,7 +127,7 @@ def _job(trajectory: Trajectory, machine: Machine, fixed: Array) -> _Job:
 
 
 def _first_poses(job: _Job) -> Array:
-    """Poses at the ends of the job in every coordinate, and some between."""
+    """Poses at the extremes of the job in every coordinate, and some between."""
     coordinates = np.hstack([job.tip, job.axis])
     ends = np.concatenate([coordinates.argmin(axis=0), coordinates.argmax(axis=0)])
     between = np.linspace(0, len(job.tip) - 1, min(_FIRST_POSES, len(job.tip))).astype(np.int64)
@@ -136,7 +135,7 @@ def _first_poses(job: _Job) -> Array:
 
 
 def _matrix(move: Array, middle: Array) -> Array:
-    """The (4, 4) matrix of a shift and turns about the middle."""
+    """The (4, 4) matrix of a translation and rotations about the middle."""
     matrix = np.eye(4)
     matrix[:3, 3] = move[:3]
     for coordinate, angle in enumerate(move[3:]):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Compass search: the highest point of a function of a few numbers that has edges, as a worst case has.
+"""Compass search: the maximum of a nonsmooth function of a few variables, such as a worst case.
 
-A function and a start enter, numbers leave. All directions are tried at once, with steps that grow after a success and
-shrink after a failure: coordinate directions, and others at random, since along an edge no coordinate may lead
-up. The same input gives the same result. [Kolda2003]
+Takes a function and a start; returns the point found. All directions are tried at once, with steps that grow after a
+success and shrink after a failure: coordinate directions, and random ones, since on a ridge no coordinate direction may
+lead up. The same input gives the same result. [Kolda2003]
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ def compass_search(height: Callable[[Array], Array], start: Array, first_step: A
     """Climb from a start to a point that no small step improves, (D,).
 
     Args:
-        height: takes points (P, D) and gives their heights (P,).
-        start: (D,) where to begin.
-        first_step: (D,) how far to look at first in each coordinate; zero for those that stay.
-        last_step: (D,) steps that are too small to matter.
+        height: maps points (P, D) to their heights (P,).
+        start: (D,) start point.
+        first_step: (D,) initial steps by coordinate; zero for fixed ones.
+        last_step: (D,) steps at which the search ends.
     """
     random = np.random.default_rng(_SEED)
     free = np.flatnonzero(first_step)

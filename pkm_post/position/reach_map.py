@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach map: how far the tool may lean, in every direction, at each place of a volume.
+"""Reach map: largest tilt of the tool, in every direction, at each place of a volume.
 
-A machine and a grid of places enter; the half angle of the cone of tool axes that it can take there leaves, and what
-sets its limit. The spin is zero. The places are independent of each other: any executor of ``concurrent.futures`` can
-share them out among processes or machines.
+Takes a machine and a grid of places; returns the half angle of the cone of reachable tool axes, and what limits it. The
+spin is zero. The places are independent: any executor of ``concurrent.futures`` can distribute them to processes or
+machines.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pkm_post.model import Machine
 from pkm_post.spin.shares import shares
 
 NOWHERE = -1.0
-"""Stands for a place that not even an upright tool reaches."""
+"""Marks a place that even an upright tool does not reach."""
 
 _PLACES_PER_TASK = 64
 
@@ -30,11 +30,11 @@ class ReachMap:
 
     Attributes:
         tip: (N, 3) tool tip in {M}, mm.
-        cone: (N,) half angle of the widest cone about upright in which the tool may lean, rad; ``NOWHERE`` where
-            there is none.
-        limit: (N,) what is reached first beyond it: 0 stroke, 1 joints, 2 a singular pose; -1 where nothing is
-            within the angles that were tried.
-        widest: the largest angle that was tried, rad.
+        cone: (N,) half angle of the widest cone about upright in which the tool may tilt, rad; ``NOWHERE`` where there
+            is none.
+        limit: (N,) first limit beyond it: 0 stroke, 1 joints, 2 a singular pose; -1 where there is none up to
+            ``widest``.
+        widest: the largest angle tried, rad.
     """
 
     tip: Array
@@ -43,7 +43,7 @@ class ReachMap:
     widest: float
 
     def as_csv(self) -> str:
-        """The map as text with a heading, one line for each place, in mm and degrees."""
+        """The map as text with a header, one line per place, in mm and degrees."""
         rows = zip(self.tip.tolist(), np.degrees(self.cone), self.limit.tolist(), strict=True)
         lines = (
             f"{x:g},{y:g},{z:g},{'' if angle < 0 else f'{angle:.2f}'},{_LIMITS[limit]}"
@@ -72,8 +72,8 @@ def reach_map(
         tool_length: gauge length, mm.
         widest: largest angle to try, rad, below a half turn.
         step: from one angle to the next, rad.
-        azimuths: directions to lean in.
-        executor: shares out the work; without one it is done here.
+        azimuths: number of tilt directions.
+        executor: distributes the work; by default it runs in this process.
 
     Raises:
         ValueError: the places are not (N, 3).
@@ -99,7 +99,7 @@ def _cones(machine: Machine, tool_length: float, angles: Array, azimuths: int, t
         np.zeros(len(tip) * len(axis)),
         np.full(len(tip) * len(axis), tool_length),
     )
-    # By place and angle the worst of all directions, for each share.
+    # Each share at its worst over all directions, by place and angle.
     worst = left.reshape(len(tip), len(angles), -1, 3).min(axis=2)
     beyond = worst.min(axis=2) < 0
     first = np.where(beyond.any(axis=1), beyond.argmax(axis=1), len(angles))
