@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Collisions: what runs into the part, the stock or a fixture, of a trajectory on its machine.
+"""Collisions: collisions of the machine and its tools with workpiece, stock and fixtures along a trajectory.
 
-``find_collisions`` takes a trajectory, a machine and what is known of the set-up; faults leave, and rows that say what
-was checked against what, and what was not known.
+``find_collisions`` takes a trajectory, a machine and the known set-up; it returns faults, and coverage rows that state
+what was checked against what, and what was unknown.
 """
 
 from pkm_post.collisions.check import Collisions, find_collisions, names_of, placed_part

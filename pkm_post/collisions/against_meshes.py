@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Against meshes: bodies of the machine and parts of tools against part, fixtures, and the stock as it is first.
+"""Against meshes: bodies of the machine and parts of tools against workpiece, fixtures, and uncut stock.
 
-A trajectory on its way, a machine and a mesh enter; faults by operation leave, proven to be all there are. Units: mm.
+Takes a driven trajectory, a machine and a mesh; returns faults by operation, proven to be complete. Units: mm.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from pkm_post.model import Diagnostic, Trajectory
 from pkm_post.model.setup import Mesh
 
 _PIECES = 32
-"""Triangles are cut so small that this many lie along the mesh."""
+"""Number of subdivided triangles along the mesh."""
 _LOOKED_AT = 24
-"""Contacts of an operation of which it is computed how deep they are."""
+"""Contacts per operation whose depth is computed."""
 
 
 def placed(mesh: Mesh, machine_from_work: Array) -> Array:
@@ -33,13 +33,13 @@ def placed(mesh: Mesh, machine_from_work: Array) -> Array:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A mesh where it stands on the machine.
+    """A mesh in its position on the machine.
 
     Attributes:
-        name: what it is: part, stock, fixture.
-        source: where it comes from.
+        name: its kind: part, stock, fixture.
+        source: source of the mesh.
         part: its triangles in {M}.
-        triangles: how many it was given with.
+        triangles: its original number of triangles.
     """
 
     name: str
@@ -49,7 +49,7 @@ class Obstacle:
 
     @classmethod
     def of(cls, name: str, mesh: Mesh, machine_from_work: Array) -> Obstacle:
-        """A mesh that lies in the work frame."""
+        """An obstacle from a mesh in the work frame."""
         triangles = placed(mesh, machine_from_work)
         size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
         return cls(name, mesh.source, Part.of(cut_small(triangles, max(size, 1e-3) / _PIECES)), len(mesh.triangles))
@@ -57,12 +57,12 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Driven:
-    """A trajectory as it is driven.
+    """A trajectory as driven.
 
     Attributes:
-        trajectory: names the places.
-        way: its poses, and what is between them.
-        segment: (N,) segment each cell of the way lies on.
+        trajectory: the source of places in diagnostics.
+        way: its pose path, including the motion between poses.
+        segment: (N,) segment of each cell of the path.
     """
 
     trajectory: Trajectory
@@ -80,7 +80,7 @@ class Driven:
 
 
 def faults(driven: Driven, code: str, mover: Mover, obstacle: Obstacle, clearance: float) -> Iterator[Diagnostic]:
-    """One fault for each operation in which a mover comes too near to an obstacle, where it is worst."""
+    """One fault for each operation in which a mover comes too close to an obstacle, at the worst place."""
     met = contacts(driven.way, mover, obstacle.part, clearance, driven.operation)
     yield from told(driven, code, mover, obstacle, met, clearance)
 
@@ -88,7 +88,7 @@ def faults(driven: Driven, code: str, mover: Mover, obstacle: Obstacle, clearanc
 def told(
     driven: Driven, code: str, mover: Mover, obstacle: Obstacle, met: Contacts, clearance: float
 ) -> Iterator[Diagnostic]:
-    """Contacts as one fault for each operation, at the worst of those that are looked at."""
+    """One fault for each operation with contacts, at the worst of those evaluated."""
     operation = driven.operation[met.cell]
     for number in np.unique(operation):
         rows = np.flatnonzero(operation == number)
@@ -100,7 +100,7 @@ def told(
 
 
 def _distance(driven: Driven, mover: Mover, obstacle: Obstacle, met: Contacts, row: int) -> float:
-    """Distance at a contact; where the bodies overlap, less by how deep a corner of the mesh is inside of the mover."""
+    """Distance at a contact; where the bodies overlap, reduced by the depth of a mesh corner inside the mover."""
     if met.distance[row] > 0:
         return float(met.distance[row])
     cylinders = mover.cylinders(driven.way.inside(met.cell[row : row + 1], met.share[row : row + 1]))

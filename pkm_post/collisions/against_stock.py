@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Against the stock: rapid moves, shanks and bodies of the machine in material that is there, or may be.
+"""Against the stock: rapid moves, shanks and bodies of the machine in remaining or possibly remaining material.
 
-A point of the stock that something meets before any cutter can have come there is certainly there: an error. One that
-no cutter has surely cut may be there: a warning. Units: mm.
+A stock point met before any cutter can have reached it certainly remains: an error. A point that no cutter has
+certainly cut may remain: a warning. Units: mm.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from pkm_post.model.machine import Body
 from pkm_post.model.setup import Mesh
 
 _SCALLOP = 0.1
-"""mm that may stand between two poses of a cutter that is taken to have cut all between them."""
+"""mm: largest ridge between two poses of a cutter, which counts as having cut everything between them."""
 
 _MOST_MET = 4000
-"""Points that something meets of which it is looked up when they were cut."""
+"""Most intruded points whose cutting time is determined."""
 
 
 @dataclass(frozen=True)
 class Intruder:
-    """What may not be in the stock.
+    """A body that must not enter the stock.
 
     Attributes:
-        name: how messages call it.
-        codes: of the diagnostic where it is certain, and where it is not.
-        shapes: what it is like about the tool axis, and the cells in which it is so.
+        name: its name in messages.
+        codes: diagnostic codes of a certain and of a possible collision.
+        shapes: its profiles about the tool axis, and the cells to which each applies.
     """
 
     name: str
@@ -49,7 +49,7 @@ def rapid_cutter(used: InUse) -> Intruder:
 
 
 def shank_of(used: InUse) -> Intruder:
-    """The shank of a tool, where it has one."""
+    """The shank of a tool, if it has one."""
     assert used.shank is not None
     shape = cylinder(used.shank.start, used.tool.length, used.shank.diameter / 2)
     return Intruder(f"shank of {used.name}", ("K134", "K135"), ((shape, used.cells()),))
@@ -70,14 +70,14 @@ def body_of(machine: Machine, body: Body, used: Sequence[InUse]) -> Intruder:
 def stock_faults(
     driven: Driven, stock: Mesh, intruders: Sequence[Intruder], used: Sequence[InUse], tolerance: float
 ) -> tuple[Grid, list[Diagnostic]]:
-    """What is in the stock that may not be, one fault for each operation; and the points it was looked at.
+    """Intrusions into the stock, one fault for each operation; and the grid of points checked.
 
     Args:
         driven: the trajectory.
         stock: a closed mesh.
-        intruders: what may not be in it.
-        used: all tools in use, since each of them cuts.
-        tolerance: by how much the tool may be off the trajectory, mm.
+        intruders: bodies that must not enter it.
+        used: all tools in use, since each one cuts.
+        tolerance: largest deviation of the tool from the trajectory, mm.
     """
     grid = Grid.of(stock.triangles)
     work_from_machine = np.linalg.inv(driven.trajectory.machine_from_work)
@@ -102,18 +102,18 @@ def stock_faults(
 
 
 def _some(number: Array) -> Array:
-    """At most so many of them, evenly chosen."""
+    """At most ``_MOST_MET`` of them, evenly chosen."""
     return number[np.unique(np.linspace(0, max(len(number) - 1, 0), _MOST_MET).astype(np.int64))[: len(number)]]
 
 
 def _cuts(driven: Driven, used: InUse, grid: Grid, work_from_machine: Array) -> Swept:
-    """Where a tool cuts, in steps that leave ridges of no more than is allowed for."""
+    """Poses in which a tool cuts, in steps whose ridges stay within ``_SCALLOP``."""
     step = float(np.sqrt(4 * used.tool.diameter * _SCALLOP))
     return _swept(driven, used.cutting, used.largest_profile(), grid, work_from_machine, step)
 
 
 def _first_met(driven: Driven, intruder: Intruder, grid: Grid, work_from_machine: Array, less: float) -> Array:
-    """When points of the stock are first inside of an intruder, (points,), by more than a little."""
+    """First positions at which stock points are inside an intruder by more than ``less``, (points,)."""
     first = np.full(grid.filled.size, np.inf)
     for profile, cells in intruder.shapes:
         swept = _swept(driven, cells, profile, grid, work_from_machine, grid.step)
@@ -130,7 +130,7 @@ def _swept(driven: Driven, cells: Array, profile: Profile, grid: Grid, work_from
 
 
 def _told(driven: Driven, name: str, code: str, stock: Mesh, points: Array, met: Array) -> Iterator[Diagnostic]:
-    """One fault for each operation, where it begins; by the points that are met, and when."""
+    """One fault for each operation, at its first intrusion, from the points met and their positions on the path."""
     cells = np.maximum(np.ceil(met).astype(np.int64), 1)
     operation = driven.operation[cells]
     for number in np.unique(operation):

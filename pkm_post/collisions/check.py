@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Check: what of the machine and its tools runs into what of the set-up, and what was looked at to say so.
+"""Check: collisions of the machine and its tools with the set-up, and the coverage of the checks.
 
-A trajectory, a machine and a set-up enter; diagnostics and rows of coverage leave. Distances are kept to the trajectory
-as it is programmed; by how much the tool may be off it is added. Units: mm, rad.
+Takes a trajectory, a machine and a set-up; returns diagnostics and coverage rows. Distances refer to the programmed
+trajectory; the allowed deviation of the tool from it is added to clearances and allowances. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ from pkm_post.model.setup import Mesh, Setup
 from pkm_post.reach import way_of
 
 ALLOWANCE = 0.25
-"""mm that a cutter or a shank may be in the part: faces are triangles there, and the cutter is to touch them."""
+"""mm that a cutter or a shank may enter the workpiece: its faces are triangulated, and the cutter has to touch them."""
 _TOUCH = 1e-3
-"""mm: bodies that need no clearance meet where they are nearer than this."""
+"""mm: bodies without clearance collide where they are closer than this."""
 _SAMPLES = 2000
-"""Poses at which cutting moves are looked at."""
+"""Sampled poses of cutting moves."""
 _ALL = 1_000_000
 
 
 @dataclass(frozen=True)
 class Collisions:
-    """What was found.
+    """Result of the checks.
 
     Attributes:
         faults: errors and warnings.
-        coverage: what was checked against what, and what was not known.
+        coverage: what was checked against what, and what was unknown.
     """
 
     faults: tuple[Diagnostic, ...]
@@ -52,13 +52,13 @@ class Collisions:
 
 
 def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tolerances: Tolerances) -> Collisions:
-    """Look for collisions on a whole trajectory.
+    """Find collisions on a whole trajectory.
 
     Args:
         trajectory: in {M}, at least one segment.
         machine: its bodies, struts and clearance.
-        setup: what is on the table, and the shanks of the tools.
-        tolerances: how far the tool may be from the trajectory.
+        setup: workpiece, stock and fixtures, and the shanks of the tools.
+        tolerances: allowed deviation of the tool from the trajectory.
     """
     if setup.is_empty:
         return Collisions((), NO_SETUP)
@@ -72,13 +72,13 @@ def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tole
 
 
 def names_of(setup: Setup) -> list[str]:
-    """What is known, for people."""
+    """Names of the known items of the set-up, for display."""
     named = [("part", setup.part), ("stock", setup.stock), *(("fixture", mesh) for mesh in setup.fixtures)]
     return [f"{name} {mesh.source}" for name, mesh in named if mesh is not None]
 
 
 def placed_part(setup: Setup, trajectory: Trajectory) -> Part | None:
-    """The part where a trajectory has it on the machine; None where it is not known."""
+    """The workpiece in the position of a trajectory on the machine; None if unknown."""
     if setup.part is None:
         return None
     return Part.of(placed(setup.part, trajectory.machine_from_work))
@@ -86,7 +86,7 @@ def placed_part(setup: Setup, trajectory: Trajectory) -> Part | None:
 
 @dataclass
 class _Search:
-    """The checks one after the other, with what they found."""
+    """The checks in sequence, with their results."""
 
     driven: Driven
     machine: Machine
@@ -103,7 +103,7 @@ class _Search:
         self.off_tip = float(self.driven.trajectory.tip_tolerances(self.tolerances.tip).max())
 
     def part(self) -> None:
-        """All that moves against the finished part."""
+        """Check everything that moves against the finished workpiece."""
         if self.setup.part is None:
             self.extents.not_known(PART_NOT_KNOWN)
             return
@@ -124,7 +124,7 @@ class _Search:
         self.found += told(self.driven, "K131", mover, part, met, ALLOWANCE)
 
     def fixtures(self) -> None:
-        """All that moves against what holds the part, in all moves."""
+        """Check everything that moves against the fixtures, in all moves."""
         if not self.setup.fixtures:
             self.extents.not_known(FIXTURES_NOT_KNOWN)
         for mesh in self.setup.fixtures:
@@ -138,7 +138,7 @@ class _Search:
             self.extents.cutters_in_all_moves(fixture)
 
     def stock(self) -> None:
-        """What may not be in the stock: bodies, struts and shanks at all times, cutters in rapid moves."""
+        """Check the stock against bodies, struts and shanks in all moves, and against cutters in rapid moves."""
         mesh = self.setup.stock
         if mesh is None:
             self.extents.not_known(STOCK_NOT_KNOWN)
@@ -157,7 +157,7 @@ class _Search:
             self.extents.stock_open(stock)
 
     def _in_stock(self, stock: Obstacle, closed: bool) -> Iterator[Intruder]:
-        """Movers that are not proven to keep out of the stock as it is first."""
+        """Movers not proven to stay clear of the uncut stock."""
         movers: list[tuple[Mover, Intruder | None]] = [
             (mover, body_of(self.machine, body, self.used))
             for mover, body in zip(self.bodies, self.machine.bodies, strict=True)
@@ -177,7 +177,7 @@ class _Search:
         return Obstacle.of(name, mesh, self.driven.trajectory.machine_from_work)
 
     def _machine(self, obstacle: Obstacle, of_bodies: str, of_struts: str) -> None:
-        """Bodies of the platform and struts against a mesh."""
+        """Check bodies of the platform and struts against a mesh."""
         movers: Sequence[tuple[str, Mover]] = [(of_bodies, mover) for mover in self.bodies]
         movers = [*movers, (of_struts, self.struts)] if self.struts else movers
         for code, mover in movers:
@@ -197,13 +197,13 @@ class _Search:
                 yield used, of_tool(f"shank of {used.name}", self.driven.way, used.cells(), pieces)
 
     def _with_size(self, obstacle: Obstacle) -> Iterator[InUse]:
-        """The tools whose cutters are known; the others are noted."""
+        """The tools whose cutters are known; the others are recorded in the coverage."""
         self.extents.unknown_cutters = [used.name for used in self.used if not used.has_size]
         return (used for used in self.used if used.has_size)
 
 
 def _sampled(cells: Array) -> Array:
-    """Some of many cells, evenly chosen, and the last one."""
+    """A subset of many cells, evenly chosen, including the last one."""
     if len(cells) <= _SAMPLES:
         return cells
     return cells[np.linspace(0, len(cells) - 1, _SAMPLES).astype(np.int64)]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contacts: where on a way something that moves comes nearer to a mesh than it may; none can hide between two poses.
+"""Contacts: places on a path where a mover violates its clearance to a mesh; none is missed between two poses.
 
-A stretch of the way is looked at in one pose in its middle. If no point of the body can go farther from there than c,
-and the mesh is farther away than c and the clearance, the stretch is clear. Else it is halved. Long stretches are
-proven by the balls around the triangles alone; in short ones distances are exact. A stretch so short that c is below a
-hundredth of a millimetre and that is still not proven counts as a contact. Units: mm.
+A stretch of the path is checked in the pose at its middle. If c bounds the motion of every point of the body from
+there, and the mesh is farther away than c plus the clearance, the stretch is clear. Otherwise it is bisected. Long
+stretches use only the bounding spheres of the triangles; in short ones distances are exact. A stretch that is still
+unproven when c is below a hundredth of a millimetre counts as a contact. Units: mm.
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ from pkm_post.kinematics.part import Part, pairs_within
 from pkm_post.kinematics.way import Pose, Way
 
 _FINE = 1.0
-"""mm a body may move in a stretch: in shorter ones distances from triangles are computed."""
+"""mm of motion in a stretch, below which distances from triangles are computed."""
 _AT_ONCE = 1024
-"""Cylinders in one pass."""
+"""Cylinders per pass."""
 ENOUGH = 40
-"""Contacts in one operation, after which no more are looked for in it."""
+"""Contacts in one operation, after which its search ends."""
 
 
 @dataclass(frozen=True)
 class Contacts:
-    """Where contacts were found, in the order of the way.
+    """Contacts found, in path order.
 
     Attributes:
-        cell: (K,) cell of the way.
-        share: (K,) how far into it, 0 to 1.
-        point: (K, 3) the point of the mesh that is met.
-        distance: (K,) of the body from it; 0 where it is inside.
+        cell: (K,) cell of the path.
+        share: (K,) position within the cell, 0 to 1.
+        point: (K, 3) the contact point of the mesh.
+        distance: (K,) distance of the body from it; 0 where it is inside.
     """
 
     cell: Array
@@ -51,7 +51,7 @@ class Contacts:
 
 
 class _Stretches:
-    """Positions on the way are cells and shares of them in one number: cell i reaches from i - 1 to i."""
+    """Positions on the path combine cell and share in one number: cell i reaches from i - 1 to i."""
 
     def __init__(self, way: Way, mover: Mover) -> None:
         self.way, self.change, self.total = way, mover.change, np.cumsum(mover.change)
@@ -61,7 +61,7 @@ class _Stretches:
         self.end = np.array([float(run[-1]) for run in runs])
 
     def come(self, at: Array) -> Array:
-        """How far a point of the body has come at most since the start of the way."""
+        """Lipschitz bound of the distance travelled by any point of the body since the start of the path."""
         cell = np.ceil(at).astype(np.int64)
         return self.total[cell] - (cell - at) * self.change[cell]
 
@@ -71,15 +71,15 @@ class _Stretches:
 
 
 def contacts(way: Way, mover: Mover, part: Part, clearance: float, operation: Array, enough: int = ENOUGH) -> Contacts:
-    """Where a mover is nearer to a part than its clearance.
+    """Contacts where a mover is closer to a part than its clearance.
 
     Args:
-        way: poses and what is between them.
-        mover: what moves.
-        part: what stands still.
-        clearance: how near they may come, mm, above 0.
-        operation: (N,) operation of each cell of the way; in each of them some contacts are found if there are any.
-        enough: contacts in an operation, after which no more are looked for in it.
+        way: pose path, including the motion between poses.
+        mover: the moving body.
+        part: the stationary body.
+        clearance: smallest allowed distance, mm, above 0.
+        operation: (N,) operation of each cell of the path; every operation with contacts yields some.
+        enough: contacts in an operation, after which its search ends.
     """
     stretches = _Stretches(way, mover)
     start, end = stretches.start, stretches.end
@@ -104,7 +104,7 @@ def contacts(way: Way, mover: Mover, part: Part, clearance: float, operation: Ar
 
 
 def contacts_at_ends(way: Way, mover: Mover, part: Part, clearance: float) -> Contacts:
-    """The same at the ends of the mover's cells alone, which proves nothing of what is between."""
+    """Contacts at the ends of the mover's cells only; the motion between them is not checked."""
     stretches = _Stretches(way, mover)
     at = mover.cells.astype(np.float64)
     distance, point = _looked_at(stretches, mover, part, at, np.zeros(len(at)), clearance)
@@ -124,10 +124,10 @@ _NONE = np.empty(0), np.empty((0, 3)), np.empty(0)
 def _looked_at(
     stretches: _Stretches, mover: Mover, part: Part, at: Array, change: Array, clearance: float
 ) -> tuple[Array, Array]:
-    """Distances at positions (M,), and the points met (M, 3).
+    """Distances at positions (M,), and the contact points (M, 3).
 
-    A distance is told as infinite where it is proven to be more than change and clearance, and on a long stretch as
-    nothing above the clearance where it is not.
+    A distance is infinite where it provably exceeds change plus clearance; on a long stretch without proof it is
+    returned as not above the clearance.
     """
     distance, point = np.full(len(at), np.inf), np.full((len(at), 3), np.nan)
     for rows in _chunks(len(at), max(1, _AT_ONCE // len(mover.rounding))):
@@ -149,7 +149,7 @@ def _looked_at(
 
 
 def _levels(part: Part, change: Array, fine: Array, pieces: int) -> Iterator[tuple[int, Array]]:
-    """For long stretches, the level of balls that are small beside them, and which cylinders are looked at there."""
+    """For long stretches, the level of spheres small compared with them, and the cylinders checked at that level."""
     radii = np.array([np.median(radius) for _, radius in part.balls])
     small_enough = radii[None, :] < change[:, None] / 2
     level = np.where(small_enough.any(axis=1), small_enough.shape[1] - 1 - np.argmax(small_enough[:, ::-1], axis=1), 0)
@@ -159,12 +159,12 @@ def _levels(part: Part, change: Array, fine: Array, pieces: int) -> Iterator[tup
 
 
 def _exactly(cylinders: Cylinders, part: Part, allowed: Array, rounding: Array) -> tuple[Array, Array]:
-    """Distances (M,), infinite where it is allowed and more; and the points that are as near."""
+    """Distances (M,), infinite where they are at least the allowed one; and the nearest points."""
     distance, point = np.full(len(allowed), np.inf), np.full((len(allowed), 3), np.nan)
     pose, triangle, bound = pairs_within(cylinders, part, allowed + rounding)
     order = np.lexsort((bound, pose))
     pose, triangle, bound = pose[order], triangle[order], bound[order]
-    # Balls that are inside are many where bodies overlap, and a few of them decide.
+    # Where bodies overlap many spheres are inside, and a few of them decide.
     rank = np.arange(len(pose)) - np.searchsorted(pose, pose)
     for few in (rank < _FEW, rank >= _FEW):
         open_yet = few & (bound < np.minimum(distance, allowed)[pose] + rounding[pose]) & (distance > 0)[pose]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coverage: what was looked at for collisions with the set-up, and how, as rows of the certificate."""
+"""Coverage: scope and method of the collision checks, as rows of the certificate."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ _WHOLE = "along the whole path"
 
 @dataclass
 class Extents:
-    """The rows in the making.
+    """The rows under construction.
 
     Attributes:
-        unknown_cutters: names of tools whose size is not known.
+        unknown_cutters: names of tools of unknown size.
     """
 
     unknown_cutters: list[str] = field(default_factory=list)
     _rows: list[Coverage] = field(default_factory=list)
 
     def rows(self) -> tuple[Coverage, ...]:
-        """All of them."""
+        """All rows."""
         return tuple(self._rows)
 
     def _add(self, subject: str, extent: Extent, detail: str) -> None:
         self._rows.append(Coverage(Topic.COLLISIONS, subject, extent, detail))
 
     def not_known(self, row: Coverage) -> None:
-        """Something of the set-up is not known, as this row says."""
+        """Record an unknown item of the set-up."""
         self._rows.append(row)
 
     def machine(self, obstacle: Obstacle, bodies: bool, struts: bool) -> None:
-        """Bodies and struts were checked, where the machine file states them."""
+        """Record the check of bodies and struts, if the machine file states them."""
         pairs = (
             ("spindle and holder", bodies, "bodies of the platform"),
             ("struts", struts, "tubes or rods of the struts"),
@@ -46,7 +46,7 @@ class Extents:
             self._add(_against(subject, obstacle), extent, detail)
 
     def shanks(self, obstacle: Obstacle, unknown: Sequence[str]) -> None:
-        """Shanks were checked, where they are known."""
+        """Record the check of shanks, if they are known."""
         if unknown:
             detail = f"{', '.join(unknown)}: it is not known where the cutting edges end"
             self._add(_against("shanks", obstacle), Extent.NOT_COVERED, detail)
@@ -54,7 +54,7 @@ class Extents:
             self._add(_against("shanks", obstacle), Extent.PROVEN, _told(obstacle, _WHOLE))
 
     def cutters(self, obstacle: Obstacle, allowance: float) -> None:
-        """Cutters were checked, where their size is known."""
+        """Record the check of cutters, if their size is known."""
         deeper = f", what is deeper than {allowance:g} mm and was not cut before"
         sampled = f"at ends of moves, 2000 at most for each tool, what is deeper than {allowance:g} mm"
         kinds = [
@@ -69,7 +69,7 @@ class Extents:
                 self._add(_against(subject, obstacle), extent, _told(obstacle, detail))
 
     def cutters_in_all_moves(self, obstacle: Obstacle) -> None:
-        """Cutters were kept away from a fixture, where their size is known."""
+        """Record the check of cutters against a fixture, if their size is known."""
         if self.unknown_cutters:
             detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
             self._add(_against("cutters", obstacle), Extent.NOT_COVERED, detail)
@@ -77,12 +77,12 @@ class Extents:
             self._add(_against("cutters", obstacle), Extent.PROVEN, _told(obstacle, _WHOLE))
 
     def stock(self, obstacle: Obstacle, step: float, points: int) -> None:
-        """The stock was looked at in points."""
+        """Record the check of the stock by grid points."""
         detail = f"as it is left by the cuts before, in {points:,} points {step:.2g} mm apart"
         self._add("machine and rapid moves against the stock", Extent.SAMPLED, _told(obstacle, detail))
 
     def stock_open(self, obstacle: Obstacle) -> None:
-        """The stock is no solid."""
+        """Record that the stock is not a solid."""
         detail = _told(obstacle, "its mesh is not closed: rapid moves were not looked at")
         self._add("machine and rapid moves against the stock", Extent.NOT_COVERED, detail)
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Movers: what moves and may run into something: bodies of the platform, struts, shank and cutter of a tool.
+"""Movers: moving bodies that may collide: bodies of the platform, struts, shank and cutter of a tool.
 
-Each is a few cylinders at any pose, and a bound of how far any point of it can come in each cell of the way. What lies
-about the tool axis does not care for the spin. Units: mm, rad.
+Each is a set of cylinders at any pose, with a bound of the motion of any point in each cell of the path. Solids of
+revolution about the tool axis are independent of the spin. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from pkm_post.model.machine import Body
 
 @dataclass(frozen=True)
 class Piece:
-    """A cylinder about the tool axis, grown by a ball all round.
+    """A cylinder about the tool axis, offset by a rounding radius.
 
     Attributes:
-        start: height of its lower end above the tip, before it is grown.
-        end: of its upper end.
-        radius: before it is grown; 0 makes it a line.
-        rounding: radius of the ball.
+        start: height of its lower end above the tip, before the offset.
+        end: height of its upper end, likewise.
+        radius: radius before the offset; 0 makes it a line.
+        rounding: offset on all sides.
     """
 
     start: float
@@ -42,14 +42,14 @@ class Piece:
 
 @dataclass(frozen=True)
 class Mover:
-    """Something that moves.
+    """A moving body.
 
     Attributes:
-        name: how messages call it.
-        cells: (K,) the cells of the way that it is looked at in, rising.
-        change: (N,) how far any point of it moves in each cell of the way, or more.
-        reach: how far from the tip any point of it is that turns with the platform, mm, or more.
-        rounding: (P,) radius of the ball that each of its P cylinders is grown by.
+        name: its name in messages.
+        cells: (K,) the cells of the path in which it is checked, ascending.
+        change: (N,) upper bound of the motion of any of its points in each cell of the path.
+        reach: upper bound of the distance from the tip of any point that turns with the platform, mm.
+        rounding: (P,) offset of each of its P cylinders.
         cylinders: P cylinders for each of M poses, pose by pose.
     """
 
@@ -62,7 +62,7 @@ class Mover:
 
 
 def of_body(machine: Machine, way: Way, body: Body) -> Mover:
-    """A body of the platform, along the whole way."""
+    """A body of the platform, along the whole path."""
     offset = machine.spindle_nose + body.start, machine.spindle_nose + body.end
     reach = reach_of_body(machine, way, body)
     return Mover(
@@ -76,7 +76,7 @@ def of_body(machine: Machine, way: Way, body: Body) -> Mover:
 
 
 def of_tool(name: str, way: Way, cells: Array, pieces: Iterable[Piece]) -> Mover:
-    """A part of a tool, in the cells in which it is in use."""
+    """A part of a tool, in the cells where it is in use."""
     start, end, radius, rounding = np.array([[p.start, p.end, p.radius, p.rounding] for p in pieces]).T
     reach = float((np.hypot(np.maximum(np.abs(start), np.abs(end)), radius) + rounding).max())
     return Mover(
@@ -85,7 +85,7 @@ def of_tool(name: str, way: Way, cells: Array, pieces: Iterable[Piece]) -> Mover
 
 
 def of_struts(machine: Machine, way: Way) -> Mover | None:
-    """The six struts; None where their joints come together somewhere, which is refused for another reason."""
+    """The six struts; None if the joints of a strut coincide somewhere, which another check refuses."""
     shortest = shortest_distance(machine, way)
     if not shortest > 0:
         return None
@@ -96,7 +96,7 @@ def of_struts(machine: Machine, way: Way) -> Mover | None:
 
 
 def _about_the_axis(way: Way, reach: float) -> Array:
-    """A point moves with the tip and turns about it; the spin moves nothing that is round about the axis."""
+    """Bound of the motion of points that move with the tip and turn about it; the spin moves no solid of revolution."""
     return way.travel + way.angle * reach
 
 

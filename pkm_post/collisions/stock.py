@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stock: points of the material that is cut, and when each of them may have been cut and surely has been.
+"""Stock: points of the material, and the times when each may have been cut and certainly has been cut.
 
-The stock is a grid of points. What is said of a point is exact: it is in the stock, it was in a cutter at a pose, or it
-was farther from all that was cut than a cutter can have come between two poses. What lies between points is not seen.
-Positions on a way are cells and shares of them in one number. Units: mm.
+The stock is a grid of points. Statements about a point are exact: it is in the stock, it was in a cutter at a pose, or
+it was farther from every cut than a cutter can have moved between two poses. Features between points are missed.
+Positions on a path combine cell and share in one number. Units: mm.
 """
 
 from __future__ import annotations
@@ -20,29 +20,29 @@ from pkm_post.geometry.vectors import Array, dot
 from pkm_post.kinematics.way import Way
 
 _POINTS = 60_000
-"""Of the grid, about."""
+"""Approximate number of grid points."""
 _OFF_EDGES = 0.381966
-"""Where the grid begins, in steps: no round number, so that rays along it meet no edges of meshes."""
+"""Start of the grid, in steps: not a round number, so rays along it miss edges of meshes."""
 _PAIRS = 2_000_000
-"""Poses and points in one pass."""
+"""Pairs of poses and points per pass."""
 _CHORDS = 0.05
-"""mm by which the profile of a cutter may be below its corner, which are chords."""
+"""mm: chord error of the cutter profile at its corner."""
 _JUST_BEFORE = 32
-"""Poses of a cutter."""
+"""Poses of a cutter searched first."""
 _ROUNDING, _SQUARED_ROUNDING = 1e-6, 1e-3
-"""mm and mm^2: what differences of large squares may be off."""
+"""mm and mm^2: rounding errors of differences of large squares."""
 _MOST_PAIRS = 6_000_000
-"""If a way has more at its finest step, the step is made longer."""
+"""If a path has more at its finest step, the step is increased."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Points in a box, those of the stock marked.
+    """Points in a box, with a mask of the stock.
 
     Attributes:
-        axes: coordinates of the points along x, y and z of {C}, rising evenly.
-        step: from one to the next, mm.
-        filled: (X, Y, Z) which of them are in the stock.
+        axes: coordinates of the points along x, y and z of {C}, ascending and evenly spaced.
+        step: grid spacing, mm.
+        filled: (X, Y, Z) mask of the points in the stock.
     """
 
     axes: tuple[Array, Array, Array]
@@ -67,14 +67,14 @@ class Grid:
 
 @dataclass(frozen=True)
 class Swept:
-    """Something round about the tool axis at M poses in order.
+    """Poses of a solid of revolution about the tool axis, M in order.
 
     Attributes:
-        at: (M,) positions on the way, rising.
-        before: (M,) position of the pose before, or where the stretch that leads to the pose begins.
+        at: (M,) positions on the path, ascending.
+        before: (M,) position of the pose before, or the start of the stretch that leads to the pose.
         tip: (M, 3) tool tips in {C}.
         axis: (M, 3) tool axes in {C}.
-        moved: how far any point of it has moved at most since the pose before, at any of the poses, mm.
+        moved: bound of the motion of any point from one pose to the next, over all poses, mm.
     """
 
     at: Array
@@ -85,14 +85,14 @@ class Swept:
 
     @classmethod
     def of(cls, way: Way, cells: Array, work_from_machine: Array, farthest: float, step: float, pairs: float) -> Swept:
-        """Poses so near to each other that no point moves by more than a step, unless that would be too many.
+        """Poses spaced so no point moves by more than a step, unless that needs too many.
 
         Args:
             way: in {M}.
-            cells: (K,) that are looked at, rising.
-            work_from_machine: (4, 4).
-            farthest: point of what is swept, from the tip, mm.
-            step: mm.
+            cells: (K,) cells to include, ascending.
+            work_from_machine: (4, 4) transform from {M} to {C}.
+            farthest: distance from the tip to the farthest point of the solid, mm.
+            step: largest motion between poses, mm.
             pairs: points of the grid that one pose may touch.
         """
         change = way.travel[cells] + way.angle[cells] * farthest
@@ -117,13 +117,13 @@ class Swept:
 
 
 def first_met(grid: Grid, swept: Swept, profile: Profile, more: float) -> Array:
-    """The first position at which points of the stock are inside of what is swept, (points,); infinite if never.
+    """First positions at which stock points are inside the swept solid, (points,); infinite if never.
 
     Args:
         grid: the points.
         swept: the poses.
         profile: the shape.
-        more: by how much the shape is grown, mm.
+        more: offset of the shape, mm.
     """
     first = np.full(grid.filled.size, np.inf)
     for pose, number in _near(grid, swept, profile, more):
@@ -138,20 +138,22 @@ def first_met(grid: Grid, swept: Swept, profile: Profile, more: float) -> Array:
 def when_cut(
     points: Array, met: Array, swept: Swept, smallest: Profile, largest: Profile, tolerance: float
 ) -> tuple[Array, Array]:
-    """When points may have been cut and surely have been, (K,) each; infinite where that is not before they are met.
+    """Positions at which points may have been cut and certainly have been cut, (K,) each.
+
+    They are infinite if not before ``met``.
 
     Args:
         points: (K, 3) in {C}.
-        met: (K,) positions at which something meets them.
+        met: (K,) positions at which an intruder meets them.
         swept: poses of the cutter.
-        smallest: the cutter, no larger than it is.
-        largest: the cutter, no smaller than it is but for the chords of its corner.
-        tolerance: by how much it may be off these poses, mm.
+        smallest: inner bound of the cutter.
+        largest: outer bound of the cutter, except for the chords of its corner.
+        tolerance: largest deviation from these poses, mm.
     """
     may, sure = np.full(len(points), np.inf), np.full(len(points), np.inf)
     last = np.searchsorted(swept.at, met, side="right")
     grown = swept.moved + tolerance + _CHORDS
-    # What is met has mostly been cut just before; only what has not is looked for all the way back.
+    # Most points met have been cut just before; only the others are searched over the whole path.
     just_before = last[:, None] - 1 - np.arange(min(_JUST_BEFORE, len(swept.at)))
     for rows in _chunks(len(points), _PAIRS // max(just_before.shape[1], 1)):
         point, number = np.nonzero(just_before[rows] >= 0)
@@ -179,7 +181,7 @@ def _cut(
     largest: Profile,
     grown: float,
 ) -> None:
-    """Note when points may have been cut and surely have been, by pairs of a point and a pose."""
+    """Record the positions of possible and certain cuts of points, by pairs of a point and a pose."""
     away = points[point] - swept.tip[pose]
     high = dot(away, swept.axis[pose])
     out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
@@ -194,7 +196,7 @@ def _chunks(count: int, size: int) -> Iterator[Array]:
 
 
 def _near(grid: Grid, swept: Swept, profile: Profile, more: float) -> Iterator[tuple[Array, Array]]:
-    """Poses and points of the stock near to them, in batches: those in boxes about short pieces of the shape."""
+    """Poses and nearby stock points, in batches: those in boxes around short pieces of the shape."""
     radius = float(profile.radius.max()) + max(more, 0.0)
     low, top = float(profile.height[0]) - max(more, 0.0), float(profile.height[-1]) + max(more, 0.0)
     pieces = max(1, int(np.ceil((top - low) / max(2 * radius, 2 * grid.step))))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool shapes: the cutter and the shank of a tool as solids about the tool axis.
 
-For what may not be touched a cutter is taken smaller than it is by an allowance, since it touches the part on purpose:
-what is told then is certain. For what it cuts there is its profile. Units: mm, rad.
+In collision checks a cutter is reduced by an allowance, since it touches the workpiece on purpose: reported collisions
+are then certain. Its profile defines what it cuts. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pkm_post.model.setup import Shank
 
 _ARC_CHORDS = 24
 _STEPS = 6
-"""Cylinders that stand for one slanted line of a profile."""
+"""Cylinders that approximate one slanted line of a profile."""
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Profile:
     """Radii of a solid of revolution about the tool axis, by height above the tip.
 
     Attributes:
-        height: (K,) rising.
-        radius: (K,) straight from one height to the next.
+        height: (K,) heights, ascending.
+        radius: (K,) radii, linear between heights.
     """
 
     height: Array
@@ -37,13 +37,14 @@ class Profile:
 
     @property
     def farthest(self) -> float:
-        """The largest distance of a point of it from the tip, mm."""
+        """The largest distance of any of its points from the tip, mm."""
         return float(np.hypot(self.height, self.radius).max())
 
     def contains(self, high: Array, out: Array, more: float = 0.0) -> Array:
-        """Whether points at heights and distances from the axis, (N,), are inside of it when it is grown by ``more``.
+        """Whether points at heights and distances from the axis, (N,), are inside the profile offset by ``more``.
 
-        Grown, it may hold a little more than what is within this distance, never less; with less than 0 the other way.
+        An outward offset may include slightly more than this distance, never less; an inward one slightly less, never
+        more.
         """
         low, top = self.height[0] - more, self.height[-1] + more
         radius = self._widest(high, more) if more > 0 else self._narrowest(high, -more)
@@ -56,7 +57,7 @@ class Profile:
         return np.full(len(high), self.radius.max())
 
     def _narrowest(self, high: Array, within: float) -> Array:
-        """Cutters bulge once at most: the least radius of a stretch is at one of its ends."""
+        """Cutters bulge at most once: the smallest radius of a stretch is at one of its ends."""
         return np.minimum(self._at(high - within), self._at(high + within))
 
     def _at(self, high: Array) -> Array:
@@ -69,7 +70,7 @@ def cylinder(start: float, end: float, radius: float) -> Profile:
 
 
 def cutter_profile(tool: Tool, length: float) -> Profile:
-    """The cutting part of a tool of known diameter, up to a height; chords of the corner arc are inside of it."""
+    """The cutting part of a tool of known diameter, up to a height; chords of the corner arc are inside it."""
     cutter = Cutter.of(tool)
     angle = np.linspace(cutter.corner_start, cutter.corner_end, _ARC_CHORDS + 1)
     radius = cutter.radial_offset + cutter.corner_radius * np.sin(angle)
@@ -83,7 +84,7 @@ def cutter_profile(tool: Tool, length: float) -> Profile:
 
 
 def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[Piece, ...]:
-    """Cylinders inside of a cutter that is smaller than it is by an allowance all round."""
+    """Cylinders inside a cutter reduced by an allowance on all sides."""
     less = min(allowance, tool.diameter / 4)
     if tool.bottom_angle == 0.0 and tool.side_angle == 0.0:
         rounding = max(min(tool.corner_radius, tool.diameter / 2) - less, 0.0)
@@ -114,6 +115,6 @@ def _sections(profile: Profile) -> list[tuple[float, float]]:
 
 
 def shank_pieces(tool: Tool, shank: Shank, allowance: float) -> tuple[Piece, ...]:
-    """The shank below the spindle nose, thinner than it is by an allowance; it may rub where the cutter has been."""
+    """The shank below the spindle nose, reduced by an allowance; it may rub where the cutter has been."""
     start, radius = shank.start + allowance, shank.diameter / 2 - min(allowance, shank.diameter / 4)
     return (Piece(start, tool.length, radius),) if start < tool.length else ()

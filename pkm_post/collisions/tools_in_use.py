@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tools in use: where on a way each tool cuts and moves rapidly, and what may have been cut before. Units: mm."""
+"""Tools in use: cutting and rapid cells of each tool on a path, and material possibly cut before. Units: mm."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from pkm_post.model.setup import Setup, Shank
 from pkm_post.model.tool import largest_corner
 
 _STEP = 0.2
-"""mm: within half of it a point of the part that a cutter came to counts as cut."""
+"""mm: a workpiece point within half of it of a cutter counts as cut."""
 
 
 @dataclass(frozen=True)
 class InUse:
-    """A tool and where it is used.
+    """A tool and the cells in which it is used.
 
     Attributes:
-        tool: the tool, the smallest that it can be: a ball nose where its corner is not known.
-        largest: the largest that it can be: a flat end mill there.
-        shank: None where it is not known where its cutting edges end.
-        cutting: (K,) cells of the way in which it moves at a feed.
-        rapid: (K,) cells in which it moves rapidly.
+        tool: smallest possible tool: a ball nose where the corner is unknown.
+        largest: largest possible tool: a flat end mill there.
+        shank: None if the length of the cutting edges is unknown.
+        cutting: (K,) cells of the path in which it moves at feed.
+        rapid: (K,) cells in which it moves at rapid.
     """
 
     tool: Tool
@@ -41,29 +41,29 @@ class InUse:
 
     @property
     def name(self) -> str:
-        """How messages call it."""
+        """Its name in messages."""
         return f"T{self.tool.number}"
 
     @property
     def edge_length(self) -> float:
-        """How far up it cuts; to the spindle nose where nothing else is known."""
+        """Height of the cutting edges; up to the spindle nose if unknown."""
         return self.tool.length if self.shank is None else min(self.shank.start, self.tool.length)
 
     @property
     def has_size(self) -> bool:
-        """Whether its cutter can be looked at."""
+        """Whether the size of its cutter is known."""
         return self.tool.diameter > 0 and self.edge_length > 0
 
     def cells(self) -> Array:
-        """All cells in which it is used, (K,) rising."""
+        """All cells in which it is used, (K,) ascending."""
         return np.sort(np.concatenate([self.cutting, self.rapid]))
 
     def profile(self) -> Profile:
-        """Of its cutting part, no larger than it is."""
+        """Inner bound of its cutting part."""
         return cutter_profile(self.tool, self.edge_length)
 
     def largest_profile(self) -> Profile:
-        """Of its cutting part, no smaller than it is but for the chords of its corner."""
+        """Outer bound of its cutting part, except for the chords of its corner."""
         return cutter_profile(self.largest, self.edge_length)
 
 
@@ -78,14 +78,14 @@ def tools_in_use(driven: Driven, setup: Setup) -> tuple[InUse, ...]:
 
 
 def _sizes(tool: Tool, setup: Setup) -> tuple[Tool, Tool]:
-    """The smallest and the largest that a tool can be."""
+    """The smallest and the largest possible size of a tool."""
     if tool.corner_known and tool.number not in setup.unknown_corners:
         return tool, tool
     return replace(tool, corner_radius=largest_corner(tool.diameter, tool.bottom_angle, tool.side_angle)), tool
 
 
 def not_cut_before(driven: Driven, used: Sequence[InUse], met: Contacts) -> Contacts:
-    """Those contacts whose points no cutter has come to at a feed before."""
+    """The contacts whose points no cutter has reached at feed before."""
     cut = np.zeros(len(met), dtype=bool)
     for one in used:
         if not one.has_size:
@@ -97,7 +97,7 @@ def not_cut_before(driven: Driven, used: Sequence[InUse], met: Contacts) -> Cont
 
 
 def _reaches(driven: Driven, used: InUse, cells: Array, point: Array) -> bool:
-    """Whether a cutter comes to a point in some cells, or nearly so."""
+    """Whether a cutter reaches a point in some cells, or nearly so."""
     profile, way = used.largest_profile(), driven.way
     change = way.travel[cells] + way.angle[cells] * profile.farthest
     wide = float(profile.radius.max())
