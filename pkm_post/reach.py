@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach: whether a machine can follow a trajectory, everywhere and not only at samples.
+"""Reach: whether a machine can follow a trajectory, everywhere and not only at sampled poses.
 
-A trajectory and a machine enter; a report leaves: for each check its least margin, what has it and in which block, the
-first block that violates it, and what to do. As data, as text, as a dictionary for JSON, and as columns by pose.
+Takes a trajectory and a machine; returns a report: for each check its least margin, the element and block where it
+occurs, the first block that violates it, and the remedy. As data, as text, as a dictionary for JSON, and as columns by
+pose.
 
-The trajectory is taken as it is written: lines, arcs, great circles, even spin. The rounded corners that the machine
-will drive differ from it by less than the tolerances of the job; posting checks those. Units: mm, rad, s inside,
+The trajectory is checked as programmed: lines, arcs, great circles, spin at a constant rate. The rounded corners of the
+actual motion deviate from it by less than the tolerances of the job; posting checks those. Units: mm, rad, s inside,
 degrees in texts and in JSON.
 """
 
@@ -27,20 +28,20 @@ from pkm_post.model import RULES, Diagnostic, Machine, Trajectory
 _LONGEST_CELL = 5.0
 """mm or degrees of path length"""
 _WIDEST_CELL = np.radians(2.0)
-"""rad of axis turn, arc sweep or spin; so the margin of a pose is told at least so often."""
+"""rad of axis turn, arc sweep or spin: the largest step between reported margins."""
 _CHUNK = 65536
 """Cells per pass where poses are computed."""
 
 
 @dataclass(frozen=True)
 class Reach:
-    """What the checks say of a trajectory; N poses, each the end of a cell of the way.
+    """Results of the checks of a trajectory; N poses, each the end of a path cell.
 
     Attributes:
-        trajectory: what was checked.
-        machine: on which machine.
-        tip: (N, 3) tool tips of the poses in {M}, for pictures.
-        segment: (N,) segment of the trajectory that each pose lies on.
+        trajectory: the checked trajectory.
+        machine: its machine.
+        tip: (N, 3) tool tips of the poses in {M}, for plots.
+        segment: (N,) segment of the trajectory of each pose.
         findings: one for each check.
     """
 
@@ -51,11 +52,11 @@ class Reach:
     findings: tuple[ReachFinding, ...]
 
     def faults(self) -> tuple[Diagnostic, ...]:
-        """One diagnostic for each check and operation that violates it, at its worst."""
+        """One diagnostic for each check and operation that violates it, at its worst pose."""
         return faults_of(self.findings, self.trajectory, self.segment)
 
     def column(self, name: str) -> Array:
-        """Margins of one check by pose, (N,), in the units inside; to colour the tips by."""
+        """Margins of one check by pose, (N,), in internal units; for colouring the tips."""
         margins = {finding.subject.name: finding.margin for finding in self.findings}
         if name not in margins:
             raise ValueError(f"expected one of {', '.join(margins)}, got {name!r}")
@@ -94,7 +95,7 @@ class Reach:
         return {"block": segment + 1, "operation": place.operation, "line": place.line}
 
     def text(self) -> str:
-        """The report for people: a table, and for each violation what to do."""
+        """The report as text: a table, and a remedy for each violation."""
         report = self.as_dict()
         head = ("check", "least margin", "proven", "of", "worst at", "first violation at")
         rows = [head, *(_row(check) for check in report["checks"])]
@@ -134,10 +135,10 @@ def reach(
 
     Args:
         trajectory: in {M}, at least one segment.
-        machine: its limits; a check whose numbers it does not state is left out.
-        part: what spindle and holder must not touch, in {M}.
+        machine: its limits; a check whose limits it does not state is skipped.
+        part: the body that spindle and holder must not touch, in {M}.
         normal: (S, 3) unit normals of the surface at the ends of the S segments, in {M}, for the stiffness.
-        least_stiffness: what the tip must have along the normals, N/mm.
+        least_stiffness: required stiffness of the tip along the normals, N/mm.
     """
     way, segment, duration = way_of(trajectory)
     by_pose = None if normal is None else normal[segment]
@@ -146,7 +147,7 @@ def reach(
 
 
 def way_of(trajectory: Trajectory) -> tuple[Way, Array, Array]:
-    """The way of a trajectory, the segment of each of its rows (N,), and the time at the feed of each cell (N,)."""
+    """The pose path of a trajectory, the segment of each of its rows (N,), and the time at feed of each cell (N,)."""
     segments, tool_length = Segments.of(trajectory), trajectory.tool_length()
     turn = np.maximum(segments.turn(), np.abs(segments.spin_rate))
     widest = np.maximum(segments.extent / _LONGEST_CELL, segments.extent * turn / _WIDEST_CELL)

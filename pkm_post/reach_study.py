@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach study: whether a machine can follow a program, and what another spin or another place of the part would give.
+"""Reach study: whether a machine can follow a program, and the effect of another spin or workpiece position.
 
-A program, a machine and the choices of the user enter; the report of all checks leaves, with what is left before and
-after each choice. Nothing is written.
+Takes a program, a machine and the options of the user; returns the report of all checks, with the margins before and
+after each option. No file is written.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ _LABELS = ("stroke", "joints", "from singular")
 
 @dataclass(frozen=True)
 class Study:
-    """What was found.
+    """Result of the study.
 
     Attributes:
-        reach: all checks of the way as it would be driven.
-        stages: for each choice, in order, what it was and the least shares (3,) after it.
+        reach: all checks of the path as it would be driven.
+        stages: each option, in order, and the least shares (3,) after it.
         machine_from_work: (4, 4) the work offset of the last stage.
     """
 
@@ -44,7 +44,7 @@ class Study:
         return self.reach.as_dict() | {"left": stages, "machine_from_work": self.machine_from_work.tolist()}
 
     def text(self) -> str:
-        """The study for people."""
+        """The study as text."""
         head = f"{'what is left (1 best, 0 at the limit)':<40}" + "".join(f"{label:>15}" for label in _LABELS)
         rows = [f"{name:<40}" + "".join(f"{share:>15.3f}" for share in left) for name, left in self.stages]
         return "\n".join([self.reach.text(), head, *rows, "", f"work offset: {told_offset(self.machine_from_work)}"])
@@ -59,7 +59,7 @@ def study(
         program: cutter locations in {C}.
         machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
-        free: letters of ``position.FREEDOMS`` in which the part may be moved; none leaves it where it is.
+        free: letters of ``position.FREEDOMS`` in which the workpiece may be moved; empty for none.
 
     Returns:
         The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
@@ -70,7 +70,7 @@ def study(
         return None, told
     stages = [("as it is, zero torsion", least_shares(placed, machine))]
     if free:
-        of_machine = placed.operation >= len(program.operations)  # the ways to tool changes and back
+        of_machine = placed.operation >= len(program.operations)  # the routes to tool changes and back
         offset = best_position(placed, machine, free, fixed=of_machine).machine_from_work
         untwisted, options = replace(untwisted, work_offset=offset), replace(options, work_offset=offset)
         placed, told = pipeline.trajectory_of(program, machine, untwisted)
@@ -92,11 +92,11 @@ def study(
 
 
 _IN_REACH = ("K117", "K121")
-"""What reach looks at as well, by the margins of each pose."""
+"""Diagnostics that reach also covers, by the margins of each pose."""
 
 
 def told_offset(machine_from_work: Array) -> str:
-    """A work offset as ``--work-offset`` takes it, or as a matrix when it turns about more than z."""
+    """A work offset as accepted by ``--work-offset``, or as a matrix if it rotates about other axes than z."""
     x, y, z = machine_from_work[:3, 3]
     if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
         turn = np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0]))

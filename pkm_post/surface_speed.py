@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface speed: a spindle speed for each cut, so that the edge moves over the work as fast as the user wants.
+"""Surface speed: a spindle speed for each cut that gives the cutting edge the required speed.
 
-A program enters; the same with other spindle speeds leaves, and with other feeds if the chip load is to be kept. A cut
-is what lies between two rapid moves. The speed changes before it, where the machine rests with the tool off the work,
-never within: that would leave a mark. Speeds in mm/s; spindle speeds in revolutions per minute, as in events.
+Takes a program; returns it with new spindle speeds, and with new feeds if the chip load is to be kept. A cut is the
+motion between two rapid moves. The speed changes before it, where the machine rests with the tool clear of the
+workpiece, never within: that would leave a mark. Speeds in mm/s; spindle speeds in revolutions per minute, as in
+events.
 """
 
 from __future__ import annotations
@@ -19,16 +20,16 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
 
 _LEAST_SHARE = 0.1
-"""Of the cutter's diameter: near the tip of a ball the edge does not move, and no spindle speed helps."""
+"""Share of the cutter diameter: near the tip of a ball the edge does not move at any spindle speed."""
 
 
 @dataclass(frozen=True)
 class SurfaceSpeed:
-    """What is wanted of the spindle.
+    """Required surface speed.
 
     Attributes:
-        speed: of the edge over the work, mm/s.
-        keep_chip_load: whether the feed changes as the spindle speed does.
+        speed: speed of the edge over the workpiece, mm/s.
+        keep_chip_load: whether the feed changes in proportion to the spindle speed.
     """
 
     speed: float
@@ -38,18 +39,18 @@ class SurfaceSpeed:
 def with_surface_speed(
     program: Program, wanted: SurfaceSpeed, limits: tuple[float, float]
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program with a spindle speed for each cut.
+    """Set a spindle speed for each cut.
 
-    S = v / (pi d) with d the mean, over the cut, of the diameter on which the cutter touches: 2 (e + r sin gamma) with
-    gamma between normal and tool axis, the diameter of the tool where the program has no normals.
+    S = v / (pi d) with d the mean contact diameter over the cut: 2 (e + r sin gamma) with gamma between normal and tool
+    axis, or the tool diameter where the program has no normals.
 
     Args:
-        program: in {C}; the sense of rotation and the spindle's being off stay as they are.
+        program: in {C}; the sense of rotation and spindle stops are kept.
         wanted: surface speed, and whether feeds follow.
         limits: lowest and highest spindle speed.
 
     Returns:
-        The program, None if the diameter of a tool is not known; and the diagnostics.
+        The program, None if the diameter of a tool is unknown; and the diagnostics.
     """
     tool, spindle = _in_force(program, EventKind.TOOL_CHANGE), _in_force(program, EventKind.SPINDLE)
     diameter = np.full(len(program), np.nan)
@@ -70,14 +71,14 @@ def with_surface_speed(
 
 
 def _cutter(program: Program, number: int, rows: Array) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
-    """The cutter of a tool; without normals the corner, which they need, does not matter."""
+    """The cutter of a tool; its corner matters only for programs with normals."""
     tool = program.tools[number]
     normals = bool(np.isfinite(program.normal[rows]).all(axis=1).any())
     return known_cutter(replace(tool, corner_known=tool.corner_known or not normals), Place(program.source))
 
 
 def _contact_diameter(program: Program, cutter: Cutter, rows: Array) -> Array:
-    """The diameter of the cutter where it touches, (R,) mm."""
+    """The contact diameter of the cutter, (R,) mm."""
     normal, axis = program.normal[rows], program.tool_axis[rows]
     sine = norm(normal - dot(normal, axis)[:, None] * axis)
     touched = 2 * (cutter.radial_offset + cutter.corner_radius * sine)
@@ -94,10 +95,10 @@ def _in_force(program: Program, kind: EventKind) -> Array:
 
 
 def _with_speeds(program: Program, revolutions: Array, before: Array, wanted: SurfaceSpeed) -> Program:
-    """The program with the speeds of its cutting rows; where they are NaN, what was programmed stays."""
+    """The program with the speeds of its cutting rows; where they are NaN, the programmed speed is kept."""
     changed = ~np.isnan(revolutions)
     begins = set(np.flatnonzero(changed & np.append(True, program.kind[:-1] == Kind.RAPID)).tolist())
-    # A spindle that is switched on keeps its place; its speed is that of the first cut that follows.
+    # A spindle start stays in place; its speed is that of the next cut.
     events = [_switched_on(event, revolutions) for event in program.events]
     state = {event.row: event.value for event in events if event.kind is EventKind.SPINDLE}
     value = np.nan
