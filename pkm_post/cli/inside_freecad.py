@@ -70,7 +70,7 @@ def run_inside(arguments: Sequence[str]) -> int:
 def command_inside(arguments: Sequence[str]) -> list[str]:
     """Command line that runs a command inside FreeCADCmd; empty, after a message, if FreeCAD is missing.
 
-    An add-on is imported as usual. A wheel is not: its folder contains packages for another Python.
+    FreeCAD loads an add-on as such. A wheel is not loaded: its folder contains packages for another Python.
     """
     freecad = freecad_command()
     if not freecad:
