@@ -88,7 +88,7 @@ class Swept:
         """Poses spaced so no point moves by more than a step, unless that needs too many.
 
         Args:
-            way: in {M}.
+            way: pose path in {M}.
             cells: (K,) cells to include, ascending.
             work_from_machine: (4, 4) transform from {M} to {C}.
             farthest: distance from the tip to the farthest point of the solid, mm.

@@ -61,7 +61,7 @@ def gouges(
     paths, path_row = _segments(moved, rows, contour[source], smaller, view, tolerance)
     walls, wall_row = _segments(program, elements.row[cutting(elements)], contour, clearance, view, tolerance)
     path, wall, lacking = too_near(paths, walls, tolerance)
-    # Walls are computed only for contours with a near pair, which is rare.
+    # Walls are computed only for contours with a pair that is too close, which is rare.
     owner = np.searchsorted(elements.row, wall_row)
     bounds = walls_of(elements, walls, owner, np.unique(walls.first[wall]))[owner[wall]]
     bounds &= ~program.smaller_tool[wall_row[wall]]

@@ -72,7 +72,7 @@ def stock_left(
         tolerance: distance of the line from the boundary of the swept volume at the value, mm; the error of the value
             is larger where the line enters at a slant.
         reach: material left of more than this is not measured, mm.
-        progress: called now and then with the completed share, from 0 to 1 for each round of steps; an exception it
+        progress: called repeatedly with the completed share, from 0 to 1 for each round of steps; an exception it
             raises aborts.
 
     Raises:

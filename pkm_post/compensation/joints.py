@@ -29,7 +29,7 @@ _RIGHT_ANGLE = 1e-9
 """Cosine of a turn that is a right angle up to rounding: it is extended, not cut off."""
 
 _LEAST_ARC = 0.05
-"""Turn in rad up to which offset lines are extended where arcs are asked for: they leave the arc by 0.0003 of its
+"""Turn in rad up to which offset lines are extended although arcs are selected: they leave the arc by 0.0003 of its
 radius, and outward."""
 
 

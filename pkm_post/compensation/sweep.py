@@ -93,7 +93,7 @@ class Sweep:
         Args:
             points: (N, 3) points, mm.
             tolerance: largest overestimate of a distance, mm.
-            progress: called now and then with the completed share, from 0 to 1; an exception it raises aborts.
+            progress: called repeatedly with the completed share, from 0 to 1; an exception it raises aborts.
 
         Returns:
             Distances (N,), infinite or too large where the cutter stays out of reach, and rows of the path (N,).

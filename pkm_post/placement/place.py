@@ -120,7 +120,7 @@ def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Ev
 
     Args:
         placed: the program in {M}.
-        way: its columns of ``_way``.
+        way: its path columns from ``_way``.
         keep: rows that move.
         events: events of the program, at the kept rows.
     """

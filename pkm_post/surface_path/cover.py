@@ -25,7 +25,7 @@ from pkm_post.surface_path.trimming import thinned, trimmed
 _NODES = (17, 513)
 """Least and most initial points of a pass."""
 _EVERY = 4
-"""Stepping starts with every fourth point of those used by trimming."""
+"""Stepping starts with one in this many of the points used by trimming."""
 _LINK = 3.0
 """Links along the surface are at most this many stepovers long."""
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Moves: a program from the poses along the passes: rapid moves, approach, lead-in, passes, lead-out, retract.
 
-Between two runs the tool retracts along its axis, through the space it has cleared, up to a plane; there it turns
+Between two runs the tool retracts along its axis, through the space it came from, up to a plane; there it turns
 upright, crosses, tilts again and descends along its next axis. Units: mm, mm/s.
 """
 
