@@ -126,8 +126,8 @@ def _looked_at(
 ) -> tuple[Array, Array]:
     """Distances at positions (M,), and the contact points (M, 3).
 
-    A distance is infinite where it provably exceeds change plus clearance; on a long stretch without proof it is
-    returned as not above the clearance.
+    A distance is infinite where it provably exceeds change plus clearance; on a long stretch without proof the
+    clearance is returned.
     """
     distance, point = np.full(len(at), np.inf), np.full((len(at), 3), np.nan)
     for rows in _chunks(len(at), max(1, _AT_ONCE // len(mover.rounding))):

@@ -41,7 +41,7 @@ class Exchange:
     feed: float
 
     def is_high(self) -> bool:
-        """Whether the lift ends at the height that rapid moves came down to, or there is no lift."""
+        """Whether the lift ends at or above the height that rapid moves came down to, or there is no lift."""
         return not len(self.lift.way) or bool(self.lift.height[-1] >= self.plunge.rapid_to - LEVEL)
 
     def ways(self) -> tuple[Rows, Rows, int, int]:

@@ -163,7 +163,7 @@ def _feeds(made: Lead, role: Lead) -> Array:
 
 
 def _stations(lead: Lead) -> Array:
-    """Heights of the removable stations: the motion continues straight there, or its feed changes."""
+    """Heights of the optional stations: the motion continues straight there, or its feed changes."""
     feed = np.nan_to_num(lead.feed, nan=-1.0)
     heights: Array = lead.height[1:-1][_straight_on(lead) | (feed[1:] != feed[:-1])]
     return heights
