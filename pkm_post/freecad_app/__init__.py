@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""FreeCAD without a window: CAM jobs become programs, symmetric copies are document objects, and CAM finds the post.
+"""FreeCAD without a window: CAM jobs as programs, symmetric copies as document objects, post-processors for CAM.
 
-Nothing is imported here: FreeCAD comes through this door when it starts.
+Imports nothing: FreeCAD loads this package at startup.
 """

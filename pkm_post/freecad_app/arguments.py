@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arguments: the text a CAM job has for its post-processor, read as a command line.
+"""Arguments: the post-processor arguments of a CAM job, parsed as a command line.
 
-A job enters; parsed arguments leave, for ``pkm_post.options``. What is wrong with them is a fault of the job. All
-post-processors of PKM Post take the same arguments, so that a job can change from one to another; some have more.
+Takes a job; returns parsed arguments, for ``pkm_post.options``. Errors in them are faults of the job. All
+post-processors of PKM Post accept the same arguments, so a job can switch between them; some accept additional ones.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ POST_PROCESSORS: dict[str, str] = {
     GCODE: "Writes the program of the job as it is, in the work frame: --form and --inch say how. Reach is not checked:"
     " what concerns the machine changes nothing. --also has no meaning here.",
 }
-"""By name what each of them writes, for the help."""
+"""Output of each post-processor, by name, for the help text."""
 
 _MORE: dict[str, dict[str, dict[str, Any]]] = {
     GCODE: {
@@ -43,11 +43,11 @@ _MORE: dict[str, dict[str, dict[str, Any]]] = {
         "--inch": {"action": "store_true", "help": "write inches (G20)"},
     },
 }
-"""What some of them have beside the arguments of all."""
+"""Additional arguments of some post-processors."""
 
 
 def given_by(arguments: str | Given) -> Given:
-    """The options that a text says, which has no defaults; those that are parsed already stay as they are.
+    """Parse a text into the options it sets, without defaults; already parsed options are returned unchanged.
 
     Raises:
         Refused: as ``job_arguments``.
@@ -56,15 +56,15 @@ def given_by(arguments: str | Given) -> Given:
 
 
 def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.Namespace:
-    """The arguments of a job.
+    """Parse the arguments of a job.
 
     Args:
-        job: the job, to name it in faults.
+        job: the job, named in faults.
         text: its arguments, quoted as in a shell.
         post_processor: one of ``POST_PROCESSORS``.
 
     Raises:
-        Refused: they are not understood, J117.
+        Refused: the arguments are invalid, J117.
     """
     place = Place(document_name(job.Document), job.Label)
     chosen = parsed(text, place, post_processor)
@@ -75,7 +75,7 @@ def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.N
 
 
 def parsed(text: str, place: Place, post_processor: str = PMAC) -> argparse.Namespace:
-    """Arguments as people type them; ``place`` says whose they are.
+    """Parse arguments as typed by the user; ``place`` states their origin.
 
     Raises:
         Refused: as ``job_arguments``.
@@ -90,11 +90,11 @@ def parsed(text: str, place: Place, post_processor: str = PMAC) -> argparse.Name
 
 
 def own_arguments(job: Any, post_processor: str = "") -> argparse.Namespace:
-    """The arguments that a job has for a post-processor of PKM Post; those for another one are left alone.
+    """Parse the arguments of a job for a post-processor of PKM Post; arguments for any other one are ignored.
 
     Args:
         job: the job.
-        post_processor: one of ``POST_PROCESSORS``; that of the job if none is named.
+        post_processor: one of ``POST_PROCESSORS``; empty for that of the job.
 
     Raises:
         Refused: as ``job_arguments``.
@@ -106,21 +106,21 @@ def own_arguments(job: Any, post_processor: str = "") -> argparse.Namespace:
 
 
 def own_text(job: Any) -> str:
-    """The text of these arguments for ``hexapod_pmac``, as it is if its quotes do not close; empty if there is none."""
+    """The argument text for ``hexapod_pmac``, unchanged if its quotes do not close; empty if there is none."""
     if job.PostProcessor not in POST_PROCESSORS:
         return ""
     try:
         return rewritten(job.PostProcessorArgs, dict.fromkeys(_MORE.get(job.PostProcessor, {})))
-    except ValueError:  # who reads them tells what is wrong
+    except ValueError:  # the parser reports the error
         return str(job.PostProcessorArgs)
 
 
 def rewritten(text: str, chosen: Mapping[str, str | None]) -> str:
-    """Arguments with some of them set anew; all others stay as they are.
+    """Replace some arguments; all others stay unchanged.
 
     Args:
         text: the arguments, quoted as in a shell.
-        chosen: values by flag; None takes the flag away, so that its default holds.
+        chosen: values by flag; None removes the flag, so that its default applies.
 
     Raises:
         ValueError: the quotes of the text do not close.
@@ -130,7 +130,7 @@ def rewritten(text: str, chosen: Mapping[str, str | None]) -> str:
 
 
 def _by_flag(words: list[str]) -> Iterator[tuple[str, list[str]]]:
-    """Each flag with the words that say it: one with ``=`` or without a value, else two."""
+    """Yield each flag with its words: one word with ``=`` or without a value, else two."""
     while words:
         flag, equals, _ = words[0].partition("=")
         with_value = not equals and len(words) > 1 and not words[1].startswith("--")
@@ -140,14 +140,14 @@ def _by_flag(words: list[str]) -> Iterator[tuple[str, list[str]]]:
 
 
 def remember(job: Any, text: str, program: str) -> None:
-    """Let a job keep its arguments and the file they are for, so that CAM's own post command does the same.
+    """Store arguments and output file in the job, so that CAM's own post command gives the same result.
 
     Args:
-        job: the job; it gets the post-processor ``hexapod_pmac``.
+        job: the job; its post-processor is set to ``hexapod_pmac``.
         text: the arguments.
         program: path of the motion program.
     """
-    if PMAC not in job.getEnumerationsOfProperty("PostProcessor"):  # made where PKM Post is not installed
+    if PMAC not in job.getEnumerationsOfProperty("PostProcessor"):  # created where PKM Post is not installed
         job.PostProcessor = Path.Preferences.allEnabledPostProcessors([PMAC])
     for name, value in (("PostProcessor", PMAC), ("PostProcessorArgs", text), ("PostProcessorOutputFile", program)):
         if getattr(job, name) != value:
@@ -155,7 +155,7 @@ def remember(job: Any, text: str, program: str) -> None:
 
 
 def arguments_help(post_processor: str = PMAC) -> str:
-    """What the arguments are, as text."""
+    """Help text of the arguments."""
     return _parser(post_processor).format_help()
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contact faces: which face of a model each point of a path lies on, and the surface normal there.
+"""Contact faces: the model face under each point of a path, and the surface normal there.
 
-Named Part faces and points near them enter; for each point a normal, the face it is on, and a second face where that
-leaves a choice, leave as columns. Nothing is guessed: a point beyond the tolerance is on no face, and one within it of
-two faces with different normals is on both. mm, in the frame of the shapes.
+Takes named Part faces and points near them; returns columns: for each point a normal, its face, and a second face where
+the choice is ambiguous. Nothing is guessed: a point beyond the tolerance is on no face, and one within it of two faces
+with different normals is on both. mm, in the frame of the shapes.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ Array = np.ndarray[Any, np.dtype[Any]]
 _SAME_NORMAL = np.cos(1e-3)
 """Cosine of the angle up to which two faces count as one smooth surface: 0.06 degrees."""
 _BOX_MARGIN = 1e-4
-"""What the box about a face is enlarged by beyond the tolerance, mm."""
+"""Enlargement of a face's bounding box beyond the tolerance, mm."""
 _AT_ONCE = 5000
-"""Points that are projected between two steps of progress."""
+"""Points projected between two progress steps."""
 
 
 @dataclass(frozen=True)
 class NamedFace:
-    """A face with the name that people are told: object and element, as in ``Box.Face6``."""
+    """A face with its displayed name, object and element, as in ``Box.Face6``."""
 
     name: str
     face: Any
@@ -54,16 +54,16 @@ class Contacts:
 
 
 def contacts(faces: Sequence[NamedFace], points: Array, tolerance: float, text: str) -> Contacts:
-    """Find the faces that points lie on.
+    """Find the faces on which points lie.
 
     Args:
         faces: the faces.
         points: (N, 3).
-        tolerance: how far a point may be from the face it is on, mm.
-        text: what the progress bar says.
+        tolerance: largest distance of a point from its face, mm.
+        text: label of the progress bar.
 
     Raises:
-        Stopped: the user did not want to wait.
+        Stopped: the user cancelled.
     """
     found = Contacts(np.full(points.shape, np.nan), np.full(len(points), -1), np.full(len(points), -1))
     nearest = np.full(len(points), np.inf)
@@ -73,7 +73,7 @@ def contacts(faces: Sequence[NamedFace], points: Array, tolerance: float, text: 
             distance, normal = _on_face(faces[index].face, points[rows], tolerance)
             on = distance <= tolerance
             rows, distance, normal = rows[on], distance[on], normal[on]
-            differs = dot(found.normal[rows], normal) < _SAME_NORMAL  # false where there is none yet
+            differs = dot(found.normal[rows], normal) < _SAME_NORMAL  # false until there is one
             nearer = distance < nearest[rows]
             found.other[rows[differs]] = np.where(nearer, found.face[rows], index)[differs]
             chosen = rows[nearer]
@@ -83,15 +83,15 @@ def contacts(faces: Sequence[NamedFace], points: Array, tolerance: float, text: 
 
 
 def nearest_face(faces: Sequence[NamedFace], point: Array) -> tuple[str, float]:
-    """Name of the face nearest to a point (3,), its edges included, and its distance in mm."""
+    """Name of the face nearest to a point (3,), edges included, and its distance in mm."""
     vertex = Part.Vertex(App.Vector(*point.tolist()))
     return min(((named.name, named.face.distToShape(vertex)[0]) for named in faces), key=lambda pair: pair[1])
 
 
 def _near(face: Any, points: Array, tolerance: float) -> Iterator[Array]:
-    """Rows of the points in the box about a face, some at a time.
+    """Yield the rows of the points in the bounding box of a face, in batches.
 
-    ``face.BoundBox`` would be that of the triangles that a face is drawn with, which leave out what bulges.
+    ``face.BoundBox`` would be that of the display triangles, which miss bulges of the face.
     """
     with_triangles, with_tolerance = False, False
     box = face.optimalBoundingBox(with_triangles, with_tolerance)
@@ -102,9 +102,9 @@ def _near(face: Any, points: Array, tolerance: float) -> Iterator[Array]:
 
 
 def _on_face(face: Any, points: Array, tolerance: float) -> tuple[Array, Array]:
-    """Distances of points from a face, (n,), and the normals at their feet on its surface, (n, 3)."""
+    """Distances of points from a face, (n,), and the surface normals at their feet, (n, 3)."""
     _, normals, signed, on_face = project(face, points, trimmed=True)
     distance = np.where(np.isfinite(normals).all(axis=1), np.abs(signed), np.inf)
-    for row in np.flatnonzero((distance <= tolerance) & ~on_face).tolist():  # beyond an edge, which may be near enough
+    for row in np.flatnonzero((distance <= tolerance) & ~on_face).tolist():  # beyond an edge, which may be close enough
         distance[row] = face.distToShape(Part.Vertex(App.Vector(*points[row].tolist())))[0]
     return distance, normals

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contact guides: which rows of a program of contact points move with which, where some end on no face.
+"""Contact guides: the guide row of each row in a program of contact points, where some rows end on no face.
 
-A program of lines and rapid moves enters, with the rows of it that touch the model; for each row a row that touches
-leaves, and the cutting moves that should touch and do not. mm, z upwards.
+Takes a program of lines and rapid moves and its rows that touch the model; returns for each row a touching row, and the
+cutting moves that should touch but do not. mm, z upwards.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from pkm_post.model import Kind, Program
 Array = np.ndarray[Any, np.dtype[Any]]
 
 _STEEP = 1e-6
-"""A rapid move that goes less than this sideways, in mm, goes straight up or down."""
+"""A rapid move with less horizontal travel than this, in mm, is vertical."""
 
 
 def guides(program: Program, touching: Array, lead_length: float) -> tuple[Array, Array]:
-    """The row that each row moves with.
+    """Find the row that each row moves with.
 
-    Rows that touch are their own guides. A feed move between a rapid move and a cut, up to ``lead_length`` along the
-    path from it, is a lead and goes with the nearest row of that cut. Of the rapid moves after a cut those that go
-    straight up go with the cut, and so does the first in any direction if more follow; all others go with the next cut.
+    Touching rows are their own guides. A feed move between a rapid move and a cut, up to ``lead_length`` along the
+    path from it, is a lead and moves with the nearest row of that cut. Of the rapid moves after a cut the vertical
+    ones move with the cut, and so does the first in any direction if more follow; all others move with the next cut.
 
     Args:
         program: lines and rapid moves, N rows.
         touching: (N,) which rows end on a face.
-        lead_length: how long leads may be, mm.
+        lead_length: largest length of a lead, mm.
 
     Returns:
-        The guides (N,), -1 for rows without one; and which feed moves touch nothing and are no lead, (N,).
+        The guides (N,), -1 for rows without one; and a mask of the feed moves that neither touch nor are leads, (N,).
     """
     row, rapid = np.arange(len(program)), (program.kind == Kind.RAPID) & ~touching
     before, after = _latest(touching), _next(touching)
@@ -48,7 +48,7 @@ def guides(program: Program, touching: Array, lead_length: float) -> tuple[Array
 
 
 def _leaves(program: Program, rapid: Array) -> Array:
-    """Which rapid moves still belong to the cut before them, (N,)."""
+    """Mask of the rapid moves that belong to the preceding cut, (N,)."""
     row = np.arange(len(rapid))
     sideways = np.hypot(*np.diff(program.position[:, :2], axis=0, prepend=program.position[:1, :2]).T) > _STEEP
     turns = np.cumsum(rapid & sideways)
@@ -59,12 +59,12 @@ def _leaves(program: Program, rapid: Array) -> Array:
 
 
 def _latest(marked: Array) -> Array:
-    """For each row the last marked one up to it, (N,), -1 if there is none."""
+    """Index of the last marked row up to each row, (N,), -1 if there is none."""
     latest: Array = np.maximum.accumulate(np.where(marked, np.arange(len(marked)), -1))
     return latest
 
 
 def _next(marked: Array) -> Array:
-    """For each row the first marked one from it on, (N,), N if there is none."""
+    """Index of the first marked row from each row on, (N,), N if there is none."""
     following: Array = np.minimum.accumulate(np.where(marked, np.arange(len(marked)), len(marked))[::-1])[::-1]
     return following

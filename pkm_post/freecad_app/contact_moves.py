@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contact moves: a program of contact points becomes one of tool tips, and the moves around the cuts follow.
+"""Contact moves: converts a program of contact points to tool tips; the moves around the cuts follow.
 
-A program of lines and rapid moves enters, with the surface normal at every row that ends on a face; the program for the
-tool leaves, or what is wrong with it. A row that ends on no face moves along with its guide, one that does. A lead
-moves as its guide does, and keeps its shape. A rapid move does so sideways and upwards, never downwards: it stays as
-high as it was, or higher. Lengths in mm, in one frame with z upwards.
+Takes a program of lines and rapid moves, with the surface normal at every row that ends on a face; returns the program
+of the tool, or its faults. A row that ends on no face moves with its guide, a row that does. A lead takes its guide's
+shift and keeps its shape. A rapid move takes it sideways and upwards, never downwards: it stays at least as high as it
+was. Lengths in mm, in one frame with z upwards.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from pkm_post.surface_path.tool_axis import AxisRule, tool_axes
 Array = np.ndarray[Any, np.dtype[Any]]
 
 _STANDING = 1e-6
-"""A move shorter than this, in mm, has no direction of travel."""
+"""A move shorter than this, in mm, has no feed direction."""
 _PARALLEL = 1e-6
-"""Sine of the angle between normal and tool axis below which the bottom of the cutter lies on the surface."""
+"""Sine of the angle between normal and tool axis below which the bottom of the cutter lies flat on the surface."""
 
 
 @dataclass(frozen=True)
 class Compensation:
-    """How tips follow from contact points.
+    """Rule for computing tool tips from contact points.
 
     Attributes:
         cutter: the cutter.
-        stock: what is left on the surface, mm; negative to go below it.
-        chord_tolerance: how far the tool may leave the surface, in mm, where the normal or the axis turns between two
+        stock: allowance left on the surface, mm; negative to cut below it.
+        chord_tolerance: largest deviation of the tool from the surface, in mm, where normal or axis turns between two
             points.
-        lean: how the tool leans from the normal; None to keep the axes of the program.
+        lean: lean of the tool from the normal; None to keep the axes of the program.
     """
 
     cutter: Cutter
@@ -50,13 +50,13 @@ class Compensation:
 def compensated(
     program: Program, normals: Array, guide: Array, rule: Compensation
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program for the tool.
+    """Compute the program of the tool.
 
     Args:
         program: lines and rapid moves, N rows.
         normals: (N, 3) unit surface normals towards the tool, NaN in rows that touch nothing.
-        guide: (N,) the row that each row moves with, as ``contact_guides.guides`` gives them, -1 for none.
-        rule: how tips follow from contact points.
+        guide: (N,) the row that each row moves with, from ``contact_guides.guides``, -1 for none.
+        rule: rule for computing tips from contact points.
 
     Returns:
         The program, or None when it cannot be compensated; and the diagnostics: N101 to N106, N113, N114.
@@ -79,10 +79,10 @@ def compensated(
 def _offsets(
     program: Program, rows: Array, normals: Array, axes: Array, rule: Compensation
 ) -> tuple[Array | None, tuple[Diagnostic, ...]]:
-    """Tips from the surface with its stock, (n, 3), or None; and what is wrong.
+    """Tips relative to the surface with its allowance, (n, 3), or None; and the faults.
 
-    In a cut across a plane the bottom of the cutter lies on the surface all the way, and any place of the tool over the
-    contact points does: then the points are those below its axis, as in any other operation.
+    In a cut across a plane the bottom of the cutter lies flat on the surface throughout, and any position of the tool
+    over the contact points is valid: the points are then taken to lie on its axis, as in any other operation.
     """
     cutter, surface = rule.cutter, program.position[rows] + rule.stock * normals
     cut = np.cumsum(np.diff(rows, prepend=rows[:1]) > 1)
@@ -100,7 +100,7 @@ def _offsets(
 
 
 def _moved(program: Program, rows: Array, guide: Array, shifts: Array, axes: Array, rule: Compensation) -> Program:
-    """The program with its rows moved with their guides, and the axes of these if the tool leans."""
+    """The program with its rows shifted by their guides, and with the guides' axes if the tool leans."""
     shift, axis = np.zeros((len(program) + 1, 3)), np.vstack([program.tool_axis, [0.0, 0.0, 1.0]])
     shift[rows], axis[rows] = shifts, axes
     shift, axis = shift[guide], np.where((guide < 0)[:, None], program.tool_axis, axis[guide])
@@ -113,7 +113,7 @@ def _moved(program: Program, rows: Array, guide: Array, shifts: Array, axes: Arr
 
 
 def _leaning(program: Program, rows: Array, normals: Array, lean: AxisRule) -> Array:
-    """Tool axes of the rows that touch, (n, 3); NaN where lead and tilt need a direction of travel and none is."""
+    """Tool axes of the touching rows, (n, 3); NaN where lead and tilt need a feed direction and there is none."""
     along = np.diff(program.position[rows], axis=0)
     length = norm(along)[:, None]
     joined = (np.diff(rows) == 1)[:, None] & (length > _STANDING)
@@ -128,9 +128,9 @@ def _leaning(program: Program, rows: Array, normals: Array, lean: AxisRule) -> A
 def _off_between(
     program: Program, rows: Array, normals: Array, offsets: Array, axes: Array, rule: Compensation
 ) -> list[Diagnostic]:
-    """What to tell where the tool leaves the surface on its way from one tip to the next.
+    """Report where the tool leaves the surface between one tip and the next.
 
-    Half way the tip is in the middle of both, as if normal, direction to the axis and axis were the means of those at
+    Halfway the tip is at the midpoint of both, as if normal, direction to the axis and axis were the means of those at
     both ends; these are shorter than the unit vectors that would keep the cutter in contact.
     """
     cutter = rule.cutter
@@ -153,7 +153,7 @@ def _off_between(
 
 
 def _lacking(vectors: Array) -> Array:
-    """What the means of successive vectors lack to be as long as these, (n - 1, 3)."""
+    """Difference between the means of successive vectors and vectors of full length, (n - 1, 3)."""
     mean, length = (vectors[1:] + vectors[:-1]) / 2, norm(vectors[1:])[:, None]
     short = norm(mean)[:, None]
     opposite = short <= _STANDING * length

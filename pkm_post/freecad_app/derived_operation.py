@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Derived operation: a document object whose path is made from that of another CAM operation, and follows it.
+"""Derived operation: a document object whose path is computed from another CAM operation and follows it.
 
-An operation enters by the property ``Base``; the ``Path`` of the object leaves. Tool, coolant and feed are those of the
-base, which CAM finds by itself. Derived operations may stand on each other. Saved documents name the classes that
-inherit from this one, never this one, by their modules.
+Takes an operation by the property ``Base``; sets the ``Path`` of the object. Tool, coolant and feed are those of the
+base, which CAM finds by itself. Derived operations can be stacked. Saved documents store the module names of the
+subclasses, never this one.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ BASE_AND_ACTIVE: tuple[Row, ...] = (
 
 
 class DerivedOperation(PropertyProxy, abc.ABC):
-    """What such objects have in common. CAM needs no more of an operation than its properties and its path."""
+    """Base class of these objects. CAM needs only the properties and the path of an operation."""
 
     @abc.abstractmethod
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-        """The program of the object, or None, and what is wrong; from that of its base, in the frame of the job."""
+        """The program of the object, or None, and its faults; from the program of its base, in the frame of the job."""
 
     @briefly_refused
     def execute(self, obj: Any) -> None:
-        """Compute the path anew: FreeCAD calls this when the base or a property has changed."""
-        obj.Path = Path.Path()  # should there be an error, no old path is left to be posted
+        """Recompute the path: FreeCAD calls this when the base or a property has changed."""
+        obj.Path = Path.Path()  # after an error no outdated path remains to be posted
         if not obj.Active:
             obj.Path = Path.Path("(inactive operation)")
         elif obj.Base is not None:
@@ -50,7 +50,7 @@ class DerivedOperation(PropertyProxy, abc.ABC):
 
 
 def program_of(base: Any) -> Program:
-    """The program of an operation without tools, its placement applied.
+    """The program of an operation without tools, with its placement applied.
 
     Raises:
         Refused: its commands cannot be read.
@@ -61,7 +61,7 @@ def program_of(base: Any) -> Program:
 
 
 def _value(value: Any, diagnostics: tuple[Diagnostic, ...]) -> Any:
-    """The value, its warnings shown; or an exception that FreeCAD shows at the object."""
+    """Return the value and show its warnings; or raise an exception that FreeCAD shows at the object."""
     if value is None:
         raise Refused(diagnostics)
     for warning in diagnostics:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Document damage: what keeps a document in FreeCAD from being the one that was saved.
+"""Document damage: detects differences between a document in FreeCAD and the saved one.
 
-A file or a document enters; what is wrong leaves. FreeCAD opens a file that was cut off or changed without an error,
-and takes the paths that it cannot read as empty. So its file is checked before it is opened, and again where a job of
-an open document is read: there the file still is what was opened, until it is saved.
+Takes a file or a document; returns its faults. FreeCAD opens a truncated or modified file without an error and replaces
+unreadable paths with empty ones. The file is therefore checked before it is opened, and again when a job of an open
+document is read: until it is saved, the file is still the one that was opened.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pkm_post.model import Diagnostic, Place, Refused
 
 
 def intact(file: FilePath) -> DocumentContent:
-    """What a document lists, when its file was checked.
+    """Contents listed in a document, after checking its file.
 
     Raises:
         Refused: it cannot be read, or is damaged: J101, J129, J130.
@@ -31,7 +31,7 @@ def intact(file: FilePath) -> DocumentContent:
 
 
 def check_read(document: Any, content: DocumentContent) -> None:
-    """Compare the operations of a document that was just opened with those that its file lists.
+    """Compare the operations of a newly opened document with those listed in its file.
 
     Raises:
         Refused: some are missing, J131.
@@ -49,7 +49,7 @@ def check_read(document: Any, content: DocumentContent) -> None:
 
 
 def file_faults(document: Any) -> tuple[Diagnostic, ...]:
-    """What is wrong with the file of an open document; one that was never saved, or is gone, has none."""
+    """Faults in the file of an open document; none if it was never saved or no longer exists."""
     file = FilePath(document.FileName)
     if not document.FileName or not file.is_file():
         return ()
@@ -59,7 +59,7 @@ def file_faults(document: Any) -> tuple[Diagnostic, ...]:
 
 @lru_cache(maxsize=16)
 def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...]:
-    """The same, once for each state of a file: document objects ask whenever they are computed."""
+    """The same, cached by file state: document objects ask at every recompute."""
     try:
         intact(file)
     except Refused as refused:

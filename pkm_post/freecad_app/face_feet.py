@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Feet on faces: what a face is in numbers, so that many points find their feet on it without OpenCASCADE.
+"""Feet on faces: a numeric form of a face, to find the feet of many points without OpenCASCADE.
 
-A Part face enters; a function from points (N, 3) to feet leaves. Planes, cylinders, cones, spheres and tori go by
-their formulas, B-spline surfaces by their poles, others as OpenCASCADE writes them as B-splines. Rows for which this
-does not answer are marked, and OpenCASCADE is asked itself, about half a millisecond each.
+Takes a Part face; returns a function from points (N, 3) to feet. Planes, cylinders, cones, spheres and tori use closed
+forms, B-spline surfaces their poles, and others the B-splines into which OpenCASCADE converts them. Rows without a
+result are marked and projected by OpenCASCADE itself, about half a millisecond each.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pkm_post.geometry.nurbs_nearest import Closed, nearest
 from pkm_post.geometry.vectors import Array, cross, norm
 
 _SINGULAR = 1e-9
-"""Sine of the angle between both derivatives, times their lengths in mm: below, a surface has no normal there."""
+"""Sine of the angle between both derivatives, times their lengths in mm: below this a surface has no normal."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class Feet:
     Attributes:
         points: (N, 3) the feet, mm.
         normals: (N, 3) unit normals out of the material; NaN where the surface has none.
-        parameters: (N, 2) u and v of the feet; NaN where they are not known yet.
-        asked: (N,) whether OpenCASCADE was asked.
-        face: the face the parameters belong to, where it was asked.
-        written: the face the other parameters belong to: the same, or what it is as B-splines.
+        parameters: (N, 2) u and v of the feet; NaN where not known yet.
+        asked: (N,) whether OpenCASCADE projected the point.
+        face: the face to which the parameters of these rows belong.
+        written: the face to which the other parameters belong: the same one, or its B-spline form.
     """
 
     points: Array
@@ -48,7 +48,7 @@ class Feet:
 
 
 def finder(face: Any) -> Callable[[Array], Feet]:
-    """The function that finds feet on a face.
+    """Return the function that finds feet on a face.
 
     Args:
         face: a Part face.
@@ -66,7 +66,7 @@ def finder(face: Any) -> Callable[[Array], Feet]:
 
 
 def _formula(surface: Any) -> Callable[[Array], elementary.Feet] | None:
-    """The closed form for a surface of OpenCASCADE, if it has one."""
+    """The closed form for an OpenCASCADE surface, if it has one."""
     kind = surface.TypeId
     if kind == "Part::GeomPlane":
         return partial(elementary.plane_feet, origin=_vector(surface.Position), axis=_vector(surface.Axis))
@@ -84,7 +84,7 @@ def _formula(surface: Any) -> Callable[[Array], elementary.Feet] | None:
 
 
 def _by_formula(face: Any, formula: Callable[[Array], elementary.Feet]) -> Callable[[Array], Feet]:
-    """The closed form, its normals turned the way the face looks."""
+    """The closed form, with normals oriented as the face is."""
     u, v = _middle(face)
     _, own = formula(_vector(face.valueAt(u, v))[None])
     side = np.sign(float(own[0] @ _vector(face.normalAt(u, v))))
@@ -97,7 +97,7 @@ def _by_formula(face: Any, formula: Callable[[Array], elementary.Feet]) -> Calla
 
 
 def _by_poles(face: Any) -> Callable[[Array], Feet]:
-    """Newton's method on the poles; feet at the border of a part of a larger surface are left to OpenCASCADE."""
+    """Newton's method on the poles; feet at the border of a patch of a larger surface are left to OpenCASCADE."""
     own = face.Surface.TypeId == "Part::GeomBSplineSurface"
     written = face if own else face.toNurbs().Faces[0]
     surface, closed = nurbs_of(written)
@@ -119,10 +119,10 @@ def _by_poles(face: Any) -> Callable[[Array], Feet]:
 
 
 def nurbs_of(face: Any) -> tuple[NurbsSurface, Closed]:
-    """The B-spline surface of a face, and whether it is closed along u and along v.
+    """The B-spline surface of a face, and whether it is closed in u and in v.
 
     Args:
-        face: a Part face on a B-spline surface; ``face.toNurbs()`` makes one of any.
+        face: a Part face on a B-spline surface; ``face.toNurbs()`` converts any face to one.
     """
     surface = face.Surface.copy()
     closed = bool(surface.isUClosed()), bool(surface.isVClosed())
@@ -137,7 +137,7 @@ def nurbs_of(face: Any) -> tuple[NurbsSurface, Closed]:
 
 
 def _ask(points: Array, feet: Feet, rows: Array) -> None:
-    """Have OpenCASCADE project some rows."""
+    """Project some rows by OpenCASCADE."""
     surface = feet.face.Surface
     feet.asked[rows] = True
     for row in rows.tolist():
@@ -145,7 +145,7 @@ def _ask(points: Array, feet: Feet, rows: Array) -> None:
         feet.points[row], feet.parameters[row] = _vector(feet.face.valueAt(u, v)), (u, v)
         try:
             feet.normals[row] = _vector(feet.face.normalAt(u, v))
-        except Part.OCCError:  # so it tells that the surface has no normal there
+        except Part.OCCError:  # raised where the surface has no normal
             feet.normals[row] = np.nan
 
 

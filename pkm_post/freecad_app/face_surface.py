@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Face surface: a Part face as the parametric surface that passes are laid over.
+"""Face surface: a Part face as the parametric surface on which passes are laid out.
 
-A face enters, in the frame of its shape; functions of columns (u, v) leave, in mm. B-spline faces are computed from
-their poles, all points at once. For others OpenCASCADE answers point by point, which takes some ten microseconds; as
-much again takes whether a point belongs to a trimmed face.
+Takes a face, in the frame of its shape; returns functions of columns (u, v), in mm. B-spline faces are evaluated from
+their poles, all points at once. For others OpenCASCADE evaluates point by point, at some ten microseconds each;
+testing whether a point lies on a trimmed face takes as long again.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from pkm_post.surface_path import Span, Surface
 from pkm_post.surface_path.surface import Array
 
 _SAME = 1e-6
-"""mm within which both ends of a range are one line: the surface is closed."""
+"""mm within which both ends of a range coincide: the surface is closed."""
 _SINGULAR = 1e-9
-"""mm^2: product of both derivatives below which they do not say the normal."""
+"""mm^2: cross product of both derivatives below which the normal is undefined."""
 _WHOLE = 1e-9
-"""Share of its area that a face may lack against its whole range of parameters and still count as not trimmed."""
+"""Missing share of the area of its full parameter range up to which a face still counts as untrimmed."""
 
 
 Columns = tuple[Array, Array, Array, Array]
@@ -32,11 +32,11 @@ Evaluate = Callable[[Array, Array], Columns]
 
 
 def face_surface(face: Any, flipped: bool = False) -> Surface:
-    """The surface of a face, trimmed as the face is.
+    """The surface of a face, trimmed like the face.
 
     Args:
-        face: a Part face. Normals point out of the solid it belongs to.
-        flipped: whether the material is on the other side, as may be for a face without a solid.
+        face: a Part face. Normals point out of its solid.
+        flipped: whether the material is on the other side, which is possible for a face without a solid.
     """
     first_u, last_u, first_v, last_v = face.ParameterRange
 
@@ -55,7 +55,7 @@ def face_surface(face: Any, flipped: bool = False) -> Surface:
 
 
 def _turned(evaluate: Evaluate, side: float) -> Evaluate:
-    """The same, its normals times 1 or -1."""
+    """The same surface with its normals multiplied by 1 or -1."""
 
     def turned(u: Array, v: Array) -> Columns:
         point, normal, along_u, along_v = evaluate(u, v)
@@ -65,7 +65,7 @@ def _turned(evaluate: Evaluate, side: float) -> Evaluate:
 
 
 def _by_asking(face: Any) -> Evaluate:
-    """Points, normals and derivatives as OpenCASCADE gives them."""
+    """Points, normals and derivatives from OpenCASCADE."""
 
     def evaluate(u: Array, v: Array) -> Columns:
         pairs = list(zip(u.tolist(), v.tolist(), strict=True))
@@ -81,7 +81,7 @@ def _by_asking(face: Any) -> Evaluate:
 
 
 def _by_poles(face: Any) -> Evaluate | None:
-    """The same for a B-spline face within one period of its surface; OpenCASCADE is asked where it has no normal."""
+    """The same for a B-spline face within one period of its surface; OpenCASCADE handles points without a normal."""
     if face.Surface.TypeId != "Part::GeomBSplineSurface":
         return None
     surface, _ = nurbs_of(face)
@@ -106,13 +106,13 @@ def _by_poles(face: Any) -> Evaluate | None:
 
 
 def _coincide(face: Any, u: Array, v: Array, other_u: Array, other_v: Array) -> bool:
-    """Whether two lines of the surface are the same."""
+    """Whether two lines of the surface coincide."""
     ends = zip(u.tolist(), v.tolist(), other_u.tolist(), other_v.tolist(), strict=True)
     return all(face.valueAt(a, b).distanceToPoint(face.valueAt(c, d)) < _SAME for a, b, c, d in ends)
 
 
 def _untrimmed(face: Any) -> bool:
-    """Whether a face fills its whole range of parameters."""
+    """Whether a face fills its full parameter range."""
     whole = face.Surface.toShape(*face.ParameterRange).Area
     return bool(abs(whole - face.Area) <= _WHOLE * whole)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Face trim: which points of a surface the edges of a face leave on it.
+"""Face trim: which points of a surface lie within the edges of a face.
 
-Feet on the surface of a Part face enter, with their parameters; whether they are on the face leaves.
+Takes feet on the surface of a Part face, with their parameters; returns whether they are on the face.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from pkm_post.geometry.outline import within
 from pkm_post.geometry.vectors import Array
 
 _CHORDS = 32
-"""Straight pieces that an edge is taken as in the plane of parameters."""
+"""Number of chords that approximate an edge in the parameter plane."""
 
 _SHARE = 1e-3
-"""Share of its greatest length below which a derivative counts as that long."""
+"""Share of its greatest length that a derivative counts as having at least."""
 
 _SHORT = 1e-9
-"""Least length of a derivative that parameters are divided by, mm."""
+"""Smallest length of a derivative by which parameters are divided, mm."""
 
 _EDGE = 1e-3
-"""A foot this near to the edge of a face, in mm, counts as on the face."""
+"""A foot this close to the edge of a face, in mm, counts as on the face."""
 
 
 def on_face(feet: Feet) -> Array:
     """Whether the feet are on the face, or within a micron of its edge: (N,) bool.
 
-    The edges of the face are lines in the plane of parameters. OpenCASCADE is asked where a foot is near one of them:
-    about 12 us, and more for faces of many edges.
+    The edges of the face are polylines in the parameter plane. OpenCASCADE decides where a foot is near one of them:
+    about 12 us each, and more for faces with many edges.
 
     Args:
-        feet: what the function of ``finder`` found.
+        feet: result of the function that ``finder`` returns.
     """
     at = feet.parameters.copy()
     for row in np.flatnonzero(np.isnan(at).any(axis=1)).tolist():
@@ -49,7 +49,7 @@ def on_face(feet: Feet) -> Array:
 
 
 def _in_domain(face: Any, at: Array) -> Array:
-    """Whether parameters (N, 2) belong to the face, or almost."""
+    """Whether parameters (N, 2) are on the face, or almost."""
     first_u, _, first_v, _ = face.ParameterRange
     surface = face.Surface
     u, v = at.T
@@ -62,7 +62,7 @@ def _in_domain(face: Any, at: Array) -> Array:
 
 
 def _edges(face: Any) -> tuple[Array, Array]:
-    """The edges of a face as segments in the plane of parameters (S, 4), and how near to them is in doubt (S,)."""
+    """The edges of a face as segments in the parameter plane (S, 4), and the uncertain distance around them (S,)."""
     segments, sags = [], []
     for edge in (edge for wire in face.Wires for edge in wire.OrderedEdges):
         curve, first, last = face.curveOnSurface(edge)
@@ -77,9 +77,9 @@ def _edges(face: Any) -> tuple[Array, Array]:
 
 
 def _micron(face: Any, at: Array) -> Array:
-    """What two microns are in parameters at the most, for each of some places on the face."""
+    """Upper bound of two microns in parameters, at each of some places on the face."""
     lengths = np.array([[way.Length for way in face.derivative1At(u, v)] for u, v in at.tolist()])
-    # At a pole one of them is 0: there the other one, and the places beside it, have to do.
+    # At a pole one derivative is 0: the other one, and the places beside it, are used instead.
     least: Array = np.maximum(lengths, _SHARE * lengths.max(axis=0)).min(axis=1)
     return 2 * _EDGE / least
 

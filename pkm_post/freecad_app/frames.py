@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Frames: FreeCAD's placements as (4, 4) matrices of numpy, and back."""
+"""Frames: conversion between FreeCAD placements and (4, 4) numpy matrices."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def matrix_of(placement: Any) -> Array:
 
 
 def placement_of(matrix: Array) -> Any:
-    """The placement of a (4, 4) matrix, a turn and a shift."""
+    """The placement of a rigid (4, 4) matrix."""
     return App.Placement(App.Matrix(*(float(value) for value in np.asarray(matrix).ravel())))
 
 
 def apply(matrix: Array, points: Array) -> Array:
-    """Points (N, 3) in the other frame."""
+    """Transform points (N, 3) to the other frame."""
     moved: Array = points @ matrix[:3, :3].T + matrix[:3, 3]
     return moved

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gauge lengths: what a job says of how far each of its tools stands out of the spindle, and where it is kept.
+"""Gauge lengths: the gauge length of each tool of a job, and where it is stored.
 
-A job enters; a row for each of its tool controllers leaves, in mm. What is chosen for some of them goes into the
-document. A gauge length is never guessed: the length of the tool bit stands in the row to compare it with, but part of
-the bit is in its holder, and the holder counts.
+Takes a job; returns a row for each of its tool controllers, in mm. Lengths that the user sets are stored in the
+document. A gauge length is never guessed: the row gives the length of the tool bit for comparison, but part of the bit
+is inside its holder, and the holder counts.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ class ToolRow:
     """A tool controller of a job.
 
     Attributes:
-        name: of the object in its document.
+        name: name of the object in its document.
         number, label: of the tool controller.
-        place: what diagnostics name.
-        length: gauge length in mm; 0 if it is not known.
-        bit_length: length of the tool bit alone in mm; 0 if it does not say.
-        in_use: whether an active operation takes it.
+        place: location stated in diagnostics.
+        length: gauge length in mm; 0 if unknown.
+        bit_length: length of the tool bit alone in mm; 0 if not stated.
+        in_use: whether an active operation uses it.
     """
 
     name: str
@@ -41,12 +41,12 @@ class ToolRow:
     in_use: bool
 
     def unknown(self, found: str = "") -> Diagnostic:
-        """What posting says of a tool whose gauge length is not known, and what was given in place of one."""
+        """The diagnostic of posting for a tool without a gauge length; ``found`` is the input given instead."""
         return Diagnostic("J113", self.place, f"T{self.number}{found and ', '}{found}")
 
 
 def tool_rows(job: Any) -> tuple[ToolRow, ...]:
-    """The tool controllers of a job, in the order of its tree."""
+    """The tool controllers of a job, in tree order."""
     used = {
         controller.Name
         for operation in job.Operations.Group
@@ -68,14 +68,14 @@ def tool_rows(job: Any) -> tuple[ToolRow, ...]:
 
 
 def keep_gauge_lengths(job: Any, lengths: Mapping[str, float]) -> None:
-    """Let tool controllers of a job keep their gauge lengths; those that have them already are not touched.
+    """Store gauge lengths in the tool controllers of a job; controllers that already have them are not touched.
 
     Args:
         job: the job.
-        lengths: mm, by the names of the tool controllers; 0 for one that is not known any more.
+        lengths: mm, by the names of the tool controllers; 0 to clear one.
 
     Raises:
-        ValueError: a length below zero.
+        ValueError: a length is negative.
     """
     for name, mm in lengths.items():
         if not mm >= 0.0:

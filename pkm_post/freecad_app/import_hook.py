@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Import hook: something is done with a module as soon as it is imported, by whomever.
+"""Import hook: calls a function as soon as a module is imported, whoever imports it.
 
-So nothing heavy is imported when FreeCAD starts.
+This keeps heavy imports out of FreeCAD's startup.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ Then = Callable[[ModuleType], None]
 
 
 def when_imported(name: str, then: Then) -> None:
-    """Call a function with a module: now if it is loaded, otherwise right after it is.
+    """Call a function with a module: now if it is loaded, otherwise right after its import.
 
     Args:
-        name: of the module, with its packages.
-        then: what to do with it; called once for each loading. The same function is registered once.
+        name: full name of the module.
+        then: the function; called once per loading. The same function is registered only once.
     """
     loaded = sys.modules.get(name)
     if loaded is not None:
@@ -30,7 +30,7 @@ def when_imported(name: str, then: Then) -> None:
 
 
 class _Finder:
-    """Stands before the importers of Python until its module is imported.
+    """Finder placed before Python's importers until its module is imported.
 
     Attributes:
         awaited: name of that module.
@@ -40,13 +40,13 @@ class _Finder:
         self.awaited, self._then = name, then
 
     def waits_for(self, name: str, then: Then) -> bool:
-        """Whether it is for this module and this function."""
+        """Whether the finder is for this module and this function."""
         return (self.awaited, self._then) == (name, then)
 
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Find the module as Python does, and call the function as soon as it is executed."""
+        """Find the module as Python does, and call the function after its execution."""
         if name != self.awaited:
             return None
         sys.meta_path.remove(self)

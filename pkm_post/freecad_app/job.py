@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job: the active operations of a CAM job, in the order of its tree, become one program.
+"""Job: combines the active operations of a CAM job, in tree order, into one program.
 
-A job of FreeCAD's CAM workbench enters; a program in mm, rad and mm/s leaves, or everything that is wrong with the
-job. The list of operations is made here: the one FreeCAD 1.0 makes may lose operations. What CAM keeps outside of the
-paths is added as events: tool, spindle and coolant, each where it changes and off at the end and at tool changes.
+Takes a job of FreeCAD's CAM workbench; returns a program in mm, rad and mm/s, or all faults of the job. The list of
+operations is built here: the one FreeCAD 1.0 builds may lose operations. What CAM stores outside the paths becomes
+events: tool, spindle and coolant, each where it changes, and off at the end and at tool changes.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ _OFF = {EventKind.SPINDLE: 0.0, EventKind.COOLANT: 0.0}
 def read_job(
     job: Any, tool_lengths: Mapping[int, float] = NO_LENGTHS, selection: Selection = EVERYTHING
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program of a CAM job.
+    """Read the program of a CAM job.
 
     Args:
         job: the job, a document object, recomputed.
-        tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
-        selection: what of the job is meant.
+        tool_lengths: gauge lengths by tool number that override those of the tool controllers, mm.
+        selection: the part of the job to read.
 
     Returns:
-        The program, or None if there are errors; and all that was found.
+        The program, or None if there are errors; and all diagnostics.
     """
     way = _Way(job)
     faults = [*file_faults(job.Document), *_selection_faults(job, selection, Place(way.source, job.Label))]
@@ -65,23 +65,23 @@ def read_job(
 
 
 def document_name(document: Any) -> str:
-    """The file name of a document, or its label before it has one."""
+    """The file name of a document, or its label if it was never saved."""
     return FilePath(document.FileName).name or document.Label
 
 
 def _selection_faults(job: Any, selection: Selection, place: Place) -> list[Diagnostic]:
-    """What is meant and cannot be posted together, or is not there."""
+    """Selected items that are missing or cannot be posted together."""
     fixtures, strangers = selection.fixtures_of(job), selection.strangers(job)
     faults = [Diagnostic("J111", place, ", ".join(fixtures))] if len(fixtures) > 1 else []
     return faults + [Diagnostic("J127", place, each.Label) for each in strangers]
 
 
 class _Way:
-    """The program in the making, with the state that the machine is in at its end so far.
+    """The program under construction, with the machine state at its current end.
 
     Attributes:
         source: name of the document.
-        rows: how many there are.
+        rows: number of rows so far.
         controllers: the tool controllers in use, by the name of the object.
     """
 
@@ -96,7 +96,7 @@ class _Way:
         self._tip = np.full(3, np.nan)
 
     def add(self, operation: Any) -> list[Diagnostic]:
-        """Append an operation, its placement applied to points and tool axes."""
+        """Append an operation, with its placement applied to points and tool axes."""
         work_from_operation = np.array(operation.Placement.Matrix.A).reshape(4, 4)
         start = np.linalg.solve(work_from_operation, [*self._tip, 1.0])[:3]
         program, read_faults = read_commands(operation.Path.Commands, self.source, operation.Label, start)
@@ -123,7 +123,7 @@ class _Way:
         self.switch({EventKind.SPINDLE: speed, EventKind.COOLANT: coolant})
 
     def switch(self, wanted: Mapping[EventKind, float]) -> None:
-        """Append events that bring the machine to the state that is wanted."""
+        """Append events that bring the machine to the requested state."""
         for kind, value in wanted.items():
             if self._state.get(kind) != value:
                 self._happens(Event(self.rows, kind, value))
@@ -133,7 +133,7 @@ class _Way:
         self._state[event.kind] = event.value
 
     def _append(self, program: Program) -> list[Diagnostic]:
-        """Append rows and events; an M6 among these may call a tool that the job does not have."""
+        """Append rows and events; an M6 among them may call a tool that the job does not have."""
         faults = []
         for event in program.events:
             self._happens(dataclasses.replace(event, row=self.rows + event.row))
@@ -148,12 +148,12 @@ class _Way:
         return faults
 
     def counted(self, job: Any, active: Sequence[Any]) -> str:
-        """How many operations were read, beside how many the job lists."""
+        """Number of operations read and number listed in the job."""
         meant = f"{len(active)} meant and active"
         return f"operations of the job: {len(job.Operations.Group)} listed, {meant}, {len(self._programs)} read"
 
     def program(self, tools: Mapping[int, Tool]) -> Program:
-        """All operations, one after the other."""
+        """All operations in sequence."""
         names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS, "position", "tool_axis"} - {"operation"}
         columns = {name: np.concatenate([getattr(program, name) for program in self._programs]) for name in names}
         return Program(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job on a machine: a CAM job as a trajectory in the machine frame {M}, to be looked at there.
+"""Job on a machine: a CAM job as a trajectory in the machine frame {M}, for display.
 
-A job enters, and a machine object if there is one. The document is not recomputed: document objects ask for this while
-it is.
+Takes a job and optionally a machine object. The document is not recomputed: document objects call this during a
+recompute.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from pkm_post.model.certificate import Tolerances
 
 @dataclass(frozen=True)
 class JobOnMachine:
-    """A job where it is driven. Other warnings than of what was replaced are told when it is posted.
+    """A job on its machine. Of its warnings only replaced settings are shown; posting reports the others.
 
     Attributes:
         trajectory: of the job, in {M}, with its spin.
-        machine: that it runs on.
+        machine: the machine it runs on.
         part: the model of the job in {M}; None if it has no faces.
         tolerances: for rounded corners.
     """
@@ -43,14 +43,14 @@ def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
 
     Args:
         job: the CAM job, recomputed.
-        machine_object: what ``create_machine`` made; without one the arguments of the job say it all.
+        machine_object: from ``create_machine``; without one the arguments of the job define the machine.
 
     Raises:
         Refused: the job cannot be read or placed.
     """
     read = prepared_job(job, settings_of(job), machine_object)
     for each in read.found:
-        if each.code == "J125":  # a job is seen otherwise than it says, or than it is posted
+        if each.code == "J125":  # the display differs from the job's settings, or from what is posted
             App.Console.PrintWarning(f"{each}\n")
     trajectory, _ = read.placed()
     program, machine = read.sound

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job settings: machine, work offset, tolerances, spin and gauge lengths of a CAM job, at every door.
+"""Job settings: machine, work offset, tolerances, spin and gauge lengths of a CAM job, for all entry points.
 
-A job enters, and what a door says over it: options of a command line, of a macro. What the job says itself holds
-unless it is replaced, one option at a time, and every option that is replaced is told. Nothing is read of the paths,
-so document objects can ask while they are computed.
+Takes a job and the overrides of an entry point: options of a command line or a macro. The settings of the job apply
+unless replaced, option by option, and every replaced option is reported. The paths are not read, so document objects
+can call this during a recompute.
 """
 
 from __future__ import annotations
@@ -42,15 +42,15 @@ Findings = tuple[Diagnostic, ...]
 
 @dataclass(frozen=True)
 class JobSettings:
-    """What a job is posted, checked and simulated with.
+    """Settings with which a job is posted, checked and simulated.
 
     Attributes:
-        machine: name of a machine that comes with PKM Post, or path of a machine file.
-        options: with the fixture of the job for the work offset if no other was chosen.
-        tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
-        arguments: all that was chosen, as it was typed.
-        selection: what of the job is meant.
-        found: what was replaced, and what makes no sense.
+        machine: name of a machine included in PKM Post, or path of a machine file.
+        options: with the fixture of the job as the work offset if no other was chosen.
+        tool_lengths: gauge lengths by tool number that override those of the tool controllers, mm.
+        arguments: all chosen options, as typed.
+        selection: the part of the job to use.
+        found: replaced settings, and invalid ones.
     """
 
     machine: str
@@ -69,18 +69,18 @@ def settings_of(
     selection: Selection = EVERYTHING,
     beside: Sequence[Any] = (),
 ) -> JobSettings:
-    """What a job is to be posted with.
+    """Determine the settings with which a job is posted.
 
     Args:
         job: the CAM job.
-        given: options that go before those of the job, one by one.
-        options: stand in for all that ``pipeline.Options`` holds.
-        post_processor: whose arguments those of the job are, if its own property does not say it.
-        selection: what of the job is meant.
-        beside: other jobs that the given options are for as well.
+        given: options that override those of the job, one by one.
+        options: replace everything that ``pipeline.Options`` holds.
+        post_processor: post-processor of the job's arguments, if the job's own property does not state it.
+        selection: the part of the job to use.
+        beside: other jobs to which the given options also apply.
 
     Raises:
-        Refused: the arguments of the job are not understood, J117.
+        Refused: the arguments of the job are invalid, J117.
     """
     own = own_arguments(job, post_processor)
     chosen = layered(_placed(job, own), given)
@@ -103,7 +103,7 @@ def settings_of(
 
 
 def _at_fixture(options: pipeline.Options, job: Any, selection: Selection) -> pipeline.Options:
-    """The options, with the fixture of the job for the work offset if none was chosen."""
+    """The options, with the fixture of the job as the work offset if none was chosen."""
     if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
         return replace(options, work_offset=_fixture(job, selection))
     return options
@@ -114,7 +114,7 @@ def _fixture(job: Any, selection: Selection) -> str:
 
 
 def _placed(job: Any, own: argparse.Namespace) -> argparse.Namespace:
-    """The arguments of a job with the files they name: those beside its document, wherever FreeCAD was started."""
+    """The arguments of a job, with file names relative to its document, whatever the working directory."""
     folder = FilePath(job.Document.FileName).parent if job.Document.FileName else None
 
     def where(file: str) -> str:
@@ -127,11 +127,11 @@ def _placed(job: Any, own: argparse.Namespace) -> argparse.Namespace:
 
 
 _FILES = ("machine", "part", "stock", "fixture")
-"""Options with the names of files; a machine may be one that comes with PKM Post instead."""
+"""Options with file names; a machine may also be one included in PKM Post."""
 
 
 def _without_meaning(job: Any, given: Given) -> Iterator[Diagnostic]:
-    """L442 for each option that is for part programs."""
+    """Yield L442 for each option that applies only to part programs."""
     for each in misfits(given, {Source.JOB}):
         yield Diagnostic("L442", Place(document_name(job.Document), job.Label), each)
 
@@ -139,7 +139,7 @@ def _without_meaning(job: Any, given: Given) -> Iterator[Diagnostic]:
 def _replaced(
     job: Any, own: Given, given: Given, options: pipeline.Options | None, selection: Selection
 ) -> Iterator[Diagnostic]:
-    """J125 for each option that changes what the job says; of its work offset a job always says something."""
+    """Yield J125 for each option that changes a setting of the job; a job always states a work offset."""
     place, fixture = Place(document_name(job.Document), job.Label), _fixture(job, selection)
     said = _with_fixture({"work_offset": FIXTURE_OF_THE_JOB} | dict(own), fixture)
     whole = {} if options is None else said_by(options)
@@ -156,7 +156,7 @@ def _with_fixture(layer: Given, fixture: str) -> Given:
 
 
 def _replaced_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
-    """J125 for each tool controller whose gauge length an option replaces."""
+    """Yield J125 for each tool controller whose gauge length an option replaces."""
     source = document_name(job.Document)
     for controller in job.Tools.Group:
         kept, number = gauge_length(controller), int(controller.ToolNumber)
@@ -168,7 +168,7 @@ def _replaced_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diagno
 
 
 def _unknown_tools(job: Any, given: Given, beside: Sequence[Any]) -> Iterator[Diagnostic]:
-    """J126 for each gauge length whose number no tool controller has."""
+    """Yield J126 for each gauge length whose number no tool controller has."""
     here = {int(controller.ToolNumber) for controller in job.Tools.Group}
     known = here.union(int(controller.ToolNumber) for other in beside for controller in other.Tools.Group)
     for number, mm in given.get("tool_length", ()):

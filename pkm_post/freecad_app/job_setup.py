@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job set-up: what a CAM job says of part, stock and shanks, for posting and for checks.
+"""Job set-up: part, stock and tool shanks of a CAM job, for posting and for checks.
 
-A job enters; a set-up leaves, in mm, in the work frame {C} of the job. A job knows of no clamps. Where the cutting
-edges of a tool end is known of tool bits with a CuttingEdgeHeight and a ShankDiameter, as end mills have.
-The box that CAM puts around the model of a new job is assumed: it was not chosen.
+Takes a job; returns a set-up, in mm, in the work frame {C} of the job. A job has no data on clamps. The end of the
+cutting edges is known for tool bits with a CuttingEdgeHeight and a ShankDiameter, as end mills have.
+The box that CAM puts around the model of a new job counts as assumed: the user did not choose it.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from pkm_post.model.setup import Mesh, Setup, Shank
 
 
 def job_setup(job: Any) -> Setup:
-    """The set-up of a job, recomputed."""
+    """The set-up of a recomputed job."""
     shanks = dict(_shanks(job.Tools.Group))
     stock = _mesh([job.Stock] if job.Stock else [], StockType.FromStock(job.Stock) == StockType.FromBase)
     return Setup(part=_mesh(job.Model.Group), stock=stock, shanks=shanks)
 
 
 def _mesh(items: Iterable[Any], assumed: bool = False) -> Mesh | None:
-    """The meshes of some objects as one; None where they have no faces."""
+    """The meshes of some objects as one; None if they have no faces."""
     shaped = [item for item in items if hasattr(item, "Shape")]
     triangles = np.concatenate([np.empty((0, 3, 3)), *(mesh_of(item.Shape) for item in shaped)])
     return Mesh(", ".join(item.Label for item in shaped), triangles, assumed) if len(triangles) else None

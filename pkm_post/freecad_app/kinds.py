@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Kinds: what an object of a document is, told by the properties that it has.
+"""Kinds: type tests of document objects, by the properties they have.
 
-An object enters, yes or no leaves. Nothing of CAM is imported: commands ask this in every workbench.
+Takes an object; returns a bool. Imports nothing of CAM: commands call this in every workbench.
 """
 
 from __future__ import annotations
@@ -25,6 +25,6 @@ def is_simulation(item: Any) -> bool:
 
 
 def is_operation(item: Any) -> bool:
-    """Whether an object is an operation of a CAM job; tool controllers have paths, too."""
+    """Whether an object is an operation of a CAM job; tool controllers have paths as well."""
     others = is_job(item) or is_program(item) or hasattr(item, "ToolNumber")
     return item.isDerivedFrom("Path::Feature") and not others

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers: dress-ups, arrays and copies that stand above a CAM operation, by their ``Base``.
+"""Layers: dress-ups, arrays and copies on top of a CAM operation, linked by their ``Base``.
 
-A document object enters; what lies below it, and which layers would spoil the tool axis, leaves. Stock dress-ups
-rebuild moves from X Y Z and arrays turn these alone: I J K words below them are dropped or left as they were.
+Takes a document object; returns the objects below it, and the layers that would corrupt the tool axis. Stock dress-ups
+rebuild moves from X Y Z and arrays rotate only these: I J K words below them are dropped or left unchanged.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ _OURS = "pkm_post."
 
 
 def is_ours(operation: Any) -> bool:
-    """Whether the object is one of this add-on, which turns tool axes along with points."""
+    """Whether the object belongs to this add-on, whose objects transform tool axes together with points."""
     return type(getattr(operation, "Proxy", None)).__module__.startswith(_OURS)
 
 
 def bases(operation: Any) -> list[Any]:
-    """The operations right below; the faces and edges that an operation is made from are none."""
+    """The operations directly below; faces and edges from which an operation is made are excluded."""
     base = getattr(operation, "Base", None)
     linked = base if isinstance(base, list | tuple) else [base]
     return [below for below in linked if hasattr(below, "isDerivedFrom") and below.isDerivedFrom("Path::Feature")]
 
 
 def spoilers(operation: Any) -> Iterator[Any]:
-    """Layers of others, in the object or below it, that stand above moves with tool-axis words."""
+    """Yield third-party layers, the object itself or below it, on top of moves with tool-axis words."""
     for below in bases(operation):
         if not is_ours(operation) and Words.of(below.Path.Commands).axis_words().any():
             yield operation

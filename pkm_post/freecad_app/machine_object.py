@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machine: a document object for a machine with six struts, at a pose, around the part.
 
-A machine file, a work offset and a pose in coordinates of the program enter by properties; strut lengths, margins and
-what is out of limits leave by read-only properties. The document is seen from the part: coordinates of the program are
-those of the document, and the machine stands where the work offset puts it. The work offset is that of a CAM job, if
-the object has one; otherwise a placement of its own, for the origin of the document or for an object of the model.
-Saved documents name the class by ``pkm_post.freecad_app.machine_object``: its place, its name and those of its
+Takes a machine file, a work offset and a pose in program coordinates by properties; sets strut lengths, margins and
+limit violations in read-only properties. The document is in the frame of the part: program coordinates are those of
+the document, and the work offset places the machine. The work offset is that of a CAM job, if the object has one;
+otherwise a placement of its own, for the origin of the document or for an object of the model.
+Saved documents store the class as ``pkm_post.freecad_app.machine_object``: its module, its name and the names of its
 properties are a file format.
 """
 
@@ -33,7 +33,7 @@ from pkm_post.model import Machine, Refused
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _VIEW = "pkm_post.freecad_gui.machine_view"
-"""The view is a floor above: it is named and not imported, as in saved documents."""
+"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _EXAMPLE = "example_6tps"
 _M, _W, _P, _T, _R = "Machine", "Work Offset", "Pose", "Tool", "Result"
 _STRUTS = tuple(f"Strut{number}" for number in range(1, 7))
@@ -85,7 +85,7 @@ class MachineObject(PropertyProxy):
 
     @briefly_refused
     def execute(self, obj: Any) -> None:
-        """Compute what follows from the properties."""
+        """Compute the results from the properties."""
         machine = machine_of(obj)
         _take_work_offset(obj, machine)
         obj.Frame = placement_of(_document_from_work(obj) @ np.linalg.inv(matrix_of(obj.WorkOffset)))
@@ -93,16 +93,16 @@ class MachineObject(PropertyProxy):
 
 
 def create_machine(document: Any, machine: str = "", job: Any = None, label: str = "") -> Any:
-    """Add a machine to a document, at the pose it has at home.
+    """Add a machine to a document, at its home pose.
 
     Args:
         document: gets the object.
-        machine: name or path of the machine file; if there is none, that of the job, or the example.
-        job: CAM job whose work offset is taken.
-        label: name shown to people; that of the machine if there is none.
+        machine: name or path of the machine file; empty for that of the job, or the example.
+        job: CAM job that supplies the work offset.
+        label: displayed name; empty for that of the machine.
 
     Raises:
-        Refused: there is no such machine, or its file has faults; nothing was added.
+        Refused: the machine does not exist, or its file has faults; nothing was added.
     """
     name = machine or (_EXAMPLE if job is None else settings_of(job).machine)
     model = _machine_named(name)
@@ -123,7 +123,7 @@ def machine_of(obj: Any) -> Machine:
     """The machine that the object shows.
 
     Raises:
-        Refused: its file is not there or has faults.
+        Refused: its file is missing or has faults.
     """
     return _machine_named(obj.MachineFile)
 
@@ -132,7 +132,7 @@ def pose_of(obj: Any) -> Pose:
     """The pose of the object in {M}, as one row for ``kinematics``.
 
     Raises:
-        ValueError: the tool axis has no direction.
+        ValueError: the tool axis is a zero vector.
     """
     machine_from_work = matrix_of(obj.WorkOffset)
     axis = machine_from_work[:3, :3] @ np.array(obj.ToolAxis)
@@ -152,7 +152,7 @@ def _machine_named(name: str) -> Machine:
 
 
 def _take_work_offset(obj: Any, machine: Machine) -> None:
-    """The work offset of the job, if there is one; it cannot be typed in then."""
+    """Take the work offset of the job, if there is one; it is read-only then."""
     obj.setEditorMode("WorkOffset", EDITABLE if obj.Job is None else READ_ONLY)
     if obj.Job is None:
         return
@@ -163,7 +163,7 @@ def _take_work_offset(obj: Any, machine: Machine) -> None:
 
 
 def _document_from_work(obj: Any) -> Array:
-    """Where the work frame is in the document; paths of a job are in coordinates of the document."""
+    """The work frame in the document; paths of a job are in document coordinates."""
     if obj.Job is not None or obj.Reference is None:
         return np.eye(4)
     if not hasattr(obj.Reference, "getGlobalPlacement"):
@@ -172,7 +172,7 @@ def _document_from_work(obj: Any) -> Array:
 
 
 def go_home(obj: Any, machine: Machine) -> None:
-    """Set the pose that the machine has at home, with the tool length that it rests with."""
+    """Set the home pose of the machine, with its home tool length."""
     work_from_machine = np.linalg.inv(matrix_of(obj.WorkOffset))
     obj.Tip = App.Vector(*(work_from_machine[:3, :3] @ machine.home_tip + work_from_machine[:3, 3]))
     obj.ToolAxis = App.Vector(*(work_from_machine[:3, :3] @ machine.home_axis))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine tilt: how far the tool may lean from upright everywhere about a part, as a machine stands.
+"""Machine tilt: largest tilt of the tool from upright that a machine reaches everywhere around a part.
 
-A machine, the pose of the part on it, the gauge length and a box about the faces enter; an angle in rad leaves. Every
-direction of lean is tried at the corners and the middle of the box; struts, joints and singular poses decide, as in
-the check of a whole path, which comes later and is the one that counts.
+Takes a machine, the pose of the part on it, the gauge length and a box around the faces; returns an angle in rad. Every
+tilt direction is tried at the corners and the centre of the box; struts, joints and singular poses decide, as in the
+later check of the whole path, which is the binding one.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ _DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
 def machine_tilt(
     name: str, job: Any, controller: Any, box: tuple[Array, Array], place: Place
 ) -> tuple[float | None, tuple[Diagnostic, ...]]:
-    """The largest tilt from upright that a machine reaches at the part in every direction.
+    """The largest tilt from upright that the machine reaches at the part in every direction.
 
     Args:
-        name: name of a machine that comes with PKM Post, or path of a machine file.
+        name: name of a machine included in PKM Post, or path of a machine file.
         job: the CAM job, with its work offset and its gauge lengths.
         controller: the tool controller, with a gauge length.
-        box: lowest and highest corner of where the tip comes, (3,) each, mm.
-        place: what diagnostics name.
+        box: lowest and highest corner of the region of the tip, (3,) each, mm.
+        place: location stated in diagnostics.
 
     Returns:
-        The angle in rad, or None; and what is wrong: M1xx of the machine file, J113, K108, N310.
+        The angle in rad, or None; and the faults: M1xx of the machine file, J113, K108, N310.
 
     Raises:
-        Refused: the arguments of the job are not understood, J117.
+        Refused: the arguments of the job are invalid, J117.
     """
     settings = settings_of(job)
     machine, machine_faults = machine_named(name)
@@ -58,7 +58,7 @@ def machine_tilt(
 
 
 def _largest(machine: Machine, machine_from_work: Array, length: float, low: Array, high: Array) -> float | None:
-    """The last tilt before the first that is out of reach somewhere; None if upright is."""
+    """The last tilt before the first that is out of reach somewhere; None if upright is out of reach."""
     corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
     points = np.vstack([(np.asarray(low) + high) / 2, corners])
     tilt, turn = (each.ravel() for each in np.meshgrid(_TILTS, _DIRECTIONS, indexing="ij"))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Material side: on which side of its way an operation has the material, and how its spindle turns.
+"""Material side: on which side of its path an operation has the material, and the sense of its spindle.
 
-An operation of a CAM job enters; +1 (right), -1 (left) or 0 (not known) leaves, from what its properties say. CAM's
-operations speak of climb milling for a spindle that turns clockwise (M3): the material is to the right of it then.
+Takes an operation of a CAM job; returns +1 (right), -1 (left) or 0 (unknown), from its properties. CAM's operations
+define climb milling for a spindle that turns clockwise (M3): the material is then to the right of the path.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ SIDES = {NOT_STATED: 0, LEFT: -1, RIGHT: 1}
 _CUT_MODES = {"Climb": 1, "Conventional": -1}
 _SENSES = {"Forward": 1, "Reverse": -1}
 _PROFILE = {("Outside", "CW"): 1, ("Outside", "CCW"): -1, ("Inside", "CCW"): 1, ("Inside", "CW"): -1}
-"""Side of the contour and direction of CAM's profile operation; holes are run the other way by itself."""
+"""Side of the contour and direction of CAM's profile operation; CAM reverses holes by itself."""
 _ORDERS = ("Order", "CutPattern", "OffsetPattern", "ClearingPattern")
 _ONE_WAY = ("One way", "Spiral", "Offset")
-"""Orders of passes that have the material on one side all the time."""
+"""Pass patterns that keep the material on one side throughout."""
 
 
 def is_symmetric(obj: Any) -> bool:
-    """Whether an object is a mirrored or turned operation."""
+    """Whether an object is a mirrored or rotated operation."""
     return hasattr(getattr(obj, "Proxy", None), "matrices")
 
 
 def material_side_of(obj: Any) -> int:
-    """The side on which an operation has the material, as far as properties tell.
+    """The side on which an operation has the material, as far as its properties state it.
 
     Args:
-        obj: an operation; a mirrored or turned one asks its base, a dress-up as well.
+        obj: an operation; a mirrored or rotated one takes the side of its base, and so does a dress-up.
     """
     if is_symmetric(obj):
         return base_side(obj) * obj.Proxy.hand(obj)
@@ -47,11 +47,11 @@ def material_side_of(obj: Any) -> int:
 
 
 def base_side(obj: Any) -> int:
-    """The side on which the base of a mirrored or turned operation has the material."""
+    """The side on which the base of a mirrored or rotated operation has the material."""
     stated = SIDES[obj.MaterialSide]
     return stated if stated or obj.Base is None else material_side_of(obj.Base)
 
 
 def spindle_sense_of(obj: Any) -> int:
-    """+1 where the tool controller of an operation turns the spindle clockwise (M3), -1 the other way, 0 not at all."""
+    """+1 if the tool controller of an operation turns the spindle clockwise (M3), -1 counterclockwise, 0 if stopped."""
     return _SENSES.get(getattr(toolControllerForOp(obj), "SpindleDir", ""), 0)

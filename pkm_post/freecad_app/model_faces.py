@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Model faces: the faces that an operation of a CAM job may touch.
 
-The model of the job and a choice of faces, as FreeCAD links them, enter; named Part faces leave, in the frame of the
-job, or what is wrong with the choice. A job works on clones of the objects it was made for, which may stand elsewhere:
-who has picked a face of the original means that of the clone.
+Takes the model of the job and a selection of faces, as FreeCAD links them; returns named Part faces, in the frame of
+the job, or the faults of the selection. A job works on clones of its original objects, which may have other placements:
+a face picked on the original stands for that of the clone.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ Chosen = Iterable[tuple[Any, Sequence[str]]]
 def model_faces(
     model: Any, chosen: Chosen, place: Place
 ) -> tuple[tuple[NamedFace, ...] | None, tuple[Diagnostic, ...]]:
-    """The faces chosen, or all of the model.
+    """The selected faces, or all of the model.
 
     Args:
-        model: the group with the clones, the property ``Model`` of a job; None if it is gone.
-        chosen: pairs of an object and names of its elements; an empty name is for all faces of the object.
-        place: what diagnostics name.
+        model: the group with the clones, the property ``Model`` of a job; None if it was deleted.
+        chosen: pairs of an object and names of its elements; an empty name means all faces of the object.
+        place: location stated in diagnostics.
 
     Returns:
-        The faces, or None; and what is wrong: N115.
+        The faces, or None; and the faults: N115.
     """
     clones = [] if model is None else list(model.Group)
     picked = [(_clone(clones, thing), name.split(".")[-1]) for thing, names in chosen for name in names or ("",)]
@@ -47,6 +47,6 @@ def model_faces(
 
 
 def _clone(clones: Sequence[Any], thing: Any) -> Any:
-    """The clone that the job has made of an object; the object itself if there is none."""
+    """The job's clone of an object; the object itself if there is none."""
     made = [clone for clone in clones if hasattr(clone, "PathResource") and thing in clone.Objects]
     return made[0] if made else thing

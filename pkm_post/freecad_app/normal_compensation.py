@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Normal Compensation: a dress-up that takes the points of a CAM operation for contact points on the model.
+"""Normal Compensation: a dress-up that treats the points of a CAM operation as contact points on the model.
 
-An operation enters by the property ``Base``; for each of its points the face of the model and the normal there are
-found, and the ``Path`` of the tool tip leaves that makes the cutter touch there. Tool, coolant and feed are those of
-the base. Saved documents name the class by ``pkm_post.freecad_app.normal_compensation``: its place, its name and those
-of its properties are a file format.
+Takes an operation by the property ``Base``; finds the face of the model and the normal at each of its points, and sets
+the ``Path`` of the tool tip at which the cutter touches there. Tool, coolant and feed are those of the base. Saved
+documents store the class as ``pkm_post.freecad_app.normal_compensation``: its module, its name and the names of its
+properties are a file format.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from pkm_post.surface_path.tool_axis import AxisRule
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _VIEW = "pkm_post.freecad_gui.normal_compensation_view"
-"""The view is a floor above: it is named and not imported, as in saved documents."""
+"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 
 KEEP, FROM_NORMAL = "Of the operation", "From the normal"
 
@@ -63,12 +63,12 @@ _PROPERTIES: tuple[Row, ...] = (
 
 
 class NormalCompensation(DerivedOperation):
-    """The dress-up. It takes the place of its base in the job, and gives it back when it is deleted."""
+    """The dress-up. It replaces its base in the job, and restores it when deleted."""
 
     properties = _PROPERTIES
 
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-        """The program of the tool tip."""
+        """Compute the program of the tool tip."""
         program = with_chords(program, np.flatnonzero(program.kind == Kind.ARC))
         if not len(program):
             return program, ()
@@ -83,7 +83,7 @@ class NormalCompensation(DerivedOperation):
         return (None, faults) if faults else compensated(program, found.normal, guide, _rule(obj, cutter))
 
     def unsetupObject(self, obj: Any) -> None:
-        """Give the base back to the job: FreeCAD calls this before the object is deleted."""
+        """Return the base to the job: FreeCAD calls this before the object is deleted."""
         job, base = PathUtils.findParentJob(obj), obj.Base
         if job is not None and base is not None:
             job.Proxy.addOperation(base, obj if obj in job.Operations.Group else None)
@@ -91,14 +91,14 @@ class NormalCompensation(DerivedOperation):
 
 
 def _rule(obj: Any, cutter: Cutter) -> Compensation:
-    """What the properties say, in mm and rad."""
+    """The rule from the properties, in mm and rad."""
     lead, tilt = math.radians(obj.Lead.Value), math.radians(obj.Tilt.Value)
     lean = AxisRule(lead, tilt) if obj.ToolAxis == FROM_NORMAL else None
     return Compensation(cutter, obj.StockToLeave.Value, obj.ChordTolerance.Value, lean)
 
 
 def _astray(program: Program, astray: Any, faces: Sequence[NamedFace], tolerance: float) -> list[Diagnostic]:
-    """The first cutting move that ends on no face, and how many there are."""
+    """Report the first cutting move that ends on no face, and the number of such moves."""
     rows = np.flatnonzero(astray).tolist()
     if not rows:
         return []
@@ -108,7 +108,7 @@ def _astray(program: Program, astray: Any, faces: Sequence[NamedFace], tolerance
 
 
 def _at_edges(program: Program, found: Contacts, faces: Sequence[NamedFace]) -> list[Diagnostic]:
-    """The first point that is on two faces with different normals, and how many there are."""
+    """Report the first point on two faces with different normals, and the number of such points."""
     rows = np.flatnonzero(found.other >= 0).tolist()
     if not rows:
         return []
@@ -126,14 +126,14 @@ def _more(rows: list[int]) -> str:
 
 
 def create_normal_compensation(base: Any, label: str | None = None) -> Any:
-    """Put the dress-up over an operation of a job, in its place.
+    """Replace an operation of a job with the dress-up on top of it.
 
     Args:
         base: the operation, whose points are contact points.
-        label: name shown to people.
+        label: displayed name.
 
     Raises:
-        ValueError: the operation is not in the list of a job, or another dress-up stands on it already.
+        ValueError: the operation is in no job's list, or already has another dress-up.
     """
     job = PathUtils.findParentJob(base)
     if job is None or base not in job.Operations.Group:

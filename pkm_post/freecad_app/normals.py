@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Normals: where the surface of a Part face is, and which way it faces.
+"""Normals: points and outward normals on the surface of a Part face.
 
-A face enters with surface parameters, or with points near it; points and unit normals leave as arrays, in mm, in the
+Takes a face with surface parameters, or with points near it; returns points and unit normals as arrays, in mm, in the
 frame of the shape. Normals point out of the material: they honour the orientation of the face in its solid, which the
-surface below it does not know.
+underlying surface does not have.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pkm_post.freecad_app.progress import Stopped
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 _TOGETHER = 20_000
-"""Points that are projected between two reports of progress."""
+"""Points projected between two progress reports."""
 
 
 def surface_points(face: Any, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
@@ -46,7 +46,7 @@ def surface_points(face: Any, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]
 
 
 def surface_grid(face: Any, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-    """Points and outward unit normals at every u with every v.
+    """Points and outward unit normals at every combination of u and v.
 
     Args:
         face: a Part face.
@@ -68,13 +68,13 @@ def project(
     progress: Callable[[float], Any] | None = None,
     trimmed: bool = False,
 ) -> tuple[Array, ...]:
-    """Feet of the perpendiculars from points to the surface of a face; the edges of the face do not bound it.
+    """Project points perpendicularly onto the surface of a face; the edges of the face do not bound it.
 
     Args:
         face: a Part face.
         points: (N, 3) points in mm.
-        progress: told the share that is done, from 0 to 1, now and then; to return False stops the work.
-        trimmed: tell as well which feet the edges of the face leave on it.
+        progress: called with the completed share, from 0 to 1, at intervals; returning False stops the work.
+        trimmed: also return which feet lie within the edges of the face.
 
     Returns:
         Feet (N, 3) in mm, outward unit normals there (N, 3), and distances (N,) in mm, negative inside the material.
@@ -83,7 +83,7 @@ def project(
 
     Raises:
         ValueError: the points are not (N, 3), or not finite.
-        Stopped: progress said so.
+        Stopped: progress returned False.
     """
     points = np.asarray(points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3:

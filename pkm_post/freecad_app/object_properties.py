@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Object properties: what our document objects have for people to set and to read, from tables.
+"""Object properties: adds user-visible properties to our document objects, from tables.
 
-Rows enter; the properties are there then. The same is done when a document is opened: one of an older version lacks
-those that came later. Names, types and units are a file format: they can be added to, not changed.
+Takes rows; adds the properties. The same happens when a document is opened: one of an older version lacks
+later properties. Names, types and units are a file format: they can be extended, not changed.
 """
 
 from __future__ import annotations
@@ -12,23 +12,23 @@ from types import MappingProxyType
 from typing import Any
 
 Row = tuple[str, str, str, str, Any]
-"""A property: its type, name, group, what is said of it, and the value it has at first, or its choices."""
+"""A property: its type, name, group, description, and its initial value or its choices."""
 
 EDITABLE, READ_ONLY, HIDDEN = 0, 1, 2
-"""Editor modes: whether people may set a property, read it alone, or do not see it."""
+"""Editor modes: whether the user can edit a property, only read it, or does not see it."""
 NO_RECOMPUTE = 16
-"""Attribute of a property that can be set without the object being computed anew."""
+"""Attribute of a property whose change does not recompute the object."""
 _NONE: Mapping[str, int] = MappingProxyType({})
 
 
 def add_missing(obj: Any, rows: Iterable[Row], mode: int = EDITABLE, attributes: Mapping[str, int] = _NONE) -> None:
-    """Give an object the properties that it does not have yet.
+    """Add the properties that an object lacks.
 
     Args:
         obj: the document object.
         rows: the table.
         mode: editor mode of all of them.
-        attributes: by name, attributes of properties that have some.
+        attributes: property attributes by name, where there are any.
     """
     for kind, name, group, text, value in rows:
         if not hasattr(obj, name):

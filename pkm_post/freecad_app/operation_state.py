@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Operation state: what keeps the path of a CAM operation from being what it should be.
+"""Operation state: conditions under which the path of a CAM operation is invalid.
 
-An operation enters, active, of a document that was recomputed; diagnostics leave. FreeCAD marks what it could not read
-and what it did not compute, and goes on.
+Takes an active operation of a recomputed document; returns diagnostics. FreeCAD marks what it could not read or
+compute, and continues.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from pkm_post.freecad_app.layers import bases, is_ours, spoilers
 from pkm_post.model import Diagnostic, Place
 
 _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
-"""Of ``State``. The first stays until the document is closed, whatever is computed."""
+"""Entries of ``State``. The first remains until the document is closed, whatever is computed."""
 
 
 def state_faults(operation: Any, source: str) -> list[Diagnostic]:
-    """What is wrong with an operation before its commands are looked at: the first fault, or all layers in the way.
+    """The faults of an operation before its commands are read: the first fault, or all layers in the way.
 
     Args:
         operation: of a job, active.
@@ -55,7 +55,7 @@ def _not_computed(operation: Any) -> str:
 
 
 def _empty(operation: Any) -> str:
-    """What CAM computes has a comment at least; only what is made from an inactive operation has nothing at all."""
+    """A path that CAM computes has at least a comment; only one made from an inactive operation is entirely empty."""
     return "" if operation.Path.Size or _stands_on_inactive(operation) else "no command, not even a comment"
 
 
@@ -70,4 +70,4 @@ _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J133", _not_computed),
     ("J132", _empty),
 )
-"""By code what is found, or nothing, in this order: each takes for granted what those before it see."""
+"""Finding by code, empty if there is none, in this order: each test relies on those before it."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Part mesh: a shape as triangles, for checks of what must not touch it.
+"""Part mesh: a shape as triangles, for collision checks.
 
-A shape enters; corners of triangles leave, in mm, in the frame of the shape.
+Takes a shape; returns corners of triangles, in mm, in the frame of the shape.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from pkm_post.geometry.vectors import Array
 
 _DEVIATION = 0.1
-"""mm that the triangles may be off the faces; clearances of spindles and holders are far above it."""
+"""Largest deviation of the triangles from the faces, mm; clearances of spindles and holders are far larger."""
 
 
 def mesh_of(shape: Any) -> Array:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post hook: CAM finds the post-processors of this add-on where the add-on is installed.
+"""Post hook: registers the post-processors of this add-on with CAM.
 
-Up to FreeCAD 1.1, CAM looks for post-processors in the folders that ``Path.Preferences.searchPathsPost`` lists, and has
-no way to add one; that function is extended here. Newer versions can be told. CAM takes half a second to load, so
-nothing of it is imported when FreeCAD starts: the folder is added when CAM itself asks for its preferences.
+Up to FreeCAD 1.1, CAM searches the folders that ``Path.Preferences.searchPathsPost`` lists, and cannot register another
+one; that function is extended here. Newer versions provide a call. CAM takes half a second to load, so nothing of it
+is imported at startup: the folder is added when CAM itself imports its preferences.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ _PREFERENCES = "Path.Preferences"
 
 
 def install() -> None:
-    """Make the post-processors known, now if CAM is loaded and otherwise when it is."""
+    """Register the post-processors, now if CAM is loaded and otherwise when it is."""
     when_imported(_PREFERENCES, _register)
 
 
 def _register(preferences: ModuleType) -> None:
-    """Add the folder to those that CAM searches, once."""
+    """Add the folder to the search path of CAM, once."""
     search_paths = preferences.searchPathsPost
     if FOLDER in search_paths():
         return
@@ -33,6 +33,6 @@ def _register(preferences: ModuleType) -> None:
         return
 
     def searchPathsPost() -> list[str]:
-        return [FOLDER, *search_paths()]  # first, so that no old copy in the macro folder is taken
+        return [FOLDER, *search_paths()]  # first, to override an outdated copy in the macro folder
 
     preferences.searchPathsPost = searchPathsPost

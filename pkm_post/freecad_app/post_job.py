@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post job: from a CAM job, or a document with jobs, to certified motion programs.
+"""Post job: converts a CAM job, or a document with jobs, to certified motion programs.
 
-A job, the name of a machine and a folder enter; the files of the pipeline leave. All faults of the job and of the
-machine file are collected before anything is refused.
+Takes a job, the name of a machine and a folder; writes the files of the pipeline. All faults of the job and the
+machine file are collected before a job is refused.
 """
 
 from __future__ import annotations
@@ -37,22 +37,22 @@ def post_job(
     arguments: str | Given = "",
     beside: Sequence[Any] = (),
 ) -> pipeline.Posted:
-    """Post a CAM job. What is not said here is as the job says it; what replaces it is told by J125.
+    """Post a CAM job. Unspecified settings are those of the job; replaced ones are reported as J125.
 
     Args:
         job: the job, a document object; its document is recomputed.
-        machine: name of a machine that comes with PKM Post, or path of a machine file.
-        out: folder for the results; their stem is the name of the document.
-        options: stand in for all that ``pipeline.Options`` holds; a work offset ``"job"`` is the fixture of the job.
-        tool_lengths: gauge lengths by tool number that go before those of the tool controllers, mm.
-        log: takes a line for each step.
-        progress: is told of each step when it begins; what it raises ends the work, and nothing is written.
-        arguments: options that go before those of the job one by one, as they are typed, or parsed.
-        beside: other jobs that the gauge lengths are for as well.
+        machine: name of a machine included in PKM Post, or path of a machine file.
+        out: folder for the results, which take the name of the document as their stem.
+        options: replace everything that ``pipeline.Options`` holds; a work offset ``"job"`` is the fixture of the job.
+        tool_lengths: gauge lengths by tool number that override those of the tool controllers, mm.
+        log: callback for a line per step.
+        progress: callback at the start of each step; if it raises, the work ends and nothing is written.
+        arguments: options that override those of the job one by one, as typed, or parsed.
+        beside: other jobs to which the gauge lengths also apply.
 
     Raises:
-        Refused: something in the job, the machine file or the folder does not allow it; nothing was written.
-        ValueError: there are both options and arguments.
+        Refused: the job, the machine file or the folder has faults; nothing was written.
+        ValueError: both options and arguments are given.
     """
     if options is not None and arguments:
         raise ValueError("expected options or arguments, got both")
@@ -62,13 +62,13 @@ def post_job(
 
 
 def _said(machine: str | FilePath | None, tool_lengths: Mapping[int, float]) -> Given:
-    """Machine and gauge lengths of a call, as if they had been typed."""
+    """Machine and gauge lengths of a call, as if typed."""
     lengths = {"tool_length": list(tool_lengths.items())} if tool_lengths else {}
     return lengths | ({} if machine is None else {"machine": str(machine)})
 
 
 def post_as_the_job_says(job: Any, out: str | FilePath, log: pipeline.Log = pipeline.quiet) -> pipeline.Posted:
-    """Post a CAM job with the arguments it has for a post-processor of PKM Post, and no others.
+    """Post a CAM job with its own arguments for a post-processor of PKM Post, and no others.
 
     Raises:
         Refused: as ``post_job``, and J117 for the arguments.
@@ -91,17 +91,17 @@ def post_document(
 
     Args:
         file: path of the document; it is not changed.
-        machine: as in ``post_job``, and so are the arguments below.
+        machine: as in ``post_job``, and likewise the arguments below.
         out: folder for the results.
-        options: what the user chose.
+        options: the user's choices.
         tool_lengths: gauge lengths by tool number, mm.
-        job_name: name or label of the job; all jobs if there is none.
-        log: takes a line for each step.
-        progress: as in ``post_job``; the share is that of the job that is being posted.
-        arguments: options that go before those of each job one by one.
+        job_name: name or label of the job; None for all jobs.
+        log: callback for a line per step.
+        progress: as in ``post_job``; the share is that of the current job.
+        arguments: options that override those of each job one by one.
 
     Raises:
-        Refused: as ``post_job``, and J101, J102 and J129 to J131 for the document. Jobs posted before stay posted.
+        Refused: as ``post_job``, and J101, J102 and J129 to J131 for the document. Jobs already posted stay posted.
     """
     with _opened(FilePath(file)) as document:
         jobs = _jobs_named(document, job_name)
@@ -109,12 +109,12 @@ def post_document(
 
 
 def read_document(file: str | FilePath, given: Given, job_name: str | None = None) -> tuple[pipeline.Prepared, ...]:
-    """The jobs of a saved document.
+    """Read the jobs of a saved document.
 
     Args:
         file: path of the document; it is not changed.
-        given: options that go before those of each job one by one.
-        job_name: name or label of the job; all jobs if there is none.
+        given: options that override those of each job one by one.
+        job_name: name or label of the job; None for all jobs.
 
     Raises:
         Refused: as ``post_document``.
@@ -142,10 +142,10 @@ def find_jobs(document: Any) -> list[Any]:
 
 
 def find_job(document: Any, name: str | None = None) -> Any:
-    """The CAM job with a name or label; without a name the only one.
+    """The CAM job with a name or label; without a name the only job.
 
     Raises:
-        Refused: there is none, or there are several, J102.
+        Refused: there is none, or more than one, J102.
     """
     jobs = find_jobs(document)
     meant = [job for job in jobs if name in (None, job.Name, job.Label)]
@@ -163,7 +163,7 @@ def post_to(
     log: pipeline.Log = pipeline.quiet,
     progress: pipeline.Progress = pipeline.unwatched,
 ) -> pipeline.Posted:
-    """Post a CAM job to a motion program of this name; the other files take its stem.
+    """Post a CAM job to a motion program with this path; the other files take its stem.
 
     Raises:
         Refused: as ``post_job``.
@@ -174,10 +174,10 @@ def post_to(
 
 
 def file_name(job: Any) -> str:
-    """The name of the motion program: the document's name, and the job's where there are several.
+    """The name of the motion program: that of the document, plus the job's if there are several.
 
     Raises:
-        Refused: another job of the document would have results of the same name, F105.
+        Refused: results of another job in the document would have the same name, F105.
     """
     document, jobs = job.Document, find_jobs(job.Document)
     stem = FilePath(document.FileName).stem or document.Label
@@ -190,7 +190,7 @@ def file_name(job: Any) -> str:
 
 @contextlib.contextmanager
 def _opened(file: FilePath) -> Iterator[Any]:
-    """The document of a file, all of it checked and read; it is closed again unless it was open before."""
+    """Open, check and read the document of a file; close it again unless it was open before."""
     content, open_before = intact(file), set(App.listDocuments())
     try:
         document = App.openDocument(str(file))

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post outputs: what the post-processors write for a CAM job.
 
-A job, its settings and the place where CAM is going to write enter; the text for that place leaves, and the
-diagnostics. Files that are no text lie beside that place then. Whatever is wrong is told together and nothing is
-written.
+Takes a job, its settings and the path to which CAM will write; returns the text for that path, and the diagnostics.
+Binary files are written beside that path. All faults are reported together, and then nothing is written.
 """
 
 from __future__ import annotations
@@ -35,14 +34,14 @@ Findings = tuple[Diagnostic, ...]
 Written = tuple[str, Findings]
 """The text for CAM, and warnings."""
 _MORE_STEPS = 2
-"""Reading comes before the steps of the pipeline, and its end is told as well."""
+"""Reading precedes the steps of the pipeline, and its end is reported as well."""
 
 
 def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
-    """The motion program, or the first of its parts; all else is written beside it.
+    """The motion program, or the first of its parts; all other files are written beside it.
 
-    CAM takes several texts, but puts a number of its own into the name of each behind the first: a part would lie there
-    under a name that no reader of the program looks for. So the other parts are not given to CAM.
+    CAM accepts several texts, but inserts its own number into every name after the first: a part would get a name that
+    no reader of the program expects. The other parts are therefore not passed to CAM.
     """
     steps = len(pipeline.step_names(settings.options)) + _MORE_STEPS
     with Progress(App.Qt.translate("Progress", "Post"), steps) as bar:
@@ -54,7 +53,7 @@ def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
 
 
 def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
-    """A few lines about the trajectory, which is written beside them: CAM can write no bytes."""
+    """A short text about the trajectory, which is written beside it: CAM cannot write bytes."""
     trajectory, found = _reachable(job, settings)
     target = path.with_suffix(".pkmt")
     earlier = manifest.listed(target.parent, target.stem)
@@ -78,7 +77,7 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
 
 
 _NO_PARENTHESES = str.maketrans("()", "[]")
-"""A comment of G-code cannot hold a comment."""
+"""G-code comments cannot be nested."""
 
 
 def _linuxcnc(job: Any, settings: JobSettings, path: FilePath) -> Written:
@@ -101,11 +100,11 @@ OUTPUTS: dict[str, Callable[[Any, JobSettings, FilePath], Written]] = {
     LINUXCNC: _linuxcnc,
     GCODE: _gcode,
 }
-"""By post-processor what it writes: from the job, its settings and the place of the text."""
+"""Output function by post-processor; it takes the job, its settings and the path of the text."""
 
 
 def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
-    """The trajectory of a job, which its machine can follow, and the warnings."""
+    """The trajectory of a job, verified to be reachable for its machine, and the warnings."""
     job.Document.recompute()
     read = prepared_job(job, settings)
     trajectory, found = _value(read.placed())
@@ -116,7 +115,7 @@ def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
 
 
 def _value(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:
-    """The value of a step, and all that was found so far.
+    """The value of a step, and all findings so far.
 
     Raises:
         Refused: there is no value, or an error.

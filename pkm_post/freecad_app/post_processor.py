@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post-processor: what CAM calls when a job is posted with one of the post-processors of PKM Post.
+"""Post-processor: the class that CAM calls to post a job with one of PKM Post's post-processors.
 
-CAM makes one for a job, for half a job while it is being made, and for no job at all to show a tooltip: nothing
-happens before ``export``. CAM writes the text that ``export`` gives back; the other files lie beside it already.
+CAM creates one for a job, for an incomplete job during its creation, and for no job at all to show a tooltip: all work
+happens in ``export``. CAM writes the text that ``export`` returns; the other files are already written beside it.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ TOOLTIPS: dict[str, str] = {
     "hexapod_gcode": "G-code with tool axes as vectors or as angles of a head, before it is made into the motion of a"
     " hexapod",
 }
-"""What each is for, by name. CAM asks for it while it starts, so nothing else is imported for it."""
+"""Purpose of each, by name. CAM asks for it at startup, so this imports nothing else."""
 
 
 class HexapodPost(PostProcessor):
-    """Posts a CAM job as ``pkm_post.freecad_app.post_outputs`` says. A subclass has a name and nothing else."""
+    """Posts a CAM job with ``pkm_post.freecad_app.post_outputs``. A subclass adds only a name."""
 
     name: ClassVar[str]
 
@@ -40,18 +40,18 @@ class HexapodPost(PostProcessor):
 
     @property
     def tooltip(self) -> str:
-        """What the post-processor is for."""
+        """Purpose of the post-processor."""
         return TOOLTIPS[self.name]
 
     @property
     def tooltipArgs(self) -> str:
-        """What its arguments are."""
+        """Help on its arguments."""
         from pkm_post.freecad_app.arguments import arguments_help
 
         return arguments_help(self.name)
 
     def export(self) -> list[tuple[str, str]]:
-        """The text for CAM to write; what is no text is written beside its place. Nothing if the user stopped it.
+        """The text for CAM to write; binary files are written beside its path. Empty if the user cancelled.
 
         Raises:
             Refused: the job cannot be posted; CAM writes nothing then.
@@ -77,25 +77,25 @@ class HexapodPost(PostProcessor):
         return [("allitems", text)]
 
     def export2(self) -> list[tuple[str, str]]:
-        """The same for a job that has a machine of FreeCAD: our machine is the one of our arguments."""
+        """The same for a job with a FreeCAD machine: the machine from our arguments is used."""
         return self.export()
 
     def get_file_extension(self) -> str:
-        """How the name of the text ends, which newer versions ask for when the job has a machine of FreeCAD."""
+        """The suffix of the text, which newer versions ask for when the job has a FreeCAD machine."""
         return program_path(self._job).suffix.lstrip(".")
 
     def apply_configuration_bundle(self, overrides: Mapping[str, Any] | None = None) -> None:
-        """Take the fixtures that were chosen in the dialog of FreeCAD newer than 1.1; the rest of it is for its own.
+        """Take the fixtures chosen in the dialog of FreeCAD newer than 1.1; its other settings are for its own posts.
 
         Args:
-            overrides: what the dialog says, by name.
+            overrides: settings of the dialog, by name.
         """
         fixtures = (overrides or {}).get("selected_fixtures")
         self._chosen = replace(self._chosen, fixtures=fixtures or None)
 
 
 def _unpacked(job: Any) -> tuple[Any, Selection]:
-    """The job, and what of it is meant: newer versions give both in a dictionary, or the job in a list."""
+    """The job and the selection: newer versions pass both in a dictionary, or the job in a list."""
     if isinstance(job, dict):
         return job["job"], Selection(job.get("operations"))
     if isinstance(job, list):
@@ -104,7 +104,7 @@ def _unpacked(job: Any) -> tuple[Any, Selection]:
 
 
 def program_path(job: Any) -> FilePath:
-    """Where CAM is going to write the text."""
+    """The path to which CAM will write the text."""
     from Path.Post.Utils import FilenameGenerator
 
     generator = FilenameGenerator(job=job)

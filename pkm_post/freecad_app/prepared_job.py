@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Prepared job: a CAM job with its machine, read for posting, for checks and to be looked at.
+"""Prepared job: a CAM job with its machine, read for posting, checking and display.
 
-A job enters, with its settings, and a machine object if there is one: its machine file and its work offset go before
-those of the settings then. The document is not recomputed: document objects ask for this while it is.
+Takes a job with its settings, and optionally a machine object, whose machine file and work offset then override
+those of the settings. The document is not recomputed: document objects call this during a recompute.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from pkm_post.model import Diagnostic, Machine, Place
 from pkm_post.options import Override, flag_of, said_by, shown
 
 _SAME_PLACE = 1e-6
-"""mm and directions: a placement of FreeCAD is rounded where it is stored."""
+"""mm and directions: FreeCAD rounds placements when it stores them."""
 
 
 def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) -> pipeline.Prepared:
-    """Read a job and its machine; what is wrong with either is found together.
+    """Read a job and its machine; the faults of both are collected together.
 
     Args:
         job: the CAM job, recomputed.
-        settings: what it is posted with.
-        machine_object: what ``create_machine`` made; without one the settings say it all.
+        settings: the settings of the job.
+        machine_object: from ``create_machine``; without one the settings define the machine.
 
     Raises:
         Refused: the file of the machine object has faults.
@@ -52,7 +52,7 @@ def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) ->
 def _elsewhere(
     job: Any, settings: JobSettings, machine_object: Any, machine: Machine, options: pipeline.Options
 ) -> Iterator[Diagnostic]:
-    """J125 where a machine object stands for another machine, or elsewhere, than the job is posted for."""
+    """Yield J125 where the machine object has another machine or placement than the job is posted for."""
     place = Place(document_name(job.Document), machine_object.Label)
     if find_machine(machine_object.MachineFile) != find_machine(settings.machine):
         told = Override(flag_of("machine"), settings.machine, machine_object.MachineFile)

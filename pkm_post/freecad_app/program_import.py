@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program import: what FreeCAD calls when a part program is opened, or dropped on its window.
+"""Program import: the functions FreeCAD calls when a part program is opened, or dropped on its window.
 
-The name of a file enters; a program object in a new document or in one that is open leaves. ``Init.py`` names this
-module and the suffixes.
+Takes the name of a file; adds a program object to a new or an open document. ``Init.py`` names this module and the
+suffixes.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def open(filename: str) -> Any:  # noqa: A001 - FreeCAD wants this name
 
 
 def insert(filename: str, docname: str) -> None:
-    """Add a part program to a document, which is made when there is none of that name."""
+    """Add a part program to a document, which is created if none has that name."""
     document = App.getDocument(docname) if docname in App.listDocuments() else App.newDocument(docname)
     with transaction(document, f"Import {FilePath(filename).name}"):
         create_program(document, filename)

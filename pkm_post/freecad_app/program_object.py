@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program object: a part program, G-code or CL data, as an object of a FreeCAD document.
 
-The path of a file enters by the property ``File``; the ``Path`` of the tool tip leaves, cutter compensation applied,
-and by the property ``Found`` what was found in reading. The file stays the program of record: it is read again whenever
-the object is computed. ``decode`` makes an operation of a CAM job of it. Saved documents name the class by
-``pkm_post.freecad_app.program_object``: its place, its name and those of its properties are a file format.
+Takes the path of a file by the property ``File``; sets the ``Path`` of the tool tip, with cutter compensation applied,
+and the diagnostics in the property ``Found``. The file remains the program of record: it is read at every recompute
+of the object. ``decode`` converts it to an operation of a CAM job. Saved documents store the class as
+``pkm_post.freecad_app.program_object``: its module, its name and the names of its properties are a file format.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 Findings = tuple[Diagnostic, ...]
 
 _VIEW = "pkm_post.freecad_gui.program_view"
-"""The view is a floor above: it is named and not imported, as in saved documents."""
+"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 
 AS_THE_FILE_SAYS = "file"
-"""The choice that leaves it to the file."""
+"""The choice that defers to the file."""
 CYCLE_ORDERS = ("depth,feed,clearance", "depth,feed,clearance,step", "depth,feed")
-"""What the numbers of cycles usually are; the command line takes others."""
+"""The usual meanings of cycle parameters; the command line accepts others."""
 
 _G = "Program"
 _PROPERTIES: tuple[Row, ...] = (
@@ -68,13 +68,13 @@ _RESULTS: tuple[Row, ...] = (
 
 
 class PartProgram(PropertyProxy):
-    """A part program. CAM draws its path; it is posted from its file, or from a job that it is decoded into."""
+    """A part program. CAM draws its path; it is posted from its file, or from a job into which it is decoded."""
 
     properties = _PROPERTIES
     results = _RESULTS
 
     def execute(self, obj: Any) -> None:
-        """Read the file: FreeCAD calls this when a property has changed. A faulty file has no path, and says why."""
+        """Read the file: FreeCAD calls this when a property has changed. A faulty file gives no path but its faults."""
         obj.Path = Path.Path()
         program, found = read_program(obj)
         obj.Found = [str(each) for each in found]
@@ -96,15 +96,14 @@ def create_program(
     """Add a part program to a document.
 
     Args:
-        document: where to; it is recomputed, and what is found in the file is shown in the report view.
+        document: target; it is recomputed, and the diagnostics of the file appear in the report view.
         file: G-code or CL data.
-        axis_words: how G-code says the tool axis, a key of ``AXIS_WORDS``.
+        axis_words: form of the tool axis in G-code, a key of ``AXIS_WORDS``.
         dwell_unit: of G-code, a key of ``DWELL_UNITS``.
-        unit: of length, a key of ``cldata.UNITS``; as the file says if None.
-        contour_data: what the points of CL data under CUTCOM are, one of ``cldata.CONTOUR_DATA``; as the file says if
-            None.
-        cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; by its words if None.
-        allow_open_end: whether it may have no end, such as M2 or FINI.
+        unit: of length, a key of ``cldata.UNITS``; None for that of the file.
+        contour_data: meaning of CL data points under CUTCOM, one of ``cldata.CONTOUR_DATA``; None for that of the file.
+        cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; None to detect it from its words.
+        allow_open_end: whether the end, such as M2 or FINI, may be missing.
     """
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
@@ -119,7 +118,7 @@ def create_program(
 
 
 def reading_of(obj: Any) -> Reading:
-    """What the properties of a program object say of its file."""
+    """The reading options in the properties of a program object."""
     said = (obj.Unit, obj.ContourData, obj.ClDialect, obj.CycleValues)
     unit, contour_data, dialect, values = (None if one == AS_THE_FILE_SAYS else one for one in said)
     return Reading(
@@ -134,7 +133,7 @@ def reading_of(obj: Any) -> Reading:
 
 
 def set_reading(obj: Any, reading: Reading) -> None:
-    """Let the properties of a program object say this of its file; a wear and the cutters have none."""
+    """Store reading options in the properties of a program object; wear and cutters have no property."""
     choices: dict[str, str | bool] = {
         "AxisWords": reading.axis_words,
         "DwellUnit": reading.dwell_unit,
@@ -150,7 +149,7 @@ def set_reading(obj: Any, reading: Reading) -> None:
 
 
 def read_program(obj: Any) -> tuple[Program | None, Findings]:
-    """The program of an object with cutter compensation applied, or None, and what was found."""
+    """The program of an object with cutter compensation applied, or None, and the diagnostics."""
     file = FilePath(obj.File)
     if not is_part_program(file):
         return None, (Diagnostic("F103", Place(str(file)), f"its name ends with none of {', '.join(SUFFIXES)}"),)
@@ -162,17 +161,17 @@ def read_program(obj: Any) -> tuple[Program | None, Findings]:
 
 
 def decode(obj: Any, job: Any) -> Any:
-    """Make a part program an operation of a CAM job.
+    """Convert a part program to an operation of a CAM job.
 
-    The operation holds the commands as they are now, and does not follow the file. Its tool controller is that with
-    the number of the first tool of the program.
+    The operation holds the current commands and does not follow the file. Its tool controller is the one with the
+    number of the first tool of the program.
 
     Args:
         obj: the part program.
         job: the job, which gets a Custom operation.
 
     Raises:
-        Refused: the program is faulty, or the job has not its tool; the job is as it was.
+        Refused: the program is faulty, or the job lacks its tool; the job is unchanged.
     """
     program, found = read_program(obj)
     if program is None:
@@ -180,7 +179,7 @@ def decode(obj: Any, job: Any) -> Any:
     controller = _first_controller(program, job)
     commands = commands_of(program)
     first = next((index for index, each in enumerate(commands) if each.Name == "M6"), None)
-    if first is not None:  # the job calls the tool of the controller by itself
+    if first is not None:  # the job itself calls the tool of the controller
         del commands[first]
     _tell(_left_out(program))
     with answered(controller):
@@ -193,7 +192,7 @@ def decode(obj: Any, job: Any) -> Any:
 
 
 def _first_controller(program: Program, job: Any) -> Any:
-    """The tool controller for what comes first in a program; the first one if it calls no tool."""
+    """The tool controller for the start of a program; the job's first one if it calls no tool."""
     called = next((event.value for event in program.events if event.kind is EventKind.TOOL_CHANGE), None)
     fitting = [each for each in job.Tools.Group if called in (None, each.ToolNumber)]
     if not fitting:
@@ -204,7 +203,7 @@ def _first_controller(program: Program, job: Any) -> Any:
 
 
 def _left_out(program: Program) -> Findings:
-    """What commands of CAM cannot say."""
+    """What CAM commands cannot express."""
     rows = {
         "exact stops": program.exact_stop,
         "exact paths": program.exact_path,
@@ -219,7 +218,7 @@ def _left_out(program: Program) -> Findings:
 
 
 def _tell(found: Findings) -> None:
-    """Show what was found in the report view."""
+    """Show the diagnostics in the report view."""
     for each in found:
         show = App.Console.PrintError if each.severity is Severity.ERROR else App.Console.PrintWarning
         show(f"{each}\n")

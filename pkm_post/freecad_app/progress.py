@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Progress: what a long computation shows while it runs, and how its user stops it.
+"""Progress: the progress display of a long computation, and its cancellation by the user.
 
-A text and a number of steps enter; FreeCAD's progress bar moves, or percentages appear in the console, and ``Stopped``
-leaves when the user pressed Escape. While a document recomputes, the bar is that of the document, and FreeCAD leaves
-every other one without effect. So in a window the share done is told in the status bar as well, and Escape is watched
-by ourselves.
+Takes a text and a number of steps; moves FreeCAD's progress bar, or prints percentages to the console, and raises
+``Stopped`` when the user pressed Escape. While a document recomputes, the bar belongs to the document, and FreeCAD
+ignores every other one. In a window the completed share therefore also appears in the status bar, and Escape is watched
+here.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from FreeCAD import Base
 translate = App.Qt.translate
 
 _WATCH = "pkm_post.freecad_gui.escape_watch"
-"""The watch is a floor above: it is named and not imported."""
+"""The watch is in a higher layer: referenced by name, not imported."""
 
 
 class Stopped(Exception):  # noqa: N818 - it is no error of the program
-    """The user stopped the computation; what it was for is not done."""
+    """The user cancelled the computation; its result does not exist."""
 
 
 class Progress:
     """A progress bar, as a context: ``with Progress("Normals", 12) as progress: progress.step()``.
 
     Args:
-        text: what is being done, in a word or two.
-        steps: how many times ``step`` will be called.
+        text: description of the work, in a word or two.
+        steps: number of calls of ``step``.
     """
 
     def __init__(self, text: str, steps: int) -> None:
@@ -51,17 +51,17 @@ class Progress:
         self._bar.stop()
 
     def step(self) -> None:
-        """One more step is done.
+        """Report one more completed step.
 
         Raises:
-            Stopped: the user pressed Escape since the last step.
+            Stopped: the user has pressed Escape since the last step.
         """
         self._done += 1
         share = f"{100 * self._done // self._steps} %"
         stopped = translate("Progress", "{}: stopped at {}").format(self._text, share)
         try:
             self._bar.next(True)
-        except RuntimeError as stop:  # so FreeCAD tells that its own bar was stopped
+        except RuntimeError as stop:  # FreeCAD reports by this that its own bar was cancelled
             raise Stopped(stopped) from stop
         told = translate("Progress", "{}: {} done. Escape stops it.").format(self._text, share)
         if self._watch and self._watch.pressed(told):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach of a job: whether the machine of a CAM job can follow it, and the work offset that leaves it most room.
+"""Reach of a job: whether the machine of a CAM job can follow it, and the work offset with the largest margin.
 
-A job enters, with the arguments of its post-processor; a study leaves. To place the job its argument ``--work-offset``
-is set: that is where posting takes it from.
+Takes a job, with the arguments of its post-processor; returns a study. Placing the job sets its argument
+``--work-offset``, which posting reads.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from pkm_post.reach_study import Study, study, told_offset
 
 
 def study_job(job: Any, free: str = "") -> Study:
-    """Check a job on its machine, as its arguments say it, with its model as the part.
+    """Check a job on its machine, as its arguments define it, with its model as the part.
 
     Args:
         job: the CAM job, a document object; its document is recomputed.
-        free: letters of ``position.FREEDOMS`` in which the part may be moved; none leaves it where it is.
+        free: letters of ``position.FREEDOMS`` in which the part may be moved; empty to leave it in place.
 
     Raises:
-        Refused: the job cannot be read or placed. That it cannot be followed is told by the study.
+        Refused: the job cannot be read or placed. A job out of reach is reported in the study instead.
     """
     job.Document.recompute()
     read = prepared_job(job, settings_of(job))
@@ -35,14 +35,14 @@ def study_job(job: Any, free: str = "") -> Study:
 
 
 def place_job(job: Any, free: str = "xyzc") -> Study:
-    """Give a job the work offset that leaves its machine most room.
+    """Give a job the work offset with the largest margin on its machine.
 
     Args:
         job: the CAM job, for a post-processor of PKM Post.
         free: letters of x, y, z and c in which the part may be moved.
 
     Raises:
-        ValueError: a freedom or the way the part lies cannot be said by ``--work-offset``, or the job has another
+        ValueError: ``--work-offset`` cannot express a freedom or the orientation of the part, or the job has another
             post-processor.
         Refused: as ``study_job``.
     """

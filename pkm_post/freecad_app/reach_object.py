@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach: a document object that says whether a machine can follow a CAM job, and where it is worst.
+"""Reach: a document object that states whether a machine can follow a CAM job, and its worst point.
 
-A job and, if there is one, a machine object enter by properties. The findings of all checks leave by read-only lists,
-one entry for each check, and with them the way of the tool tip in the document with the margin of one check by point,
-to be coloured by. Saved documents name the class by ``pkm_post.freecad_app.reach_object``: its place, its name and
-those of its properties are a file format.
+Takes a job and optionally a machine object by properties. Sets read-only lists with the findings of all checks, one
+entry per check, and the path of the tool tip in the document with the margin of one check by point, for colouring.
+Saved documents store the class as ``pkm_post.freecad_app.reach_object``: its module, its name and the names of its
+properties are a file format.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from pkm_post.reach import Reach, reach
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _VIEW = "pkm_post.freecad_gui.reach_view"
-"""The view is a floor above: it is named and not imported, as in saved documents."""
+"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _MOST_POINTS = 100_000
-"""Of the way that is stored and drawn."""
+"""Largest number of path points that are stored and drawn."""
 _C, _R, _W = "Reach", "Result", "Way"
 
 PROPERTIES: tuple[Row, ...] = (
@@ -79,17 +79,17 @@ class ReachObject(PropertyProxy):
     properties = PROPERTIES
     results = (*RESULTS, *WAY)
     _found: tuple[Reach, Array] | None = None
-    """What was found last, and the rows of it that are stored; gone when the document is opened again."""
+    """The last result, and its stored rows; lost when the document is closed."""
 
     def add_missing_properties(self, obj: Any) -> None:
-        """The way is for drawing: people do not see it; the colours change without a new check."""
+        """Add the properties; the path is for drawing only and hidden, and recolouring needs no new check."""
         add_missing(obj, PROPERTIES, attributes={"ColourBy": NO_RECOMPUTE})
         add_missing(obj, RESULTS, READ_ONLY)
         add_missing(obj, WAY, HIDDEN)
 
     @briefly_refused
     def execute(self, obj: Any) -> None:
-        """Check the job, if this is wanted."""
+        """Check the job, if enabled."""
         if not obj.Active:
             return
         self.clear_results(obj)
@@ -106,20 +106,20 @@ class ReachObject(PropertyProxy):
         _store_way(obj, *self._found)
 
     def onChanged(self, obj: Any, name: str) -> None:
-        """Colour by another check, without checking anew."""
+        """Colour by another check, without a new check run."""
         if name == "ColourBy" and self._found is not None and obj.ColourBy in obj.Checks:
             _store_way(obj, *self._found)
         elif name == "ColourBy" and "Restore" not in obj.State and obj.ColourBy in getattr(obj, "Checks", ()):
-            obj.touch()  # what was found has gone with the session
+            obj.touch()  # the result was lost with the session
 
 
 def create_reach(job: Any, machine: Any = None, label: str = "") -> Any:
-    """Add the checks of a job to its document.
+    """Add the reach checks of a job to its document.
 
     Args:
         job: the CAM job.
-        machine: what ``create_machine`` made; without one the arguments of the job say what it runs on.
-        label: name shown to people.
+        machine: from ``create_machine``; without one the arguments of the job define the machine.
+        label: displayed name.
     """
     obj = job.Document.addObject("App::FeaturePython", "Reach")
     ReachObject(obj)
@@ -130,16 +130,16 @@ def create_reach(job: Any, machine: Any = None, label: str = "") -> Any:
 
 
 def machine_for(job: Any) -> Any:
-    """The machine object of the document that has the work offset of a job, or None."""
+    """The machine object of the document with the work offset of a job, or None."""
     return next((item for item in job.InList if hasattr(item, "MachineFile") and item.Job == job), None)
 
 
 def thinned(margin: Array, most: int) -> Array:
-    """Rows to keep of a way, (K,) in order: those of least margin, one in each stretch, and both ends.
+    """Rows of a path to keep, (K,) in order: the smallest margin of each section, and both ends.
 
     Args:
         margin: (N,) margins.
-        most: how many rows there may be.
+        most: largest number of rows.
     """
     if len(margin) <= most:
         return np.arange(len(margin))
@@ -152,7 +152,7 @@ def thinned(margin: Array, most: int) -> Array:
 
 
 def _least_by_row(found: Reach) -> Array:
-    """One margin of all checks to thin the way by, (N,): each by its own spread, least where it is worst."""
+    """One combined margin of all checks for thinning, (N,): each scaled by its own spread, smallest at the worst."""
     columns = [finding.margin / max(float(np.ptp(finding.margin)), 1e-9) for finding in found.findings]
     return np.min([np.where(column < 0.0, column, column - column.min()) for column in columns], axis=0)
 
@@ -182,11 +182,11 @@ def _tell(obj: Any, found: Reach) -> None:
 
 
 def _store_way(obj: Any, found: Reach, rows: Array) -> None:
-    """Store the way with the margins of the check that is asked for, in the unit that people are shown."""
+    """Store the path with the margins of the selected check, in the displayed unit."""
     chosen = list(obj.Checks).index(str(obj.ColourBy))
     finding = found.findings[chosen]
     points = apply(np.linalg.inv(found.trajectory.machine_from_work), found.tip[rows])
-    obj.Margins = []  # points and margins belong together at all times
+    obj.Margins = []  # keep points and margins consistent at all times
     obj.Points = _vectors(points)
     obj.Margins = (finding.margin[rows] * SHOWN[finding.subject.unit][1]).tolist()
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Refusals: how a document object says that its input is at fault.
+"""Refusals: reports faulty input of a document object.
 
-FreeCAD knows one way to mark an object as failed: its ``execute`` raises. It then shows the text as the status of the
-object, and writes it to the Report view together with the way through the code. That way says nothing to whoever set a
-property, so it is cut off where the input is at fault. It is kept where we are.
+FreeCAD has one way to mark an object as failed: its ``execute`` raises. It then shows the text as the status of the
+object, and writes it to the Report view with the traceback. The traceback does not help the user who set a property,
+so it is removed where the input is at fault, and kept for errors of our own.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from pkm_post.model import Refused
 from pkm_post.out_of_memory import memory_or_refused
 
 Execute = Callable[[Any, Any], Any]
-"""The method of a proxy by which FreeCAD has an object computed."""
+"""The method of a proxy that computes its object."""
 
 
 def briefly_refused(execute: Execute) -> Execute:
-    """Let what ``execute`` refuses, or has no memory for, leave it without the way through the code."""
+    """Remove the traceback from refusals and memory errors that ``execute`` raises."""
 
     @wraps(execute)
     def brief(proxy: Any, obj: Any) -> Any:

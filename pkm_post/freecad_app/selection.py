@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Selection: what of a CAM job is meant, where not all of it is: operations and fixtures.
+"""Selection: the operations and fixtures of a CAM job to use, where not all are wanted.
 
-FreeCAD newer than 1.1 lets people choose both in the dialog of CAM's Post Process.
+FreeCAD newer than 1.1 offers both choices in CAM's Post Process dialog.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Selection:
-    """What is meant; None means all.
+    """The selected items; None means all.
 
     Attributes:
         operations: some of the job's own.
@@ -24,16 +24,16 @@ class Selection:
     fixtures: Sequence[str] | None = None
 
     def operations_of(self, job: Any) -> list[Any]:
-        """The operations that are meant, in the order of the job."""
+        """The selected operations, in the order of the job."""
         own = list(job.Operations.Group)
         return own if self.operations is None else [each for each in own if each in self.operations]
 
     def strangers(self, job: Any) -> list[Any]:
-        """Operations that are meant and are none of the job's."""
+        """Selected operations that do not belong to the job."""
         return [each for each in self.operations or () if each not in job.Operations.Group]
 
     def fixtures_of(self, job: Any) -> list[str]:
-        """The fixtures that are meant, in the order of the job."""
+        """The selected fixtures, in the order of the job."""
         own = list(job.Fixtures)
         return own if self.fixtures is None else [each for each in own if each in self.fixtures]
 

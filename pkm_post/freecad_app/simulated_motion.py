@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Simulated motion: a planned motion that can be looked at at any time, and what of it cannot be followed.
+"""Simulated motion: a planned motion that can be sampled at any time, and its violations.
 
-A plan enters; poses, strut lengths and speeds, block and tool at times in s leave, and figures of the whole. Dwells do
-not count in these times. Between two knots the struts follow the cubics that a controller plays, and so do spindle nose
-and tool axis here. All by search in sorted times: a motion of a million knots costs little more than a short one.
+Takes a plan; returns poses, strut lengths and speeds, block and tool at times in s, and figures of the whole. These
+times exclude dwells. Between two knots the struts follow the cubics that a controller executes, and so do spindle nose
+and tool axis here. All queries search sorted times: a motion of a million knots costs little more than a short one.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from pkm_post.kinematics.way import Pose
 from pkm_post.model import EventKind, Machine, Motion, Place, StrutMotion, Tool, Trajectory
 
 _AT_ONCE = 16384
-"""Cubics in one pass: the working arrays of one pass stay in the processor's cache."""
+"""Cubics per pass: the working arrays of one pass stay in the processor's cache."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A stretch of the way that the machine cannot follow.
+    """A stretch of the path that the machine cannot follow.
 
     Attributes:
-        time: when it begins, s.
+        time: start, s.
         place: of its first block.
-        worst_time: when it is worst, s.
-        worst_place: of the block in which it is worst.
-        worst_tip: (3,) tool tip in {M} then.
-        text: the worst of it.
+        worst_time: time of the worst violation, s.
+        worst_place: of the block with the worst violation.
+        worst_tip: (3,) tool tip in {M} at that time.
+        text: description of the worst violation.
     """
 
     time: float
@@ -45,14 +45,14 @@ class Problem:
 
 @dataclass(frozen=True)
 class Simulation:
-    """The plan.
+    """A planned motion.
 
     Attributes:
-        trajectory: what is driven, in {M}.
-        machine: by which machine.
+        trajectory: the path, in {M}.
+        machine: the machine that executes it.
         motion: poses by time.
         struts: lengths and speeds by time.
-        problems: what cannot be followed, by time.
+        problems: violations, by time.
     """
 
     trajectory: Trajectory
@@ -63,11 +63,11 @@ class Simulation:
 
     @property
     def duration(self) -> float:
-        """How long it takes, s."""
+        """Duration of the motion, s."""
         return float(self.motion.time_ms[-1]) / 1000.0
 
     def operation_times(self) -> tuple[Array, Array]:
-        """How long each operation of the trajectory moves and dwells, (O,) each, s."""
+        """Moving time and dwell time of each operation of the trajectory, (O,) each, s."""
         trajectory, count = self.trajectory, len(self.trajectory.operations)
         driven = np.diff(self.motion.joint_time, prepend=0.0)
         moving = np.bincount(trajectory.operation, driven, count)
@@ -77,7 +77,7 @@ class Simulation:
 
     @cached_property
     def greatest_speeds(self) -> Array:
-        """The greatest speed of each strut, its direction left out, (6,) in mm/s, between the knots as well."""
+        """The greatest absolute speed of each strut, (6,) in mm/s, between the knots as well."""
         greatest = np.abs(self.struts.speed).max(axis=0)
         last = len(self.struts) - 1
         for begin in range(0, last, _AT_ONCE):
@@ -85,11 +85,11 @@ class Simulation:
         return greatest
 
     def _greatest_between(self, rows: Array) -> Array:
-        """The same, of what the cubics that begin at some knots reach inside."""
+        """The same, inside the cubics that begin at some knots."""
         cubics = self.struts.cubics(rows)
         _, speed, _, _, duration = cubics
         starts, ends = hermite_accelerations(*cubics)
-        turns = starts * ends < 0.0  # there the speed of a cubic is greatest or least
+        turns = starts * ends < 0.0  # the speed of a cubic is extreme there
         share = np.divide(starts, starts - ends, out=np.zeros_like(starts), where=turns)
         reached = speed + starts * share * duration[:, None] / 2.0
         greatest: Array = np.abs(reached).max(axis=0)
@@ -116,7 +116,7 @@ class Simulation:
         return hermite_lengths(*cubics, share[:, None])[:, 0], hermite_speeds(*cubics, share[:, None])[:, 0]
 
     def block_at(self, seconds: float) -> int:
-        """The segment of the trajectory that is driven at a time; the earlier one where two meet."""
+        """The segment of the trajectory that is active at a time; the earlier one where two meet."""
         return min(int(np.searchsorted(self.motion.joint_time, seconds)), len(self.trajectory) - 1)
 
     def tool_at(self, seconds: float) -> Tool:
@@ -124,28 +124,28 @@ class Simulation:
         return self.trajectory.tools[int(self.trajectory.tool[self.block_at(seconds)])]
 
     def operation_begins(self, number: int) -> tuple[int, float]:
-        """The first segment of an operation, and when it begins."""
+        """The first segment of an operation, and its start time."""
         row = int(np.argmax(self.trajectory.operation == number))
         return row, float(self.motion.joint_time[row - 1]) if row else 0.0
 
     def next_block(self, seconds: float) -> float:
-        """When the block ends that is driven behind a time."""
+        """End time of the block after a time."""
         after = self.motion.joint_time[np.searchsorted(self.motion.joint_time, seconds, side="right") :]
         return float(after[0]) if len(after) else self.duration
 
     def block_before(self, seconds: float) -> float:
-        """When the block begins that is driven before a time."""
+        """Start time of the block before a time."""
         before = self.motion.joint_time[: np.searchsorted(self.motion.joint_time, seconds)]
         return float(before[-1]) if len(before) else 0.0
 
     def problem_between(self, start: float, end: float) -> Problem | None:
-        """The first problem behind a time, up to another time."""
+        """The first problem after a time, up to another time."""
         return next((problem for problem in self.problems if start < problem.time <= end), None)
 
     def envelope(self, columns: int) -> tuple[Array, Array]:
-        """Least and largest of lengths and speeds, (2, columns, 6) each, over equal stretches of time.
+        """Least and largest of lengths and speeds, (2, columns, 6) each, over equal time intervals.
 
-        Made of the knots and of the instants between the stretches, so that long cubics are drawn as well.
+        Uses the knots and the interval boundaries, so that long cubics are covered as well.
         """
         edges = np.linspace(0.0, self.duration, columns + 1)
         at_edges = self.struts_at(edges)
@@ -154,22 +154,22 @@ class Simulation:
         return lengths, _extremes(self.struts.speed, first, at_edges[1])
 
     def _between(self, seconds: Array) -> tuple[Array, Array, Array]:
-        """Knot before each time (T,), the share of the interval that has gone (T,), and its duration (T,)."""
+        """Knot before each time (T,), the elapsed share of the interval (T,), and its duration (T,)."""
         ms = np.clip(np.asarray(seconds, dtype=np.float64) * 1000.0, 0.0, self.motion.time_ms[-1])
-        whole_ms = ms.astype(np.int64)  # to search whole numbers for others would copy all of them first
+        whole_ms = ms.astype(np.int64)  # searching integers for floats would copy the whole array first
         start = np.clip(np.searchsorted(self.motion.time_ms, whole_ms, side="right") - 1, 0, len(self.motion) - 2)
         whole = self.motion.time_ms[start + 1] - self.motion.time_ms[start]
         return start, (ms - self.motion.time_ms[start]) / whole, whole / 1000.0
 
 
 def _noses(motion: Motion, knot: Array) -> tuple[Array, Array]:
-    """Where the spindle nose is at knots, and its velocity: unlike the tip, it does not jump at tool changes."""
+    """Position and velocity of the spindle nose at knots: unlike the tip, it does not jump at tool changes."""
     length = motion.tool_length[knot][:, None]
     return motion.tip[knot] + length * motion.axis[knot], motion.tip_rate[knot] + length * motion.axis_rate[knot]
 
 
 def _extremes(knots: Array, first: Array, ends: Array) -> Array:
-    """Least and largest rows (2, C, 6) of knots by stretch; a stretch without a knot has its two ends."""
+    """Least and largest rows (2, C, 6) of knots by interval; an interval without a knot uses its two ends."""
     least, largest = np.minimum(ends[:-1], ends[1:]), np.maximum(ends[:-1], ends[1:])
     full = np.flatnonzero(first[1:] > first[:-1])
     if len(full):

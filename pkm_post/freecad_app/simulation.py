@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Simulation: the motion of a CAM job as it is planned, to be looked at at any time.
+"""Simulation: the planned motion of a CAM job, for display at any time.
 
-A job and its machine enter; a ``Simulation`` leaves. Nothing is written, and nothing certified: what cannot be followed
-is played all the same, and told as problems, each from where it begins and with where it is worst.
+Takes a job and its machine; returns a ``Simulation``. Nothing is written or certified: infeasible stretches are
+played as well, and reported as problems, each with its start and its worst point.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from pkm_post.reach import Reach, reach
 translate = App.Qt.translate
 
 _LOOKED_AT = 200
-"""Instants of a block, to find when the tip is somewhere."""
+"""Samples per block, to find the time of a tip position."""
 _BEGUN = 1e-3
-"""s: when the first block has begun; at 0 nothing has been driven that could be stopped."""
+"""s: when the first block has begun; at 0 no motion has taken place that could be stopped."""
 
 
 def simulate_job(job: Any, machine_object: Any = None) -> Simulation:
@@ -36,10 +36,10 @@ def simulate_job(job: Any, machine_object: Any = None) -> Simulation:
 
     Args:
         job: the CAM job; its document is recomputed.
-        machine_object: what ``create_machine`` made; without one the arguments of the job say what it runs on.
+        machine_object: from ``create_machine``; without one the arguments of the job define the machine.
 
     Raises:
-        Refused: the job cannot be read or placed. What of it cannot be followed is told by the simulation.
+        Refused: the job cannot be read or placed. The simulation reports stretches that cannot be followed.
     """
     job.Document.recompute()
     return simulation_of(job_on_machine(job, machine_object))
@@ -52,7 +52,7 @@ def simulation_of(placed: JobOnMachine) -> Simulation:
         path = planning.tool_path(trajectory, tolerances)
         bar.step()
         schedule, faults = planning.plan_feed(path, trajectory, machine)
-        if schedule is None:  # other faults are those of the reach, less precise
+        if schedule is None:  # the reach check reports all other faults, less precisely
             raise Refused(faults)
         bar.step()
         motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
@@ -64,7 +64,7 @@ def simulation_of(placed: JobOnMachine) -> Simulation:
 
 
 def _problems(checked: Reach, planned: Simulation) -> tuple[Problem, ...]:
-    """One for each check and stretch of blocks that violate it."""
+    """One problem for each check and stretch of violating blocks."""
     graves = [item for item in checked.findings if RULES[item.subject.code].severity is Severity.ERROR]
     found = [problem for finding in graves for problem in _stretches(finding, checked, planned)]
     return tuple(sorted(found, key=lambda problem: (problem.time, problem.text)))
@@ -91,7 +91,7 @@ def _stretches(finding: ReachFinding, checked: Reach, planned: Simulation) -> li
 
 
 def _time_of(row: int, segment: int, checked: Reach, planned: Simulation) -> float:
-    """When the tip passes a row in its block; when the block begins, if it stands or the row is of another block."""
+    """Time at which the tip passes a row in its block; the block's start if it dwells or lacks the row."""
     begins = float(planned.motion.joint_time[segment - 1]) if segment else _BEGUN
     if row < 0 or checked.segment[row] != segment:
         return begins

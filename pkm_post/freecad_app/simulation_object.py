@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Simulation: a document object that says how long a CAM job takes, how its struts move, and what cannot be followed.
+"""Simulation: a document object with the duration of a CAM job, the motion of its struts, and its violations.
 
-A job and, if there is one, a machine object enter by properties; figures of the planned motion leave by read-only
-properties and lists. The motion itself is not stored: it may have a million knots, and is planned anew when somebody
-wants to see it. Saved documents name the class by ``pkm_post.freecad_app.simulation_object``: its place, its name and
-those of its properties are a file format.
+Takes a job and optionally a machine object by properties; sets figures of the planned motion in read-only properties
+and lists. The motion itself is not stored: it may have a million knots, and is planned again on demand. Saved
+documents store the class as ``pkm_post.freecad_app.simulation_object``: its module, its name and the names of its
+properties are a file format.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from pkm_post.freecad_app.simulation import simulation_of
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _VIEW = "pkm_post.freecad_gui.simulation_view"
-"""The view is a floor above: it is named and not imported, as in saved documents."""
+"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _MOST_PROBLEMS = 1000
-"""That are stored, as the tool tip of their number says; the player knows all of them."""
+"""Number of stored problems, as stated in the tool tip of their count; the player has all of them."""
 _S, _R, _T, _P = "Simulation", "Result", "Operations", "Problems"
 
 PROPERTIES: tuple[Row, ...] = (
@@ -82,7 +82,7 @@ class SimulationObject(PropertyProxy):
     """The proxy. A job that cannot be read or placed is an exception that FreeCAD shows at the object.
 
     Attributes:
-        plan: what was planned last; gone when the document is opened again.
+        plan: the last plan; lost when the document is closed.
     """
 
     properties = PROPERTIES
@@ -91,7 +91,7 @@ class SimulationObject(PropertyProxy):
 
     @briefly_refused
     def execute(self, obj: Any) -> None:
-        """Plan the motion of the job, if this is wanted."""
+        """Plan the motion of the job, if enabled."""
         if not obj.Active:
             return
         self.clear_results(obj)
@@ -106,8 +106,8 @@ def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:
 
     Args:
         job: the CAM job.
-        machine: what ``create_machine`` made; without one the arguments of the job say what it runs on.
-        label: name shown to people.
+        machine: from ``create_machine``; without one the arguments of the job define the machine.
+        label: displayed name.
     """
     obj = job.Document.addObject("App::FeaturePython", "Simulation")
     SimulationObject(obj)
@@ -118,7 +118,7 @@ def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:
 
 
 def plan_of(obj: Any) -> Simulation:
-    """The motion of a simulation object, planned anew where it has gone with an earlier session.
+    """The motion of a simulation object, planned again if it dates from an earlier session.
 
     Raises:
         ValueError: the object has no job.
@@ -133,7 +133,7 @@ def plan_of(obj: Any) -> Simulation:
 
 
 def _tell(obj: Any, plan: Simulation) -> None:
-    """Fill in the figures; the texts of the problems come last, for whoever waits for all of them."""
+    """Fill in the figures; the texts of the problems come last, as a signal that all are complete."""
     moving, dwelling = plan.operation_times()
     speeds = plan.greatest_speeds
     obj.Duration, obj.DwellTime = plan.duration, float(dwelling.sum())

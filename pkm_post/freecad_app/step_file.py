@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""STEP file: a solid in a STEP file as a mesh in mm, by OpenCASCADE; ``mesh_file`` reads STEP where FreeCAD runs.
+"""STEP file: reads a solid from a STEP file as a mesh, by OpenCASCADE; ``mesh_file`` uses it where FreeCAD runs.
 
-Enters: the path of a file. Leaves: its triangles, in mm whatever unit the file states, in the work frame {C}.
+Takes the path of a file; returns its triangles, in mm whatever unit the file states, in the work frame {C}.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pkm_post.freecad_app.import_hook import when_imported
 
 
 def install() -> None:
-    """Make ``pkm_post.mesh_file`` read STEP as soon as it is imported."""
+    """Let ``pkm_post.mesh_file`` read STEP as soon as it is imported."""
     when_imported("pkm_post.mesh_file", _register)
 
 
@@ -32,7 +32,7 @@ def read_step(path: Path, name: str) -> Any:
 
     shape = Part.Shape()
     try:
-        path.open("rb").close()  # OpenCASCADE does not say why it cannot read a file
+        path.open("rb").close()  # OpenCASCADE does not state why a file is unreadable
     except OSError as fault:
         return None, (Diagnostic("F103", Place(name), str(fault)),)
     try:

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface check: what a path leaves on the faces of a model, and where it cuts into them.
+"""Surface check: excess material that a path leaves on the faces of a model, and gouges.
 
-A program, a cutter and faces enter; the deepest gouge and the most material left, with their places, leave in mm.
-Faces are looked at in points: what is found is a sample, and what is between the points may be worse. Gouges are looked
-for on all faces of the model, with all moves, rapid ones too, and with the flank of the cutter: their depth is how far
-a point is inside the cutter where it comes deepest. Material left is measured along the normal, on the faces that were
-to be covered alone.
+Takes a program, a cutter and faces; returns the deepest gouge and the largest excess, with their places, in mm. Faces
+are sampled at points: between the points the values may be worse. Gouges are searched on all faces of the model, for
+all moves including rapids, and with the flank of the cutter: their depth is the largest distance of a point inside the
+cutter. Excess is measured along the normal, only on the faces to be covered.
 """
 
 from __future__ import annotations
@@ -29,18 +28,18 @@ _FEWEST = 3
 _SPREAD = (0.7548776662466927, 0.5698402909980532)
 """Shares of a cell from one point to the next, whose multiples fill a square evenly [Roberts2018]."""
 _NEAR = 0.1
-"""mm: points that are farther from the cutter are not gouged, whatever their distance."""
+"""mm: points farther than this from the cutter are not gouged; their exact distance is irrelevant."""
 
 
 @dataclass(frozen=True)
 class Checked:
-    """The worst that was found of what a path does to a model.
+    """The worst effects of a path on a model.
 
     Attributes:
-        gouge: depth of the deepest cut into a face, 0 for none.
-        gouge_point: (3,) where that is.
-        excess: most material left on the faces to be covered; ``reach`` where the cutter does not come at all.
-        excess_point: (3,) where that is.
+        gouge: depth of the deepest gouge, 0 for none.
+        gouge_point: (3,) its place.
+        excess: largest excess on the faces to be covered; ``reach`` where the cutter does not arrive at all.
+        excess_point: (3,) its place.
     """
 
     gouge: float
@@ -65,13 +64,13 @@ def check_faces(
     Args:
         program: all moves of the operation.
         cutter: the cutter.
-        covered: the faces that were to be covered.
+        covered: the faces to be covered.
         others: the other faces of the model.
-        flipped: whether the material of the covered ones is on the other side.
+        flipped: whether the material of the covered faces is on the other side.
         spacing: largest distance of the points along u and v, mm.
         tolerance: of the measurement, mm.
-        reach: material left of more than this is not measured, mm.
-        progress: is told how much is done; it may raise to stop the work.
+        reach: larger excess than this is not measured, mm.
+        progress: callback with the completed share; it may raise to stop the work.
     """
     samples = [_samples(face, flipped, spacing) for face in covered] + [
         _samples(face, False, spacing) for face in others
@@ -89,16 +88,16 @@ def check_faces(
 def _distances(
     program: Program, cutter: Cutter, points: Array, tolerance: float, progress: Callable[[float], None]
 ) -> Array:
-    """Signed distances of points to all that the cutter sweeps, (N,), negative inside, infinite where it is far."""
+    """Signed distances of points from the swept volume of the cutter, (N,), negative inside, infinite where far."""
     extent = float(norm(np.ptp(np.vstack([program.position, points]), axis=0)))
     sweep = Sweep.of(program.position, program.tool_axis, cutter, _NEAR, extent)
     return sweep.distances(points, tolerance, progress)[0]
 
 
 def _samples(face: Any, flipped: bool, spacing: float) -> tuple[Array, Array]:
-    """Points of a face and normals there: a grid, and in each of its cells a point that lies in line with no others.
+    """Points of a face and normals there: a grid, and in each of its cells a point not aligned with any other.
 
-    A grid alone may lie on the passes of the cutter, where nothing is left.
+    A grid alone may coincide with the passes of the cutter, where there is no excess.
     """
     surface = face_surface(face, flipped)
     u, v = np.linspace(surface.u.first, surface.u.last, 33), np.linspace(surface.v.first, surface.v.last, 33)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish (5-axis): a CAM operation that covers faces with passes of a leaning tool.
+"""Surface Finish (5-axis): a CAM operation that covers faces with passes of a tilted tool.
 
-Faces, tool controller and properties enter; the ``Path`` of the tool tip leaves, with the tool axis as I J K words. It
-is an operation as CAM's own are: tool controller, heights and coolant are handled by CAM's base class. Saved documents
-name the class by ``pkm_post.freecad_app.surface_finish``: its place, its name and those of its properties are a file
+Takes faces, a tool controller and properties; sets the ``Path`` of the tool tip, with the tool axis as I J K words. It
+works like CAM's own operations: CAM's base class handles tool controller, heights and coolant. Saved documents store
+the class as ``pkm_post.freecad_app.surface_finish``: its module, its name and the names of its properties are a file
 format.
 """
 
@@ -35,13 +35,13 @@ from pkm_post.model import Diagnostic, Place, Program, Refused
 from pkm_post.surface_path import Poses, Settings, cover, program_of
 
 _VIEW = "pkm_post.freecad_gui.surface_finish_view"
-"""The view is a floor above: it is named and not imported, as in saved documents."""
+"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _STEPS = 50
-"""Of the progress bar, for each face."""
+"""Steps of the progress bar per face."""
 _GOUGED = 1.1
-"""Depths in ChordTolerance beyond which a gouge is a fault: the measurement is as near as a tenth of that."""
+"""Depth in ChordTolerance beyond which a gouge is a fault: the measurement is accurate to a tenth of that."""
 _REACH = 2.0
-"""mm: more material left is not measured."""
+"""mm: larger excess is not measured."""
 
 _FEATURES = (
     Path.Op.Base.FeatureTool | Path.Op.Base.FeatureHeights | Path.Op.Base.FeatureBaseFaces | Path.Op.Base.FeatureCoolant
@@ -49,10 +49,10 @@ _FEATURES = (
 
 
 class SurfaceFinish(Path.Op.Base.ObjectOp):
-    """The operation. Faults are exceptions that FreeCAD shows at the object, and its path is empty then."""
+    """The operation. Faults are exceptions that FreeCAD shows at the object, and its path is then empty."""
 
     def opFeatures(self, obj: Any) -> int:
-        """What CAM's base class takes care of."""
+        """Features handled by CAM's base class."""
         return int(_FEATURES)
 
     def initOperation(self, obj: Any) -> None:
@@ -60,11 +60,11 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
         add_missing_properties(obj)
 
     def opOnDocumentRestored(self, obj: Any) -> None:
-        """Give documents of older versions the properties they do not have yet."""
+        """Add the properties that documents of older versions lack."""
         add_missing_properties(obj)
 
     def isToolSupported(self, obj: Any, tool: Any) -> bool:
-        """Whether a tool bit can do this; CAM's panel asks."""
+        """Whether the operation supports a tool bit; CAM's panel calls this."""
         return str(getattr(tool, "ShapeType", None) or getattr(tool, "ShapeName", "")).lower() in (
             "endmill",
             "ballend",
@@ -73,14 +73,14 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
 
     @briefly_refused
     def execute(self, obj: Any) -> Any:
-        """Compute the path anew; should there be an error, no old path is left to be posted."""
+        """Recompute the path; after an error no outdated path remains to be posted."""
         obj.Path = Path.Path()
         if obj.Active and (obj.ToolController is None or obj.ToolController.Tool is None):
             _value(None, [Diagnostic("J112", _place(obj), "none is set")])
         return super().execute(obj)
 
     def opExecute(self, obj: Any) -> None:
-        """Fill the list of commands: called by the base class when tool and job are there."""
+        """Fill the list of commands: called by the base class once tool and job are known."""
         place = _place(obj)
         faces, cutter, settings = _value(*read_inputs(obj, self.job, place))
         covered = _covered(faces, cutter, settings, bool(obj.FlipNormals), place)
@@ -101,8 +101,8 @@ def create_surface_finish(
     Args:
         job: the CAM job.
         faces: pairs of an object of the job's model and names of its faces, such as ``(clone, ["Face1"])``.
-        label: name shown to people.
-        controller: the tool controller; if none is given, CAM chooses or asks, and takes the first without a window.
+        label: displayed name.
+        controller: the tool controller; if None, CAM chooses or asks, and takes the first without a window.
     """
     obj = job.Document.addObject("Path::FeaturePython", "SurfaceFinish")
     with answered(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):
@@ -120,7 +120,7 @@ def _place(obj: Any) -> Place:
 
 
 def _tell(obj: Any, covered: Sequence[Poses], settings: Settings) -> None:
-    """Fill in the results that cost nothing."""
+    """Fill in the results that need no further computation."""
     obj.PassCount = sum(int(poses.course.number.max()) + 1 for poses in covered)
     obj.ClampedAxes = sum(int(poses.clamped.sum()) for poses in covered)
     obj.UsedConeLimit = math.degrees(settings.rule.cone)
@@ -129,7 +129,7 @@ def _tell(obj: Any, covered: Sequence[Poses], settings: Settings) -> None:
 
 
 def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace], job: Any) -> None:
-    """Measure gouges and material left, if that is wanted, and fill them in."""
+    """Measure gouges and excess, if enabled, and fill them in."""
     spacing = obj.CheckSpacing.Value
     if not spacing > 0.0:
         return
@@ -151,7 +151,7 @@ def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace
 def _covered(
     faces: Sequence[NamedFace], cutter: Cutter, settings: Settings, flipped: bool, place: Place
 ) -> list[Poses]:
-    """The poses over each face, one after the other."""
+    """The poses over all faces, in sequence."""
     covered: list[Poses] = []
     with Progress(place.operation, _STEPS * len(faces)) as bar:
         for named in faces:
@@ -161,7 +161,7 @@ def _covered(
 
 
 def _steps(bar: Progress) -> Callable[[float], None]:
-    """Moves the bar on, to a share of so many steps; it raises when the user stops it."""
+    """Return a callback that advances the bar to a share of its steps; it raises when the user cancels."""
     reached = 0
 
     def progress(share: float) -> None:
@@ -174,7 +174,7 @@ def _steps(bar: Progress) -> Callable[[float], None]:
 
 
 def _value(value: Any, diagnostics: Iterable[Diagnostic], about: str = "") -> Any:
-    """The value, its warnings shown; or an exception that FreeCAD shows at the object."""
+    """Return the value and show its warnings; or raise an exception that FreeCAD shows at the object."""
     if value is None:
         raise Refused([replace(fault, found=f"{about}{fault.found}") for fault in diagnostics])
     for warning in diagnostics:

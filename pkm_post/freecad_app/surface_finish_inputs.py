@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish inputs: what the operation needs, read from the document, with all that is wrong told together.
+"""Surface Finish inputs: reads the inputs of the operation from the document and reports all their faults together.
 
-The operation and its job enter; faces in the frame of the job, the cutter and the settings leave, in mm and rad.
+Takes the operation and its job; returns faces in the frame of the job, the cutter and the settings, in mm and rad.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ Inputs = tuple[tuple[NamedFace, ...], Cutter, Settings]
 
 
 def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, tuple[Diagnostic, ...]]:
-    """Faces, cutter and settings of an operation.
+    """Read faces, cutter and settings of an operation.
 
     Args:
         obj: the operation, with a tool controller.
-        job: the job it is in.
-        place: what diagnostics name.
+        job: its job.
+        place: location stated in diagnostics.
 
     Returns:
-        The inputs, or None; and everything that is wrong with any of them.
+        The inputs, or None; and all their faults.
     """
     chosen = [(thing, names) for thing, names in obj.Base or ()]
     faces, face_faults = model_faces(job.Model, chosen, place) if chosen else (None, ())

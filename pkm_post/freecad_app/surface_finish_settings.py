@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish settings: the properties of the operation, and what they say.
+"""Surface Finish settings: the properties of the operation, and their conversion to settings.
 
-A document object enters; ``surface_path.Settings`` in mm, mm/s and rad leaves, or what is wrong with the values. The
-names of the properties and of the choices are stored in documents: they are a file format.
+Takes a document object; returns ``surface_path.Settings`` in mm, mm/s and rad, or the faults of the values. Documents
+store the names of the properties and of the choices: they are a file format.
 """
 
 from __future__ import annotations
@@ -90,21 +90,21 @@ RESULTS: tuple[Row, ...] = (
 
 
 def add_missing_properties(obj: Any) -> None:
-    """Give the object the properties that it does not have yet; documents of older versions lack some."""
+    """Add the properties that the object lacks, for instance in a document of an older version."""
     add_missing(obj, PROPERTIES)
     add_missing(obj, RESULTS, READ_ONLY)
 
 
 def read_settings(obj: Any, cone: float, place: Place) -> tuple[Settings | None, tuple[Diagnostic, ...]]:
-    """What the properties of the operation and of its tool controller say.
+    """Read the settings from the properties of the operation and of its tool controller.
 
     Args:
         obj: the operation.
         cone: half angle of the cone of the tool axis, rad.
-        place: what diagnostics name.
+        place: location stated in diagnostics.
 
     Returns:
-        The settings, or None; and what is wrong: J105, N309.
+        The settings, or None; and the faults: J105, N309.
     """
     controller = obj.ToolController
     feed, plunge = controller.HorizFeed.Value, controller.VertFeed.Value

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetric operations: document objects that copy a CAM operation mirrored or turned, and follow it.
+"""Symmetric operations: document objects that hold mirrored or rotated copies of a CAM operation and follow it.
 
-An operation enters by the property ``Base``; the ``Path`` of the copy leaves. Tool, coolant and feed are those of the
-base, which CAM finds by itself. The copies may stand on each other. Saved documents name the classes of this module by
-``pkm_post.freecad_app.symmetry``: their place and names are a file format.
+Takes an operation by the property ``Base``; sets the ``Path`` of the copy. Tool, coolant and feed are those of the
+base, which CAM finds by itself. Copies can be stacked. Saved documents store the classes of this module as
+``pkm_post.freecad_app.symmetry``: module and class names are a file format.
 """
 
 from __future__ import annotations
@@ -30,26 +30,26 @@ _VIEW = "pkm_post.freecad_gui.symmetry_view"
 
 
 class _SymmetricOperation(DerivedOperation):
-    """What the copies have in common: a matrix takes the base to each of them."""
+    """Base class of the copies: a matrix maps the base to each of them."""
 
     @abc.abstractmethod
     def matrices(self, obj: Any) -> list[Array]:
-        """The (4, 4) matrices that take the base to its copies, in their order."""
+        """The (4, 4) matrices that map the base to its copies, in order."""
 
     @abc.abstractmethod
     def hand(self, obj: Any) -> int:
-        """+1 where the copies have the material on the side where the base has it, -1 on the other side."""
+        """+1 if the copies have the material on the same side as the base, -1 on the other side."""
 
     @abc.abstractmethod
     def follow(self, obj: Any) -> None:
-        """Take plane or axis from what was picked, if something was."""
+        """Take plane or axis from the picked element, if there is one."""
 
     def sequence(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-        """The copies in the order in which they are cut: as they are."""
+        """The copies in cutting order: unchanged by default."""
         return program, ()
 
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-        """The copies, one after the other, and the report of them."""
+        """The copies in sequence, and their report."""
         try:
             self.follow(obj)
             matrices = self.matrices(obj)
@@ -69,10 +69,10 @@ class _SymmetricOperation(DerivedOperation):
 
 
 class MirroredOperation(_SymmetricOperation):
-    """A copy that is mirrored in a plane.
+    """A copy mirrored in a plane.
 
-    The cutter turns as before, so climb milling becomes conventional milling, unless ``KeepClimb`` is set: then each
-    pass is run the other way.
+    The sense of the spindle is unchanged, so climb milling becomes conventional milling, unless ``KeepClimb`` is set:
+    then each pass is reversed.
     """
 
     properties = MIRROR
@@ -83,44 +83,44 @@ class MirroredOperation(_SymmetricOperation):
         return [mirror(obj.Point, obj.Normal)]
 
     def hand(self, obj: Any) -> int:
-        """A mirror changes sides; so does running the passes the other way."""
+        """A reflection swaps sides; so does reversing the passes."""
         return 1 if obj.KeepClimb else -1
 
     def follow(self, obj: Any) -> None:
-        """Take point and normal from the plane that was picked."""
+        """Take point and normal from the picked plane."""
         if obj.Plane:
             _set(obj, "Normal", *plane_of(obj.Plane))
 
     def sequence(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-        """Each pass the other way, if climb milling is to be kept."""
+        """Reverse each pass, if climb milling is to be kept."""
         return reversed_passes(program) if obj.KeepClimb else (program, ())
 
 
 class RotatedOperation(_SymmetricOperation):
-    """Copies that are turned about an axis."""
+    """Copies rotated about an axis."""
 
     properties = ROTATION
     results = ROTATION_RESULTS
 
     def matrices(self, obj: Any) -> list[Array]:
-        """The turns about the axis."""
+        """The rotations about the axis."""
         if obj.Copies < 1:
             raise ValueError(f"Copies: expected 1 or more, got {obj.Copies}")
         angles = list(obj.Angles) or [number * obj.Angle.Value for number in range(1, obj.Copies + 1)]
         return [rotation(obj.Point, obj.Axis, math.radians(angle)) for angle in angles]
 
     def hand(self, obj: Any) -> int:
-        """A turn keeps the side."""
+        """A rotation keeps the side."""
         return 1
 
     def follow(self, obj: Any) -> None:
-        """Take point and direction from the line that was picked."""
+        """Take point and direction from the picked line."""
         if obj.Line:
             _set(obj, "Axis", *axis_of(obj.Line))
 
 
 def _set(obj: Any, direction: str, point: App.Vector, along: App.Vector) -> None:
-    """Set point and direction where they differ: to set them touches the object."""
+    """Set point and direction where they differ: setting them touches the object."""
     for name, value in (("Point", point), (direction, along)):
         if getattr(obj, name) != value:
             setattr(obj, name, value)
@@ -137,10 +137,10 @@ def create_mirror(
 
     Args:
         base: the operation.
-        normal: (3,) normal of the plane of the mirror.
+        normal: (3,) normal of the mirror plane.
         point: (3,) a point of the plane, mm.
-        label: name shown to people.
-        keep_climb: whether each pass is run the other way.
+        label: displayed name.
+        keep_climb: whether each pass is reversed.
 
     Raises:
         ValueError: the operation is in no job.
@@ -157,14 +157,14 @@ def create_rotation(
     point: Sequence[float] = (0.0, 0.0, 0.0),
     label: str | None = None,
 ) -> Any:
-    """Add a turned copy of an operation to its job.
+    """Add a rotated copy of an operation to its job.
 
     Args:
         base: the operation.
         axis: (3,) direction of the axis.
         angle: rad, right-handed about the axis.
         point: (3,) a point of the axis, mm.
-        label: name shown to people.
+        label: displayed name.
 
     Raises:
         ValueError: the operation is in no job.

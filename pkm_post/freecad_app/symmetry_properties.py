@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry properties: what mirrored and turned operations have for people to set and to read.
+"""Symmetry properties: the editable and read-only properties of mirrored and rotated operations.
 
-Their names, types and units are a file format: they can be added to, not changed.
+Their names, types and units are a file format: they can be extended, not changed.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry reference: the plane or the axis that a picked thing of the document gives.
+"""Symmetry reference: the plane or axis of a picked element of the document.
 
-A link enters, as properties hold it: an object with the names of its elements. A point in mm and a direction leave, in
-coordinates of the document. Planes come from flat faces and datum planes, axes from straight or round edges, faces
-round an axis, and datum lines.
+Takes a link as stored in properties: an object with the names of its elements. Returns a point in mm and a direction,
+in document coordinates. Planes come from flat faces and datum planes, axes from straight or round edges, faces of
+revolution, and datum lines.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def plane_of(link: Link) -> Placed:
     """The plane of a flat face or a datum plane.
 
     Args:
-        link: the object and the name of its face; no name for an object with one face.
+        link: the object and the name of its face; no name for an object with a single face.
 
     Raises:
         ValueError: the face is not flat, or there is none.
@@ -36,13 +36,13 @@ def plane_of(link: Link) -> Placed:
 
 
 def axis_of(link: Link) -> Placed:
-    """The axis of an edge, a round face or a datum line.
+    """The axis of an edge, a face of revolution or a datum line.
 
     Args:
-        link: the object and the name of its edge or face; no name for an object with one edge.
+        link: the object and the name of its edge or face; no name for an object with a single edge.
 
     Raises:
-        ValueError: what is picked has no axis.
+        ValueError: the picked element has no axis.
     """
     shape = _element(link, lambda whole: whole.Edges)
     form = {"Edge": "Curve", "Face": "Surface"}.get("" if shape is None else shape.ShapeType, "")
@@ -62,11 +62,11 @@ _FORMS = {
     "Part::GeomToroid": ("Center", "Axis"),
     "Part::GeomSurfaceOfRevolution": ("Location", "Direction"),
 }
-"""For each curve and surface with an axis, the names of its point and direction."""
+"""For each curve and surface with an axis, the attributes with its point and direction."""
 
 
 def _element(link: Link, parts: Callable[[Any], list[Any]]) -> Any:
-    """The element that a link names, or the one element of an object, where it is in the document; None if none."""
+    """The element that a link names, or the single element of an object, in document coordinates; None if none."""
     obj, names = link
     name = next(iter(names), "")
     shape = Part.getShape(obj, name, needSubElement=True)
@@ -77,7 +77,7 @@ def _element(link: Link, parts: Callable[[Any], list[Any]]) -> Any:
         if len(found) != 1:
             return None
         (shape,) = found
-    # A shape is where its object says; the object may be in a part that stands elsewhere.
+    # A shape has the placement of its object; the object may be in a part with another placement.
     shape = shape.copy()
     shape.Placement = obj.getGlobalPlacement() * obj.Placement.inverse() * shape.Placement
     return shape

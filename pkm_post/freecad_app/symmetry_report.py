@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry report: how copies cut, whether they lie all round the part, and how well they meet.
+"""Symmetry report: cut direction of copies, their coverage around the part, and the fit of their joints.
 
-Programs or document objects enter; what is written into the read-only properties of a symmetric operation leaves, and
-what all copies of one operation in a job make together. Units: mm, rad; properties in mm and degrees.
+Takes programs or document objects; sets the read-only properties of a symmetric operation, and returns the totals of
+all copies of one operation in a job. Units: mm, rad; properties in mm and degrees.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ from pkm_post.placement import (
 )
 
 _PARALLEL = 1e-6
-"""Sine of the angle of planes below which they do not cross."""
+"""Sine of the angle between planes below which they do not intersect."""
 
 
 @dataclass(frozen=True)
 class Family:
-    """An operation and all its copies in the job, however deep.
+    """An operation and all its copies in the job, at any depth.
 
     Attributes:
         label: name of the operation.
-        members: how many times it is there.
-        coverage: what they cover about their axis, rad; None without an axis, or without a cut.
+        members: number of instances.
+        coverage: covered angle about their axis, rad; None without an axis, or without a cut.
         joints: where they meet.
     """
 
@@ -59,7 +59,7 @@ def report(obj: Any, base: Program, copies: Sequence[Program], made: Program) ->
     Args:
         obj: the operation.
         base: the program of its base.
-        copies: its copies, as they are mirrored or turned.
+        copies: its copies, mirrored or rotated.
         made: the program of the operation.
     """
     sense, side = spindle_sense_of(obj), base_side(obj)
@@ -79,7 +79,7 @@ def _beside(obj: Any, base: Program, copy: Program) -> tuple[Joint, ...]:
 
 
 def _swapped_arcs(base: Program, copy: Program, run_back: bool) -> int:
-    """How many arcs turn the other way about their coordinate; those that are run back as well turn as before."""
+    """Number of arcs with reversed sense about their coordinate; reversing the pass as well restores the sense."""
     arc = base.kind == Kind.ARC
     senses = []
     for axis in (base.arc_axis[arc], copy.arc_axis[arc]):
@@ -97,7 +97,7 @@ def _around(obj: Any, programs: list[Program]) -> tuple[Joint, ...]:
 
 
 def _circle(programs: list[Program], point: Array, axis: Array) -> tuple[Coverage | None, tuple[Joint, ...]]:
-    """What programs cover about an axis, and where they meet; nothing where one of them cuts nothing."""
+    """Coverage of programs about an axis, and their joints; nothing if one of them has no cut."""
     sectors = [found for program in programs if (found := sector(program, point, axis))]
     if not programs or len(sectors) < len(programs):
         return None, ()
@@ -105,7 +105,7 @@ def _circle(programs: list[Program], point: Array, axis: Array) -> tuple[Coverag
 
 
 def family_of(obj: Any) -> Family:
-    """What an operation and all its active copies in the job make together.
+    """The operation and all its active copies in the job as one family.
 
     Args:
         obj: a symmetric operation, or one that has copies.
@@ -123,14 +123,14 @@ def family_of(obj: Any) -> Family:
 
 
 def _root(obj: Any) -> Any:
-    """The operation that copies of copies come from; a copy without a base is its own."""
+    """The operation at the root of a chain of copies; a copy without a base is its own root."""
     while is_symmetric(obj) and obj.Base is not None:
         obj = obj.Base
     return obj
 
 
 def _is_sound(obj: Any) -> bool:
-    """Whether a copy and all copies that it stands on are there and active."""
+    """Whether a copy and all copies below it exist and are active."""
     while is_symmetric(obj) and obj.Base is not None:
         if not obj.Active or not obj.isValid():
             return False
@@ -139,7 +139,7 @@ def _is_sound(obj: Any) -> bool:
 
 
 def _images(obj: Any) -> list[Program]:
-    """The original, or each image of it that a copy has; as it is before passes are run the other way."""
+    """The original, or each image of it that a copy contains; before any reversal of passes."""
     if not is_symmetric(obj):
         return [program_of(obj)]
     if obj.Base is None:
@@ -149,7 +149,7 @@ def _images(obj: Any) -> list[Program]:
 
 
 def _axis(copies: list[Any]) -> tuple[Array, Array] | None:
-    """A point and the direction of the axis: that of a turn, or the line in which two mirrors cross."""
+    """A point and the direction of the axis: that of a rotation, or the intersection line of two mirror planes."""
     turns = [each for each in copies if hasattr(each, "Axis")]
     if turns:
         return np.array(turns[0].Point), np.array(turns[0].Axis)

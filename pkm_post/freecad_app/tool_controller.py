@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool controller: the answer to CAM's question which tool controller a new operation gets."""
+"""Tool controller: answers CAM's question about the tool controller of a new operation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from PathScripts import PathUtils
 
 @contextlib.contextmanager
 def answered(controller: Any) -> Iterator[None]:
-    """Answer for the user: with several CAM asks, and without a window it has nobody to ask and fails.
+    """Answer for the user: with several controllers CAM asks, and without a window it fails.
 
     Args:
         controller: the tool controller; None leaves the question to the user.

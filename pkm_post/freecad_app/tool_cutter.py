@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool cutter: the shape of the cutter of a tool controller, for compensation with it.
+"""Tool cutter: the cutter shape of a tool controller, for compensation.
 
-A tool controller enters; a cutter in mm leaves, or why there is none. How far the tool stands out of the spindle does
-not matter here.
+Takes a tool controller; returns a cutter in mm, or why there is none. The gauge length does not matter here.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from pkm_post.freecad_app.tools import read_tools
 from pkm_post.model import Diagnostic, Place
 
 _KNOWN_SHAPES = ("endmill", "ballend", "bullnose")
-"""Shapes with a flat bottom and an upright side. Of a tapered one ``read_tools`` does not tell the taper."""
+"""Shapes with a flat bottom and an upright side. ``read_tools`` does not return the angle of a tapered one."""
 _ANY_LENGTH = 1.0
 
 
@@ -22,11 +21,11 @@ def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Dia
     """The cutter of a tool controller.
 
     Args:
-        controller: the tool controller, None if there is none.
-        place: what diagnostics name.
+        controller: the tool controller, or None.
+        place: location stated in diagnostics.
 
     Returns:
-        The cutter, or None; and what is wrong: J112, N116.
+        The cutter, or None; and the faults: J112, N116.
     """
     if controller is None or controller.Tool is None:
         return None, (Diagnostic("J112", place, "none is set" if controller is None else "it has no tool"),)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tools: what compensation and kinematics need of the tool controllers of a CAM job.
+"""Tools: the data of a CAM job's tool controllers that compensation and kinematics need.
 
-Tool controllers enter; tools by number, in mm and rad, leave. FreeCAD 1.0 and newer ones name the shape of a tool bit
-and the corner of a bull nose differently, and none of them knows how far a tool stands out of the spindle: that is a
-property of our own, ``GaugeLength``.
+Takes tool controllers; returns tools by number, in mm and rad. FreeCAD 1.0 and newer versions name the shape of a tool
+bit and the corner of a bull nose differently, and none of them stores the gauge length: that is a property of our own,
+``GaugeLength``.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ GAUGE_LENGTH = "GaugeLength"
 
 
 def set_gauge_length(tool_controller: Any, mm: float) -> None:
-    """Say how far the tip is from the spindle nose.
+    """Set the distance of the tip from the spindle nose.
 
     Args:
         tool_controller: the tool controller; it gets a property ``GaugeLength``.
@@ -34,27 +34,27 @@ def set_gauge_length(tool_controller: Any, mm: float) -> None:
 
 
 def gauge_length(tool_controller: Any) -> float:
-    """The gauge length that a tool controller says, mm; 0 if it says none."""
+    """The gauge length of a tool controller, mm; 0 if not set."""
     return millimetres(tool_controller, GAUGE_LENGTH)
 
 
 def bit_length(tool_controller: Any) -> float:
-    """The length of the tool bit alone, mm; 0 if it says none. It is no gauge length."""
+    """The length of the tool bit alone, mm; 0 if not stated. It is not a gauge length."""
     return millimetres(tool_controller.Tool, "Length")
 
 
 def read_tools(
     controllers: Iterable[Any], tool_lengths: Mapping[int, float], source: str
 ) -> tuple[dict[int, Tool], tuple[Diagnostic, ...]]:
-    """The tools of some tool controllers.
+    """Read the tools of some tool controllers.
 
     Args:
-        controllers: the controllers in use; several may use one tool.
-        tool_lengths: gauge lengths by tool number that go before those of the controllers, mm.
+        controllers: the controllers in use; several may share a tool.
+        tool_lengths: gauge lengths by tool number that override those of the controllers, mm.
         source: name of the document.
 
     Returns:
-        The tools by number, and what is wrong with them: J113 and J114.
+        The tools by number, and their faults: J113 and J114.
     """
     tools: dict[int, Tool] = {}
     faults = []
@@ -82,7 +82,7 @@ def _tool(controller: Any, number: int, length: float) -> Tool:
 
 
 def millimetres(thing: Any, name: str) -> float:
-    """A length property, 0 if there is none."""
+    """A length property, 0 if missing."""
     return float(getattr(getattr(thing, name, 0.0), "Value", 0.0))
 
 
@@ -103,14 +103,14 @@ def _ball(bit: Any) -> Sizes:
 
 
 def _bull_nose(bit: Any) -> Sizes:
-    """FreeCAD 1.0 has the radius of the flat, newer ones that of the corner."""
+    """FreeCAD 1.0 stores the radius of the flat, newer versions that of the corner."""
     if hasattr(bit, "CornerRadius"):
         return _flat(bit) | {"corner_radius": millimetres(bit, "CornerRadius")}
     return _flat(bit) | {"corner_radius": millimetres(bit, "Diameter") / 2 - millimetres(bit, "FlatRadius")}
 
 
 def _tapered_ball(bit: Any) -> Sizes:
-    """The ball has the diameter of the bit; the side, which touches it, meets the plane of the tip elsewhere."""
+    """The ball has the diameter of the bit; its tangent, the side, meets the plane of the tip at another diameter."""
     ball, taper = _ball(bit), _half_angle(bit, "TaperAngle")
     meeting = 2 * ball["corner_radius"] * corner_reach(0.0, taper)
     return ball | {"diameter": meeting, "side_angle": taper}
@@ -121,7 +121,7 @@ def _pointed(bit: Any) -> Sizes:
 
 
 def _conical(bit: Any) -> Sizes:
-    """A cone that is its side where it ends in a flat of its own diameter, and its bottom where it ends in a point."""
+    """A cone is the tool's side if it ends in a flat of its own diameter, and its bottom if it ends in a point."""
     tip, half = millimetres(bit, "TipDiameter"), _half_angle(bit, "CuttingEdgeAngle")
     if tip > 0.0:
         return {"diameter": tip, "corner_radius": 0.0, "side_angle": half}
@@ -129,7 +129,7 @@ def _conical(bit: Any) -> Sizes:
 
 
 def _dovetail(bit: Any) -> Sizes:
-    """Its angle is the one to the bottom."""
+    """Its angle is measured to the bottom."""
     return _flat(bit) | {"side_angle": 2 * _half_angle(bit, "CuttingEdgeAngle") - math.pi / 2}
 
 
@@ -143,4 +143,4 @@ _SHAPES: dict[str, Callable[[Any], Sizes]] = {
     "chamfer": _conical,
     "dovetail": _dovetail,
 }
-"""Sizes by shape; the others, as end mills and reamers, are taken as flat below and upright at the side."""
+"""Sizes by shape; all others, such as end mills and reamers, count as flat at the bottom and upright at the side."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Transaction: what is done to a document in one step, for one undo to take back."""
+"""Transaction: groups changes of a document into one undo step."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any
 
 @contextlib.contextmanager
 def transaction(document: Any, text: str) -> Iterator[None]:
-    """One step of undo. What raises, however it does, leaves the document as it was.
+    """Run as one undo step. Any exception restores the document.
 
     Args:
-        document: that is changed.
-        text: what the step is called in the menu.
+        document: the changed document.
+        text: name of the step in the menu.
     """
     document.openTransaction(text)
     try:

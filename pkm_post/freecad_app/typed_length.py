@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Typed length: a length as a person types it, with or without a unit, and as it is shown to be typed over.
+"""Typed length: parses a length typed with or without a unit, and formats one for editing.
 
-Text enters, mm leave, and the other way round. What FreeCAD's own fields take for a length where a wrong one does harm
-is not taken here: their ``12,5 cm`` is 1250 mm, their ``4 1/2 in`` 4 mm, and for ``abc`` they keep what was there
-before. Letters beyond ASCII FreeCAD leaves out.
+Converts between text and mm. Inputs that FreeCAD's own fields accept and misread are refused here, since a wrong length
+does harm: their ``12,5 cm`` is 1250 mm, their ``4 1/2 in`` 4 mm, and for ``abc`` they keep the previous value. FreeCAD
+drops letters beyond ASCII.
 """
 
 from __future__ import annotations
@@ -13,27 +13,27 @@ import math
 import FreeCAD as App
 
 _DIGITS = 9
-"""Shown of a length: nanometres of a metre."""
+"""Significant digits shown: nanometres of a metre."""
 _MICRO = "µ"
-"""The one letter of FreeCAD's units of length that is not of ASCII."""
+"""The only non-ASCII letter in FreeCAD's units of length."""
 _USUAL = "100 mm"
-"""A length of the size of a tool; a number without a unit is in the unit that it is shown in."""
+"""A length typical of a tool; a number without a unit is in the unit in which this one is displayed."""
 
 
 def typed_length(text: str, point: str = ".") -> float | None:
-    """The length that was typed, mm; None if it is none above zero.
+    """The typed length, mm; None if it is not a positive length.
 
     Args:
         text: such as ``120``, ``120 mm``, ``4.5 in`` or ``3*40 mm``.
-        point: what stands before decimals in the language of the user; a full stop always does. A comma that is no
-            decimal point has no meaning.
+        point: decimal separator in the user's language; a full stop is always accepted. A comma that is not the
+            decimal separator is invalid.
     """
     text = text.replace(point, ".")
     if not text.strip() or "," in text or not text.replace(_MICRO, "").isascii():
         return None
     try:
         quantity = App.Units.Quantity(text)
-    except ValueError:  # a syntax error
+    except ValueError:  # raised for a syntax error
         return None
     if quantity.Unit not in (App.Units.Unit(), App.Units.Length):
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Commands: the ``Path.Command`` lists of CAM operations become programs, and programs become such lists."""
+"""Commands: conversion between the ``Path.Command`` lists of CAM operations and programs."""
 
 from pkm_post.freecad_app.commands.reader import read_commands
 from pkm_post.freecad_app.commands.writer import commands_of

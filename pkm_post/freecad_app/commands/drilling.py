@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilling: the cycles among the commands of an operation become the moves and dwells that they stand for.
+"""Drilling: expands the canned cycles of an operation into moves and dwells.
 
-Columns of words enter; columns leave in which a cycle is rows of G0, G1 and G4, with its line. The strokes are those of
-the same cycles in G-code (``gcode.cycles``). The words of a cycle stay in force, and so does the initial level, as long
-as no other motion comes between. Behind a hole the tool is at that level (G98, and where nothing was said), or at R
-(G99).
+Takes columns of words; returns columns in which a cycle is rows of G0, G1 and G4, with its line. The strokes are those
+of the same cycles in G-code (``gcode.cycles``). The words of a cycle are modal, and so is the initial level, as long
+as no other motion intervenes. After a hole the tool is at that level (G98, and by default), or at R (G99).
 """
 
 from __future__ import annotations
@@ -22,19 +21,19 @@ from pkm_post.model import Kind
 _CODES = {Kind.RAPID: "G0", Kind.LINE: "G1"}
 _AXES = (0, 1, 2)
 _ONCE, _STANDS = 1.0, 0.0
-"""Repetitions, and the speed of the spindle for cycles that do not ask for it."""
+"""Repetitions, and the spindle speed for cycles that do not need it."""
 
 Row = tuple[str, dict[str, float]]
 """A code and its words."""
 
 
 def without_cycles(words: Words, start: Array, faults: Faults) -> Words:
-    """The same commands, each cycle replaced by what it stands for.
+    """Return the same commands, with each cycle expanded.
 
     Args:
         words: the commands.
-        start: (3,) where the tool tip is before, mm; NaN for coordinates that are not known.
-        faults: takes what keeps a cycle from being carried out, which is left out then.
+        start: (3,) tool tip before the first command, mm; NaN for unknown coordinates.
+        faults: collects what prevents a cycle from being executed; such a cycle is dropped.
     """
     cycles = np.flatnonzero(words.among(*CYCLES)).tolist()
     if not cycles:
@@ -51,16 +50,16 @@ def without_cycles(words: Words, start: Array, faults: Faults) -> Words:
 
 
 class _Holes:
-    """The holes of an operation, one after the other."""
+    """The holes of an operation, in sequence."""
 
     def __init__(self, words: Words, start: Array) -> None:
         drilled, height = words.among(*CYCLES), words.value("Z")
         self._words, self._row = words, -1
         self._series: Series | None = None
-        # with the start in front: what is before a row has its number, what is behind it the next
+        # with the start prepended: the state before a row has its number, the state after it the next
         before = zip("XY", start[:2], strict=True)
         self._xy = np.column_stack([in_force(np.append(at, words.value(letter)), at) for letter, at in before])
-        self._height = np.append(start[2], np.where(drilled, np.nan, height))  # the Z of a cycle is where the hole ends
+        self._height = np.append(start[2], np.where(drilled, np.nan, height))  # a cycle's Z is the bottom of the hole
         self._latest_height = latest(np.append(True, drilled | ~np.isnan(height)))
         self._latest_motion = latest(words.among(*MOVES, *CYCLES, "G80"))
         self._said, self._feed = np.column_stack([words.value(letter) for letter in "RZQP"]), words.value("F")
@@ -68,7 +67,7 @@ class _Holes:
         self._stays_low = words.among("G99")[latest(words.among("G98", "G99"))]
 
     def drilled(self, row: int) -> tuple[list[Row], str]:
-        """What the cycle of a row stands for, and what is wrong with it; asked for in the order of the rows."""
+        """Expand the cycle of a row, with its fault; call in row order."""
         name, height = self._words.name(row), float(self._height[self._latest_height[row]])
         series = self._follow(row, name, height)
         hole = series.hole(relative=False, returns=not self._stays_low[row])
@@ -85,7 +84,7 @@ class _Holes:
         return _rows_of(made, float(self._feed[row])), ""
 
     def _follow(self, row: int, name: str, height: float) -> Series:
-        """The series with the cycle of this row; the motion before it is another cycle, or it is the first."""
+        """The series with the cycle of this row; it is the first, or the preceding motion is another cycle."""
         goes_on = row > 0 and self._latest_motion[row - 1] == self._row
         before, words = self._series if goes_on else None, self._said[row].tolist()
         self._series = Series.after(before, 10 * int(name[1:]), height, words)
@@ -93,18 +92,18 @@ class _Holes:
 
 
 def _rows_of(made: Strokes, feed: float) -> list[Row]:
-    """Strokes as commands; a feed that is not said is NaN, which is no word."""
+    """Strokes as commands; an unspecified feed is NaN, which stands for no word."""
     rows: list[Row] = []
     for kind, end in zip(made.kinds, made.ends, strict=True):
         place = dict(zip("XYZ", end.tolist(), strict=True))
         rows.append((_CODES[Kind(kind)], place | ({"F": feed} if kind == Kind.LINE else {})))
-    for row, _, seconds in reversed(made.events):  # dwells, all of them
+    for row, _, seconds in reversed(made.events):  # only dwells
         rows.insert(row, ("G4", {"P": seconds}))
     return rows
 
 
 def _with_rows(words: Words, rows: dict[int, list[Row]]) -> Words:
-    """Columns with other rows in the place of some."""
+    """Replace some rows of the columns with other rows."""
     times = np.ones(len(words), dtype=np.int64)
     times[list(rows)] = [len(row) for row in rows.values()]
     old = np.repeat(np.arange(len(words)), times)

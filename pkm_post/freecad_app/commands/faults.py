@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults of commands: what is wrong with the words of one operation, each kind told once with its first place.
+"""Faults of commands: errors in the words of one operation, each kind reported once with its first place.
 
-Columns of words enter, diagnostics leave. An operation may have a hundred thousand commands with the same fault, so a
+Takes columns of words; returns diagnostics. An operation may have a hundred thousand commands with the same fault, so a
 diagnostic names the first of them and counts the others.
 """
 
@@ -20,24 +20,24 @@ from pkm_post.model.diagnostics import errors
 
 _ROTARY = "ABC"
 _NEEDED = {"G4": "P", "M3": "S", "M4": "S", "M6": "T"}
-"""The word without which a command has no meaning."""
+"""The word that each command requires."""
 
 
 @dataclass
 class Faults:
-    """The diagnostics of one operation, in the making."""
+    """The diagnostics of one operation, under construction."""
 
     source: str
     operation: str
     diagnostics: list[Diagnostic] = field(default_factory=list)
 
     def tell(self, code: str, wrong: Array, found: str | Callable[[int], str], line: Array | None = None) -> None:
-        """Add a diagnostic if something is wrong.
+        """Add a diagnostic if any row is faulty.
 
         Args:
             code: of the diagnostic.
-            wrong: (n,) which rows are.
-            found: what was found, or what tells it for a row.
+            wrong: (n,) mask of the faulty rows.
+            found: text of the finding, or a function that returns it for a row.
             line: (n,) command numbers of the rows; from 1 upwards if none are given.
         """
         rows = np.flatnonzero(wrong)
@@ -59,12 +59,12 @@ class Faults:
 
 
 def not_text(fault: UnicodeDecodeError, source: str, operation: str) -> Diagnostic:
-    """What is wrong with a command that FreeCAD stores as bytes that are no text."""
+    """The fault of a command that FreeCAD stores as undecodable bytes."""
     return Diagnostic("J135", Place(source, operation), repr(fault.object))
 
 
 def check_words(words: Words, faults: Faults) -> None:
-    """Tell commands and words that have no meaning here."""
+    """Report unsupported commands and words."""
     for code in words.codes:
         if code not in LETTERS and code != COMMENT:
             faults.tell("J123" if code in IN_STEP_WITH_SPINDLE else "J104", words.among(code), code)
@@ -86,10 +86,10 @@ def check_words(words: Words, faults: Faults) -> None:
 
 
 def _in_xy_plane(words: Words) -> Array:
-    """Whether G17 is in force, (n,); it is where an operation begins."""
+    """Whether G17 is in force, (n,); an operation begins with it."""
     return ~words.among("G18", "G19")[latest(words.among("G17", "G18", "G19"))]
 
 
 def _shown(words: Words, letter: str) -> Callable[[int], str]:
-    """Tells a command with one of its words, as in ``G1 A30``."""
+    """Format a command with one of its words, as in ``G1 A30``."""
     return lambda row: f"{words.name(row)} {letter}{words.value(letter)[row]:g}"

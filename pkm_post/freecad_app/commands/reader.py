@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reading commands: the moves of one CAM operation become a program, its modal words resolved.
+"""Reading commands: converts the moves of one CAM operation to a program, with modal words resolved.
 
-CAM commands enter, lengths in mm and F in mm/s as they are inside FreeCAD; columns in mm and mm/s leave. X, Y, Z, F
-and the tool axis I J K of G0 and G1 stay in force until they change. The F of a G0 is the speed of rapid moves
-and says nothing of cutting. Before X, Y and Z are all known no place is: such moves are folded into the first one
-whose end is known. An operation without I J K words is cut with the tool axis upright; moves before the first such
-words take the axis of these. Drilling cycles are replaced by the moves they stand for before all this.
+Takes CAM commands, with lengths in mm and F in mm/s as FreeCAD stores them; returns columns in mm and mm/s. X, Y, Z, F
+and the tool axis I J K of G0 and G1 are modal. The F of a G0 is the rapid rate and does not apply to cutting. The
+position is undefined until X, Y and Z are all known: moves up to then are folded into the first one with a known end.
+An operation without I J K words is cut with the tool axis upright; moves before the first such words take their axis.
+Drilling cycles are expanded into moves first.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from pkm_post.model import Diagnostic, Event, EventKind, Kind, Program
 from pkm_post.model.columns import uniform
 
 _RADIUS_TOLERANCE = 5e-3
-"""mm by which the radii at both ends of an arc may differ."""
+"""Largest difference of the radii at both ends of an arc, mm."""
 _UNIT_TOLERANCE = 1e-3
 _SIX_DECIMALS = 1e-6
-"""FreeCAD stores that many: a shorter vector has no direction, and a shorter radius is none."""
+"""FreeCAD stores six decimals: a shorter vector has no direction, and a shorter radius counts as zero."""
 
 _KINDS = {"G0": Kind.RAPID, "G1": Kind.LINE, "G2": Kind.ARC, "G3": Kind.ARC}
 _EVENTS: dict[str, tuple[EventKind, str, float]] = {
@@ -42,22 +42,22 @@ _EVENTS: dict[str, tuple[EventKind, str, float]] = {
     "M8": (EventKind.COOLANT, "", 1.0),
     "M9": (EventKind.COOLANT, "", 0.0),
 }
-"""For each code what happens, and its value: that of the letter times the factor, or the factor alone."""
+"""For each code its event, and its value: that of the letter times the factor, or the factor alone."""
 
 
 def read_commands(
     commands: Iterable[Any], source: str, operation: str, start: ArrayLike = (np.nan, np.nan, np.nan)
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """The program of one operation, without tools; or what is wrong with its commands.
+    """Convert one operation to a program without tools, or report the faults of its commands.
 
     Args:
         commands: a list of ``Path.Command``.
         source: name of the document.
         operation: name of the operation.
-        start: (3,) where the tool tip is before, mm; NaN for coordinates that are not known.
+        start: (3,) tool tip before the first command, mm; NaN for unknown coordinates.
 
     Returns:
-        The program, its lines the numbers of the commands from 1; None if there are errors.
+        The program, with command numbers from 1 as its lines; None if there are errors.
     """
     faults = Faults(source, operation)
     try:
@@ -91,7 +91,7 @@ def read_commands(
 
 
 def _columns(words: Words, moves: Array, start: Array, faults: Faults) -> dict[str, Any]:
-    """What the words say of each move, and of those before it; places that are not known yet are NaN."""
+    """Columns of each move from its words and those before it; unknown positions are NaN."""
     position = np.column_stack([
         in_force(words.value(letter)[moves], before) for letter, before in zip("XYZ", start, strict=True)
     ])  # fmt: skip

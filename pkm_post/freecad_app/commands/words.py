@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Words: the letters and numbers of CAM commands as columns.
 
-A list of ``Path.Command`` enters; for each command a code, and for each letter its numbers, NaN where a command does
-not have it, leave. Names and parameters are copied out of FreeCAD once: each access makes a new dictionary.
-Which letters go with which code is a table, ``LETTERS``.
+Takes a list of ``Path.Command``; returns for each command a code, and for each letter its numbers, NaN where a command
+does not have it. Names and parameters are copied from FreeCAD once: each access makes a new dictionary.
+The table ``LETTERS`` defines which letters go with which code.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 Array = np.ndarray[Any, Any]
 
 MOVES: dict[str, str] = dict.fromkeys(("G0", "G1", "G2", "G3"), "XYZIJKF")
-"""The codes of moves, with the letters they may have."""
+"""The codes of moves, with their permitted letters."""
 CYCLES: dict[str, str] = {
     "G73": "XYZRQF",
     "G81": "XYZRF",
@@ -28,7 +28,7 @@ CYCLES: dict[str, str] = {
     "G85": "XYZRF",
     "G89": "XYZRPF",
 }
-"""The same of drilling cycles. Those that turn or stop the spindle are not among them."""
+"""The same for drilling cycles, except cycles that turn or stop the spindle."""
 _OTHERS: dict[str, str] = {
     "G4": "P",
     "M0": "",
@@ -45,10 +45,10 @@ _OTHERS: dict[str, str] = {
     "G19": "",
 } | dict.fromkeys(("G21", "G40", "G49", "G54", "G80", "G90", "G94", "G98", "G99"), "")
 LETTERS: dict[str, str] = MOVES | CYCLES | _OTHERS
-"""Every code that has a meaning here, with the letters it may have. What is not in it, is refused."""
+"""Every supported code with its permitted letters; all others are refused."""
 
 COMMENT = "()"
-"""The code of comments and of empty lines."""
+"""The code of comments and empty lines."""
 
 _LEADING_ZEROS = re.compile(r"(?<=^[GM])0+(?=\d)")
 
@@ -58,7 +58,7 @@ class Words:
     """Columns of n commands.
 
     Attributes:
-        codes: the different codes of the list, without leading zeros, in alphabetical order.
+        codes: the distinct codes of the list, without leading zeros, in alphabetical order.
         code: (n,) index into ``codes``.
         values: for each letter that occurs, (n,) its numbers; NaN where a command does not have it.
         given: for each letter that occurs, (n,) whether a command has it.
@@ -104,11 +104,11 @@ class Words:
         return self.given.get(letter, np.zeros(len(self), dtype=bool))
 
     def count(self, letters: str) -> Array:
-        """How many of these letters a command has, (n,)."""
+        """Number of these letters in each command, (n,)."""
         return np.sum([self.has(letter) for letter in letters], axis=0)
 
     def axis_words(self) -> Array:
-        """Which moves have words of the tool axis, (n,); those of arcs are the centre."""
+        """Which moves have tool-axis words, (n,); those of arcs are the centre."""
         return self.among("G0", "G1") & (self.count("IJK") > 0)
 
 
@@ -118,7 +118,7 @@ def latest(chosen: Array) -> Array:
 
 
 def in_force(values: Array, before: float) -> Array:
-    """Each value, or else the last one, (n,)."""
+    """Each value, or else the preceding one, (n,)."""
     said = ~np.isnan(values)
     row = latest(said)
     return np.where(said[row], values[row], before) if len(values) else values
@@ -127,8 +127,8 @@ def in_force(values: Array, before: float) -> Array:
 def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict[str, Array]]:
     """``values`` and ``given``, by letter in alphabetical order.
 
-    Most commands of a program have one of a few sets of letters: the numbers of all commands are one long column, and
-    each set says which of them belong to which letter.
+    Most commands of a program have one of a few sets of letters: the numbers of all commands form one long column, and
+    each set defines which of them belong to which letter.
     """
     sets = list(map(tuple, parameters))
     number_of = {letters: number for number, letters in enumerate(dict.fromkeys(sets))}

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Writing commands: a program becomes the ``Path.Command`` list of a CAM operation.
+"""Writing commands: converts a program to the ``Path.Command`` list of a CAM operation.
 
-A program in mm and mm/s enters; commands with the same units leave, as they are inside FreeCAD. They are made from
-numbers, not from text, and keep all digits until the document is saved. Every move has X, Y and Z. Tool axes are
-written only where some are not upright, so that what stock CAM could do with an operation it can do with its copy.
+Takes a program in mm and mm/s; returns commands in the same units, as FreeCAD stores them. They are built from numbers,
+not from text, and keep all digits until the document is saved. Every move has X, Y and Z. Tool axes are written only
+where some are not upright, so that stock CAM can do with a copy whatever it can do with the original.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind, Kind, Program
 
 _EXACT = 1e-12
-"""By how much a unit vector may differ from another that counts as the same."""
+"""Largest difference of two unit vectors that count as equal."""
 _UP = np.array([0.0, 0.0, 1.0])
 
 _STRAIGHT = np.array(["G0", "G1", ""])
-"""The code by ``Kind``; an arc has two."""
+"""The code by ``Kind``; an arc has two codes."""
 _LETTERS = {"G0": "XYZIJK", "G1": "XYZIJKF", "G2": "XYZIJKF", "G3": "XYZIJKF"}
 _LETTERS_UPRIGHT = {"G0": "XYZ", "G1": "XYZF"}
 _CODES: dict[tuple[EventKind, float], str] = {
@@ -34,16 +34,17 @@ _CODES: dict[tuple[EventKind, float], str] = {
     (EventKind.STOP, 1.0): "M1",
     (EventKind.SPINDLE, 0.0): "M5",
 }
-"""Events that are told by their code alone."""
+"""Events that consist of their code alone."""
 
 
 def commands_of(program: Program) -> list[Any]:
-    """The commands that say what a program does, events included.
+    """Convert a program, events included, to commands.
 
-    Arcs about +z and -z with a steady tool axis are G3 and G2; others become chords, 0.001 mm off at most.
+    Arcs about +z and -z with a constant tool axis become G3 and G2; others become chords, with a deviation of at most
+    0.001 mm.
 
     Raises:
-        ValueError: the first row is an arc, which has no start.
+        ValueError: the first row is an arc, which has no start point.
     """
     if len(program) and program.kind[0] == Kind.ARC:
         raise ValueError("commands_of: expected a first row that is no arc, got one")
@@ -59,7 +60,7 @@ def commands_of(program: Program) -> list[Any]:
 
 
 def _unspeakable(program: Program) -> Array:
-    """Which arcs G2 and G3 cannot say, (N,)."""
+    """Which arcs G2 and G3 cannot express, (N,)."""
     axis_before = np.vstack([program.tool_axis[:1], program.tool_axis[:-1]])
     turns = norm(program.tool_axis - axis_before) > _EXACT
     upright = np.abs(np.abs(program.arc_axis[:, 2]) - 1) <= _EXACT
