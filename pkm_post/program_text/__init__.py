@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program text: what an editor of part programs knows, without a window.
+"""Program text: editor functions for part programs, without a GUI.
 
-Text of G-code or CL data enters; colours of its words, places of what is wrong with it, new line numbers, and the way
-that a line stands for leave.
+Enters: text of G-code or CL data. Leaves: syntax colours, locations of faults, new line numbers, and the tool path of a
+line.
 """
 
 from pkm_post.program_text.checked import CheckedText, check_text

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Checked text: what is wrong with the text of a part program that is not saved yet, and what it holds."""
+"""Checked text: diagnostics and size of the text of an unsaved part program."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from pkm_post.model.diagnostics import errors
 from pkm_post.sources import AS_WRITTEN, Reading, read_content
 
 _OPEN_END = {"G430", "L441"}
-"""What is missing from a text until its last line is written; until then it has an error and can still be drawn."""
+"""Diagnostics of a program without an end: an error while it is being typed, but it can still be drawn."""
 
 
 @dataclass(frozen=True)
 class CheckedText:
-    """What was found in a text.
+    """Result of checking a text.
 
     Attributes:
-        program: as it is programmed, cutter compensation not applied; None when it could not be read. Of a text that
-            has no end yet, what there is.
-        size: what it holds; None when it could not be read.
+        program: as programmed, without cutter compensation; None when the text could not be read. Partial while the
+            text has no end.
+        size: of the program; None when the text could not be read.
         diagnostics: with lines and columns of the text.
     """
 
@@ -31,12 +31,12 @@ class CheckedText:
 
 
 def check_text(text: str, name: str, reading: Reading = AS_WRITTEN) -> CheckedText:
-    """Read a text as a file of that name would be read.
+    """Read a text like a file of that name.
 
     Args:
         text: with line feeds.
-        name: tells by its end what the text is written in.
-        reading: what it does not say itself.
+        name: its suffix determines the language.
+        reading: settings that the text does not contain.
 
     Raises:
         ValueError: the suffix is not that of a part program.

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Colours: what each part of a line is, so that an editor can colour it.
+"""Colours: classify the parts of a line for syntax highlighting.
 
-A line enters; spans with their kind leave. The tables name for every kind the terminals of the grammars of record
-(``gcode/block.lark``, ``cldata/statement.lark``) that it stands for. A line is taken apart by one regular expression
-and not by the grammar: an editor colours the lines in sight at every key, faulty ones as well. Lines that the grammar
-accepts are coloured as it reads them; the tests hold the two together. There is one exception: where the word A has
-the value of a sine, cosine or tangent, as in Asin[30], asin is taken for the function.
+Enters: a line. Leaves: classified spans. The tables list for each kind the corresponding terminals of the grammars of
+record (``gcode/block.lark``, ``cldata/statement.lark``). One regular expression splits a line instead of the grammar:
+an editor colours the visible lines at every keystroke, including faulty ones. Valid lines are coloured as the grammar
+reads them; tests keep the two consistent. One exception: where the word A has the value of a sine, cosine or tangent,
+as in Asin[30], asin is taken for the function.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from dataclasses import dataclass
 from pkm_post.program_text.languages import Language
 
 LONGEST = 10_000
-"""Characters of a line that are coloured."""
+"""Maximum number of coloured characters of a line."""
 
 
 class Colour(enum.Enum):
-    """What a part of a line is."""
+    """Kind of a part of a line."""
 
     COMMENT = "comment"
     KEYWORD = "keyword"
@@ -40,9 +40,9 @@ class Span:
     """A part of a line.
 
     Attributes:
-        start: characters before it.
-        end: characters before what follows it.
-        colour: what it is.
+        start: index of its first character.
+        end: index after its last character.
+        colour: its kind.
     """
 
     start: int
@@ -56,9 +56,9 @@ class Row:
 
     Attributes:
         colour: what it is.
-        terminals: the terminals of the grammar that it stands for; none for what is gone before the grammar reads.
-        pattern: how it is found; a row goes before the rows below it.
-        rest: what all behind it on the line is, if that can be told.
+        terminals: corresponding terminals of the grammar; none for text removed before parsing.
+        pattern: regular expression; a row takes precedence over the rows below it.
+        rest: kind of the rest of the line, if it is known.
     """
 
     colour: Colour
@@ -92,20 +92,20 @@ GCODE: tuple[Row, ...] = (
     Row(Colour.LINE_NUMBER, ("_N",), r"N(?:\s*\d+\.?\d*)?"),  # with its number
     Row(Colour.NUMBER, ("NUMBER", "SIGN"), r"[+-]?(?:\d+\.?\d*|\.\d+)|[+-]"),
 )
-"""How G-code is coloured. Blanks have no colour."""
+"""Colour table of G-code. Blanks have no colour."""
 
 _TEXT_WORDS = r"PARTNO|PPRINT|INSERT|LETTER|DISPLY|TPRINT|REMARK|MACHIN|TOOL[ \t]+PATH|OPERATION[ \t]+NAME"
 
 CLDATA: tuple[Row, ...] = (
     Row(Colour.COMMENT, (), r"\$\$.*"),
-    Row(Colour.OPERATOR, (), r"\$(?=\s*$)"),  # the statement goes on in the next line
+    Row(Colour.OPERATOR, (), r"\$(?=\s*$)"),  # continuation line
     Row(Colour.KEYWORD, ("TEXT_WORD",), rf"^\s*(?:{_TEXT_WORDS})(?![\w.-])", rest=Colour.TEXT),
     Row(Colour.TEXT, ("STRING", "TEXT"), r"'[^']*'?|\"[^\"]*\"?"),
     Row(Colour.NUMBER, ("NUMBER",), r"(?<![\w.+-])[+-]?(?:\d+\.?\d*|\.\d+)(?:E[+-]?\d+)?(?![\w.+-])"),
     Row(Colour.WORD, ("WORD",), r"[0-9]*[a-z_][a-z0-9_.]*(?:-[a-z0-9_.]+)*"),
     Row(Colour.OPERATOR, ("COMMA", "SLASH", "EQUAL", "LPAR", "RPAR"), r"[,/=()]"),
 )
-"""How CL data is coloured."""
+"""Colour table of CL data."""
 
 TABLES: dict[Language, tuple[Row, ...]] = {Language.GCODE: GCODE, Language.CLDATA: CLDATA}
 
@@ -116,11 +116,11 @@ _COMPILED = {
 
 
 def spans(line: str, language: Language) -> Iterator[Span]:
-    """The parts of a line that have a colour, from left to right; they do not overlap.
+    """The coloured parts of a line, left to right, without overlap.
 
     Args:
         line: without its end.
-        language: what it is written in.
+        language: of the line.
     """
     rows, shown = TABLES[language], line[:LONGEST]
     for match in _COMPILED[language].finditer(shown):

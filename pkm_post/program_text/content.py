@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Content: bytes of a file as the text that people edit, and back as the file was written.
+"""Content: convert the bytes of a file to editable text, and back in the original format.
 
-Enters: the bytes of a file. Leaves: its text with line feeds, and what was around it: byte order mark, line ends,
-encoding. Controls are particular about these, so a file that is saved without a change has the same bytes.
+Enters: the bytes of a file. Leaves: its text with line feeds, and its format: byte order mark, line endings, encoding.
+Controls depend on these, so saving an unchanged file reproduces its bytes.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ class Content:
 
     Attributes:
         text: with line feeds, without byte order mark.
-        encoding: utf-8, or latin-1 where it is not that.
-        line_end: what ends its lines.
+        encoding: utf-8, or latin-1 as fallback.
+        line_end: its line ending.
         marked: whether it begins with a byte order mark.
     """
 
@@ -30,19 +30,19 @@ class Content:
 
     @classmethod
     def of(cls, content: bytes) -> Content:
-        """The text of a file's bytes. Files whose lines end in several ways get the end of their first line."""
+        """Decode the bytes of a file. Mixed line endings become that of the first line."""
         try:
             whole, encoding = content.decode("utf-8"), "utf-8"
         except UnicodeDecodeError:
             whole, encoding = content.decode("latin-1"), "latin-1"
         text = whole.removeprefix(_MARK)
         ends = {end: text.find(end) for end in ("\r\n", "\n", "\r") if end in text}
-        line_end = min(ends, key=lambda end: ends[end], default="\n")  # of \r\n and \r at one place the first
+        line_end = min(ends, key=lambda end: ends[end], default="\n")  # \r\n wins over \r at the same offset
         lines = text.replace("\r\n", "\n").replace("\r", "\n")
         return cls(lines, encoding, line_end, marked=len(text) < len(whole))
 
     def written(self, text: str) -> bytes:
-        """The bytes of a text that takes the place of this one; UTF-8 where the encoding cannot hold it."""
+        """Encode a replacement text; UTF-8 where the encoding cannot represent it."""
         whole = (_MARK if self.marked else "") + text.replace("\n", self.line_end)
         try:
             return whole.encode(self.encoding)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Extents: from the place of a diagnostic to the characters that an editor underlines."""
+"""Extents: map the location of a diagnostic to the characters that an editor underlines."""
 
 from __future__ import annotations
 
@@ -8,15 +8,14 @@ from pkm_post.program_text.languages import Language
 
 
 def extent(line: str, column: int, language: Language) -> tuple[int, int]:
-    """Start and end of what a diagnostic points to, in characters of a line.
+    """Start and end of the text a diagnostic refers to, in characters of a line.
 
-    A number that is none, such as 1..5, is taken as a whole. Without a column it is all of the line but the blanks
-    around it.
+    A malformed number, such as 1..5, is taken as a whole. Without a column it is the whole line, stripped.
 
     Args:
         line: without its end.
-        column: from 1; 0 when the whole line is meant.
-        language: what the line is written in.
+        column: from 1; 0 for the whole line.
+        language: of the line.
     """
     if column == 0 or column > len(line):
         return len(line) - len(line.lstrip()), len(line.rstrip())

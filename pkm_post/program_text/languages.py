@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Languages: what a part program is written in, told by the end of its file's name."""
+"""Languages: the language of a part program, determined by its file suffix."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pkm_post.sources import SUFFIXES
 
 
 class Language(enum.Enum):
-    """What a part program is written in."""
+    """Language of a part program."""
 
     GCODE = "G-code"
     CLDATA = "CL data"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Renumber: line numbers of G-code, one for each block.
+"""Renumber: renumber the blocks of G-code.
 
-Text enters, text leaves. Blocks get N words in steps. Lines without a block get none: empty ones, comments, and the
-percent signs around a program. A block that is nothing but a line number keeps being one.
+Enters and leaves: text. Blocks get N words in steps. Lines without a block get none: empty lines, comments, and the
+percent signs around a program. A block with only a line number stays a block.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ _COMMENT = re.compile(r"\([^()\n]*\)|;.*")
 
 
 def renumbered(text: str, first: int = 10, step: int = 10) -> str:
-    """The text with new line numbers.
+    """Renumber a text.
 
     Args:
         text: G-code, with line feeds.
         first: number of the first block.
-        step: from block to block.
+        step: increment per block.
 
     Raises:
         ValueError: the first number is negative, or the step is below 1.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ways: where the tool tip goes in one line of a part program, as polylines to draw, mm in {C}."""
+"""Ways: the tool tip path of one line of a part program, as polylines to draw, mm in {C}."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from pkm_post.model import Kind, Program
 from pkm_post.model.program import Array
 
 MOST_ROWS = 1000
-"""A line in a loop may stand for millions of moves; nobody sees more than these."""
+"""Limit of drawn moves: a line in a loop may produce millions."""
 _ARC_STEP = math.radians(3)
 
 
 def ways_of_line(program: Program, line: int) -> list[Array]:
-    """The way of the tip in each move of a line, (n, 3) with its start and its end.
+    """The tip path of each move of a line, (n, 3) including start and end points.
 
     Args:
-        program: with the lines of its source.
+        program: with source line numbers.
         line: from 1.
 
     Returns:
-        One polyline for each move, of the first ``MOST_ROWS`` moves; none when the line moves nothing. The first move
-        of a program has no start: its way is a point.
+        One polyline per move, for the first ``MOST_ROWS`` moves; none if the line has no motion. The first move of a
+        program has no start point: its path is a point.
     """
     rows = np.flatnonzero(program.line == line)[:MOST_ROWS]
     return [_way(program, int(row)) for row in rows]
