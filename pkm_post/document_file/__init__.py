@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Document file: a FreeCAD document on the disk, read and checked without FreeCAD, and without NumPy."""
+"""Document file: read and check a FreeCAD document on disk without FreeCAD and without NumPy."""
 
 from pkm_post.document_file.content import DocumentContent, Job
 from pkm_post.document_file.damaged import Damaged

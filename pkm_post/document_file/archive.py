@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Archive: the ZIP archive that a FreeCAD document is, checked from its first byte to its last.
+"""Archive: verify the ZIP archive of a FreeCAD document from first to last byte.
 
-An open file enters; its members leave, or ``Damaged``. FreeCAD reads one member after the other by what is written in
-front of each. It looks neither at the directory at the end nor at checksums, and takes members that it cannot unpack as
-empty. So here each member must have its checksum, the directory must say of it what is written in front of it, and
-there must be nothing between two members: then there is one way to read the archive. [PKWARE APPNOTE 4.3]
+Enters: an open file. Leaves: its members, or ``Damaged``. FreeCAD reads members sequentially by their local headers. It
+ignores the central directory and checksums, and treats members that it cannot unpack as empty. So here each member must
+match its checksum, the central directory must match the local headers, and there must be no gap between members: then
+the archive is unambiguous. [PKWARE APPNOTE 4.3]
 """
 
 from __future__ import annotations
@@ -22,37 +22,37 @@ from pkm_post.document_file.damaged import archive_is_damaged, is_no_document
 DOCUMENT = "Document.xml"
 _SIGNATURE = b"PK\x03\x04"
 _IN_FRONT = struct.Struct("<4s5H3I2H")
-"""Signature; version, flags, method, time and date; checksum, packed and unpacked size; lengths of name and extra."""
+"""Local header: signature; version, flags, method, time, date; checksum, packed and full size; name, extra length."""
 _AT_END = struct.Struct("<4s4H2IH")
-"""Signature; four counts, size and place of the directory; length of the comment that follows."""
+"""End record: signature; four counts, size and offset of the directory; length of the comment that follows."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _UTF8_NAME = 1 << 11
 _KNOWN_FLAGS = 0b110 | _UTF8_NAME
-"""How hard a member was packed, and that its name is UTF-8. FreeCAD takes members with sizes behind them as empty."""
+"""Compression level, and UTF-8 name. FreeCAD reads members with a trailing data descriptor as empty."""
 _MOST_UNPACKED = 4 << 30
-"""Bytes of all members together. FreeCAD's archives cannot be larger than this packed."""
+"""Total bytes of all members. The packed size of a FreeCAD archive cannot exceed this either."""
 _PIECE = 1 << 20
 _BROKEN = (
     zipfile.BadZipFile,
     zlib.error,
     struct.error,
     EOFError,
-    NotImplementedError,  # a version of ZIP that is not known
-    ValueError,  # names that are no UTF-8, places before the beginning
+    NotImplementedError,  # unknown ZIP version
+    ValueError,  # names that are not UTF-8, negative offsets
     OverflowError,
 )
-"""What ``zipfile`` raises where an archive is damaged."""
+"""Exceptions that ``zipfile`` raises on a damaged archive."""
 
 
 @contextmanager
 def whole_archive(stream: BinaryIO) -> Iterator[zipfile.ZipFile]:
-    """The archive of a document, when all of it was checked.
+    """Open the archive of a document and verify all of it.
 
     Args:
         stream: the file, open.
 
     Raises:
-        Damaged: it is no archive, or not a whole one.
+        Damaged: it is not an archive, or not a complete one.
     """
     if stream.read(len(_SIGNATURE)) != _SIGNATURE:
         raise is_no_document("it does not begin as a ZIP archive")
@@ -69,7 +69,7 @@ def whole_archive(stream: BinaryIO) -> Iterator[zipfile.ZipFile]:
 
 
 def _check_end(archive: zipfile.ZipFile, stream: BinaryIO) -> None:
-    """See that the file ends where the archive does, with all of its comment."""
+    """Check that the file ends where the archive does, with its complete comment."""
     stream.seek(-_AT_END.size - len(archive.comment), os.SEEK_END)
     signature, *_, length = _AT_END.unpack(stream.read(_AT_END.size))
     if signature != b"PK\x05\x06" or length != len(archive.comment):
@@ -77,7 +77,7 @@ def _check_end(archive: zipfile.ZipFile, stream: BinaryIO) -> None:
 
 
 def _check_places(archive: zipfile.ZipFile, stream: BinaryIO) -> None:
-    """See that the directory names the members as they follow one another, each as it says in front of it."""
+    """Check that the directory lists the members in sequence and agrees with their local headers."""
     end, names = 0, set()
     for member in sorted(archive.infolist(), key=lambda each: each.header_offset):
         if not end and member.filename != DOCUMENT:
@@ -97,7 +97,7 @@ def _check_places(archive: zipfile.ZipFile, stream: BinaryIO) -> None:
 
 
 def _length(member: zipfile.ZipInfo, stream: BinaryIO) -> int:
-    """How many bytes a member takes, if what is written in front of it is what the directory says."""
+    """Size of a member in bytes; its local header must agree with the directory."""
     stream.seek(member.header_offset)
     header = stream.read(_IN_FRONT.size)
     if len(header) < _IN_FRONT.size:
@@ -112,7 +112,7 @@ def _length(member: zipfile.ZipInfo, stream: BinaryIO) -> int:
 
 
 def _check_content(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
-    """Unpack a member and see that it has its checksum."""
+    """Unpack a member and verify its checksum."""
     try:
         with archive.open(member) as packed:
             while packed.read(_PIECE):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Content: what the XML of a FreeCAD document lists: objects, CAM jobs and their operations, and other members.
+"""Content: extract from the XML of a FreeCAD document its objects, CAM jobs with operations, and other members.
 
-XML enters piece by piece; a table leaves, or ``Damaged``. FreeCAD goes on where the XML is cut off, and leaves out what
-it does not find, so the lists are compared here. Declarations of entities are refused: FreeCAD never writes them, and
-would expand them for ever.
+Enters: XML in chunks. Leaves: a table, or ``Damaged``. FreeCAD accepts truncated XML and omits missing objects, so the
+lists are compared here. Entity declarations are refused: FreeCAD never writes them, and would expand them without
+limit.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from xml.etree import ElementTree
 from pkm_post.document_file.damaged import content_is_damaged
 
 _JOB = ("Path.Main.Job", "ObjectJob")
-"""Module and class of the proxy of a job, which FreeCAD stores."""
+"""Module and class of the proxy of a job as stored by FreeCAD."""
 _DEEPEST = 100
-"""Levels of elements; FreeCAD's documents have about ten."""
+"""Nesting depth of elements; FreeCAD documents have about ten levels."""
 _MEMBERS = ("Path", "Part", "Mesh")
-"""Elements of properties whose value is in another member of the archive, of which posting reads."""
+"""Property elements whose value is in another archive member that posting reads."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Job:
 
     Attributes:
         name: of the object.
-        label: what people call it.
-        operations: names of its operations, in their order.
+        label: displayed name.
+        operations: names of its operations, in order.
     """
 
     name: str
@@ -43,8 +43,8 @@ class DocumentContent:
     """What a document lists.
 
     Attributes:
-        jobs: the CAM jobs, in the order of the document.
-        members: names of the other members of the archive that its objects need.
+        jobs: the CAM jobs, in document order.
+        members: names of the other archive members that its objects need.
     """
 
     jobs: tuple[Job, ...]
@@ -53,7 +53,7 @@ class DocumentContent:
 
 @dataclass
 class _Object:
-    """What is kept of an object: its label, the class of its proxy, what it links to and where its values are."""
+    """Extracted data of an object: label, proxy class, links and the members that hold its values."""
 
     name: str
     label: str
@@ -65,7 +65,7 @@ class _Object:
 
 @dataclass
 class _Reader(ElementTree.TreeBuilder):
-    """Builds the tree of one object at a time, so that a large document is never held as a whole."""
+    """Builds the tree of one object at a time, so a large document is never held in memory as a whole."""
 
     path: list[str] = field(default_factory=list)
     listed: list[str] = field(default_factory=list)
@@ -76,11 +76,11 @@ class _Reader(ElementTree.TreeBuilder):
         super().__init__()
 
     def doctype(self, name: str, public: str | None, system: str | None) -> None:
-        """Refuse what only someone who writes entities needs."""
+        """Refuse a document type, which is needed only for entities."""
         raise content_is_damaged("a DOCTYPE, which FreeCAD never writes")
 
     def start(self, tag: str, attributes: Any) -> ElementTree.Element:
-        """Follow the way down, and note what the lists say of their lengths."""
+        """Track the element path, and record the declared lengths of lists."""
         self.path.append(tag)
         if self.path[0] != "Document":
             raise content_is_damaged(f"<{tag}> instead of <Document>")
@@ -91,7 +91,7 @@ class _Reader(ElementTree.TreeBuilder):
         return super().start(tag, attributes)
 
     def end(self, tag: str) -> ElementTree.Element:
-        """Note an object when all of it was read, and let its tree go."""
+        """Record an object when it is complete, and discard its tree."""
         element = super().end(tag)
         way = tuple(self.path)
         self.path.pop()
@@ -107,10 +107,10 @@ def read_content(pieces: Iterable[bytes]) -> DocumentContent:
     """What a document lists.
 
     Args:
-        pieces: of its XML, in their order.
+        pieces: chunks of its XML, in order.
 
     Raises:
-        Damaged: it is not what FreeCAD writes.
+        Damaged: FreeCAD did not write this.
     """
     reader = _Reader()
     parser = ElementTree.XMLParser(target=reader)
@@ -118,7 +118,7 @@ def read_content(pieces: Iterable[bytes]) -> DocumentContent:
         for piece in pieces:
             parser.feed(piece)
         parser.close()
-    except (ElementTree.ParseError, ValueError, LookupError) as fault:  # the latter two: unknown encodings
+    except (ElementTree.ParseError, ValueError, LookupError) as fault:  # the last two: unknown encodings
         raise content_is_damaged(f"no XML: {fault}") from fault
     _check_lists(reader)
     members = tuple(name for each in reader.objects for name in each.members)
@@ -145,7 +145,7 @@ def _object(element: ElementTree.Element) -> _Object:
 
 
 def _check_lists(reader: _Reader) -> None:
-    """Compare the list of objects with the objects, and with how many there were to be."""
+    """Compare the list of objects with the objects and with their declared count."""
     made = [each.name for each in reader.objects]
     for name in sorted(set(reader.listed) - set(made)):
         raise content_is_damaged(f"the object {name} is listed, and is not there")

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Damaged: a file is not the document that FreeCAD once wrote."""
+"""Damaged: a file is not an intact FreeCAD document."""
 
 from __future__ import annotations
 
 
 class Damaged(Exception):  # noqa: N818 - it is no error of the program
-    """The file cannot be what FreeCAD wrote.
+    """The file is not as FreeCAD wrote it.
 
     Attributes:
-        code: of the diagnostic that says so.
+        code: diagnostic code.
         found: what was found, and where in the file.
     """
 
@@ -18,15 +18,15 @@ class Damaged(Exception):  # noqa: N818 - it is no error of the program
 
 
 def is_no_document(found: str) -> Damaged:
-    """The file is something else."""
+    """The file is not a FreeCAD document."""
     return Damaged("J101", found)
 
 
 def archive_is_damaged(found: str) -> Damaged:
-    """The archive was changed by something that is not FreeCAD, or ends too early."""
+    """The archive was modified by another program, or is truncated."""
     return Damaged("J129", found)
 
 
 def content_is_damaged(found: str) -> Damaged:
-    """The archive is whole, but what it holds contradicts itself."""
+    """The archive is intact, but its content is inconsistent."""
     return Damaged("J130", found)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Read: a FreeCAD document on the disk, checked as a whole, to what it lists."""
+"""Read: verify a FreeCAD document on disk and list its content."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _PIECE = 1 << 16
 
 
 def read_document(file: Path) -> DocumentContent:
-    """What a document lists, when all of its file was checked.
+    """Verify a document and list its content.
 
     Args:
         file: path of the document.
 
     Raises:
         OSError: the file cannot be read.
-        Damaged: it is no document, or not the whole of one.
+        Damaged: it is not a document, or not a complete one.
     """
     with file.open("rb") as stream, whole_archive(stream) as archive:
         content = read_content(_pieces(archive))
