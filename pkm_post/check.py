@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Check: what is wrong with part programs, and what they hold.
+"""Check: report the diagnostics and the size of part programs.
 
-Files enter; for each its diagnostics and its size leave, as text for people or as JSON for programs. Lengths in mm.
+Enters: files. Leaves: diagnostics and size of each, as readable text or as JSON. Lengths in mm.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from pkm_post.model.program import Array
 from pkm_post.sources import AS_WRITTEN, Reading, read_part_program
 
 _LONGEST_LINE = 200
-"""Characters of a line that is shown."""
+"""Maximum number of characters shown of a line."""
 _BYTES = 4
-"""Of a character of UTF-8, at most."""
+"""Maximum size of a UTF-8 character."""
 
 
 @dataclass(frozen=True)
 class Size:
-    """What a program holds.
+    """Size of a program.
 
     Attributes:
-        blocks: moves.
-        arcs: how many of them are arcs.
-        length: way of the tool tip from the first place on, mm.
-        lowest: (3,) the corner of the box of all places the tip comes to, mm.
-        highest: (3,) the opposite corner.
+        blocks: number of moves.
+        arcs: number of arcs among them.
+        length: distance travelled by the tool tip from the first point, mm.
+        lowest: (3,) lower corner of the bounding box of the tip path, mm.
+        highest: (3,) upper corner.
     """
 
     blocks: int
@@ -49,7 +49,7 @@ class Size:
 
 @dataclass(frozen=True)
 class Checked:
-    """What was found in a file; ``size`` is None when it could not be read, ``reading`` is as in ``model.Program``."""
+    """Result for one file; ``size`` is None when it could not be read, ``reading`` is as in ``model.Program``."""
 
     file: Path
     size: Size | None
@@ -58,7 +58,7 @@ class Checked:
 
     @property
     def is_clean(self) -> bool:
-        """Whether nothing is wrong with the file."""
+        """Whether the file has no faults."""
         return not errors(self.diagnostics)
 
 
@@ -67,7 +67,7 @@ def check(file: Path, reading: Reading = AS_WRITTEN) -> Checked:
 
     Args:
         file: the part program.
-        reading: what it does not say itself.
+        reading: settings that the file does not contain.
 
     Raises:
         ValueError: the suffix of the file is not known.
@@ -96,9 +96,9 @@ def size_of(program: Program) -> Size:
 
 
 def _summits(start: Array, end: Array, centre: Array, axis: Array) -> Array:
-    """Where arcs go farthest along X, Y and Z, between their ends, (m, 3).
+    """Extreme points of arcs along X, Y and Z, between their end points, (m, 3).
 
-    A coordinate of the point at the angle t is a cos t + b sin t + const: extreme at atan2(b, a) and half a turn on.
+    A coordinate of the point at angle t is a cos t + b sin t + const: extreme at atan2(b, a) and half a turn later.
     """
     radius = across(start - centre, axis)
     angle = np.arctan2(cross(axis, radius), radius)
@@ -111,7 +111,7 @@ def _summits(start: Array, end: Array, centre: Array, axis: Array) -> Array:
 
 
 def as_text(results: Iterable[Checked]) -> str:
-    """Diagnostics with the lines they are about, how files were taken, then a row for each file."""
+    """Format diagnostics with their source lines and how files were interpreted, then one row per file."""
     results = tuple(results)
     told = [text for result in results for text in _told(result)]
     return "\n".join([*told, *_rows(results)])
@@ -124,7 +124,7 @@ def _told(result: Checked) -> list[str]:
 
 
 def _with_caret(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
-    """The line of a diagnostic, and a caret below its column."""
+    """The source line of a diagnostic, with a caret below its column."""
     line, column = diagnostic.place.line, diagnostic.place.column
     if not (column and line <= len(lines)):
         return []
@@ -140,7 +140,7 @@ _HEAD = ("file", "blocks", "arcs", "length mm", "lowest X Y Z", "highest X Y Z")
 
 
 def _rows(results: tuple[Checked, ...]) -> list[str]:
-    """A table with columns as wide as they need."""
+    """A table with fitted column widths."""
     cells = [_HEAD, *(_cells(result) for result in results)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
@@ -155,7 +155,7 @@ def _cells(result: Checked) -> tuple[str, ...]:
 
 
 def as_json(results: Iterable[Checked]) -> str:
-    """The same for programs: a list with an object for each file."""
+    """Format the results as JSON: a list with one object per file."""
     return json.dumps([_entry(result) for result in results], indent=1)
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Convert: a part program is read and written in another form of G-code.
+"""Convert: read a part program and write it in another form of G-code.
 
-A file enters, a file leaves, or the diagnostics that say why not. With an error nothing is written.
+Enters: a file. Leaves: a file, or diagnostics. On an error nothing is written.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pkm_post.sources import AS_WRITTEN, Reading, read_part_program
 from pkm_post.unwritten import unwritten
 
 TARGETS: dict[str, Form] = {f"gcode:{form.value}": form for form in Form}
-"""What a program can be converted to, by the word that people type."""
+"""Target forms by command line name."""
 
 
 def convert(
@@ -28,12 +28,12 @@ def convert(
         file: the part program.
         target: a key of ``TARGETS``.
         out: the file to write.
-        reading: what the part program does not say itself.
+        reading: settings that the part program does not contain.
         decimals: of lengths.
         inch: whether to write inches.
 
     Returns:
-        What was found; the file is written when none of it is an error.
+        The diagnostics; the file is written only if none is an error.
 
     Raises:
         ValueError: the target or the suffix of the file is not known.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Grammar: an EBNF grammar of record, and the parser that lark makes of it. This is the package's door to lark.
+"""Grammar: an EBNF grammar of record and its lark parser. The package creates lark parsers only here.
 
-Enters: a grammar file, and the text of one line. Leaves: the tree of the line, or what lark met and what it would have
-accepted in its place.
+Enters: a grammar file, and the text of one line. Leaves: the parse tree of the line, or lark's report of the unexpected
+input and what it expected.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Grammar:
         file: the grammar, in the EBNF of lark.
         start: the rule of a whole line.
         reads: what cannot be read without lark, in words.
-        empty_parts: whether a part that may be missing leaves None in the tree.
+        empty_parts: whether a missing optional part leaves None in the tree.
     """
 
     file: Path
@@ -33,7 +33,7 @@ class Grammar:
     empty_parts: bool = False
 
     def parse(self, text: str) -> Tree[Token] | UnexpectedInput:
-        """The tree of one line, or what stands where the line does not go on.
+        """Parse one line; return its tree, or the unexpected input.
 
         Args:
             text: the line, without its end.
@@ -52,7 +52,7 @@ class Grammar:
 
 @functools.cache
 def parser_of(grammar: Grammar) -> Lark:
-    """The parser of a grammar; it is made once.
+    """The parser of a grammar, cached.
 
     Raises:
         ImportError: lark is not installed.

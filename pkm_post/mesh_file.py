@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Mesh file: a solid in an STL file, binary or ASCII, as a mesh in mm, or what is wrong with the file.
+"""Mesh file: read a solid from a binary or ASCII STL file as a mesh in mm, or report the faults of the file.
 
-Other files are read by readers that rooms above register.
+Higher-level packages register readers for other formats.
 
 Binary: 80 bytes, the number of triangles, 50 bytes for each; ASCII: ``solid``, then facets of an outer loop of three
-vertices, then ``endsolid``, which may come again. STL states no unit; mm are taken, and the work frame {C}. Normals and
-attributes are not read: the order of the corners says which side is outside. [STL1988]
+vertices, then ``endsolid``; several solids may follow each other. STL states no unit; mm in the work frame {C} are
+assumed. Normals and attributes are ignored: the vertex order defines the outside. [STL1988]
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ _FACET = (
     *(("vertex", None, None, None) * 3),
     *("endloop", "endfacet"),
 )
-"""The words of a facet, None for numbers."""
+"""Tokens of a facet, None for numbers."""
 _NAME_LINE = re.compile(rb"^\s*(?:end)?solid\b[^\n]*$", re.IGNORECASE | re.MULTILINE)
 _FARTHEST = 1e6
-"""mm: coordinates beyond are a slip."""
+"""mm: coordinates beyond this are rejected as implausible."""
 
 Result = tuple[Mesh | None, tuple[Diagnostic, ...]]
 READERS: dict[str, Callable[[Path, str], Result]] = {}
-"""Readers of other files by suffix. Where FreeCAD runs, ``freecad_app.step_file`` adds those of STEP."""
+"""Readers of other formats by suffix. Inside FreeCAD, ``freecad_app.step_file`` adds STEP."""
 
 
 def read_mesh(file: str | Path) -> Result:
-    """Read the solid in a file.
+    """Read the solid of a file.
 
     Args:
-        file: an STL file, its coordinates in mm in the work frame {C}; where FreeCAD runs, a STEP file as well.
+        file: an STL file with coordinates in mm in the work frame {C}; inside FreeCAD, a STEP file as well.
     """
     path = Path(file)
     name = os.fsencode(path).decode("utf-8", "replace")
@@ -63,7 +63,7 @@ def read_mesh(file: str | Path) -> Result:
 
 
 def decode(content: bytes, name: str) -> Result:
-    """The solid in the bytes of a file."""
+    """Decode the solid from the bytes of a file."""
     count = int.from_bytes(content[80:_HEADER], "little")
     if len(content) >= _HEADER and len(content) == _HEADER + count * _RECORD.itemsize:
         triangles = np.frombuffer(content, _RECORD, count, _HEADER)["corners"].astype(np.float64)
@@ -79,7 +79,7 @@ def decode(content: bytes, name: str) -> Result:
 
 
 def mesh_of_triangles(triangles: Array, name: str) -> Result:
-    """Triangles (T, 3, 3) of a file as a mesh; there have to be some, at places that are possible."""
+    """Build a mesh from triangles (T, 3, 3); there must be at least one, with plausible coordinates."""
     if not len(triangles):
         return None, (Diagnostic("K138", Place(name), "no triangles"),)
     if not np.all(np.abs(triangles) <= _FARTHEST):
@@ -89,12 +89,12 @@ def mesh_of_triangles(triangles: Array, name: str) -> Result:
 
 
 def path_name(name: str) -> str:
-    """How messages and certificates call a file: without its folder, the same wherever it lies."""
+    """File name for messages and certificates: without its folder, so independent of its location."""
     return Path(name).name
 
 
 def _ascii(content: bytes) -> tuple[Array, int, str]:
-    """Triangles of the ASCII form; or the line of what does not fit, and what was found."""
+    """Triangles of ASCII STL; on a mismatch its line, and what was found."""
     words = np.array(_NAME_LINE.sub(b"", content).lower().split())
     facets, rest = divmod(len(words), len(_FACET))
     table = words[: facets * len(_FACET)].reshape(facets, len(_FACET))
@@ -119,7 +119,7 @@ _NONE = np.empty((0, 3, 3))
 
 
 def _where(content: bytes, number: int, expected: str) -> tuple[int, str]:
-    """The line of a word by its number, and what was found there."""
+    """The line of the token with a number, and what was found there."""
     before = 0
     for line, text in enumerate(content.split(b"\n"), start=1):
         words = _NAME_LINE.sub(b"", text).split()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program end: how a program leaves the machine.
+"""Program end: check the state in which a program leaves the machine.
 
-A program in {C} enters; warnings leave, of a spindle that goes on turning and of a tool that stays low. Programs that
-were cut short end so, and so do programs that leave both to the operator. Lengths in mm.
+Enters: a program in {C}. Leaves: warnings about a spindle left running and a tool left low. Truncated programs end like
+this, and so do programs that leave both to the operator. Lengths in mm.
 
-The level that the tool has to be at again is that of the last retract: the last rapid move that rises along the tool
-axis, or the first move, which comes from outside.
+The tool must return to the level of the last retract: the last rapid move that rises along the tool axis, or else the
+first move, the approach.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from pkm_post.geometry import dot
 from pkm_post.model import Diagnostic, EventKind, Kind, Program
 
 _HEIGHT = 1e-3
-"""mm; smaller differences of height come from rounding."""
+"""mm; smaller height differences are rounding errors."""
 _SAME_AXIS = 1 - 1e-9
 
 
 def end_warnings(program: Program) -> tuple[Diagnostic, ...]:
-    """What is to be said of the end of a program of at least one row."""
+    """Warnings about the end of a program of at least one row."""
     return (*_turning(program), *_low(program))
 
 
@@ -34,7 +34,7 @@ def _turning(program: Program) -> Iterator[Diagnostic]:
 
 
 def _low(program: Program) -> Iterator[Diagnostic]:
-    """A tool that ends below its last retract, seen along the tool axis it ends with."""
+    """Warn of a tool that ends below its last retract, measured along the final tool axis."""
     axis, last = program.tool_axis[-1], len(program) - 1
     retract = _last_retract(program)
     below = float(dot(program.position[retract] - program.position[-1], axis))
@@ -47,7 +47,7 @@ def _low(program: Program) -> Iterator[Diagnostic]:
 
 
 def _last_retract(program: Program) -> int:
-    """The row of the last rapid move that rises along its tool axis; else the first row."""
+    """The row of the last rapid move that rises along its tool axis, or else the first row."""
     rapid = np.flatnonzero(program.kind[1:] == Kind.RAPID) + 1
     rise = dot(program.position[rapid] - program.position[rapid - 1], program.tool_axis[rapid])
     rising = rapid[rise > _HEIGHT]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sources: a file with a part program becomes a program, read by what its name ends with.
+"""Sources: read a part program file by its suffix.
 
-A path and what the user says of the tools enter; a ``Program`` or what is wrong with the file leaves. G-code seldom
-says what its tools measure. That is no fault until cutter compensation asks for a diameter.
+Enters: a path and the tool data of the user. Leaves: a ``Program`` or the faults of the file. G-code rarely contains
+tool dimensions. That is a fault only if cutter compensation needs a diameter.
 """
 
 from __future__ import annotations
@@ -37,21 +37,20 @@ Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
 @dataclass(frozen=True)
 class Reading:
-    """What the user says of a file.
+    """User settings for reading a file.
 
     Attributes:
-        axis_words: how G-code says the tool axis, a key of ``AXIS_WORDS``.
-        tools: by number, the cutters the file was made for: their diameters and corner radii go before those that it
-            gives. Number 0 is the tool before any is called.
-        unit: of length, a key of ``cldata.UNITS``: of CL data whatever it says itself, of G-code before G20 or G21.
-        contour_data: one of ``cldata.CONTOUR_DATA``, what the points of CL data under CUTCOM are.
-        wear: by number, by how many mm in radius a tool is larger than CL data with CUTCOM was made for.
-        cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; by its words if None.
-        cycle_values: what the numbers of CYCLE statements are where they have no words, out of
-            ``cldata.CYCLE_VALUES``.
-        dwell_unit: of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``.
+        axis_words: tool axis notation of G-code, a key of ``AXIS_WORDS``.
+        tools: by number, the cutters the file was made for; their diameters and corner radii override those in the
+            file. Number 0 is the tool before the first tool call.
+        unit: length unit, a key of ``cldata.UNITS``: overrides that of CL data; for G-code applies before G20 or G21.
+        contour_data: one of ``cldata.CONTOUR_DATA``: meaning of the points of CL data under CUTCOM.
+        wear: by number, mm by which the tool radius exceeds the one that CL data with CUTCOM was made for.
+        cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; detected if None.
+        cycle_values: meaning of the numbers of CYCLE statements without words, out of ``cldata.CYCLE_VALUES``.
+        dwell_unit: unit of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
-        allow_open_end: whether a file may do without an end, such as M2 or FINI.
+        allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
     """
 
     axis_words: str = "none"
@@ -70,7 +69,7 @@ AS_WRITTEN = Reading()
 
 
 def is_part_program(file: Path) -> bool:
-    """Whether the name of a file ends like that of a part program."""
+    """Whether a file has the suffix of a part program."""
     return file.suffix.lower() in SUFFIXES
 
 
@@ -78,8 +77,8 @@ def read_part_program(file: Path, reading: Reading) -> Result:
     """Read a file.
 
     Args:
-        file: its name ends with a known suffix.
-        reading: what the file does not say itself.
+        file: with a known suffix.
+        reading: settings that the file does not contain.
 
     Raises:
         ValueError: the suffix is not known.
@@ -100,9 +99,9 @@ def read_content(content: bytes, name: str, reading: Reading) -> Result:
     """Read the content of a file.
 
     Args:
-        content: all of it.
-        name: of the file, as Unicode; ends with a known suffix.
-        reading: what the file does not say itself.
+        content: of the whole file.
+        name: file name in Unicode, with a known suffix.
+        reading: settings that the file does not contain.
 
     Raises:
         ValueError: the suffix is not known.
@@ -118,12 +117,12 @@ def _check_suffix(file: Path) -> None:
 
 
 def _storable(file: Path) -> str:
-    """The name of a file as Unicode, which results keep; bytes that are none become marks."""
+    """File name as Unicode for storage in results; undecodable bytes are replaced."""
     return os.fsencode(file).decode("utf-8", "replace")
 
 
 def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
-    # A diameter or a length that is no number shows where it was used.
+    # NaN as diameter or length is reported where it is used.
     unknown = Tool(0, "", math.nan, 0.0, math.nan, corner_known=False)
     numbers = {*reading.tools, *reading.lengths}
     tools = {
@@ -173,4 +172,4 @@ SUFFIXES: dict[str, Callable[[bytes, str, Reading], Result]] = {
     **dict.fromkeys((".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".eia", ".iso"), _read_gcode),
     **dict.fromkeys((".cls", ".clsf", ".ncl", ".cl", ".apt", ".aptsource", ".cldata"), _read_cldata),
 }
-"""By the end of a file's name, in small letters, what reads it."""
+"""Readers by file suffix in lower case."""
