@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""CL data: APT cutter locations, in the dialects of CAM systems, become a ``Program``."""
+"""CL data: read APT cutter location files, in the dialects of CAM systems, into a ``Program``."""
 
 from pkm_post.cldata.dialects import DIALECTS, Dialect, detect
 from pkm_post.cldata.options import CONTOUR_DATA, CYCLE_VALUES, UNITS, ReadOptions

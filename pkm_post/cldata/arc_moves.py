@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arc moves: arcs that bring their own end, ARCDAT with ARCMOV, GOCLW and GOCCLW, CW and CCW, HELICAL.
+"""Arc moves: arcs with their own end point: ARCDAT with ARCMOV, GOCLW and GOCCLW, CW and CCW, HELICAL.
 
-A statement enters; an arc and the point it ends at leave, as written. Clockwise is seen against the axis that is
-written (ARCMOV), or against the tool axis, from the holder to the tip (the others).
+Enters: a statement. Leaves: an arc and its end point, as written. Clockwise is as seen against the written axis
+(ARCMOV), or against the tool axis, from the holder to the tip (the others).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _WAYS = {"CLW": -1.0, "CCLW": 1.0, "GOCLW": -1.0, "GOCCLW": 1.0, "CW": -1.0, "CC
 
 
 def arcslp(course: Course, row: int, statement: Statement) -> None:
-    """ARCSLP/depth directly before ARCDAT: the arc rises or falls by the depth; all else is refused."""
+    """ARCSLP/depth directly before ARCDAT: the arc rises or falls by the depth; other uses are refused."""
     after = course.statements.word(row + 1) if row + 1 < len(course.statements) else ""
     if len(statement.values) != 1 or after != "ARCDAT":
         course.tell("L401", row, f"ARCSLP/{shown(statement)}, other than a depth before ARCDAT")
@@ -43,13 +43,13 @@ def arcdat(course: Course, row: int, statement: Statement) -> None:
 
 
 def tell_unused(course: Course) -> None:
-    """Tell an ARCDAT without ARCMOV."""
+    """Report an ARCDAT without ARCMOV."""
     if course.arc_data is not None:
         course.tell("L414", course.arc_data.row, "ARCDAT")
 
 
 def _counted(course: Course, row: int, statement: Statement, *counts: int) -> list[float]:
-    """The values of a statement; none, which is told, if there are not as many as it needs."""
+    """The values of a statement; empty, with a fault, if their number is wrong."""
     values = statement.values
     if len(values) in counts:
         return values
@@ -58,7 +58,7 @@ def _counted(course: Course, row: int, statement: Statement, *counts: int) -> li
 
 
 def arcmov(course: Course, row: int, statement: Statement) -> None:
-    """ARCMOV/CLW or CCLW,x,y,z,angle: along the circle of ARCDAT to the point, by so many degrees."""
+    """ARCMOV/CLW or CCLW,x,y,z,angle: along the circle of ARCDAT to the point, by an angle in degrees."""
     data, course.arc_data = course.arc_data, None
     match statement.items:
         case ["CLW" | "CCLW" as word, float(x), float(y), float(z), float(angle)] if data is not None:
@@ -71,7 +71,7 @@ def arcmov(course: Course, row: int, statement: Statement) -> None:
 
 
 def _arcmov(course: Course, row: int, arc: Arc, rise: float, start: Array, end: Array, angle: float) -> None:
-    """Take an arc over whose end, angle and rise agree."""
+    """Add an arc if its end point, angle and rise are consistent."""
     size = float(norm(np.array(arc.axis)))
     if size < NO_DIRECTION:
         course.tell("L408", row, "an axis without direction")
@@ -136,6 +136,6 @@ def helical(course: Course, row: int, statement: Statement) -> None:
 
 
 def finish(course: Course, row: int, arc: Arc, end: Array) -> None:
-    """Note an arc with its end."""
+    """Record an arc with its end point."""
     course.arcs.append((row, arc))
     course.points.append((row, Point(tuple(end.tolist()))))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arcs that end at the next point: CIRCLE and CYLNDR with 6, 7 or 11 values and TIMES, in comments too, and MOVARC.
+"""Arcs that end at the next point: CIRCLE and CYLNDR with 6, 7 or 11 values and TIMES, also in comments, and MOVARC.
 
-A statement enters; an arc leaves, as written. Which forms there are is told in docs/cl-data.md.
+Enters: a statement. Leaves: an arc, as written. docs/cl-data.md lists the forms.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from pkm_post.model.program import Array
 
 MOST_TURNS = 10000
 GOOD_FIT = 5e-4
-"""mm by which the radii of start and end may differ: files have four decimals and more."""
+"""Tolerated difference of start and end radius, mm: files have at least four decimals."""
 BAD_FIT = 0.05
-"""mm by which they may differ at most."""
+"""Upper limit of this difference, mm."""
 NO_DIRECTION = 1e-9
-"""Length below which a vector has none."""
+"""Length below which a vector has no direction."""
 CLOSE = 1e-3
-"""mm below which two points of a circle are one: one digit more than the rounding of files with four decimals."""
+"""mm below which two points of a circle coincide: one digit above the rounding of files with four decimals."""
 
 _MOVARC = {"CENTER": 3, "AXIS": 3, "RADIUS": 1, "ANGLE": 1}
 _COUNTS = {"CIRCLE": (6, 7, 11), "CYLNDR": (7,)}
 _SQUARE_ON = 1e-6
-"""Cosine below which a direction does not say which way round a circle is meant."""
+"""Cosine below which a direction does not determine the sense of rotation."""
 
 
 def circle(course: Course, row: int, statement: Statement) -> None:
-    """CIRCLE/x,y,z,i,j,k[,r[,t,f,d,e]][,TIMES,n], CYLNDR/x,y,z,i,j,k,r: the next GOTO is its end."""
+    """CIRCLE/x,y,z,i,j,k[,r[,t,f,d,e]][,TIMES,n], CYLNDR/x,y,z,i,j,k,r: the next GOTO is its end point."""
     items = list(statement.items)
     turns = 0.0
     if len(items) > 2 and items[-2] == "TIMES" and isinstance(items[-1], float):
@@ -53,7 +53,7 @@ def circle(course: Course, row: int, statement: Statement) -> None:
 
 
 def commented(course: Course, row: int, statement: Statement) -> None:
-    """$$ CIRCLE/x,y,z,i,j,k,r: the points behind it lie on this circle, as far as they do."""
+    """$$ CIRCLE/x,y,z,i,j,k,r: the following points may lie on this circle."""
     values = statement.numbers
     if course.dialect.pted and len(values) == 7 and math.hypot(*values[3:6]) > NO_DIRECTION and values[6] > 0:
         course.circles.append((row, Arc(tuple(values[:3]), tuple(values[3:6]), values[6], shorter=True)))
@@ -74,7 +74,7 @@ def movarc(course: Course, row: int, statement: Statement) -> None:
 
 
 def _by_word(statement: Statement) -> dict[str, Vector] | None:
-    """The values by the word before them; without words in the order centre, axis, radius."""
+    """The values by their preceding word; without words in the order centre, axis, radius."""
     numbers = statement.numbers
     if statement.items and isinstance(statement.items[0], float) and len(numbers) in (7, 8):
         expected = [*numbers[:7], "ANGLE", numbers[7]] if len(numbers) == 8 else numbers
@@ -96,7 +96,7 @@ def _by_word(statement: Statement) -> dict[str, Vector] | None:
 
 
 def way_of(tangent: Array, axis: Array, radius: Array) -> float:
-    """How a direction at the end of a radius turns about the axis: 1 right-handed, -1 left-handed, 0 neither.
+    """Sense of rotation about the axis of a direction at a point: 1 right-handed, -1 left-handed, 0 neither.
 
     Args:
         tangent: (3,) the direction, of any length.

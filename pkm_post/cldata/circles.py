@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Circles: which points lie on an arc.
+"""Circles: assign points to arcs.
 
-The arcs of the course and the columns of points enter; each point that an arc leads to leaves, with its arc. Most arcs
-have one, the next point. Points that follow their GOTO without a word lie on the same circle, and so do
-points behind a circle in a comment, as far as they do; from one to the next it is then less than half a turn.
+Enters: the arcs of the course and the columns of points. Leaves: each arc end point with its arc. Most arcs have one,
+the next point. Points that follow their GOTO without a major word lie on the same circle, and so do points that fit a
+preceding circle in a comment; each step is then less than half a turn.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from pkm_post.geometry.vectors import dot, norm
 from pkm_post.model.program import Array
 
 ON_CIRCLE = 2e-3
-"""mm within which a point lies on a circle of a comment: the files that have them are written to 4 decimals."""
+"""Distance within which a point lies on a circle of a comment, mm: such files have 4 decimals."""
 _HALF_TURN = np.pi * (1 - 1e-3)
-"""rad from which on it is not known which way round a step of an arc goes."""
+"""rad above which the sense of rotation of an arc step is ambiguous."""
 
 
 @dataclass(frozen=True)
 class Ended:
-    """An arc, the row that told it and the point it ends at."""
+    """An arc, its statement row and its end point."""
 
     row: int
     end: int
@@ -38,11 +38,11 @@ class Ended:
 
 
 Carry = Callable[[list[Ended]], tuple[Array, Array, Array]]
-"""Gives centres, unit axes and radii of arcs in mm and in the work frame."""
+"""Returns centres, unit axes and radii of arcs in mm and in the work frame."""
 
 
 def with_ends(course: Course, points: Points, carry: Carry) -> list[Ended]:
-    """The arcs that have an end and a start, by end; tells the others."""
+    """The arcs with start and end points, by end point; report the others."""
     rows = np.array([row for row, _ in course.arcs], dtype=np.int64)
     ends = np.searchsorted(points.row, rows, "left")
     further = without_word(course.statements)[points.row]
@@ -63,7 +63,7 @@ def with_ends(course: Course, points: Points, carry: Carry) -> list[Ended]:
 
 
 def _all_points(course: Course, first: Ended, further: Array) -> list[Ended]:
-    """An arc once for each of its points: the first and those that follow without a word."""
+    """Repeat an arc for each of its points: the first and those that follow without a major word."""
     last = first.end + 1
     while last < len(further) and further[last]:
         last += 1
@@ -76,7 +76,7 @@ def _all_points(course: Course, first: Ended, further: Array) -> list[Ended]:
 
 
 def _checked_steps(course: Course, points: Points, steps: list[Ended], carry: Carry) -> list[Ended]:
-    """Steps from point to point that are arcs, not rests; tells those that may go either way round."""
+    """The steps that are arcs, not repeated points; report those with an ambiguous sense of rotation."""
     if not steps:
         return []
     end = np.array([one.end for one in steps])
@@ -85,12 +85,12 @@ def _checked_steps(course: Course, points: Points, steps: list[Ended], carry: Ca
     angle = np.minimum(sweep, 2 * np.pi - sweep)
     for index in np.flatnonzero(angle > _HALF_TURN).tolist():
         course.tell("L408", steps[index].row, "points on the circle are half a turn apart")
-    # A point that is repeated would be a full turn as an arc; as a line it is none.
+    # A repeated point would be a full turn as an arc; as a line it has zero length.
     return [one for one, length in zip(steps, (angle * radius).tolist(), strict=True) if not length < CLOSE]
 
 
 def _commented(course: Course, points: Points, taken: set[int], carry: Carry) -> list[Ended]:
-    """Points behind circles in comments that lie on them, each reached from one that does as well."""
+    """Points after circles in comments whose start and end both lie on the circle."""
     found: list[Ended] = []
     noted = (course.arcs, course.circles, course.cycles, course.frames, course.scales)
     stops = sorted({*course.rapids, *(note[0] for notes in noted for note in notes), len(course.statements)})
@@ -103,11 +103,11 @@ def _commented(course: Course, points: Points, taken: set[int], carry: Carry) ->
 
 
 def _on_circle(first: Ended, last: int, points: Points, carry: Carry) -> list[Ended]:
-    """Arcs to consecutive points that lie on a circle, up to the first that does not."""
+    """Arcs to consecutive points on a circle, up to the first point off it."""
     centre, axis, radius = carry([first])
     from_centre = points.position[first.end - 1 : last] - centre
     off = np.hypot(norm(across(from_centre, axis)) - radius, dot(from_centre - from_centre[1], axis))
     on = (off < ON_CIRCLE) & ~points.start[first.end - 1 : last]
     count = int(np.argmin(np.append(on[1:], False)))
-    # A tool that was not on the circle comes to it on a line.
+    # A tool off the circle approaches it on a line.
     return [Ended(first.row, first.end + step, first.arc) for step in range(0 if on[0] else 1, count)]

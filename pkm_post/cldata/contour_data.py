@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contour data: whether the points under CUTCOM are the contour of the part or the centre of the tool.
+"""Contour data: decide whether the points under CUTCOM are the part contour or the tool centre.
 
-The CUTCOMs of a course, its points and its arcs enter; how far each CUTCOM offsets the path leaves, in mm, and in
-words how the points were taken and why. Offset beside a contour is the radius of the tool and its wear; beside the
-centre, wear alone. The option decides, else what the file says, else in some dialects its arcs; else the file is
-refused.
+Enters: the CUTCOMs of a course, its points and its arcs. Leaves: the path offset of each CUTCOM, in mm, and an
+explanation of how the points were interpreted. A contour is offset by tool radius plus wear, a tool centre path by wear
+only. The option decides, else a statement in the file, else in some dialects the arcs; else the file is refused.
 
-An arc that bends towards the tool and is tighter than its radius cannot be followed beside it: no control takes such a
-contour. An arc that bends away and is tighter cannot be the way of a centre round a part. A tool has one offset in a
-program, so what its arcs show of one contour holds for all that it cuts.
+An arc that bends towards the tool and is tighter than its radius cannot be machined as a contour: no control accepts
+it. An arc that bends away and is tighter cannot be the centre path around a part. A tool has one offset in a program,
+so evidence from the arcs of one contour applies to all its contours.
 """
 
 from __future__ import annotations
@@ -27,18 +26,18 @@ from pkm_post.model.program import Array
 CENTRE, CONTOUR = "centre", "contour"
 _IN_WORDS = {CENTRE: "the centre of the tool", CONTOUR: "the contour of the part"}
 _TIGHTER = 0.01
-"""mm by which a radius has to be below that of the tool to count: arcs of the radius itself show nothing."""
+"""mm by which an arc radius must be below the tool radius to count: arcs of equal radius prove nothing."""
 
 
 @dataclass(frozen=True)
 class Offset:
-    """How rows behind a statement are compensated.
+    """Compensation of the rows after a statement.
 
     Attributes:
         row: the statement.
-        offset: mm to the left, 0 for not at all.
-        plane: the coordinate that the plane is normal to.
-        smaller: the points are the centre of a tool that was larger.
+        offset: mm to the left, 0 for none.
+        plane: the coordinate normal to the plane.
+        smaller: the points are the centre path of a larger tool.
     """
 
     row: int
@@ -49,7 +48,7 @@ class Offset:
 
 @dataclass(frozen=True)
 class _Taken:
-    """What the points of a CUTCOM were taken for, empty if that is not known, by what, and whether that was guessed."""
+    """Interpretation of the points of a CUTCOM, empty if unknown, its source, and whether it was guessed."""
 
     points: str = ""
     evidence: str = ""
@@ -57,25 +56,25 @@ class _Taken:
 
 
 _Cutter = tuple[int, float]
-"""Number and radius of a tool."""
+"""Tool number and radius."""
 
 
 @dataclass
 class _Tight:
-    """The arcs of one cutter that are tighter than it: their statements and radii."""
+    """The arcs of one cutter that are tighter than its radius: their statements and radii."""
 
     towards: list[tuple[int, float]] = field(default_factory=list)
     away: list[tuple[int, float]] = field(default_factory=list)
 
 
 def contour_offsets(course: Course, points: Points, frames: Array, arcs: Fitted) -> tuple[list[Offset], list[str]]:
-    """What each CUTCOM comes to, and how its points were taken, in words.
+    """The offset of each CUTCOM, and a description of how its points were interpreted.
 
     Args:
-        course: has the CUTCOMs; gets the faults.
-        points: resolved.
-        frames: (P, 4, 4) or (1, 4, 4) what took them to the work frame.
-        arcs: with their ends.
+        course: has the CUTCOMs; collects the faults.
+        points: resolved points.
+        frames: (P, 4, 4) or (1, 4, 4) transforms of the points to the work frame.
+        arcs: with their end points.
     """
     _tell_unused_wear(course)
     normal = _normals(course, points, frames)
@@ -93,7 +92,7 @@ def contour_offsets(course: Course, points: Points, frames: Array, arcs: Fitted)
 
 
 def _normals(course: Course, points: Points, frames: Array) -> Array:
-    """Normals of the planes of compensation, (C, 3): of those that are named, else the tool axis at the next point."""
+    """Normals of the compensation planes, (C, 3): of the named plane, else the tool axis at the next point."""
     nexts = np.searchsorted(points.row, [cutcom.row for cutcom in course.cutcoms])
     nexts = np.minimum(nexts, len(points.row) - 1)
     normal = points.axis[nexts]
@@ -105,7 +104,7 @@ def _normals(course: Course, points: Points, frames: Array) -> Array:
 
 
 def _tight_arcs(course: Course, points: Points, arcs: Fitted, normal: Array) -> dict[_Cutter, _Tight]:
-    """By cutter, the arcs under its CUTCOMs that are tighter than it."""
+    """By cutter, the arcs under its CUTCOMs that are tighter than its radius."""
     row = points.row[arcs.point]
     owner = in_force(row, [cutcom.row for cutcom in course.cutcoms])
     mine = np.flatnonzero(owner >= 0)
@@ -126,7 +125,7 @@ def _cutter(cutcom: Cutcom) -> _Cutter:
 
 
 def _shown_by_arcs(course: Course, tight: dict[_Cutter, _Tight]) -> dict[_Cutter, _Taken]:
-    """By cutter what its arcs show, where they do in this dialect."""
+    """By cutter, the evidence of its arcs, if conclusive in this dialect."""
     if not course.dialect.tight_arcs_are_centre:
         return {}
     return {
@@ -137,7 +136,7 @@ def _shown_by_arcs(course: Course, tight: dict[_Cutter, _Tight]) -> dict[_Cutter
 
 
 def _taken(course: Course, cutcom: Cutcom, shown: dict[_Cutter, _Taken]) -> _Taken:
-    """What the points of a CUTCOM are."""
+    """Interpretation of the points of a CUTCOM."""
     if not cutcom.side:
         return _Taken()
     if course.options.contour_data is not None:
@@ -148,7 +147,7 @@ def _taken(course: Course, cutcom: Cutcom, shown: dict[_Cutter, _Taken]) -> _Tak
 
 
 def _distance(course: Course, cutcom: Cutcom, how: _Taken) -> float:
-    """How far the tool goes from the points, to the side of the CUTCOM, mm."""
+    """Offset of the tool from the points, to the side of the CUTCOM, mm."""
     if how.points == CONTOUR and not cutcom.radius:
         course.tell("L403", cutcom.row, "compensation for a cutter of unknown diameter")
     radius = cutcom.radius if how.points == CONTOUR else 0.0
@@ -156,7 +155,7 @@ def _distance(course: Course, cutcom: Cutcom, how: _Taken) -> float:
 
 
 def _told(course: Course, taken: list[_Taken]) -> list[str]:
-    """How points were taken, in words; what was guessed is a warning as well."""
+    """Describe how points were interpreted; a guess also gives a warning."""
     rows: dict[_Taken, list[int]] = {}
     for cutcom, how in zip(course.cutcoms, taken, strict=True):
         if how.points:
@@ -171,13 +170,13 @@ def _told(course: Course, taken: list[_Taken]) -> list[str]:
 
 
 def _lines(course: Course, rows: list[int]) -> str:
-    """CUTCOMs by the line of the first one."""
+    """Name CUTCOMs by the line of the first one."""
     others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
     return f"CUTCOM in line {course.statements.place(rows[0])[0]}{others}"
 
 
 def _tell_undecided(course: Course, taken: list[_Taken], tight: dict[_Cutter, _Tight]) -> None:
-    """Tell of each cutter whose CUTCOMs can be read in two ways, with what its arcs show."""
+    """Report each cutter with ambiguous CUTCOMs, with the evidence of its arcs."""
     by_cutter: dict[_Cutter, list[Cutcom]] = {}
     for cutcom, how in zip(course.cutcoms, taken, strict=True):
         if cutcom.side and not how.points:
@@ -200,7 +199,7 @@ def _shown(course: Course, arcs: list[tuple[int, float]], how: str, radius: floa
 
 
 def _tell_unused_wear(course: Course) -> None:
-    """Tell wear of tools that are never compensated: it would change nothing."""
+    """Report wear of tools without compensation: it has no effect."""
     used = {cutcom.tool for cutcom in course.cutcoms if cutcom.side}
     for number in sorted(set(course.options.wear) - used):
         known = ", ".join(f"T{tool}" for tool in sorted(used)) or "no tool"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Course: what the statements of a file set, in the order of the file, while they are read one after the other.
+"""Course: the state that the statements of a file set, in file order, during sequential reading.
 
-What a statement changes is noted with the row of the statement; which motions it concerns is found afterwards
-for all at once. Lengths are in mm and times in s from here on; points stay as written until then.
+Each change is recorded with its statement row; the affected motions are found later, all at once. Lengths are in mm and
+times in s from here on; points stay as written until then.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Vector = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Feed:
-    """A feed: mm/s, or one over seconds if it is inverse time."""
+    """A feed: mm/s, or 1/s for inverse time."""
 
     value: float
     inverse: bool = False
@@ -36,12 +36,12 @@ class Arc:
     Attributes:
         centre: as written.
         axis: as written.
-        radius: as written, NaN if it is not given.
-        angle: rad that it turns, NaN if that is not given.
-        turns: full turns that it makes before the rest.
-        way: 1 if it turns right-handed about its axis, -1 if left-handed, 0 if that is not given.
-        seen_from_tool: the way is about the tool axis, whichever way the axis of the arc points.
-        shorter: it is less than half a turn.
+        radius: as written, NaN if not given.
+        angle: sweep in rad, NaN if not given.
+        turns: full turns before the remaining sweep.
+        way: sense of rotation: 1 right-handed about its axis, -1 left-handed, 0 if not given.
+        seen_from_tool: the sense is about the tool axis, regardless of the direction of the arc axis.
+        shorter: the arc is less than half a turn.
     """
 
     centre: Vector
@@ -56,7 +56,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class ArcData:
-    """A circle that waits for its motion, its row, and how far the tool rises or falls on it, as written."""
+    """A circle pending its motion, its row, and the rise or fall of the tool on it, as written."""
 
     row: int
     arc: Arc
@@ -73,12 +73,12 @@ class Plane:
 
 @dataclass(frozen=True)
 class Point:
-    """A point that no plain GOTO gives.
+    """A point not given by a plain GOTO.
 
     Attributes:
         position: as written.
-        axis: as written, None if the point has none.
-        start: it is where the tool is, not where it goes (FROM).
+        axis: as written, None if absent.
+        start: it is the current tool position, not a target (FROM).
     """
 
     position: Vector
@@ -88,7 +88,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Said:
-    """What the file says of its points under CUTCOM: "centre" or "contour", in its own words, and in which row."""
+    """Statement of the file about its points under CUTCOM: "centre" or "contour", its wording, and its row."""
 
     points: str
     words: str
@@ -102,10 +102,10 @@ class Cutcom:
     Attributes:
         row: its statement.
         side: 1 for LEFT, -1 for RIGHT, 0 for OFF.
-        plane: the coordinate that the plane it names is normal to; None if it names none.
-        tool: number of the tool.
-        radius: of the tool, mm; 0 where it is not known.
-        said: what the points are, None if the file does not say so.
+        plane: the coordinate normal to the named plane; None if no plane is named.
+        tool: tool number.
+        radius: tool radius, mm; 0 if unknown.
+        said: stated meaning of the points, None if the file states none.
     """
 
     row: int
@@ -118,10 +118,10 @@ class Cutcom:
 
 @dataclass
 class Course:
-    """State while reading, and what was noted, each with the row of its statement.
+    """State during reading, and recorded changes, each with its statement row.
 
-    ``goto_rows`` are the rows of plain GOTO statements, ``gotos_before`` is for each row their number before it;
-    ``file_unit`` is what the file says of its lengths.
+    ``goto_rows`` are the rows of plain GOTO statements, ``gotos_before`` is their count before each row; ``file_unit``
+    is the length unit stated in the file.
     """
 
     statements: Statements
@@ -185,10 +185,10 @@ class Course:
         self.scales.append((-1, self.scale))
 
     def tell(self, code: str, row: int, found: str) -> None:
-        """Note a fault of a statement."""
+        """Report a fault of a statement."""
         self.faults.add(code, self.statements.place(row), found)
 
     def set_feed(self, row: int, feed: Feed) -> None:
-        """From here on this feed."""
+        """Set the feed from here on."""
         self.feed = feed
         self.feeds.append((row, feed))

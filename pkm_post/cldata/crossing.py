@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Crossing: the way of the tool from where it is to above the next hole, in rapid moves.
+"""Crossing: the rapid moves of the tool from its position to above the next hole.
 
-Places with their tool axes enter, two and two, mm and the work frame; the places leave between which the tool moves
-sideways. It rises first, crosses, and goes down last: a hole is left along the axis it has, and entered along that of
+Enters: pairs of positions with tool axes, mm and the work frame. Leaves: start and end points of the lateral move. The
+tool retracts first, traverses, and descends last: it leaves a hole along its axis, and enters the next along that of
 the next.
 """
 
@@ -14,26 +14,26 @@ from pkm_post.geometry.vectors import dot
 from pkm_post.model.program import Array
 
 LEAST_COSINE = 0.5
-"""Between the axes of two holes: the tool rises up to twice as far as the next hole asks for, and no farther."""
+"""Cosine between the axes of two holes: it limits the retract to twice the height that the next hole requires."""
 
 
 def crossing(here: Array, here_axis: Array, top: Array, top_axis: Array) -> tuple[Array, Array]:
-    """Where the tool leaves its place sideways, and where it arrives above the next hole.
+    """Start point of the lateral move, and its end point above the next hole.
 
     leave  = here + max(0, (top - here).k1 / k0.k1) k0
     arrive = top  + max(0, (here - top).k0 / k0.k1) k1
 
-    Both lie on or above the plane through ``here`` across k0 and the plane through ``top`` across k1, hence so does
-    the line between them: no move sideways passes below what the hole behind or the hole ahead needs.
+    Both lie on or above the plane through ``here`` normal to k0 and the plane through ``top`` normal to k1, hence so
+    does the line between them: no lateral move passes below the height that either hole requires.
 
     Args:
-        here: (N, 3) where the tool is, high enough for the hole behind.
+        here: (N, 3) tool position, high enough for the previous hole.
         here_axis: (N, 3) its unit axes there, k0.
-        top: (N, 3) the lowest places above the next holes in which the tool may arrive.
+        top: (N, 3) lowest permitted positions above the next holes.
         top_axis: (N, 3) its unit axes there, k1; k0.k1 is at least ``LEAST_COSINE``.
 
     Raises:
-        ValueError: some axes are too far from each other.
+        ValueError: the angle between some axes is too large.
     """
     cosine = dot(here_axis, top_axis)
     if (cosine < LEAST_COSINE).any():

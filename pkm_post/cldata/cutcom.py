@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""CUTCOM: where cutter compensation begins and ends, and what the file says of its points there.
+"""CUTCOM: start and end of cutter compensation, and what the file states about its points there.
 
-Statements and comments enter; the course notes them. What they come to is found when all points are known: see
+Enters: statements and comments. Leaves: records in the course, evaluated once all points are known: see
 ``contour_data``.
 """
 
@@ -14,14 +14,14 @@ from pkm_post.cldata.statements import Statement
 _SIDES = {"LEFT": 1.0, "RIGHT": -1.0}
 _PLANES = {"XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
 _REGISTERS = {"ADJUST", "LENGTH", "OSETNO"}
-"""Words before the number of an offset register of the control, which says nothing of the path."""
+"""Words before the number of an offset register of the control, which does not affect the path."""
 _KNOWN = {*_SIDES, *_PLANES, *_REGISTERS, "OFF", "ON", "PLANE"}
 _GEOMETRY_TYPES = {"OUTPUT_ON_CENTER": "centre", "OUTPUT_ON_PROFILE": "contour"}
 _HEADERS = {"CENTRE": "centerline data", "CONTOUR": "contact contour data"}
 
 
 def cutcom(course: Course, row: int, statement: Statement) -> None:
-    """CUTCOM/LEFT or RIGHT[,plane][,register], CUTCOM/OFF; CUTCOM/ON keeps what is in force."""
+    """CUTCOM/LEFT or RIGHT[,plane][,register], CUTCOM/OFF; CUTCOM/ON keeps the active state."""
     words = statement.words
     sides = [_SIDES[word] for word in words if word in _SIDES]
     if not words or not set(words) <= _KNOWN or len(sides) > 1:
@@ -34,7 +34,7 @@ def cutcom(course: Course, row: int, statement: Statement) -> None:
 
 
 def _radius(course: Course) -> float:
-    """Of the tool that is in use: as the user gives it, else as the file does."""
+    """Radius of the active tool: from the user, else from the file."""
     given = course.options.tools.get(course.tool)
     return (given.diameter if given and given.diameter > 0 else course.diameter) / 2
 

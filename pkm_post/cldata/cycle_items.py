@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cycle items: what stands behind the kind of a CYCLE statement, each number by the word before it.
+"""Cycle items: the items after the kind of a CYCLE statement, each number identified by its preceding word.
 
-Items enter, with the words of their maker; numbers leave by what they are, as written. Where numbers stand without a
-word before the first one, an option says what they are: CATIA writes them as the table of the post-processor says.
+Enters: items, with the vocabulary of their CAM system. Leaves: numbers by meaning, as written. For numbers without a
+word before the first one an option gives the meaning: CATIA writes them according to the post-processor table.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Item = float | str | Statement | None
 
 
 class CycleError(Exception):
-    """Why a CYCLE statement cannot be taken over: a code, and what was found."""
+    """A CYCLE statement is rejected, with a code and what was found."""
 
     def __init__(self, code: str, found: str) -> None:
         super().__init__(found)
@@ -27,16 +27,16 @@ class CycleError(Exception):
 
 @dataclass
 class CycleItems:
-    """The items of one statement while they are read.
+    """Parser of the items of one statement.
 
     Attributes:
-        words: of the maker.
-        kind: of the cycle.
-        guessed: the maker is known by these words alone.
-        positions: what numbers without a word are, in order; a depth among them counts down from the point.
-        values: the numbers by what they are.
-        feed: with its unit; the unit is empty where none is written.
-        to_initial: the tool returns to the height it had before the cycle.
+        words: vocabulary of the CAM system.
+        kind: kind of the cycle.
+        guessed: the CAM system is inferred from these words only.
+        positions: meanings of numbers without a word, in order; a depth among them counts down from the point.
+        values: the numbers by meaning.
+        feed: with its unit; the unit is empty if none is written.
+        to_initial: the tool returns to its height before the cycle.
         by_position: numbers follow the kind without words.
     """
 
@@ -53,10 +53,10 @@ class CycleItems:
     _placed: int = 0
 
     def read(self, items: Iterable[Item]) -> None:
-        """Read the items behind the kind.
+        """Read the items after the kind.
 
         Raises:
-            CycleError: one of them is not understood.
+            CycleError: an item is not understood.
         """
         present = [item for item in items if item is not None]
         self.by_position = bool(present) and isinstance(present[0], float)
@@ -74,7 +74,7 @@ class CycleItems:
             self.feed = self._unit, self.values.pop("feed")
 
     def _word(self, word: str) -> None:
-        """Take a word: the name of the next number, a unit, or one that stands alone."""
+        """Process a word: the name of the next number, a unit, or a standalone word."""
         if self.words.down < 0 and word == AUTO and self._means("return"):
             self.to_initial, self._waiting = True, ""
         elif self.words.down < 0 and word == MANUAL and not self._waiting and "return" in self.values:
@@ -90,11 +90,11 @@ class CycleItems:
             self._waiting = "" if self.by_position and word in FEED_WORDS else word
 
     def _means(self, meaning: str) -> bool:
-        """Whether the word that waits for its number has a meaning."""
+        """Whether the pending word has a given meaning."""
         return self.words.words.get(self._waiting) == meaning
 
     def _number(self, number: float) -> None:
-        """Take a number."""
+        """Process a number."""
         name, self._waiting = self._waiting, ""
         if name in FEED_WORDS:
             if self.feed is not None:
@@ -109,7 +109,7 @@ class CycleItems:
         self.values[meaning] = number
 
     def _next_position(self, number: float) -> str:
-        """What the next number without a word is."""
+        """Meaning of the next number without a word."""
         if self._placed >= len(self.positions):
             raise CycleError("L412", f"{number:g}, {self._expected()}")
         self._placed += 1

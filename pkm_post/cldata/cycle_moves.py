@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cycle moves: the strokes of a cycle along the tool axis, the same at each of its points but for the last height.
+"""Cycle moves: the strokes of a cycle along the tool axis, equal at all its points except for the final height.
 
-A cycle enters, in mm and mm/s; heights above the point leave, each with the feed to it.
+Enters: a cycle, in mm and mm/s. Leaves: heights above the point, each with its feed.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from pkm_post.cldata.cycles import Cycle
 from pkm_post.model.program import Array
 
 RELIEF = 0.5
-"""mm above the bottom of the hole where the feed begins again, and by which a chip is broken."""
+"""mm above the bottom of the hole at which feed resumes, and the chip breaking retract."""
 
 _Moves = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
 class CycleMoves:
-    """The strokes of a cycle, from where its feed begins; the rapid move to the return height follows.
+    """The strokes of a cycle, from the start of feed; the rapid move to the return height follows.
 
     Attributes:
         height: (S,) above the point, mm.
-        feed: (S,) mm/s, NaN where the move is rapid.
-        dwell_at: move before which the tool waits at the bottom; S is the return.
+        feed: (S,) mm/s, NaN for rapid moves.
+        dwell_at: move before which the tool dwells at the bottom; S is the return.
         dwell: s.
     """
 
@@ -46,7 +46,7 @@ def moves_of(cycle: Cycle) -> CycleMoves:
 
 
 def _down(cycle: Cycle) -> _Moves:
-    """Heights and feeds from where the feed begins to the bottom."""
+    """Heights and feeds from the start of feed to the bottom."""
     moves = [(cycle.start, math.nan)]
     bottoms = _bottoms(cycle)
     for depth in bottoms[:-1]:
@@ -55,7 +55,7 @@ def _down(cycle: Cycle) -> _Moves:
 
 
 def _bottoms(cycle: Cycle) -> list[float]:
-    """Depths that are reached one after the other."""
+    """Successive depths."""
     if cycle.strokes.pecks == "none":
         return [cycle.depth]
     first = min(cycle.first_step or cycle.step, cycle.depth)
@@ -64,7 +64,7 @@ def _bottoms(cycle: Cycle) -> list[float]:
 
 
 def _between(cycle: Cycle, depth: float) -> _Moves:
-    """From the bottom of one peck to the start of the next."""
+    """Moves from the bottom of one peck to the start of the next."""
     again = min(RELIEF - depth, cycle.start)
     if cycle.strokes.pecks == "break":
         return [(again, math.nan)]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cycle words: how each maker writes cycles, as a table: kinds, words, and where their numbers count from.
+"""Cycle words: table of the cycle notation of each CAM system: kinds, words, and datums of their numbers.
 
-The same word is another height for another maker; docs/cl-data.md says where each reading comes from. Files of the
-dialects without words of their own (CATIA's depend on the table of the post-processor) are read by the words they use.
+The same word can mean different heights in different systems; docs/cl-data.md gives the source of each reading. Files
+of dialects without their own vocabulary (CATIA's depends on the post-processor table) are read by the words they use.
 """
 
 from __future__ import annotations
@@ -14,22 +14,22 @@ from pkm_post.cldata.cycles import BREAK_CHIP, DEEP, DRILL, REAM, Strokes
 
 AUTO = "AUTO"
 MANUAL = "MANUAL"
-"""Behind RTRCTO of NX: to where the tool was before the cycle, or to the height that is written."""
+"""After RTRCTO of NX: return to the height before the cycle, or to the written height."""
 
 
 @dataclass(frozen=True)
 class CycleWords:
-    """The cycles of one maker.
+    """The cycle notation of one CAM system.
 
     Attributes:
-        maker: for people.
-        kinds: the words of a kind, joined by commas, and what it does.
-        words: what the number behind a word is: "depth"; "clearance", height in which the tool moves sideways;
-            "advance", how far below the clearance the feed begins; "return", height to which the tool returns; "step";
-            "first step"; "dwell", s; "turns", of the spindle to dwell.
+        maker: displayed name.
+        kinds: the words of a kind, joined by commas, and its strokes.
+        words: meaning of the number after a word: "depth"; "clearance", height of lateral moves; "advance", distance
+            below the clearance at which feed starts; "return", height to which the tool returns; "step"; "first step";
+            "dwell", s; "turns", spindle revolutions to dwell.
         down: 1 where depths count positive downwards, -1 where they are heights above the point.
-        initial: number behind "return" that is the height the tool had before the cycle; None for none.
-        left_out: words that mean something else in one kind, which is not carried out.
+        initial: number after "return" that means the height before the cycle; None for none.
+        left_out: words with a different meaning in one kind, which is not supported.
     """
 
     maker: str
@@ -40,11 +40,11 @@ class CycleWords:
     left_out: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def known_words(self, kind: str) -> set[str]:
-        """The words that have a meaning in cycles of a kind."""
+        """The words known in cycles of a kind."""
         return set(self.words) - self.left_out.get(kind, frozenset())
 
     def words_for(self, meaning: str) -> str:
-        """The words that say one thing, for people."""
+        """The words with one meaning, for messages."""
         return " or ".join(word for word, said in self.words.items() if said == meaning)
 
 
@@ -75,29 +75,29 @@ NCCS = CycleWords(
     {"FEDTO": "depth", "RAPTO": "clearance", "RTRCTO": "return", "DWELL": "dwell"},
 )
 TAPPING = frozenset({"TAP", "RIGID", "REVERS"})
-"""Cycles in step with the spindle, whoever wrote them."""
+"""Spindle-synchronised cycles of any CAM system."""
 _OF_DIALECT = {"nx": NX, "creo": CREO, "solidworks": CAMWORKS}
 _ALL = (NX, CREO, CAMWORKS, NCCS)
 _CAMWORKS_ALONE = {"DEEP2", "INCR", "SUBPECK", "1STPECK"}
 
 
 def words_of_dialect(dialect: str) -> CycleWords | None:
-    """How the CAM system of a dialect writes cycles, None if that is not known."""
+    """The cycle notation of a dialect, None if unknown."""
     return _OF_DIALECT.get(dialect)
 
 
 def words_by_use(used: Collection[str]) -> CycleWords:
-    """Whose words a CYCLE statement uses, where the dialect does not say it."""
+    """Infer the cycle notation from the words used, where the dialect does not determine it."""
     if _CAMWORKS_ALONE & set(used):
         return CAMWORKS
     return NCCS if {"FEDTO", "RTRCTO"} & set(used) else CREO
 
 
 def known_to_some(word: str) -> bool:
-    """Whether a word is that of some maker: then it has another meaning, or none, with the words beside it."""
+    """Whether any CAM system uses a word: with the words beside it, it then has another meaning or none."""
     return word == AUTO or any(word in one.words for one in _ALL)
 
 
 def kind_of_some(kind: str) -> bool:
-    """Whether some maker has cycles of a kind."""
+    """Whether any CAM system has cycles of a kind."""
     return any(kind in one.kinds for one in _ALL)

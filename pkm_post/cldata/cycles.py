@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cycles: what a CYCLE statement says once it is understood, in mm, mm/s and s, whoever wrote it.
+"""Cycles: an interpreted CYCLE statement of any CAM system, in mm, mm/s and s.
 
-Heights are along the tool axis and count from the point of the hole: depth down, all others up.
+Heights are along the tool axis, relative to the hole point: depth is positive downwards, all others upwards.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Strokes:
-    """How a kind of cycle works its way to the bottom and back.
+    """Stroke pattern of a kind of cycle.
 
     Attributes:
-        pecks: "none"; "out", out of the hole after each peck; "break", a little up to break the chip.
-        feed_out: the tool leaves the hole at the feed.
+        pecks: "none"; "out", full retract after each peck; "break", short retract to break the chip.
+        feed_out: the tool retracts at feed.
     """
 
     pecks: str = "none"
@@ -33,14 +33,14 @@ class Cycle:
     """One cycle.
 
     Attributes:
-        strokes: how it gets to the bottom.
+        strokes: stroke pattern.
         depth: of the bottom below the point.
-        clearance: height in which the tool may move sideways.
-        start: height where the feed begins, at most the clearance.
-        height: to which the tool returns, at least the clearance.
-        to_initial: it returns to where it was before the first hole instead, if that is higher than the clearance.
-        step: largest depth of one peck; 0 for none.
-        first_step: of the first one.
+        clearance: height of lateral moves.
+        start: height at which feed starts, at most the clearance.
+        height: return height, at least the clearance.
+        to_initial: the tool returns to its height before the first hole instead, if above the clearance.
+        step: maximum depth of one peck; 0 for none.
+        first_step: depth of the first peck.
         dwell: at the bottom, s.
         feed: mm/s.
     """

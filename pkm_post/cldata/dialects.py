@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dialects: in what the CL data of CAM systems differ, as a table.
+"""Dialects: table of the differences between the CL data of CAM systems.
 
-Enters: the text of a file. Leaves: the dialect it is written in, by the words that this dialect alone has.
+Enters: the text of a file. Leaves: its dialect, detected by words unique to it.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ class Dialect:
 
     Attributes:
         name: key in ``DIALECTS``.
-        title: the programs that write it.
-        signs: regular expression of what is found at the start of a line in this dialect alone.
-        hand: "right" or "left": how an arc turns about the axis that is given with it; "vote" where it is not known.
-        frames: major words that say the frame the points are given in; in others such words are for information.
+        title: the CAM systems that write it.
+        signs: regular expression for line starts unique to this dialect.
+        hand: "right" or "left": sense of rotation of an arc about its given axis; "vote" if unknown.
+        frames: major words that define the frame of the points; in other dialects such words are informative only.
         insert_is_tool: INSERT names the tool.
-        pted: points follow on lines of their own, without GOTO, and comments may hold circles.
-        tight_arcs_are_centre: an arc under CUTCOM that no tool of its size could follow beside shows that the points
-            are the centre of the tool; in others it may as well be a tool that is too large.
+        pted: further points follow on separate lines, without GOTO, and comments may hold circles.
+        tight_arcs_are_centre: an arc under CUTCOM too tight for the tool to follow as a contour proves that the points
+            are the tool centre; in other dialects the tool may equally be too large.
     """
 
     name: str
@@ -52,14 +52,14 @@ DIALECTS: dict[str, Dialect] = {
         Dialect("apt", "NCL, APT", r"(?!)", "vote", frozenset({"MSYS", "CSYS", "CATIA0"}), pted=True),
     )
 }  # fmt: skip
-"""The dialects by name, the most particular ones first."""
+"""The dialects by name, the most specific ones first."""
 
 _WHERE = 200_000
-"""Characters of a file in which its dialect shows."""
+"""Characters of a file searched to detect its dialect."""
 
 
 def detect(text: str) -> Dialect:
-    """The dialect in which most lines at the start of a text are written; "apt" if none shows."""
+    """The dialect matched by most lines at the start of a text; "apt" if none matches."""
     head = text[:_WHERE]
     counts = {
         name: len(re.findall(rf"^[ \t]*(?:{dialect.signs})", head, re.MULTILINE | re.IGNORECASE))

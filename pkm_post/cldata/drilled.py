@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilled: the points at which a cycle is in force, with their moves.
+"""Drilled: the points with an active cycle, with their moves.
 
-The notes of the course and the resolved points enter; holes leave. Where the tool is before a hole follows from the
-hole before it: its point, its axis and its return height.
+Enters: the records of the course and the resolved points. Leaves: holes. The tool position before a hole follows from
+the previous hole: its point, axis and return height.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from pkm_post.model.program import Array
 
 
 def drilled_holes(course: Course, points: Points, arcs: Fitted) -> Holes:
-    """The points at which a cycle is in force, with their moves.
+    """The points with an active cycle, with their moves.
 
-    Tells axes that are too far from each other, and arcs that begin or end at a hole, where the tool is not.
+    Report axes at too large an angle, and arcs that start or end at a hole, where the tool is not.
     """
     active = in_force(points.row, [row for row, _ in course.cycles])
     on = np.array([*(cycle is not None for _, cycle in course.cycles), False], dtype=np.bool_)
@@ -31,7 +31,7 @@ def drilled_holes(course: Course, points: Points, arcs: Fitted) -> Holes:
     for end in arcs.point[drilling[arcs.point] | drilling[np.maximum(arcs.point - 1, 0)]].tolist():
         course.tell("L422", int(points.row[end]), "an arc")
     drilling[arcs.point] = False
-    # A cycle that was off begins a new series: each change of the cycle has the number of those to off before it.
+    # A cycle after OFF starts a new series: number each change of the cycle by the OFFs before it.
     series = np.cumsum(~on)[active]
     cycles = [cycle for _, cycle in course.cycles if cycle is not None]
     sites = _sites(points, np.flatnonzero(drilling), (np.cumsum(on) - 1)[active], series, cycles)
@@ -39,7 +39,7 @@ def drilled_holes(course: Course, points: Points, arcs: Fitted) -> Holes:
 
 
 def _sites(points: Points, point: Array, cycle: Array, series: Array, cycles: list[Cycle]) -> Sites:
-    """The holes in their order, and where the tool is before each."""
+    """The holes in order, and the tool position before each."""
     before = np.maximum(point - 1, 0)
     behind = np.concatenate([[False], np.diff(point) == 1])[: len(point)]
     goes_on = behind & (series[point] == series[before])
@@ -59,12 +59,12 @@ def _sites(points: Points, point: Array, cycle: Array, series: Array, cycles: li
 
 
 def _return_heights(sites: Sites, behind: Array, goes_on: Array, cycles: list[Cycle]) -> Array:
-    """How high above each hole the tool returns to, and comes from at least, (H,).
+    """Return height above each hole, also the minimum approach height, (H,).
 
     Args:
-        sites: the holes; ``here`` where no hole is directly before.
-        behind: (H,) whether there is one.
-        goes_on: (H,) whether it belongs to the same series, which has one height before its first hole.
+        sites: the holes; ``here`` where no hole directly precedes.
+        behind: (H,) whether a hole directly precedes.
+        goes_on: (H,) whether it belongs to the same series, which has one initial height.
         cycles: by ``sites.cycle``.
     """
     back = np.array([cycle.height for cycle in cycles])[sites.cycle]
@@ -82,7 +82,7 @@ def _return_heights(sites: Sites, behind: Array, goes_on: Array, cycles: list[Cy
 
 
 def _near_enough(course: Course, points: Points, sites: Sites) -> Array:
-    """Which holes the tool can cross to, (H,); tells the others."""
+    """Mask of the holes the tool can traverse to, (H,); report the others."""
     cosine = np.where(sites.known, dot(sites.here_axis, sites.axis), 1.0)
     near: Array = cosine >= LEAST_COSINE
     for hole in np.flatnonzero(~near).tolist():

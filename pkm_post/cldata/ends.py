@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ends: whether a file is whole, by its last statement.
+"""Ends: check by its last statement that a file is complete.
 
-The statements of a file enter. FINI ends CL data. CLSF of NX has no FINI: each of its tool paths ends with END-OF-PATH;
-and APT-CL of Makino ends with a section for the end of its process. Behind such a statement nothing may stand that
-means anything. A file without one may have been cut short.
+Enters: the statements of a file. Leaves: a fault if the end is missing. FINI ends CL data. CLSF of NX has no FINI: each
+of its tool paths ends with END-OF-PATH; and APT-CL of Makino ends with a section for the end of its process. No
+meaningful statement may follow. A file without an end may be truncated.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ _ENDS = re.compile(r"\s*(?:END-OF-PATH|PPRINT\s*/\s*END-SECTION\s*,\s*PROCESS-EN
 
 
 def tell_open_end(course: Course, passed_over: Collection[str]) -> None:
-    """Tell that a file has no end, where it needs one.
+    """Report a missing end where one is required.
 
     Args:
-        course: all of its statements read.
-        passed_over: words that say nothing of the motion.
+        course: with all statements read.
+        passed_over: words without effect on the motion.
     """
     needs_one = course.options.needs_end and not course.ended and len(course.statements)
     if needs_one and not _is_closed(course, passed_over):
@@ -29,7 +29,7 @@ def tell_open_end(course: Course, passed_over: Collection[str]) -> None:
 
 
 def _is_closed(course: Course, passed_over: Collection[str]) -> bool:
-    """Whether nothing but words without a meaning stands behind a statement that ends a file."""
+    """Whether only words without effect follow a statement that ends a file."""
     statements = course.statements
     for row in reversed(range(len(statements))):
         if _ENDS.fullmatch(statements.lines.text[statements.index[row]]):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults of statements: told with line and column, what was found and what was expected, in words.
+"""Faults of statements: reported with line and column, what was found and what was expected, in words.
 
-Enters: what lark met, or what a statement means that cannot be. Leaves: diagnostics in the order of the file, at most
-a hundred; the last one tells the number of the others. Warnings do not count.
+Enters: lark errors, or invalid statements. Leaves: diagnostics in file order, at most a hundred; the last one states
+the number of the others. Warnings do not count.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
 
 MOST_TOLD = 100
-"""Errors that are told one by one; of the others the number is told."""
+"""Errors reported individually; the rest are only counted."""
 
 EXPECTED: dict[str, str] = {
     "WORD": "a word",
@@ -33,14 +33,14 @@ EXPECTED: dict[str, str] = {
     "RPAR": "')'",
     "$END": "the end of the statement",
 }
-"""The terminals of the grammar in words, in the order in which they are told."""
+"""The terminals of the grammar in words, in reporting order."""
 
 _RUN = re.compile(r"[\w.+-]+")
 
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong at one character of a statement."""
+    """A fault at one character of a statement."""
 
     code: str
     offset: int
@@ -48,7 +48,7 @@ class Fault:
 
 
 class Faults:
-    """The faults of a file, collected."""
+    """Collects the faults of a file."""
 
     def __init__(self, file: str) -> None:
         self._file = file
@@ -56,7 +56,7 @@ class Faults:
         self._errors = 0
 
     def add(self, code: str, place: tuple[int, int], found: str) -> None:
-        """Note a fault; place is line and column, (0, 0) for the whole file."""
+        """Add a fault; place is line and column, (0, 0) for the whole file."""
         if RULES[code].severity is Severity.ERROR:
             self._errors += 1
             if self._errors > MOST_TOLD:
@@ -64,7 +64,7 @@ class Faults:
         self._told.append(Diagnostic(code, Place(self._file, line=place[0], column=place[1]), found))
 
     def add_line(self, lines: Lines, index: int, explain: Callable[[str], Fault]) -> None:
-        """Note that a line is no statement; why is found out only if it is told."""
+        """Add the fault of an invalid line; the cause is determined only if it is reported."""
         if self._errors >= MOST_TOLD:
             self._errors += 1
             return
@@ -72,11 +72,11 @@ class Faults:
         self.add(fault.code, lines.place(index, fault.offset), fault.found)
 
     def any_errors(self) -> bool:
-        """Whether the file cannot be used."""
+        """Whether there are errors."""
         return self._errors > 0
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """All that is told, in the order of the file."""
+        """The reported diagnostics, in file order."""
         told = sorted(self._told, key=lambda one: (one.place.line, one.place.column, one.code, one.found))
         untold = self._errors - MOST_TOLD
         more = [Diagnostic("L199", Place(self._file), f"and {untold} more")] if untold > 0 else []
@@ -84,7 +84,7 @@ class Faults:
 
 
 def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
-    """The fault that made lark stop.
+    """The fault that stopped lark.
 
     Args:
         text: the statement.
@@ -92,7 +92,7 @@ def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
     """
     from lark import UnexpectedToken
 
-    # Text is what nothing else is: where none may stand, no terminal begins.
+    # TEXT is the catch-all terminal: where it is not allowed, no terminal can start.
     if isinstance(unexpected, UnexpectedToken) and unexpected.token.type == "TEXT":
         return _character_fault(text, unexpected.token.start_pos or 0)
     if isinstance(unexpected, UnexpectedToken):
@@ -101,7 +101,7 @@ def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
 
 
 def _character_fault(text: str, offset: int) -> Fault:
-    """A character that begins nothing."""
+    """The fault of a character that starts no terminal."""
     run = _RUN.match(text, offset)
     if run and (text[offset].isdigit() or text[offset] in "+-.") and text[offset].isascii():
         return Fault("L102", offset, f"'{run[0][:40]}'")
@@ -113,12 +113,12 @@ def _character_fault(text: str, offset: int) -> Fault:
 
 
 def _shown(character: str) -> str:
-    """A character, by its number if it cannot be printed."""
+    """A character, as a code point if it is not printable."""
     return f"'{character}'" if character.isprintable() else f"character {ord(character):#04x}"
 
 
 def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
-    """A terminal that does not go on with the statement."""
+    """The fault of a terminal that cannot continue the statement."""
     at_end = unexpected.token.type == "$END"
     offset = len(text.rstrip(f" \t{JOINT}")) if at_end else unexpected.token.start_pos or 0
     expected = _in_words(set(unexpected.accepts or unexpected.expected))
@@ -134,6 +134,6 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
 
 
 def _in_words(terminals: set[str]) -> str:
-    """Terminals as people call them."""
+    """Terminals in words."""
     words = list(dict.fromkeys(word for name, word in EXPECTED.items() if name in terminals))
     return " or ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))

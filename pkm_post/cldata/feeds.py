@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Feeds and speeds: FEDRAT, RAPID, SPINDL, COOLNT, DELAY and stops, their items in every order.
+"""Feeds and speeds: FEDRAT, RAPID, SPINDL, COOLNT, DELAY and stops, with items in any order.
 
-Statements enter; feeds in mm/s and events leave. A feed per turn follows the spindle.
+Enters: statements. Leaves: feeds in mm/s and events. A feed per revolution follows the spindle speed.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pkm_post.cldata.statements import Statement
 from pkm_post.model import EventKind
 
 MM_PER_MINUTE: dict[str, float | None] = {"MMPM": 1.0, "IPM": 25.4, "FPM": 304.8, "PERMIN": None}
-"""mm in the unit of a feed per minute; None is the program's own unit."""
+"""mm per length unit of a feed per minute; None is the program unit."""
 MM_PER_TURN: dict[str, float | None] = {"MMPR": 1.0, "IPR": 25.4, "FPR": 304.8, "PERREV": None}
 FEED_WORDS = frozenset({*MM_PER_MINUTE, *MM_PER_TURN, "INVERS"})
 _FEED_MODES = frozenset({"AUTO", "ON", "OFF"})
@@ -27,7 +27,7 @@ _COOLANT = {"ON": 1.0, "FLOOD": 1.0, "MIST": 2.0, "TAP": 1.0, "THRU": 1.0, "OFF"
 
 
 def feed_of(course: Course, word: str, value: float) -> Feed:
-    """The feed of a value with its unit word; remembers a feed per turn."""
+    """The feed of a value with its unit word; stores a feed per revolution."""
     course.feed_per_turn = 0.0
     if word == "INVERS":
         return Feed(value / 60, inverse=True)
@@ -41,13 +41,13 @@ def feed_of(course: Course, word: str, value: float) -> Feed:
 
 
 def _unit_overridden(course: Course, stated: float) -> bool:
-    """Whether a feed is in the unit of the file where the options say another one instead."""
+    """Whether a feed is in the file unit while the options override it with another."""
     unit = course.file_unit.name
     return course.options.units not in (None, unit) and stated == UNITS.get(unit)
 
 
 def fedrat(course: Course, row: int, statement: Statement) -> None:
-    """FEDRAT/value[,unit], in any order; FEDRAT/INVERS,AUTO says how a post should write and changes nothing."""
+    """FEDRAT/value[,unit], in any order; FEDRAT/INVERS,AUTO is an output setting for posts and has no effect."""
     items = _without_pairs(statement, frozenset({"LENGTH"}))
     numbers = [item for item in items if isinstance(item, float)]
     words = [item for item in items if isinstance(item, str)]
@@ -64,7 +64,7 @@ def fedrat(course: Course, row: int, statement: Statement) -> None:
 
 
 def rapid(course: Course, row: int, statement: Statement) -> None:
-    """RAPID: the next motion alone."""
+    """RAPID: applies to the next motion only."""
     course.rapids.append(row)
 
 
@@ -87,7 +87,7 @@ def spindl(course: Course, row: int, statement: Statement) -> None:
 
 
 def _new_speed(course: Course, row: int, value: float, words: set[str]) -> bool:
-    """Take a speed over in 1/min; False if it cannot be."""
+    """Set a speed in 1/min; False if it is invalid."""
     surface = next((_SURFACE_SPEEDS[word] for word in ("SMM", "SFM") if word in words), None)
     if value < 0 or (surface is not None and course.diameter <= 0):
         course.tell("L403", row, f"speed {value:g}" + ("" if surface is None else " of a cutter of unknown diameter"))
@@ -97,7 +97,7 @@ def _new_speed(course: Course, row: int, value: float, words: set[str]) -> bool:
 
 
 def coolnt(course: Course, row: int, statement: Statement) -> None:
-    """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; a pressure behind it is not used."""
+    """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; a following pressure is ignored."""
     word = next(iter(statement.words), "")
     if word not in _COOLANT:
         course.tell("L402", row, f"COOLNT/{shown(statement)}, expected {_list(_COOLANT)}")
@@ -122,7 +122,7 @@ def stop(course: Course, row: int, statement: Statement) -> None:
 
 
 def _without_pairs(statement: Statement, names: frozenset[str]) -> list[object]:
-    """The items but for words that have a number of their own, with it."""
+    """The items without the named words and their numbers."""
     items: list[object] = []
     after = False
     for item in statement.items:
@@ -137,7 +137,7 @@ def _without_pairs(statement: Statement, names: frozenset[str]) -> list[object]:
 
 
 def shown(statement: Statement) -> str:
-    """Items as people wrote them, nearly."""
+    """Items approximately as written."""
     return ",".join(
         f"{item:.10g}" if isinstance(item, float) else item if isinstance(item, str) else "()" if item else ""
         for item in statement.items

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fit: arcs find their ends, their hand and their fit.
+"""Fit: determine end points and sense of rotation of arcs, and check their fit.
 
-The arcs of the course and the columns of points enter; for each arc its point, its centre and the unit axis it turns
-about right-handed leave. Which hand a file means is a matter of its dialect; where that is not known, the hand under
-which most arcs are shorter than half a turn is taken. An angle goes before both, and a way that the statement says
-before all.
+Enters: the arcs of the course and the columns of points. Leaves: for each arc its point, centre and unit axis of
+right-handed rotation. The sense of rotation depends on the dialect; if unknown, the sense under which most arcs are
+shorter than half a turn is chosen. A given angle takes precedence over both, and a sense given by the statement over
+all.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pkm_post.geometry.vectors import dot, norm
 from pkm_post.model.program import Array
 
 _ALIGNED = 0.9999
-"""Cosine from which on the axis of an arc is that of the tool."""
+"""Cosine above which the arc axis counts as parallel to the tool axis."""
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,10 @@ class Fitted:
     """Columns of A arcs.
 
     Attributes:
-        point: (A,) the points they end at.
+        point: (A,) index of their end points.
         centre: (A, 3).
-        axis: (A, 3) unit axis they turn about right-handed.
-        turns: (A,) full turns before the rest.
+        axis: (A, 3) unit axis of right-handed rotation.
+        turns: (A,) full turns before the remaining sweep.
     """
 
     point: Array
@@ -43,12 +43,12 @@ class Fitted:
 
 
 def fit_arcs(course: Course, points: Points, frames: Array) -> Fitted:
-    """The arcs with their ends, turned by the hand of the file.
+    """The arcs with their end points, oriented by the sense of rotation of the file.
 
     Args:
         course: has the arcs.
-        points: resolved.
-        frames: (P, 4, 4) or (1, 4, 4) what took the points to the work frame.
+        points: resolved points.
+        frames: (P, 4, 4) or (1, 4, 4) transforms of the points to the work frame.
     """
     arcs = with_ends(course, points, lambda ended: _carried(course, ended, frames))
     row, end = _columns(arcs)
@@ -65,7 +65,7 @@ def _columns(arcs: list[Ended]) -> tuple[Array, Array]:
 
 
 def _carried(course: Course, arcs: list[Ended], frames: Array) -> tuple[Array, Array, Array]:
-    """Centres, unit axes and radii in mm and in the work frame."""
+    """Centres, unit axes and radii transformed to mm and the work frame."""
     row, end = _columns(arcs)
     scales = np.array([scale for _, scale in course.scales])
     scale = scales[in_force(row, [at for at, _ in course.scales])]
@@ -81,7 +81,7 @@ def _carried(course: Course, arcs: list[Ended], frames: Array) -> tuple[Array, A
 def _check_fit(
     course: Course, row: Array, radius: Array, points: Points, end: Array, centre: Array, axis: Array
 ) -> None:
-    """Tell arcs whose start, end and radius do not agree."""
+    """Report arcs with inconsistent start point, end point and radius."""
     first = norm(across(points.position[end - 1] - centre, axis))
     last = norm(across(points.position[end] - centre, axis))
     apart = np.fmax(np.abs(first - last), np.abs(np.where(np.isnan(radius), first, radius) - first))
@@ -96,14 +96,14 @@ def _check_fit(
 
 
 def _hand(course: Course, sweep: Array) -> float:
-    """1 if arcs of the file turn right-handed about their axes, -1 if left-handed; their right-handed angles vote."""
+    """1 if arcs of the file are right-handed about their axes, -1 if left-handed; "vote" counts their sweeps."""
     hand = course.options.hand or course.dialect.hand
     left = 2 * int(np.sum(sweep > np.pi)) > len(sweep) if hand == "vote" else hand == "left"
     return -1.0 if left else 1.0
 
 
 def _senses(course: Course, arcs: list[Ended], points: Points, centre: Array, axis: Array) -> Array:
-    """1 where the arc turns right-handed about its axis, -1 where left-handed, (A,)."""
+    """Sense of rotation about the arc axis, (A,): 1 right-handed, -1 left-handed."""
     row, end = _columns(arcs)
     start, stop = points.position[end - 1], points.position[end]
     sweep = arc_sweep(start, stop, centre, axis)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Frames: UNITS, MSYS, CSYS, CATIA's matrix, ORIGIN, TRANS and TRACUT.
 
-Statements enter; 4 x 4 matrices leave that take points of the file, in mm, to the work frame. That is the first
-machining frame of the file, or the frame those are given in: matrix = shift @ inverse(base) @ local.
+Enters: statements. Leaves: 4 x 4 matrices that transform points of the file, in mm, to the work frame. That is the
+first machining frame of the file, or the frame those are defined in: matrix = shift @ inverse(base) @ local.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pkm_post.cldata.statements import Statement
 from pkm_post.model.program import Array
 
 _SQUARE = 1e-3
-"""How far axes of a frame may be from unit length and right angles."""
+"""Tolerance of frame axes from unit length and right angles."""
 
 
 def units(course: Course, row: int, statement: Statement) -> None:
@@ -50,7 +50,7 @@ def frame(course: Course, row: int, statement: Statement) -> None:
 
 
 def origin(course: Course, row: int, statement: Statement) -> None:
-    """ORIGIN/x,y,z[,X axis, Z axis]: where the origin of the machine lies among the points."""
+    """ORIGIN/x,y,z[,X axis, Z axis]: the machine origin in point coordinates."""
     values = statement.values
     if len(values) not in (3, 9):
         course.tell("L402", row, f"ORIGIN/{shown(statement)}, expected 3 or 9 values")
@@ -83,13 +83,13 @@ def trans(course: Course, row: int, statement: Statement) -> None:
 
 
 def trntyp(course: Course, row: int, statement: Statement) -> None:
-    """TRNTYP/WORLD,...: the points are in one frame; no other kind is known."""
+    """TRNTYP/WORLD,...: the points are in one frame; no other type is supported."""
     if "WORLD" not in statement.words:
         course.tell("L401", row, f"TRNTYP/{shown(statement)}")
 
 
 def _put(course: Course, row: int) -> None:
-    """From here on points are taken to the work frame by the frames in force."""
+    """Record that the active frames transform points from here on."""
     eye = np.eye(4)
     local = eye if course.local is None else course.local
     if course.work_from_given is None and course.local is not None:
@@ -105,7 +105,7 @@ def _from_rows(values: list[float]) -> Array:
 
 
 def _from_axes(values: list[float]) -> Array:
-    """From origin, X axis and Y axis."""
+    """Matrix from origin, X axis and Y axis."""
     matrix = np.eye(4)
     place, x, y = np.reshape(values, (3, 3))
     matrix[:3] = np.stack([x, y, np.cross(x, y), place], axis=1)
@@ -113,7 +113,7 @@ def _from_axes(values: list[float]) -> Array:
 
 
 def _rigid(course: Course, row: int, statement: Statement, matrix: Array) -> bool:
-    """Whether the matrix turns and shifts alone; tells if not."""
+    """Whether the matrix is a rigid transform; report if not."""
     turn = matrix[:3, :3]
     size = np.abs(turn).max()
     if size < 2 and np.abs(turn @ turn.T - np.eye(3)).max() <= _SQUARE and np.linalg.det(turn) > 0:

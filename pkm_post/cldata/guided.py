@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Guided arcs: TLON,GOFWD along a circle until the tool end is on a check surface, a plane or a line.
+"""Guided arcs: TLON,GOFWD along a circle until the tool end reaches a check surface, a plane or a line.
 
-Statements enter; arcs and the points they end at leave, as written. INDIRV or INDIRP before says which way the tool
-starts. The circle crosses a check plane twice: without a number the first crossing in the direction of travel is
-meant, with 2,INTOF the second. A line stands for the plane through it along the axis of the circle; where it
-leads from the centre to a point of the circle, as CATIA writes it, that point is the end.
+Enters: statements. Leaves: arcs and their end points, as written. A preceding INDIRV or INDIRP gives the start
+direction. The circle crosses a check plane twice: without a number the first crossing in the direction of travel
+applies, with 2,INTOF the second. A line represents the plane through it along the circle axis; if it leads from the
+centre to a point of the circle, as CATIA writes it, that point is the end point.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from pkm_post.geometry.vectors import cross, norm
 from pkm_post.model.program import Array
 
 _TOUCH = -1
-"""Stands for the number of a crossing where the check surface is tangent."""
+"""Crossing number of a tangent check surface."""
 
 
 def indirv(course: Course, row: int, statement: Statement) -> None:
@@ -56,14 +56,14 @@ def _three(course: Course, row: int, statement: Statement) -> bool:
 
 
 def psis(course: Course, row: int, statement: Statement) -> None:
-    """PSIS/(PLANE/a,b,c,d): the part surface, in which the arcs behind it must lie."""
+    """PSIS/(PLANE/a,b,c,d): the part surface, in which the following arcs must lie."""
     course.part_surface = _plane(statement.items[0], course.scale) if len(statement.items) == 1 else None
     if course.part_surface is None:
         course.tell("L401", row, f"PSIS/{shown(statement)}, other than a plane")
 
 
 def autops(course: Course, row: int, statement: Statement) -> None:
-    """AUTOPS: the part surface lies where the tool is."""
+    """AUTOPS: the part surface passes through the tool position."""
     course.part_surface = None
 
 
@@ -92,7 +92,7 @@ def tlon(course: Course, row: int, statement: Statement) -> None:
 
 
 def _parts(statement: Statement) -> tuple[Statement, int, Statement] | None:
-    """The circle, the number of the crossing, 0 if none is said, and the check surface; None in other forms."""
+    """The circle, the crossing number, 0 if not given, and the check surface; None for other forms."""
     number = 0
     match statement.items:
         case [Statement() as circle, "ON", Statement() as check]:
@@ -108,7 +108,7 @@ def _parts(statement: Statement) -> tuple[Statement, int, Statement] | None:
 
 
 def _end(circle: Guide, number: int, check: Statement, scale: float) -> Array:
-    """Where the motion ends, (3,) mm."""
+    """End point of the motion, (3,) mm."""
     line = _line(check, scale)
     if line is not None and number != _TOUCH:
         end = ray_end(circle, line, number)
@@ -121,7 +121,7 @@ def _end(circle: Guide, number: int, check: Statement, scale: float) -> Array:
 
 
 def _check_part_surface(plane: Plane | None, circle: Guide) -> None:
-    """The part surface, where there is one, must be the plane of the circle at the start."""
+    """Check that the part surface, if any, is the plane of the circle at the start point."""
     if plane is None:
         return
     normal = np.array(plane.normal)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Hole moves: the moves of all holes of a program at once.
+"""Hole moves: compute the moves of all holes of a program at once.
 
-Sites enter, where the holes and the tool before each of them are, mm and the work frame, and the strokes of their
-cycles; columns of moves leave. A hole has up to two moves on the way there, its strokes, and the return.
+Enters: sites with the positions of the holes and of the tool before each, mm and the work frame, and the strokes of
+their cycles. Leaves: columns of moves. A hole has up to two approach moves, its strokes, and the return.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from pkm_post.cldata.cycle_moves import CycleMoves
 from pkm_post.model.program import Array
 
 _NO_MOVE = 1e-9
-"""mm of the tip, and length of the change of the unit axis, that are no move."""
+"""Tip displacement in mm, and change of the unit axis, below which there is no move."""
 
 
 @dataclass(frozen=True)
 class Sites:
-    """H holes, and where the tool is before each.
+    """H holes, and the tool position before each.
 
     Attributes:
         point: (H,) index of their points.
         cycle: (H,) index of their cycle.
-        place: (H, 3) the points.
+        place: (H, 3) positions of the points.
         axis: (H, 3) unit tool axes.
-        top: (H, 3) where the tool returns to above them, and comes from at least.
-        known: (H,) whether it is known where the tool is before; not if the program begins with a hole.
-        here: (H, 3) where it is.
-        here_axis: (H, 3) its unit axes there.
+        top: (H, 3) return positions above them, also the lowest approach positions.
+        known: (H,) whether the previous tool position is known; not if the program begins with a hole.
+        here: (H, 3) previous tool position.
+        here_axis: (H, 3) unit tool axes there.
     """
 
     point: Array
@@ -45,7 +45,7 @@ class Sites:
     here_axis: Array
 
     def only(self, chosen: Array) -> Sites:
-        """Some of the holes, by a mask (H,)."""
+        """Select holes by a mask, (H,)."""
         return Sites(*(column[chosen] for column in vars(self).values()))
 
 
@@ -56,10 +56,10 @@ class Holes:
     Attributes:
         point: (H,) index of their points.
         start: (H + 1,) the moves of hole i are those from ``start[i]`` to ``start[i + 1]``.
-        position: (K, 3) ends of the moves.
+        position: (K, 3) end points of the moves.
         axis: (K, 3) tool axes there.
-        feed: (K,) mm/s, NaN where the move is rapid.
-        dwell_at: (H,) the move before which the tool waits at the bottom.
+        feed: (K,) mm/s, NaN for rapid moves.
+        dwell_at: (H,) the move before which the tool dwells at the bottom.
         dwell: (H,) s.
     """
 
@@ -73,11 +73,11 @@ class Holes:
 
 
 def hole_moves(sites: Sites, cycles: Sequence[CycleMoves]) -> Holes:
-    """The moves of holes.
+    """Compute the moves of holes.
 
     Args:
-        sites: where they are.
-        cycles: what is done there, by ``sites.cycle``.
+        sites: the holes.
+        cycles: their strokes, by ``sites.cycle``.
     """
     size = np.array([len(moves.height) for moves in cycles], dtype=np.int64)[sites.cycle]
     leave, leaves, arrive, arrives = _way_there(sites, _at(sites, [moves.height[0] for moves in cycles]))
@@ -100,13 +100,13 @@ def hole_moves(sites: Sites, cycles: Sequence[CycleMoves]) -> Holes:
 
 
 def _at(sites: Sites, heights: Sequence[float]) -> Array:
-    """Places above the holes, (H, 3), by a height of each cycle."""
+    """Positions above the holes, (H, 3), at a height per cycle."""
     places: Array = sites.place + np.array(heights)[sites.cycle][:, None] * sites.axis
     return places
 
 
 def _way_there(sites: Sites, begins: Array) -> tuple[Array, Array, Array, Array]:
-    """Where the tool ends its rise, and whether there is one; where it arrives, unless the feed begins there."""
+    """End of the retract, and whether there is one; end of the traverse, and whether it needs a separate move."""
     leave, arrive = crossing(sites.here, sites.here_axis, sites.top, sites.axis)
     leaves = sites.known & _apart(leave, sites.here)
     crosses = ~sites.known | _apart(arrive, leave) | _apart(sites.axis, sites.here_axis)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Holes: the CYCLE statement becomes a cycle, whoever wrote it.
+"""Holes: convert a CYCLE statement of any CAM system to a cycle.
 
-A statement enters; what it says leaves as a cycle of the course, in mm and mm/s.
+Enters: a statement. Leaves: a cycle of the course, in mm and mm/s.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from pkm_post.cldata.statements import Statement
 
 MOST_PECKS = 10000
 _RETURNS = ("INIT", "CLEAR")
-"""Of CAMWorks: the tool returns to the height before the cycle, or RTRCTO where it is written, or to the clearance."""
+"""CAMWorks: the tool returns to the height before the cycle, or RTRCTO if written, or to the clearance."""
 
 
 def cycle(course: Course, row: int, statement: Statement) -> None:
-    """CYCLE/kind,items; INIT and CLEAR say where the tool returns to; ON and OFF."""
+    """CYCLE/kind,items; INIT and CLEAR set the return height; ON and OFF."""
     word = next(iter(statement.words), "")
     if word == "OFF":
         course.cycles.append((row, None))
@@ -40,7 +40,7 @@ def cycle(course: Course, row: int, statement: Statement) -> None:
 
 
 def cycles_told(course: Course) -> list[str]:
-    """Whose words the cycles of a file were taken for, in words: one line for each maker."""
+    """Describe how the cycles of a file were interpreted: one line per CAM system."""
     told = []
     for words, rows in course.cycles_read.items():
         more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
@@ -49,7 +49,7 @@ def cycles_told(course: Course) -> list[str]:
 
 
 def _understood(course: Course, statement: Statement) -> tuple[Cycle, str]:
-    """The cycle of a statement, and how it was taken, in words."""
+    """The cycle of a statement, and a description of its interpretation."""
     ours = words_of_dialect(course.dialect.name)
     words = ours or words_by_use(statement.words)
     kind = _kind(statement, words, guessed=ours is None)
@@ -64,14 +64,14 @@ def _understood(course: Course, statement: Statement) -> tuple[Cycle, str]:
 
 
 def _evidence(course: Course, guessed: bool, items: CycleItems) -> str:
-    """Why the words of a cycle are those of a maker."""
+    """Why the words of a cycle are attributed to a CAM system."""
     by = "by themselves" if guessed else "as the option says" if course.options.dialect else "by the dialect"
     numbers = ", ".join(items.positions)
     return f"{by}; numbers are {numbers}, as the option says" if items.by_position else by
 
 
 def _kind(statement: Statement, words: CycleWords, guessed: bool) -> str:
-    """The kind of a cycle, of two words or of one."""
+    """The kind of a cycle, one or two words."""
     first = [item for item in statement.items[:2] if isinstance(item, str)]
     candidates = [",".join(first), *first[:1]]
     if TAPPING & set(first):
@@ -85,7 +85,7 @@ def _kind(statement: Statement, words: CycleWords, guessed: bool) -> str:
 
 
 def _check_signs(items: CycleItems) -> None:
-    """Make the depth positive; refuse a bottom that is not below the point, and other heights that are."""
+    """Make the depth positive; reject a bottom that is not below the point, and other heights that are."""
     values = items.values
     written = values.get("depth", items.words.down)
     values["depth"] = written * items.words.down if "depth" in values else math.nan
@@ -97,7 +97,7 @@ def _check_signs(items: CycleItems) -> None:
 
 
 def _cycle(course: Course, strokes: Strokes, items: CycleItems) -> Cycle:
-    """The cycle that the values say; NaN where something is missing."""
+    """The cycle defined by the values; NaN where a value is missing."""
     values, scale = items.values, course.scale
     clearance = values.get("clearance", math.nan) * scale
     returns = "return" in values and course.cycle_return != "CLEAR"
@@ -118,13 +118,13 @@ def _cycle(course: Course, strokes: Strokes, items: CycleItems) -> Cycle:
 
 
 def _dwell(course: Course, values: Mapping[str, float]) -> float:
-    """The dwell at the bottom in s; of turns of a spindle at rest, which never end, infinite."""
+    """The dwell at the bottom in s; infinite for revolutions of a stopped spindle."""
     turns = values.get("turns", 0.0)
     return turns * 60 / course.speed if turns and course.speed else math.inf if turns else values.get("dwell", 0.0)
 
 
 def _feed(course: Course, given: tuple[str, float] | None) -> float:
-    """The feed of the cycle in mm/s, NaN if it has none; the feed of the moves around it stays as it is."""
+    """The feed of the cycle in mm/s, NaN if absent; the feed of other moves is unchanged."""
     if given is None:
         return math.nan if course.feed is None or course.feed.inverse else course.feed.value
     per_turn = course.feed_per_turn
@@ -134,7 +134,7 @@ def _feed(course: Course, given: tuple[str, float] | None) -> float:
 
 
 def _wrong(cycle: Cycle, words: CycleWords) -> str:
-    """Why the cycle cannot be carried out, empty if it can."""
+    """Why the cycle cannot be executed, empty if it can."""
     missing = [words.words_for(name) for name in ("depth", "clearance", "step") if math.isnan(getattr(cycle, name))]
     if missing:
         return f"{', '.join(missing)} is missing"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Length unit: what the lengths of a file are in, and by which of its words.
+"""Length unit: determine the length unit of a file, and the words that define it.
 
-The statements and the text enter; a unit leaves, or why there is none. UNITS decides. A file without it is taken by the
-unit of its feeds, or by a comment that names its units; where these disagree, or there are none, nothing is taken.
+Enters: the statements and the text. Leaves: a unit, or why there is none. UNITS decides. Without it the unit of the
+feeds applies, or a comment that names the units; if these disagree or are absent, the unit is unknown.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from pkm_post.cldata.statements import Statements
 
 UNIT_WORDS: dict[str, str] = {"MM": "mm", "INCHES": "inch", "INCH": "inch", "IN": "inch"}
-"""What UNITS can say."""
+"""Operands of UNITS."""
 _FEED_WORDS: dict[str, str] = {
     **dict.fromkeys(("MMPM", "MMPR"), "mm"),
     **dict.fromkeys(("IPM", "IPR", "FPM", "FPR"), "inch"),
@@ -33,9 +33,9 @@ class LengthUnit:
     """The unit of a file.
 
     Attributes:
-        name: a key of ``options.UNITS``; empty where the file does not say it.
-        words: by which words, and where; or why there is no unit.
-        stated: whether UNITS says it.
+        name: a key of ``options.UNITS``; empty if the file does not define it.
+        words: the defining words and their location; or why there is no unit.
+        stated: whether UNITS defines it.
         doubt: a feed of the other unit, empty if there is none.
     """
 
@@ -46,10 +46,10 @@ class LengthUnit:
 
 
 def length_unit(statements: Statements, text: str) -> LengthUnit:
-    """The unit that a file is in.
+    """Determine the length unit of a file.
 
     Args:
-        statements: of the file; those behind FINI say nothing.
+        statements: of the file; those after FINI are ignored.
         text: the same with its comments.
     """
     end = next(iter(_rows(statements, "FINI")), len(statements))
@@ -70,7 +70,7 @@ def length_unit(statements: Statements, text: str) -> LengthUnit:
 
 
 def _rows(statements: Statements, word: str) -> list[int]:
-    """The statements of a word."""
+    """The statements with a major word."""
     forms = [index for index, form in enumerate(statements.forms) if form.word == word]
     rows: list[int] = np.flatnonzero(np.isin(statements.form, forms)).tolist()
     return rows
@@ -79,7 +79,7 @@ def _rows(statements: Statements, word: str) -> list[int]:
 def _first_words(
     statements: Statements, majors: tuple[str, ...], table: dict[str, str], end: int
 ) -> dict[str, tuple[int, str]]:
-    """By unit the first statement before a row that has one of its words, and the words."""
+    """By unit, the first statement before a row that contains one of its words, and the words."""
     found: dict[str, tuple[int, str]] = {}
     for index, form in enumerate(statements.forms):
         words = [item for item in form.items if isinstance(item, str) and item in table] if form.word in majors else []

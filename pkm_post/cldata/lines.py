@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Logical lines: bytes become statements as text, one for each line of the file that is not joined to the one before.
+"""Logical lines: split bytes into statement texts, one for each line that does not continue the previous one.
 
-Enters: the bytes of a file. Leaves: the texts of the statements, comments gone, continued lines joined, data taken out
-of comments, and for each the number of its first line. Columns are kept: nothing is moved within a physical line.
+Enters: the bytes of a file. Leaves: statement texts with comments removed, continuation lines joined and data extracted
+from comments, each with the number of its first line. Columns are preserved: text never shifts within a physical line.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy as np
 from pkm_post.model.program import Array
 
 JOINT = "\x1f"
-"""Stands where two lines were joined."""
+"""Marks a join of two lines."""
 LONGEST_LINE = 100_000
-"""Bytes. Longer lines are no statements, and nothing looks into them."""
+"""Bytes. Longer lines are not statements and are not parsed."""
 MARK = "\x02"
-"""Stands for a number in the shape of a statement."""
+"""Marker of a number in the shape of a statement."""
 
 _DOLLAR = "\x03"
-"""Stands for a $ within quotes while comments and continuations are taken away."""
+"""Placeholder for a quoted $ while comments and continuations are removed."""
 
 _RESERVED = {ord(JOINT): "\x00", ord(MARK): "\x00", ord(_DOLLAR): "\x00", ord("\v"): "\x00", ord("\f"): "\x00"}
 _DATA_COMMENT = re.compile(
@@ -35,7 +35,7 @@ _POINTS_COMMENT = re.compile(
     r"^([ \t]*)\$\$[ \t]*(?:(cent(?:er|re)[ \t-]?line)|contact[ \t]+contour)[ \t]+data[ \t]*$",
     re.MULTILINE | re.IGNORECASE,
 )
-"""What NX says of the points of a tool path."""
+"""NX comment on the meaning of the points of a tool path."""
 _CIRCLE_COMMENT = re.compile(r"\$\$[ \t]*(?=(?:CIRCLE|CYLNDR)[ \t]*/[-+.,\dE \t]+$)", re.MULTILINE | re.IGNORECASE)
 _TEXT_GOES_ON = re.compile(
     r"^[ \t]*(?:PARTNO|PPRINT|INSERT|LETTER|DISPLY|TPRINT|REMARK)\b[^\n]*~[ \t]*\n(?:[^\n]*~[ \t]*\n)*",
@@ -56,7 +56,7 @@ class Lines:
     """The statements of a file as text.
 
     Attributes:
-        text: (N) the statements; empty where a line holds none.
+        text: (N) the statements; empty for lines without one.
         number: (N,) number of the first line of each, from 1.
     """
 
@@ -70,7 +70,7 @@ class Lines:
 
 
 def without_long_lines(text: bytes | str) -> tuple[bytes | str, list[tuple[int, int]]]:
-    """A text with nothing in the place of lines that are too long; their numbers, from 1, and their bytes."""
+    """Blank overlong lines; return the text, and the number, from 1, and size in bytes of each such line."""
     if len(text) <= LONGEST_LINE:
         return text, []
     whole = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
@@ -86,7 +86,7 @@ def without_long_lines(text: bytes | str) -> tuple[bytes | str, list[tuple[int, 
 
 
 def _long_lines(text: bytes) -> Iterator[tuple[int, int]]:
-    """Where the lines that are too long begin and end."""
+    """Start and end offsets of overlong lines."""
     start = 0
     while len(text) - start > LONGEST_LINE:
         feed = text.rfind(b"\n", start, start + LONGEST_LINE + 1)
@@ -98,7 +98,7 @@ def _long_lines(text: bytes) -> Iterator[tuple[int, int]]:
 
 
 def decoded(text: bytes | str) -> str:
-    """Text with one kind of line end, without byte order mark; Latin-1 where it is not UTF-8."""
+    """Decode text as UTF-8, else Latin-1; unify line endings and strip the byte order mark."""
     if isinstance(text, str):
         whole = text
     else:
@@ -126,17 +126,17 @@ def logical_lines(text: str) -> Lines:
 
 
 def _without_quoted_dollar(found: re.Match[str]) -> str:
-    """What is quoted with its $ put out of sight: there it is text; a comment as it is."""
+    """Hide $ in quoted text, where it is literal; leave a comment unchanged."""
     return found[0] if found[0].startswith("$$") else found[0].replace("$", _DOLLAR)
 
 
 def _circle_statement(found: re.Match[str]) -> str:
-    """The start of a circle in a comment on its own line as that of a statement, _CIRCLE or _CYLNDR."""
+    """Rewrite a circle in a comment line as the start of a statement, _CIRCLE or _CYLNDR."""
     before = found.string[found.string.rfind("\n", 0, found.start()) + 1 : found.start()]
     return found[0] if before.strip() else " " * (len(found[0]) - 1) + "_"
 
 
 def _frame_statement(found: re.Match[str]) -> str:
-    """CATIA's frame in comments as a statement that spans the same lines."""
+    """Rewrite CATIA's frame in comments as a statement that spans the same lines."""
     values = ",".join(re.findall(r"[-+.\dEe]+", found[1]))
     return f"CATIA0/{values}" + JOINT * (found[0].count("\n") - 1) + "\n"

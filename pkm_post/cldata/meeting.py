@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Meeting: where a circle that is travelled from a start meets a plane.
+"""Meeting: intersect a directed circle with a plane.
 
-Circle, start and check surface enter in mm; the end of the motion leaves in mm. Nothing here knows of statements.
+Enters: circle, start point and check surface in mm. Leaves: the end point of the motion in mm. Independent of
+statements.
 """
 
 from __future__ import annotations
@@ -18,24 +19,24 @@ from pkm_post.geometry.vectors import cross, norm
 from pkm_post.model.program import Array
 
 SAME_DIRECTION = 1e-3
-"""Sine of the angle between two directions that are taken for one."""
+"""Sine of the angle below which two directions count as parallel."""
 
 
 class Unmet(Exception):  # noqa: N818 - a fault of the input, which the statement tells
-    """Why the circle does not meet the check surface."""
+    """The circle does not meet the check surface; the message says why."""
 
 
 @dataclass(frozen=True)
 class Guide:
-    """A circle travelled from a start: the points are hub + cos(angle) u + sin(angle) v.
+    """A directed circle from a start point: the points are hub + cos(angle) u + sin(angle) v.
 
     Attributes:
         start: (3,) mm.
-        hub: (3,) mm, the centre in the plane of the motion.
+        hub: (3,) mm, the centre in the plane of motion.
         axis: (3,) unit, as written.
         u: (3,) mm from the hub to the start.
-        v: (3,) the direction of travel at the start, as long as u.
-        way: 1 if it is travelled right-handed about the axis, -1 if left-handed.
+        v: (3,) direction of travel at the start, of the length of u.
+        way: sense of rotation about the axis: 1 right-handed, -1 left-handed.
     """
 
     start: Array
@@ -46,7 +47,7 @@ class Guide:
     way: float
 
     def point(self, angle: float) -> Array:
-        """The point after an angle; after next to none the tool has been all the way round."""
+        """The point at an angle of travel; at about zero or a full turn, the start point itself."""
         nearest = abs((angle + math.pi) % (2 * math.pi) - math.pi)
         if nearest * norm(self.u) < CLOSE:
             return self.start
@@ -54,22 +55,22 @@ class Guide:
         return found
 
     def way_to(self, angle: float) -> float:
-        """An angle in the order of travel: more than 0, a full turn for the start itself."""
+        """Convert an angle to travel order: above 0, a full turn for the start point itself."""
         ahead = angle % (2 * math.pi)
         return ahead if ahead * norm(self.u) > CLOSE else 2 * math.pi
 
 
 def guide(centre: Array, axis: Array, start: Array, tangent: Array) -> Guide:
-    """The circle from its start on.
+    """Create a directed circle.
 
     Args:
         centre: (3,) mm.
         axis: (3,) of any length.
         start: (3,) mm.
-        tangent: (3,) the direction in which the tool starts, roughly.
+        tangent: (3,) approximate start direction.
 
     Raises:
-        Unmet: there is no circle, or the tangent does not say which way round.
+        Unmet: there is no circle, or the tangent does not determine the sense of rotation.
     """
     size = norm(axis)
     if size < NO_DIRECTION:
@@ -85,10 +86,10 @@ def guide(centre: Array, axis: Array, start: Array, tangent: Array) -> Guide:
 
 
 def crossing(circle: Guide, plane: Plane, number: int) -> Array:
-    """The point where the circle crosses a plane for the first (1) or second (2) time.
+    """The first (1) or second (2) crossing of the circle with a plane.
 
     Raises:
-        Unmet: it does not.
+        Unmet: there is no crossing.
     """
     farthest, along, reach = _facing(circle, plane)
     if abs(along) - reach > CLOSE:
@@ -102,7 +103,7 @@ def touching(circle: Guide, plane: Plane) -> Array:
     """The point where a plane is tangent to the circle.
 
     Raises:
-        Unmet: it is not.
+        Unmet: the plane is not tangent.
     """
     farthest, along, reach = _facing(circle, plane)
     off = abs(abs(along) - reach)
@@ -112,7 +113,7 @@ def touching(circle: Guide, plane: Plane) -> Array:
 
 
 def _facing(circle: Guide, plane: Plane) -> tuple[float, float, float]:
-    """The angle at which the circle goes farthest across a plane, how far off the plane the hub is, and the radius."""
+    """Angle of the circle point farthest along the plane normal, offset of the plane from the hub, and radius."""
     across_plane = across(np.array(plane.normal), circle.axis)
     size = float(norm(across_plane))
     if size < SAME_DIRECTION:
@@ -123,15 +124,15 @@ def _facing(circle: Guide, plane: Plane) -> tuple[float, float, float]:
 
 
 def ray_end(circle: Guide, line: Array, number: int) -> Array | None:
-    """The end of a line that leads from the centre to a point of the circle, None for any other line.
+    """The end point of a line from the centre to a point of the circle, None for any other line.
 
     Args:
-        circle: travelled.
+        circle: directed circle.
         line: (2, 3) its points, mm.
-        number: of the crossing that it must be, 0 if none is said.
+        number: required crossing, 0 if not given.
 
     Raises:
-        Unmet: it ends at another crossing or at another height.
+        Unmet: the line ends at another crossing or at another height.
     """
     first, last = across(line - circle.hub, circle.axis)
     if max(float(norm(first)), abs(float(norm(last) - norm(circle.u)))) > BAD_FIT:

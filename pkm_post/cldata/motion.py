@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motion: points, arcs, cycles and feeds become the rows of a program.
+"""Motion: convert points, arcs, cycles and feeds to the rows of a program.
 
-Points in the work frame and the notes of the course enter; a ``Program`` leaves. A point is one row, but for holes,
-which are the moves of their cycle, and arcs of more than one turn.
+Enters: points in the work frame and the records of the course. Leaves: a ``Program``. A point is one row, except for
+holes, which expand to the moves of their cycle, and multi-turn arcs.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from pkm_post.model.program import Array
 
 @dataclass
 class Rows:
-    """Columns of R rows in the making, and where the points begin among them."""
+    """Builder for columns of R rows, with the first row of each point."""
 
     start: Array
     point: Array
@@ -42,15 +42,15 @@ class Rows:
 def program_of(
     course: Course, points: Points, arcs: Fitted, source: str, offsets: Sequence[Offset], reading: Sequence[str]
 ) -> Program:
-    """The program of a course.
+    """Build the program of a course.
 
     Args:
-        course: what the statements set.
-        points: resolved.
-        arcs: with their ends.
+        course: state set by the statements.
+        points: resolved points.
+        arcs: with their end points.
         source: name of the file.
         offsets: of the contours.
-        reading: how the file was taken, in words.
+        reading: description of how the file was interpreted.
     """
     holes = drilled_holes(course, points, arcs)
     rows = _rows(course, points, arcs, holes)
@@ -80,14 +80,14 @@ def program_of(
 
 
 def _column(changes: Sequence[tuple[float, ...]], row: Array, item: int, first: float) -> Array:
-    """What is in force at each of (P,) rows."""
+    """The active value at each of (P,) rows."""
     values: Array = np.array([first, *(change[item] for change in changes)])
     column: Array = values[in_force(row, [int(change[0]) for change in changes]) + 1]
     return column
 
 
 def _rows(course: Course, points: Points, arcs: Fitted, holes: Holes) -> Rows:
-    """The rows: of one point one, but for holes and arcs of several turns."""
+    """The rows: one per point, except for holes and multi-turn arcs."""
     count = np.ones(len(points.row), dtype=np.int64)
     count[arcs.point] += arcs.turns
     count[holes.point] = np.diff(holes.start)
@@ -113,7 +113,7 @@ def _rows(course: Course, points: Points, arcs: Fitted, holes: Holes) -> Rows:
 
 
 def _rapid(course: Course, points: Points) -> Array:
-    """Which points are reached by rapid moves, (P,)."""
+    """Mask of points reached by rapid moves, (P,)."""
     rapid = points.start.copy()
     nexts = np.searchsorted(points.row, np.array(course.rapids, dtype=np.int64), "left")
     rapid[nexts[nexts < len(rapid)]] = True
@@ -122,7 +122,7 @@ def _rapid(course: Course, points: Points) -> Array:
 
 
 def _fill_turns(points: Points, arcs: Fitted, rows: Rows) -> None:
-    """Spread the rise of arcs of several turns over their rows."""
+    """Distribute the rise of multi-turn arcs over their rows."""
     for index in np.flatnonzero(arcs.turns > 0).tolist():
         end = int(arcs.point[index])
         first, last = points.position[end - 1], points.position[end]
@@ -144,14 +144,14 @@ def _fill_holes(rows: Rows, holes: Holes) -> None:
 
 
 def _rows_of(start: Array, holes: Holes, move: Array) -> Array:
-    """The rows of moves of holes; ``start`` is where the rows of each point begin."""
+    """The rows of hole moves; ``start`` is the first row of each point."""
     hole = np.searchsorted(holes.start, move, "right") - 1
     row: Array = start[holes.point[hole]] + move - holes.start[hole]
     return row
 
 
 def _inverse_time(course: Course, points: Points, rows: Rows) -> None:
-    """Make inverse time feeds to mm/s; check that every cutting move has a feed."""
+    """Convert inverse time feeds to mm/s; check that every cutting move has a feed."""
     cutting = rows.kind != Kind.RAPID
     if rows.inverse.any():
         before = np.vstack([rows.position[:1], rows.position[:-1]])
@@ -169,7 +169,7 @@ def _inverse_time(course: Course, points: Points, rows: Rows) -> None:
 
 
 def _events(course: Course, points: Points, start: Array, holes: Holes) -> tuple[Event, ...]:
-    """What happens, by row."""
+    """The events by row."""
     at = np.searchsorted(points.row, np.array([row for row, _, _ in course.events], dtype=np.int64), "left")
     found = [
         Event(int(start[point]), kind, value)

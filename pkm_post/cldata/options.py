@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Options of reading CL data: what files leave open, or say wrongly."""
+"""Options of reading CL data: settings that files omit or state wrongly."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pkm_post.cldata.dialects import DIALECTS
 from pkm_post.model import Tool
 
 UNITS: dict[str, float] = {"mm": 1.0, "inch": 25.4}
-"""mm in one unit of length."""
+"""mm per length unit."""
 
 POINT = ("x", "y", "z")
 AXIS = ("i", "j", "k")
@@ -21,33 +21,32 @@ _VALUES = {*POINT, *AXIS, *NORMAL, *CONTACT}
 _HANDS = ("right", "left", "vote")
 _FRAMES = ("first", "absolute")
 CONTOUR_DATA = ("centre", "contour")
-"""What the points under CUTCOM can be."""
+"""Possible meanings of the points under CUTCOM."""
 CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell")
-"""What a number without a word in a CYCLE statement may be."""
+"""Possible meanings of a number without a word in a CYCLE statement."""
 
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """How CL data is to be read.
+    """Settings for reading CL data.
 
     Attributes:
         dialect: name in ``DIALECTS``; detected from the file if None.
-        units: key of ``UNITS``; overrides what the file says.
-        hand: "right", "left" or "vote": how arcs turn about their axis; overrides the dialect. "vote" takes for the
-            whole file the hand under which most arcs are shorter than half a turn.
-        goto_values: for GOTO with other than 3 or 6 values what each value is: "x y z", "i j k" the tool axis,
-            "nx ny nz" the surface normal, "px py pz" the contact point, which is not used.
-        cycle_values: what the numbers of a CYCLE statement are that follows its kind without words, in order, out of
+        units: key of ``UNITS``; overrides the file.
+        hand: "right", "left" or "vote": sense of rotation of arcs about their axis; overrides the dialect. "vote"
+            selects for the whole file the sense under which most arcs are shorter than half a turn.
+        goto_values: for GOTO with other than 3 or 6 values the meaning of each value: "x y z", "i j k" the tool axis,
+            "nx ny nz" the surface normal, "px py pz" the contact point, which is ignored.
+        cycle_values: meanings of the numbers that follow the kind of a CYCLE statement without words, in order, out of
             ``CYCLE_VALUES``: depth down from the point, clearance and return height up from it.
-        frame: "first": the work frame is the first machining frame of the file; "absolute": the frame that those
-            are given in.
-        tools: by number; they take precedence over what the file says of them, but for a name and a length that they
-            do not have.
-        contour_data: "centre" or "contour": what the points under CUTCOM are; overrides what the file says.
-        wear: mm by tool number that CUTCOM offsets the path by beside the radius of the tool, or alone where the
-            points are the centre of the tool; below 0 for a cutter that is smaller.
-        default_tool: gives the gauge length of tools for which neither the file nor ``tools`` has one.
-        needs_end: whether the text is a whole file, which FINI, or END-OF-PATH and its like, has to end.
+        frame: "first": the work frame is the first machining frame of the file; "absolute": the frame those are defined
+            in.
+        tools: by number; they override the tool data of the file, except for a name and a length that they lack.
+        contour_data: "centre" or "contour": meaning of the points under CUTCOM; overrides the file.
+        wear: mm by tool number, the path offset of CUTCOM in addition to the tool radius, or on its own where the
+            points are the tool centre; negative for a smaller cutter.
+        default_tool: supplies the gauge length of tools for which neither the file nor ``tools`` has one.
+        needs_end: whether the text is a complete file, which must end with FINI, or END-OF-PATH or similar.
     """
 
     dialect: str | None = None
@@ -83,5 +82,5 @@ class ReadOptions:
                 raise ValueError(f"goto_values: expected {count} different names with x, y, z, got {names!r}")
 
     def value_names(self, count: int) -> tuple[str, ...] | None:
-        """What the values of a GOTO are, None if that is not known."""
+        """Meanings of the values of a GOTO, None if unknown."""
         return self.goto_values.get(count, {3: POINT, 6: POINT + AXIS}.get(count))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Place: where the tool is when a statement is read.
+"""Place: the tool position at a statement.
 
-Statements that go on from there need it: increments, directions to a point, arcs to a check surface. The course
-enters; a point leaves, in the units and the frame of the statement that asks.
+Statements relative to it need it: increments, directions to a point, arcs to a check surface. Enters: the course.
+Leaves: a point, in the units and the frame of the requesting statement.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from pkm_post.model.program import Array
 
 
 def place(course: Course, row: int, asker: str) -> Array | None:
-    """Where the tool is before a statement, (3,); None if that is not known, which is told.
+    """The tool position before a statement, (3,); None, with a fault, if unknown.
 
     Args:
-        course: with all that was read before.
-        row: the statement that asks.
-        asker: its name, for people.
+        course: with all preceding statements read.
+        row: the requesting statement.
+        asker: its name, for messages.
     """
     before = int(course.gotos_before[row])
     goto_row = int(course.goto_rows[before - 1]) if before else -1
@@ -39,7 +39,7 @@ def place(course: Course, row: int, asker: str) -> Array | None:
 
 
 def _drilled(course: Course, row: int) -> bool:
-    """Whether a cycle is in force at a row, and is carried out there: FROM says where the tool is."""
+    """Whether an active cycle is executed at a row: not at FROM, which gives the tool position."""
     change = bisect_left(course.cycles, row, key=lambda one: one[0]) - 1
     starts = any(at == row and point.start for at, point in course.points[-1:])
     return change >= 0 and course.cycles[change][1] is not None and not starts
@@ -53,7 +53,7 @@ def _written(course: Course, row: int) -> Array:
 
 
 def _carried(course: Course, row: int, position: Array) -> Array:
-    """A point that was written at a row, in the units and the frame of now."""
+    """Convert a point written at a row to the current units and frame."""
     scale = course.scales[bisect_left(course.scales, row, key=lambda change: change[0]) - 1][1]
     index = bisect_left(course.frames, row, key=lambda change: change[0])
     if scale == course.scale and index == len(course.frames):

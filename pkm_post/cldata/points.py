@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points: GOTO, all at once, with FROM, GODLTA and the ends of arcs that bring their own, in the order of the file.
+"""Points: all GOTO at once, with FROM, GODLTA and the end points of self-contained arcs, in file order.
 
-The table of statements and the notes of the course enter; columns of points leave, in mm and in the work frame,
+Enters: the table of statements and the records of the course. Leaves: columns of points, in mm and in the work frame,
 with unit tool axes.
 """
 
@@ -22,9 +22,9 @@ from pkm_post.geometry.vectors import norm
 from pkm_post.model.program import Array
 
 ValueNames = dict[int, tuple[str, ...]]
-"""For each form of a GOTO what its values are."""
+"""Meanings of the values of each GOTO form."""
 NOT_UNIT = 1e-3
-"""Deviation from unit length that is told."""
+"""Deviation from unit length above which a vector is reported."""
 
 
 @dataclass
@@ -35,8 +35,8 @@ class Points:
         row: (P,) their statements.
         position: (P, 3).
         axis: (P, 3) unit tool axis.
-        normal: (P, 3) unit surface normal, NaN where there is none.
-        start: (P,) where the tool is, not where it goes.
+        normal: (P, 3) unit surface normal, NaN where absent.
+        start: (P,) whether the point is the tool position, not a target.
     """
 
     row: Array
@@ -47,19 +47,19 @@ class Points:
 
 
 def goto(course: Course, row: int, statement: Statement) -> None:
-    """A GOTO that is not taken with all others: its values are not understood."""
+    """Report a GOTO outside the bulk: its values are not understood."""
     course.tell("L402", row, f"GOTO/{shown(statement)}, expected x,y,z or x,y,z,i,j,k")
 
 
 def bare(course: Course, row: int, statement: Statement) -> None:
-    """Numbers alone that are no further point of a GOTO."""
+    """Report a line of numbers that does not continue a GOTO."""
     follows = course.dialect.pted and row > 0 and course.statements.word(row - 1) in ("GOTO", "")
     code, expected = ("L402", "x,y,z or x,y,z,i,j,k") if follows else ("L201", "a word")
     course.tell(code, row, f"{shown(statement)}, expected {expected}")
 
 
 def single(course: Course, row: int, statement: Statement) -> None:
-    """FROM/x,y,z[,i,j,k]: where the tool is; GODLTA/dx,dy,dz[,i,j,k]: where it goes to from there."""
+    """FROM/x,y,z[,i,j,k]: the tool position; GODLTA/dx,dy,dz[,i,j,k]: an incremental move from it."""
     values = statement.values
     if len(values) not in (3, 6):
         course.tell("L402", row, f"{statement.word}/{shown(statement)}, expected 3 or 6 values")
@@ -74,7 +74,7 @@ def single(course: Course, row: int, statement: Statement) -> None:
 
 
 def tlaxis(course: Course, row: int, statement: Statement) -> None:
-    """TLAXIS/i,j,k: the axis of points that have none."""
+    """TLAXIS/i,j,k: the axis of points without their own."""
     if len(statement.values) != 3:
         course.tell("L402", row, f"TLAXIS/{shown(statement)}, expected 3 values")
     else:
@@ -82,15 +82,15 @@ def tlaxis(course: Course, row: int, statement: Statement) -> None:
 
 
 def multax(course: Course, row: int, statement: Statement) -> None:
-    """MULTAX: says nothing that GOTO does not; MULTAX/OFF sets the tool upright."""
+    """MULTAX: adds nothing to GOTO; MULTAX/OFF sets the tool axis vertical."""
     if "OFF" in statement.words:
         course.axes.append((row, (0.0, 0.0, 1.0)))
 
 
 def bulk_rows(statements: Statements, options: ReadOptions, dialect: Dialect) -> tuple[Array, ValueNames]:
-    """Which rows are GOTO statements that are taken all at once, and what the values of their forms are.
+    """Mask of the GOTO rows that are processed in bulk, and the value meanings of their forms.
 
-    Points without a major word are among them where they go on from a GOTO.
+    Points without a major word are included where they continue a GOTO.
     """
     names = {
         index: found
@@ -106,13 +106,13 @@ def bulk_rows(statements: Statements, options: ReadOptions, dialect: Dialect) ->
 
 
 def without_word(statements: Statements) -> Array:
-    """Which rows are numbers alone, (N,)."""
+    """Mask of rows with numbers only, (N,)."""
     rows: Array = np.array([form.word == "" for form in statements.forms], dtype=np.bool_)[statements.form]
     return rows
 
 
 def all_points(course: Course, bulk: Array, names: ValueNames) -> Points:
-    """All points of the file as written, in its order."""
+    """All points of the file as written, in file order."""
     rows, values = _bulk_values(course, bulk, names)
     special = [point for _, point in course.points]
     row = np.concatenate([rows, np.array([at for at, _ in course.points], dtype=np.int64)])
@@ -141,13 +141,13 @@ def _bulk_values(course: Course, bulk: Array, names: ValueNames) -> tuple[Array,
 
 
 def in_force(row: Array, changes: list[int]) -> Array:
-    """For each of (P,) rows the index of the last change at a row before it, -1 if there is none."""
+    """Index of the last change before each of (P,) rows, -1 if there is none."""
     index: Array = np.searchsorted(np.array(changes, dtype=np.int64), row, "left") - 1
     return index
 
 
 def resolve(course: Course, points: Points) -> Array:
-    """Take points to mm, the work frame and unit axes, in place; their frames, (P, 4, 4) or (1, 4, 4)."""
+    """Convert points to mm, the work frame and unit axes, in place; return their frames, (P, 4, 4) or (1, 4, 4)."""
     scales = np.array([scale for _, scale in course.scales])
     points.position = points.position * scales[in_force(points.row, [row for row, _ in course.scales])][:, None]
     points.axis = _modal_axes(course, points)
@@ -167,7 +167,7 @@ def resolve(course: Course, points: Points) -> Array:
 
 
 def _modal_axes(course: Course, points: Points) -> Array:
-    """The axis of every point: its own, or the last one that was said."""
+    """The axis of every point: its own, or the modal one."""
     own = np.flatnonzero(~np.isnan(points.axis[:, 0]))
     row = np.concatenate([[-1], points.row[own], np.array([at for at, _ in course.axes], dtype=np.int64)])
     said = np.concatenate([[[0.0, 0.0, 1.0]], points.axis[own], np.array([v for _, v in course.axes]).reshape(-1, 3)])
@@ -177,7 +177,7 @@ def _modal_axes(course: Course, points: Points) -> Array:
 
 
 def _unit(course: Course, row: Array, vectors: Array, name: str) -> None:
-    """Normalise vectors in place; tell those without direction and those far from unit length."""
+    """Normalise vectors in place; report those without direction and those far from unit length."""
     length = norm(vectors)
     for index in np.flatnonzero(length < NO_DIRECTION).tolist():
         course.tell("L405", int(row[index]), f"{name} {_vector(vectors[index])}")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reader: the order in which CL data becomes a program.
+"""Reader: the processing sequence from CL data to a program.
 
-The text of a file enters; a ``Program`` in mm, mm/s and the work frame leaves, and all faults that were found. With
-an error there is no program.
+Enters: the text of a file. Leaves: a ``Program`` in mm, mm/s and the work frame, and all faults. With an error there is
+no program.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from pkm_post.model import Diagnostic, Program
 from pkm_post.model.program import Array
 
 LARGE_INCHES = 2000.0
-"""mm; a part in inches that is larger is more likely one in mm."""
+"""mm; a larger part in inches is more likely in mm."""
 
 
 def read(
@@ -37,11 +37,11 @@ def read(
 
     Args:
         text: content of the file.
-        file: its name, for people.
-        options: what the file leaves open or says wrongly.
+        file: its name, for messages.
+        options: settings that the file omits or states wrongly.
 
     Returns:
-        The program, None if there are errors, and the diagnostics in the order of the file.
+        The program, or None if there are errors, and the diagnostics in file order.
 
     Raises:
         ImportError: lark is not installed.
@@ -62,7 +62,7 @@ def read(
 
 
 def _program(course: Course, bulk: Array, names: ValueNames, file: str) -> Program | None:
-    """The program of the statements; None where errors leave none."""
+    """The program of the statements; None on errors."""
     counted = walk(course, bulk)
     points = all_points(course, counted, names)
     if not course.faults.any_errors() and not len(points.row):
@@ -84,7 +84,7 @@ def _program(course: Course, bulk: Array, names: ValueNames, file: str) -> Progr
 
 
 def _unit(course: Course, points: Points) -> list[str]:
-    """How the unit of length was taken, in words, if UNITS does not say it; tells a doubtful or missing one."""
+    """Describe how the length unit was determined without UNITS; report a doubtful or missing unit."""
     if course.options.units is not None:
         return [f"lengths are in {course.options.units}, as the option says"]
     unit, size = course.file_unit, float(np.ptp(points.position, axis=0).max())
@@ -102,7 +102,7 @@ def _unit(course: Course, points: Points) -> list[str]:
 
 
 def _lengths(course: Course) -> None:
-    """Tell tools of unknown length."""
+    """Report tools of unknown length."""
     keep(course)
     for number, tool in sorted(course.tools.items()):
         if not tool.length > 0:

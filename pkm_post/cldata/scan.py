@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Scan: text becomes statements, fast where a file repeats itself.
+"""Scan: convert text to statements, fast for repetitive files.
 
-Enters: logical lines. Leaves: the table of statements, and the lexical and syntax faults. Every number is replaced by
-a mark; what is left of a line is its shape. Of each shape one real line is parsed by the grammar of record, the
-numbers of all are converted at once. So nothing is taken whose shape the grammar has not accepted, and a statement
-costs no parsing.
+Enters: logical lines. Leaves: the table of statements, and the lexical and syntax faults. Every number is replaced by a
+marker; the rest of a line is its shape. The grammar of record parses one real line of each shape, and the numbers of
+all lines are converted at once. So no line is accepted unless the grammar accepts its shape, and statements need no
+individual parsing.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from lark import UnexpectedInput
 
 LONGEST = 20000
-"""Characters of a statement, numbers not counted."""
+"""Characters of a statement, not counting numbers."""
 DEEPEST = 20
-"""Parentheses in a statement."""
+"""Nesting depth of parentheses in a statement."""
 
 _NUMBER = re.compile(r"(?<![\w.+-])[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[Ee][+-]?[0-9]++)?+(?![\w.+-])")
 _STRING = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"")
@@ -37,11 +37,11 @@ _BLANKS = f" \t{JOINT}"
 
 
 def scan(lines: Lines, faults: Faults) -> Statements:
-    """The statements of logical lines.
+    """Scan logical lines to statements.
 
     Args:
         lines: the text.
-        faults: takes what is wrong with it.
+        faults: collects its faults.
     """
     lines = _without_long_ones(lines, faults)
     body = _without_quoted_numbers("\n".join(lines.text))
@@ -59,7 +59,7 @@ def scan(lines: Lines, faults: Faults) -> Statements:
 
 
 def _without_long_ones(lines: Lines, faults: Faults) -> Lines:
-    """The lines with nothing in the place of those that became too long when they were joined."""
+    """Blank the lines that became too long when joined."""
     too_long = [index for index, text in enumerate(lines.text) if len(text) > LONGEST_LINE]
     if not too_long:
         return lines
@@ -72,7 +72,7 @@ def _without_long_ones(lines: Lines, faults: Faults) -> Lines:
 
 
 def parsed_line(shape: str, text: str) -> Form | Fault | UnexpectedInput | None:
-    """The form of a line, what is wrong with it, or None if it holds nothing."""
+    """The form of a line, its fault, or None if it is empty."""
     if not shape.strip(_BLANKS):
         return None
     if len(shape) > LONGEST:
@@ -84,7 +84,7 @@ def parsed_line(shape: str, text: str) -> Form | Fault | UnexpectedInput | None:
 
 
 def _fault_again(text: str) -> Fault:
-    """What is wrong with one line of a shape that is wrong."""
+    """The fault of one line of an invalid shape."""
     result = parsed_line(_NUMBER.sub(MARK, _without_quoted_numbers(text)), text)
     if isinstance(result, Fault):
         return result
@@ -94,7 +94,7 @@ def _fault_again(text: str) -> Fault:
 
 
 def _without_quoted_numbers(text: str) -> str:
-    """The text with digits in quotes put out of sight: what is quoted is no number."""
+    """Hide digits in quotes: quoted text contains no numbers."""
     return _STRING.sub(lambda found: found[0].translate(_HIDDEN_DIGITS), text)
 
 

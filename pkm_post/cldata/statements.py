@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Statements: what a file says, one row per statement, its numbers in one column.
+"""Statements: the content of a file, one row per statement, with all numbers in one column.
 
-Most statements of a file differ in their numbers alone. What they have in common, their form, is kept once;
-a row names its form and where its numbers stand. Numbers are as written: program units, degrees.
+Most statements of a file differ only in their numbers. Their common part, the form, is stored once; a row holds the
+index of its form and the range of its numbers. Numbers are as written: program units, degrees.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Statement:
     Attributes:
         word: its major word; several are joined by commas.
         items: numbers, words in upper case, statements in parentheses, None for empty ones.
-        text: what stands behind a word that takes text.
+        text: the text after a word that takes text.
     """
 
     word: str
@@ -43,7 +43,7 @@ class Statement:
 
     @property
     def values(self) -> list[float]:
-        """The items if every one of them is a number, else none."""
+        """The items if all of them are numbers, else an empty list."""
         numbers = self.numbers
         return numbers if len(numbers) == len(self.items) else []
 
@@ -55,11 +55,11 @@ class Statement:
 
 @dataclass(frozen=True)
 class Form:
-    """What statements that differ in their numbers alone have in common.
+    """Common part of statements that differ only in their numbers.
 
     Attributes:
-        word: the major word, of several joined by commas; empty for numbers alone.
-        items: words and nested forms; ``float`` itself stands for a number, None for an empty item.
+        word: the major word, several joined by commas; empty for a line of numbers.
+        items: words and nested forms; ``float`` itself marks a number, None an empty item.
         takes_text: whether the rest of the line is text.
     """
 
@@ -73,7 +73,7 @@ class Form:
         return bool(self.items) and all(item is float for item in self.items)
 
     def filled(self, numbers: Iterator[float]) -> Statement:
-        """The statement with its numbers."""
+        """Fill in the numbers of a statement."""
         return Statement(self.word, tuple(_filled(item, numbers) for item in self.items))
 
 
@@ -95,7 +95,7 @@ class Statements:
         index: (N,) its logical line.
         number_start: (N + 1,) the numbers of row i are ``numbers[number_start[i]:number_start[i + 1]]``.
         numbers: (K,) as written.
-        lines: the text they come from.
+        lines: the source text.
     """
 
     forms: tuple[Form, ...]
@@ -117,7 +117,7 @@ class Statements:
         return form.filled(iter(self.numbers[self.number_start[row] : self.number_start[row + 1]].tolist()))
 
     def word(self, row: int) -> str:
-        """The major word of one statement, empty where it has none."""
+        """The major word of one statement, empty if absent."""
         return self.forms[self.form[row]].word
 
     def place(self, row: int) -> tuple[int, int]:
@@ -141,7 +141,7 @@ def form_of(tree: Tree[Token]) -> Form:
 
 
 def _item(tree: Tree[Token] | None) -> object:
-    """What an item of the tree is in a form."""
+    """Convert an item of the parse tree to an item of a form."""
     if tree is None:
         return None
     if tree.data == "number":

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tools: CUTTER, TLDATA, LOADTL, LOAD/TOOL and TOOLNO.
 
-Statements enter; tools and tool changes leave, in mm. Dialects give the cutter before or after
-the change, so a tool is known for what it is at the first motion behind both.
+Enters: statements. Leaves: tools and tool changes, in mm. Dialects define the cutter before or after the change, so a
+tool is final at the first motion after both.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pkm_post.model import EventKind, Tool
 from pkm_post.model.tool import angles_fit, corner_reach, largest_corner
 
 _TOUCHING = 2e-3
-"""How far in mm e and f may be from those of a corner that touches: files round to three decimals."""
+"""Tolerance in mm of e and f from those of a tangent corner: files round to three decimals."""
 
 
 def cutter(course: Course, row: int, statement: Statement) -> None:
@@ -35,7 +35,7 @@ def cutter(course: Course, row: int, statement: Statement) -> None:
 
 
 def tldata(course: Course, row: int, statement: Statement) -> None:
-    """TLDATA/MILL,d,r,length,taper,tip,... and TLDATA/DRILL,MILL,d,...: of the latter the diameter alone."""
+    """TLDATA/MILL,d,r,length,taper,tip,... and TLDATA/DRILL,MILL,d,...: only the diameter of the latter."""
     numbers = statement.numbers
     if not numbers:
         course.tell("L402", row, f"TLDATA/{shown(statement)}, expected a diameter")
@@ -47,7 +47,7 @@ def tldata(course: Course, row: int, statement: Statement) -> None:
 
 
 def _check_corner(course: Course, row: int, e: float, f: float) -> None:
-    """Tell of an e or f that belongs to another corner than the one that touches bottom and side."""
+    """Report e or f that does not belong to the corner tangent to bottom and side."""
     a, b, r = course.bottom_angle, course.side_angle, course.corner
     touching_e = course.diameter / 2 - r * corner_reach(a, b)
     touching_f = touching_e * math.tan(a) + r / math.cos(a)
@@ -57,12 +57,12 @@ def _check_corner(course: Course, row: int, e: float, f: float) -> None:
 
 
 def _filled(numbers: list[float], count: int) -> tuple[float, ...]:
-    """The first numbers of a statement, 0 for those that are missing."""
+    """The first numbers of a statement, 0 for missing ones."""
     return (*numbers[:count], *(0.0,) * (count - len(numbers)))
 
 
 def _new_cutter(course: Course, row: int, diameter: float, corner: float, bottom: float, side: float) -> bool:
-    """Whether such a cutter can be; then it is the one in use."""
+    """Whether the cutter is possible; if so, it becomes the active one."""
     diameter, corner = diameter * course.scale, corner * course.scale
     bottom_angle, side_angle = math.radians(bottom), math.radians(side)
     if not angles_fit(bottom_angle, side_angle):
@@ -80,7 +80,7 @@ def _new_cutter(course: Course, row: int, diameter: float, corner: float, bottom
 
 
 def load(course: Course, row: int, statement: Statement) -> None:
-    """LOADTL/n[,LENGTH,l], LOAD/TOOL,n and TOOLNO/n: the tool is changed; once, if two of them say so."""
+    """LOADTL/n[,LENGTH,l], LOAD/TOOL,n and TOOLNO/n: a tool change; only one if two of them occur."""
     items = statement.items
     if statement.word == "LOAD" and items[:1] != ("TOOL",):
         course.tell("L401", row, f"LOAD/{shown(statement)}")
@@ -103,7 +103,7 @@ def load(course: Course, row: int, statement: Statement) -> None:
 
 
 def _after(statement: Statement, word: str) -> float:
-    """The number behind a word, 0 if there is none."""
+    """The number after a word, 0 if absent."""
     for name, value in zip(statement.items, statement.items[1:], strict=False):
         if name == word and isinstance(value, float):
             return value
@@ -111,13 +111,13 @@ def _after(statement: Statement, word: str) -> float:
 
 
 def insert(course: Course, row: int, statement: Statement) -> None:
-    """INSERT/text: SolidWorks names the tool so before its CUTTER; others insert text into the NC program."""
+    """INSERT/text: in SolidWorks the tool name before its CUTTER; elsewhere text for the NC program."""
     if course.dialect.insert_is_tool:
         course.insert = statement.text
 
 
 def settle(course: Course, row: int) -> None:
-    """Note the tool that was in use, if there were motions since the last change of anything about it."""
+    """Record the active tool if there were motions since its last change."""
     motions = int(course.gotos_before[row]) + sum(not point.start for _, point in course.points)
     if motions != course.motions_settled:
         course.motions_settled = motions
@@ -125,7 +125,7 @@ def settle(course: Course, row: int) -> None:
 
 
 def keep(course: Course) -> None:
-    """Note the tool as it is known now."""
+    """Record the tool as currently known."""
     stands_for = course.options.default_tool
     given = course.options.tools.get(course.tool)
     length = course.length or (stands_for.length if stands_for else 0.0)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walk: the statements that are not plain GOTO, one after the other, each given to what its word means.
+"""Walk: dispatch the statements other than plain GOTO, in order, to the handlers of their words.
 
-Statements enter; a course with all that they set leaves.
+Enters: statements. Leaves: a course with the state that they set.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from pkm_post.cldata.words import HANDLERS, PASSED_OVER, REFUSED, Handler
 from pkm_post.model.program import Array
 
 LARGEST = 1e9
-"""Numbers beyond this are no lengths, feeds or speeds of a machine."""
+"""Numbers beyond this are not plausible lengths, feeds or speeds."""
 
 
 def walk(course: Course, bulk: Array) -> Array:
-    """Read the statements that are not taken all at once.
+    """Process the statements that are not in the bulk.
 
     Args:
-        course: takes what they say.
-        bulk: (N,) which rows are plain GOTO statements.
+        course: is updated by them.
+        bulk: (N,) mask of plain GOTO statements.
 
     Returns:
-        (N,) which plain GOTO statements count: those with possible numbers before the end.
+        (N,) mask of valid plain GOTO statements: those with plausible numbers before the end.
     """
     statements = course.statements
     possible = _possible(course)
@@ -54,13 +54,13 @@ def walk(course: Course, bulk: Array) -> Array:
 
 
 def _handler(course: Course, word: str) -> Handler | None:
-    """What reads statements of a word, None if it has no meaning here."""
-    # Where INSERT names no tool it is text for the NC program, which a motion cannot carry.
+    """The handler of a word, None if it has no meaning here."""
+    # An INSERT that does not name a tool is text for the NC program, which a motion cannot represent.
     return HANDLERS.get(word) if word != "INSERT" or course.dialect.insert_is_tool else None
 
 
 def _possible(course: Course) -> Array:
-    """Which statements have possible numbers; tells the others."""
+    """Mask of statements with plausible numbers; report the others."""
     statements: Statements = course.statements
     size = np.diff(statements.number_start)
     owner = np.repeat(np.arange(len(statements)), size)
@@ -75,7 +75,7 @@ def _possible(course: Course) -> Array:
 
 
 def _tell_behind(course: Course, row: int) -> None:
-    """Tell that there are statements behind the end."""
+    """Report statements after the end."""
     behind = len(course.statements) - row - 1
     if behind:
         course.tell("L415", row + 1, f"{behind} statements")

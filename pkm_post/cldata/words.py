@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The vocabulary: for each major word what is done with it.
+"""The vocabulary: the treatment of each major word.
 
-A word has a meaning here, or says nothing of the motion and is passed over, or is refused by name, because the
-motion would be another one without it. All other words are told once with their count.
+A word has a handler, or does not affect the motion and is ignored, or is refused by name because ignoring it would
+change the motion. All other words are reported once with their count.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ Handler = Callable[[Course, int, Statement], None]
 
 
 def _operation(course: Course, row: int, statement: Statement) -> None:
-    """TOOL PATH/name,TOOL,tool of NX, OPERATION NAME of CATIA, FEATNO of Creo: an operation begins."""
-    if statement.word == "TOOL PATH":  # what the points of a path are stands in its own header
+    """TOOL PATH/name,TOOL,tool of NX, OPERATION NAME of CATIA, FEATNO of Creo: start of an operation."""
+    if statement.word == "TOOL PATH":  # the header of each path defines the meaning of its points
         course.points_said = None
     name, _, tool = statement.text.partition(",TOOL,")
     course.insert = tool or course.insert
@@ -30,13 +30,13 @@ def _operation(course: Course, row: int, statement: Statement) -> None:
 
 
 def _tlcomp(course: Course, row: int, statement: Statement) -> None:
-    """TLCOMP/OFF ends a compensation of the control that no path here has; any other asks for one."""
+    """TLCOMP/OFF ends a control-side compensation, which no path here uses; any other form requests one."""
     if statement.items != ("OFF",):
         course.tell("L401", row, f"TLCOMP/{shown(statement)}")
 
 
 def _syn(course: Course, row: int, statement: Statement) -> None:
-    """SYN/'new','old',... gives words another meaning: refused where such a word follows."""
+    """SYN/'new','old',... redefines words: refused where such a word follows."""
     words = [item.strip("'\"") for item in statement.words[::2]]
     later = "\n".join(course.statements.lines.text[course.statements.index[row] + 1 :])
     renamed = [word for word in words if re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", later, re.IGNORECASE)]
@@ -69,7 +69,7 @@ HANDLERS: dict[str, Handler] = {
     "TLCOMP": _tlcomp, "SYN": _syn,
     "TOOL PATH": _operation, "OPERATION NAME": _operation, "FEATNO": _operation, "FINI": _fini,
 }  # fmt: skip
-"""Words with a meaning."""
+"""Words with a handler."""
 
 PASSED_OVER = frozenset({
     "PARTNO", "PPRINT", "TPRINT", "LETTER", "DISPLY", "REMARK", "MACHIN", "PPWORD", "PAINT", "END-OF-PATH", "SETUP",
@@ -77,7 +77,7 @@ PASSED_OVER = frozenset({
     "CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH", "CLPRNT", "NOPOST", "LEADER", "CLEARP",
     "MODE", "PRINT", "SEQNO",
 })  # fmt: skip
-"""Words that say nothing of the motion."""
+"""Words without effect on the motion."""
 
 REFUSED = frozenset({
     "SPLINE", "BSPLINE", "NURBS",
@@ -86,4 +86,4 @@ REFUSED = frozenset({
     "TLLFT", "TLRGT", "TLON", "TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GORGT", "THREAD", "PITCH", "REFSYS",
     "RETRCT", "CALSUB", "DEFSUB", "ENDSUB", "PIVOTZ", "PROBE", "DNTCUT",
 })  # fmt: skip
-"""Words that change the motion and are not carried out."""
+"""Words that change the motion and are not supported."""
