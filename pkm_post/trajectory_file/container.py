@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Container: a file enters, its header and its tables of plain records leave; or what is wrong with the file as such.
+"""Container: the header and the tables of plain records of a file, or the damage that prevents reading it.
 
-Nothing the file says of itself is believed before it was checked: sizes against the file, tables against its bounds
-and each other, the bytes against their checksums. A table is a view into the bytes that were read, so a count that
-lies cannot ask for memory.
+No statement of the file is trusted before it is checked: sizes against the file, tables against its bounds and each
+other, the bytes against their checksums. A table is a view into the bytes read, so a false count cannot allocate
+memory.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Content = bytes | memoryview
 
 
 class DamageError(Exception):
-    """The file cannot be read: the code of the diagnostic and what was found. It does not leave this room."""
+    """The file cannot be read; holds the code and the text of the diagnostic. It is not raised outside this room."""
 
     def __init__(self, found: str, code: str = "T103") -> None:
         self.code = code
@@ -31,19 +31,19 @@ class DamageError(Exception):
 
 
 def bytes_of(path: Path) -> memoryview:
-    """All bytes of a file; what is no trajectory file is not read beyond the header.
+    """All bytes of a file; a file that is not a trajectory file is not read beyond the header.
 
     Raises:
-        DamageError: the file cannot be opened, is of another kind or version, or has another size than it says.
+        DamageError: the file cannot be opened, is of another kind or version, or differs from its stated size.
     """
     try:
         return _content(path)
-    except (OSError, ValueError) as fault:  # ValueError: no path can have this name
+    except (OSError, ValueError) as fault:  # ValueError: invalid path name
         raise DamageError(getattr(fault, "strerror", None) or str(fault), "T101") from fault
 
 
 def opened(content: Content) -> tuple[np.void, dict[str, Records]]:
-    """The header record and the tables by name, of the bytes of a file.
+    """The header record, and the tables by name, from the bytes of a file.
 
     Raises:
         DamageError: they are of another kind or version, or damaged.
@@ -58,21 +58,21 @@ def opened(content: Content) -> tuple[np.void, dict[str, Records]]:
 
 
 def _content(path: Path) -> memoryview:
-    if not stat.S_ISREG(path.stat().st_mode):  # opening a pipe would wait for its writer
+    if not stat.S_ISREG(path.stat().st_mode):  # opening a pipe would block until it has a writer
         raise DamageError("it is not a regular file", "T101")
     with path.open("rb", buffering=0) as file:
         header = _header(file.read(HEADER.itemsize))
         size = os.fstat(file.fileno()).st_size
         _check_size(header, size)
         file.seek(0)
-        content = np.fromfile(file, np.uint8).data  # into large pages of memory, in half the time of ``file.read``
+        content = np.fromfile(file, np.uint8).data  # uses large pages: half the time of ``file.read``
     if len(content) != size:
         raise DamageError(f"the file changed from {size} to {len(content)} bytes while it was read")
     return content
 
 
 def _header(content: Content) -> np.void:
-    """The header record of a file of our kind and version."""
+    """The header record of a file of the supported kind and version."""
     content = bytes(content[: HEADER.itemsize])
     if not content.startswith(MAGIC):
         raise DamageError(f"it begins with {content[: len(MAGIC)]!r}" if content else "it is empty", "T101")
@@ -101,7 +101,7 @@ def _check_header(header: np.void, content: Content) -> None:
 
 
 def _check_tables(header: np.void, file_size: int) -> None:
-    """Refuse tables of foreign records, outside the file, or upon each other."""
+    """Refuse tables with unknown record sizes, outside the file, or overlapping each other."""
     spans = [(0, int(header["header_size"]), "header")]
     for name, record in TABLES.items():
         offset, count, record_size = header[name].item()
@@ -118,7 +118,7 @@ def _check_tables(header: np.void, file_size: int) -> None:
 
 
 def _is_size(size: int, known: int, header: np.void) -> bool:
-    """Whether a record has its size; in a newer minor version it may have grown."""
+    """Whether a record has its known size; a newer minor version may extend it."""
     grown = header["minor"] > MINOR and known > 1 and size > known and size % ALIGNMENT == 0
     return bool(size == known or grown)
 

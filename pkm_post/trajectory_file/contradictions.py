@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contradictions: what a trajectory says twice and not alike, though each value makes sense by itself.
+"""Contradictions: inconsistent redundant data of a trajectory whose values are each valid.
 
 Enters: a ``model.Trajectory`` that keeps its promises. Leaves: in words, each contradiction with the first segment or
-instruction (counted from 0) where it is. The tool of a segment is said by the instructions as well, a rest by what
-takes place in it, and a smooth joint by the directions of the two segments.
+instruction (counted from 0) where it occurs. The tool of a segment also follows from the instructions, a rest from the
+instructions executed there, and a smooth joint from the directions of its two segments.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from pkm_post.model.tool import lengths_of
 from pkm_post.trajectory_file.parts import SEGMENTS
 
 SMOOTH = 1e-4
-"""rad: how far the tip's direction may turn where it goes on smoothly; rounding makes a hundredth of it."""
+"""rad: largest change of the tip's direction at a smooth joint; rounding causes a hundredth of it."""
 _NO_DIRECTION = 1e-9
-"""mm: a way that is no longer has no direction."""
+"""mm: a displacement up to this length has no direction."""
 
 
 def contradictions(trajectory: Trajectory) -> list[str]:
-    """Name what a trajectory that keeps its promises says against itself; nothing for a sound one."""
+    """Name the contradictions of a trajectory that keeps its promises; none for a sound one."""
     if not len(trajectory):
         return []
     return [*_of_tools(trajectory), *_of_rests(trajectory), *_of_smooth_joints(trajectory)]
 
 
 def _of_tools(trajectory: Trajectory) -> Iterator[str]:
-    """A segment has the tool of the last change before it; before the first change that one is taken as loaded."""
+    """A segment has the tool of the last change before it; before the first change, that of the first change."""
     changes = [event for event in trajectory.events if event.kind is EventKind.TOOL_CHANGE]
     numbers = [int(change.value) for change in changes] or [int(trajectory.tool[0])]
     ends = [*(change.row for change in changes[1:]), len(trajectory)]
@@ -47,7 +47,7 @@ def _of_tools(trajectory: Trajectory) -> Iterator[str]:
 
 
 def _of_rests(trajectory: Trajectory) -> Iterator[str]:
-    """The motion rests at every instruction and at the end; where it rests it does not go on smoothly."""
+    """The motion rests at every instruction and at the end; a rest is not a smooth joint."""
     rests = trajectory.exact_stop
     for number, event in enumerate(trajectory.events):
         if event.row and not rests[event.row - 1]:
@@ -61,7 +61,7 @@ def _of_rests(trajectory: Trajectory) -> Iterator[str]:
 
 
 def _of_smooth_joints(trajectory: Trajectory) -> Iterator[str]:
-    """Behind a smooth segment the tip goes on where it went."""
+    """After a smooth segment the tip continues in the same direction."""
     smooth = np.flatnonzero(trajectory.smooth[:-1])
     for first in range(0, len(smooth), SEGMENTS):
         rows = smooth[first : first + SEGMENTS]
@@ -74,7 +74,7 @@ def _of_smooth_joints(trajectory: Trajectory) -> Iterator[str]:
 
 
 def _tangents(trajectory: Trajectory, rows: Array) -> tuple[Array, Array]:
-    """Unit tangents of the tip's way at the start and the end of segments, (M, 3) each; NaN where it stands."""
+    """Unit tangents of the tip's path at the start and the end of segments, (M, 3) each; NaN where it stands still."""
     start, end = _starts(trajectory, rows), trajectory.tip[rows]
     at_start = _directions(end - start)
     at_end = at_start.copy()
@@ -87,7 +87,7 @@ def _tangents(trajectory: Trajectory, rows: Array) -> tuple[Array, Array]:
 
 
 def _starts(trajectory: Trajectory, rows: Array) -> Array:
-    """Tips where segments begin, (M, 3), as ``Trajectory.tip_before`` has them."""
+    """Tips at the starts of segments, (M, 3), as in ``Trajectory.tip_before``."""
     before = np.maximum(rows - 1, 0)
     lengths = (lengths_of(trajectory.tools, trajectory.tool[each]) for each in (rows, before))
     longer = np.subtract(*lengths)

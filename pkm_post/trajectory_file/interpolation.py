@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Interpolation: what a player needs to evaluate a segment, computed in advance; and where each source line begins.
+"""Interpolation: precomputed data for a player to evaluate a segment; and the first segment of each source line.
 
 Enters: a trajectory. Leaves: the columns of a segment's record that follow from the others, mm and rad, and the table
-of blocks. With them the pose at a share u of the segment, from 0 to 1, is
+of blocks. With them, the pose at a share u of the segment, from 0 to 1, is
 
     tip  = start_tip + u shift + (1 + u growth) (cos(u sweep) radius + sin(u sweep) quarter) - radius
     axis = cos(u angle) start_axis + sin(u angle) axis_quarter
     spin = start_spin + u (spin - start_spin)
 
-for lines, arcs and helices alike, from one record alone. [paper section 5.1: what interpolation needs is computed in
+for lines, arcs and helices alike, from a single record. [paper section 5.1: what interpolation needs is computed in
 advance]
 """
 
@@ -23,15 +23,15 @@ from pkm_post.model import Kind, Trajectory
 from pkm_post.trajectory_file.layout import BLOCK, Records
 
 NEAR = 1e-6
-"""mm and rad: how far what a file has may be from what is computed here, as other processors round otherwise."""
+"""mm and rad: tolerance between stored and recomputed values, as processors round differently."""
 _NEAR_SHARE = 1e-9
-"""The same as a share of the value, for arcs of very large radius."""
+"""The same relative to the value, for arcs of very large radius."""
 _NO_RADIUS = 1e-9
-"""mm: an arc that begins on its axis has no radius that could grow."""
+"""mm: an arc that begins on its axis has no radius to grow."""
 
 
 def interpolation(trajectory: Trajectory) -> dict[str, Array]:
-    """The columns by the names they have in the record of a segment, each (N,) or (N, 3)."""
+    """The columns by their names in the record of a segment, each (N,) or (N, 3)."""
     start, axis = trajectory.tip_before(), trajectory.axis_before()
     way = trajectory.tip - start
     return {
@@ -44,7 +44,7 @@ def interpolation(trajectory: Trajectory) -> dict[str, Array]:
 
 
 def _axis_quarter(trajectory: Trajectory, start: Array) -> Array:
-    """What a quarter turn makes of the axis, (N, 3); zero where it stands."""
+    """The axis after a quarter turn, (N, 3); zero where it stands still."""
     quarter = np.zeros_like(start)
     turns = np.flatnonzero(trajectory.angle > 0)
     quarter[turns] = _directions(towards(start[turns], trajectory.axis[turns]))
@@ -52,7 +52,7 @@ def _axis_quarter(trajectory: Trajectory, start: Array) -> Array:
 
 
 def _turning(trajectory: Trajectory, start: Array, way: Array) -> dict[str, Array]:
-    """How the tip goes: ``shift`` is the whole way of a line and the rise of a helix, the rest is zero on lines."""
+    """Columns of the tip: ``shift`` is the displacement of a line or the rise of a helix; the rest is zero on lines."""
     arc = trajectory.kind == Kind.ARC
     shift, radius, quarter = way.copy(), np.zeros_like(way), np.zeros_like(way)
     growth = np.zeros(len(way))
@@ -67,37 +67,37 @@ def _turning(trajectory: Trajectory, start: Array, way: Array) -> dict[str, Arra
 
 
 def _directions(vectors: Array) -> Array:
-    """(N, 3) vectors at unit length; those of length 0 stay."""
+    """(N, 3) vectors normalized to unit length; those of length 0 stay."""
     length = norm(vectors)[:, None]
     return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
 
 
 def strayed(trajectory: Trajectory, segments: Records) -> dict[str, Array]:
-    """By the name of each column, the segments whose record has another value than is computed here, (N,).
+    """By column name, the segments whose stored value differs from the recomputed one, (N,).
 
     Args:
         trajectory: N segments that keep their promises.
         segments: (N,) their records.
     """
     columns = interpolation(trajectory)
-    # What a column counts for in the pose: a tiny turn, for one, has no sure direction.
+    # Weights of columns in the pose: a tiny turn, for example, has no well-defined direction.
     radius = np.where(trajectory.kind == Kind.ARC, norm(columns["radius"]), 1.0)
     turns = np.where(trajectory.angle > 0, trajectory.angle, 1.0)
     weights = {"growth": radius, "axis_quarter": turns}
-    with np.errstate(all="ignore"):  # the numbers in the file may be anything
+    with np.errstate(all="ignore"):  # the file may hold any numbers
         found = {name: _apart(segments[name], column, weights.get(name, 1.0)) for name, column in columns.items()}
     return found | missed(trajectory, columns)
 
 
 def missed(trajectory: Trajectory, columns: dict[str, Array]) -> dict[str, Array]:
-    """Segments that a player would not end where they say, (N,), by what is elsewhere: a wrong sweep or angle does it.
+    """Segments whose end a player would miss, (N,), by quantity, as with a wrong sweep or angle.
 
-    A line ends where its shift takes it, and that is how the shift was computed: only arcs and turns can end elsewhere.
-    But how fast a player goes follows from the length that a segment says.
+    A line always ends at its shift, by definition of the shift: only arcs and turns can end elsewhere. The speed of a
+    player follows from the stated length of a segment.
 
     Args:
         trajectory: N segments that keep their promises.
-        columns: what ``interpolation`` makes of them.
+        columns: their columns from ``interpolation``.
     """
     off = {name: np.zeros(len(trajectory), dtype=np.bool_) for name in ("tip", "axis")}
     arcs = np.flatnonzero(trajectory.kind == Kind.ARC)
@@ -125,20 +125,20 @@ def _arc_length(trajectory: Trajectory, rows: Array, columns: dict[str, Array]) 
 
 
 def _turned(angle: Array, start: Array, quarter: Array) -> Array:
-    """Vectors (N, 3) turned by angles (N,), of themselves and what a quarter turn makes of them."""
+    """Vectors (N, 3) turned by angles (N,), from the vectors and their quarter turns."""
     return np.cos(angle)[:, None] * start + np.sin(angle)[:, None] * quarter
 
 
 def _apart(found: Array, computed: Array, weight: Array | float) -> Array:
-    """Whether rows are not near each other, (N,); NaN is near nothing."""
-    if np.array_equal(found, computed):  # as it is where the same processor wrote and reads
+    """Whether rows differ beyond the tolerance, (N,); NaN always differs."""
+    if np.array_equal(found, computed):  # the usual case: written and read on the same processor
         return np.zeros(len(found), dtype=np.bool_)
     size = norm if computed.ndim > 1 else np.abs
     return ~(size(found - computed) * weight <= NEAR + _NEAR_SHARE * size(computed) * weight)
 
 
 def blocks(trajectory: Trajectory) -> Records:
-    """The first segment of every line of the source, by rising operation and line, (B,) of ``layout.BLOCK``."""
+    """The first segment of every line of the source, ascending by operation and line, (B,) of ``layout.BLOCK``."""
     operation, line = trajectory.operation, trajectory.line
     other = np.ones(len(trajectory), dtype=np.bool_)
     np.not_equal(line[1:], line[:-1], out=other[1:])
@@ -147,10 +147,10 @@ def blocks(trajectory: Trajectory) -> Records:
     keys = operation[begins].astype(np.int64)
     keys <<= 32
     keys |= line[begins]
-    if not np.all(keys[1:] > keys[:-1]):  # a line comes again, or one from further up
+    if not np.all(keys[1:] > keys[:-1]):  # lines repeat or are out of order
         _, first = np.unique(keys, return_index=True)
         begins = begins[first]
-    del keys  # as long as the trajectory
+    del keys  # as large as the trajectory
     table: Records = np.zeros(len(begins), BLOCK)
     table["operation"], table["line"], table["segment"] = operation[begins], line[begins], begins
     return table

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layout: the records of a trajectory file, byte by byte; docs/trajectory-format.md describes them in words.
+"""Layout: the records of a trajectory file, byte by byte; docs/trajectory-format.md describes them in prose.
 
-All numbers are little-endian, in mm, rad, s and mm/s. Every record is a multiple of 8 bytes and every field lies at a
-multiple of its own size, so that C reads the records as plain structs, also from a mapped file. A field that is added
-later goes to the end of its record or takes the place of reserved bytes, which are zero until then. The C header and
-the Kaitai description in resources/trajectory say the same once more. [paper section 5.1]
+All numbers are little-endian, in mm, rad, s and mm/s. Every record is a multiple of 8 bytes and every field is aligned
+to its own size, so C reads the records as plain structs, also from a mapped file. New fields go to the end of their
+record or replace reserved bytes, which are zero until then. The C header and the Kaitai description in
+resources/trajectory define the same layout. [paper section 5.1]
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ import numpy as np
 Records = np.ndarray[Any, Any]
 
 MAGIC = b"PKMT\r\n\x1a\n"
-"""The first bytes. A transfer that takes the file for text changes the line ends in them."""
+"""The first bytes. A transfer in text mode corrupts the line ends in them."""
 MAJOR = 1
-"""Version of the layout: another one cannot be read."""
+"""Major version of the layout: others cannot be read."""
 MINOR = 1
-"""Version of what was added to the layout: a newer one can be read without the additions."""
+"""Minor version, for additions to the layout: a newer one is read without them."""
 
 ALIGNMENT = 8
-"""Bytes; every table begins at a multiple of it."""
+"""Bytes; every table begins at a multiple of this."""
 
 UNITS = {"length_unit": 0.001, "angle_unit": 1.0, "time_unit": 1.0}
-"""What the header says of the units, in m, rad and s: version 1 has no others."""
+"""The units in the header, in m, rad and s: version 1 has no others."""
 
 STRING = np.dtype([("offset", "<u8"), ("length", "<u8")], align=True)
-"""A UTF-8 string: where it begins in the text table, and its bytes."""
+"""A UTF-8 string: its offset in the text table, and its length in bytes."""
 
 TABLE = np.dtype([("offset", "<u8"), ("count", "<u8"), ("record_size", "<u8")], align=True)
-"""A table: where it begins in the file, its records, and the bytes of one."""
+"""A table: its offset in the file, its number of records, and the bytes per record."""
 
 TOOL = np.dtype(
     [
@@ -47,9 +47,9 @@ TOOL = np.dtype(
     ],
     align=True,
 )
-"""A tool of the trajectory, with the gauge length the trajectory was made for."""
+"""A tool of the trajectory, with the gauge length that the trajectory was made for."""
 TOOL_COLUMNS = ("number", "diameter", "corner_radius", "length", "bottom_angle", "side_angle")
-"""The fields of a tool that are numbers of ``model.Tool``."""
+"""The numeric fields of ``model.Tool``."""
 
 OPERATION = np.dtype([("name", STRING)], align=True)
 """An operation of the CAM job."""
@@ -87,13 +87,13 @@ SEGMENT = np.dtype(
     ],
     align=True,
 )
-"""A motion instruction: one row of the columns of ``model.Trajectory``, and of those of ``interpolation``.
+"""A motion instruction: one row of the columns of ``model.Trajectory`` and of ``interpolation``.
 
-Five lines of 64 bytes, as processors fetch them: the first has what a way through all segments looks at.
+Five cache lines of 64 bytes: the first has what a scan of all segments reads.
 """
 
 BLOCK = np.dtype([("operation", "<i4"), ("line", "<i4"), ("segment", "<u8")], align=True)
-"""A line of the source that moves the tool, and the first segment that it makes."""
+"""A line of the source that moves the tool, and its first segment."""
 
 TABLES: dict[str, np.dtype[Any]] = {
     "segments": np.dtype(SEGMENT),
@@ -132,11 +132,11 @@ HEADER = np.dtype(
     ],
     align=True,
 )
-"""The beginning of the file. The tables follow it: 512 bytes, so that the segments begin with a line of 64."""
+"""The start of the file, before the tables: 512 bytes, so that the segments start on a cache line of 64."""
 
 
 def offset_of(record: np.dtype[Any], field: str) -> int:
-    """Bytes from the beginning of a record to one of its fields."""
+    """Byte offset of a field in its record."""
     if record.fields is None:
         raise ValueError(f"expected a record with fields, got {record}")
     return int(record.fields[field][1])

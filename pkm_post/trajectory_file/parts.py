@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts: a long trajectory as short ones in turn, so that work on its columns takes little memory.
+"""Parts: a long trajectory as a sequence of short ones, so that work on its columns takes little memory.
 
-Enters: a trajectory of N segments. Leaves: trajectories of at most ``SEGMENTS``, each starting where the one before
-ends. Their columns are views of those that came in.
+Enters: a trajectory of N segments. Leaves: trajectories of at most ``SEGMENTS``, each starting where the previous one
+ends. Their columns are views of the input.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pkm_post.model import Trajectory
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
 
 SEGMENTS = 1 << 13
-"""How many are worked on at a time: some megabytes of records, which stay in the cache of the processor."""
+"""Segments per part: some megabytes of records, which stay in the processor's cache."""
 
 
 def parts(trajectory: Trajectory) -> Iterator[tuple[int, Trajectory]]:
@@ -28,7 +28,7 @@ def parts(trajectory: Trajectory) -> Iterator[tuple[int, Trajectory]]:
 
 
 def _start(trajectory: Trajectory, row: int) -> dict[str, Any]:
-    """The pose before a segment; a change of the tool moves the tip, as in ``Trajectory.tip_before``."""
+    """The pose before a segment; a tool change moves the tip, as in ``Trajectory.tip_before``."""
     if not row:
         return {}
     last = row - 1
@@ -42,6 +42,6 @@ def _start(trajectory: Trajectory, row: int) -> dict[str, Any]:
 
 
 def _tool_length(trajectory: Trajectory, row: int) -> float:
-    """Gauge length in mm; that of a tool which is not in the table is not known."""
+    """Gauge length in mm; NaN for a tool that is not in the table."""
     tool = trajectory.tools.get(int(trajectory.tool[row]))
     return tool.length if tool else math.nan

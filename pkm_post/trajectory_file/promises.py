@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Promises: what everybody who holds a trajectory may rely on; the writer and the reader both insist on it.
+"""Promises: the invariants of a trajectory, checked by both writer and reader.
 
-Enters: a ``model.Trajectory`` of any values. Leaves: in words, each promise that it breaks, with the first record
-(counted from 0) that does. A player of the file would turn a broken one into a wrong motion.
+Enters: a ``model.Trajectory`` with any values. Leaves: in words, each promise that it breaks, with the first record
+(counted from 0) that does. A broken promise would become a wrong motion in a player of the file.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from pkm_post.model.trajectory import LEAST_TOLERANCE, MOST_SPIN
 from pkm_post.trajectory_file.parts import parts
 
 UNIT_TOLERANCE = 1e-5
-"""How far an axis may be from unit length: a work offset and a symmetry may each be 1e-6 from a rotation."""
+"""Tolerance of unit length: a work offset and a symmetry may each be 1e-6 from a rotation."""
 FULL_TURN = 2 * math.pi + 1e-8
-"""rad; a full turn may come out longer by the angle below which two directions count as the same."""
+"""rad; a full turn may be longer by the angle below which two directions count as equal."""
 FARTHEST = 1e9
-"""mm: a coordinate beyond it is none of a machine, and its square would leave no digits for the rest."""
+"""mm: no machine has coordinates beyond this, and their squares would exhaust the digits of a double."""
 LONGEST = 86_400.0
-"""s that one segment may take; a lower feed is a slip, and its motion has more points than memory has room for."""
+"""s: longest segment; a lower feed is a slip, and its motion has more points than fit into memory."""
 _LARGEST_NUMBER = 2**31 - 1
 _FINGERPRINT = re.compile(r"[0-9a-f]{64}")
 
@@ -38,12 +38,12 @@ SENSIBLE: dict[EventKind, Callable[[float], bool]] = {
     EventKind.DWELL: lambda value: value >= 0,
     EventKind.STOP: lambda value: value in (0, 1),
 }
-"""Whether a finite value makes sense, by kind of event."""
+"""Whether a finite value is valid, by kind of event."""
 
 
 def broken_promises(trajectory: Trajectory) -> list[str]:
     """Name the promises a trajectory breaks, each with its first offender; none for a sound one."""
-    with np.errstate(all="ignore"):  # the numbers may be anything
+    with np.errstate(all="ignore"):  # any numbers may occur
         return [
             *_of_start(trajectory),
             *_of_origin(trajectory),
@@ -54,7 +54,7 @@ def broken_promises(trajectory: Trajectory) -> list[str]:
 
 
 def _first(broken: Iterable[str]) -> Iterator[str]:
-    """The first of many, with their number: a damaged table can have a million."""
+    """The first of many, with the number of others: a damaged table can have a million."""
     first, *others = [*broken] or [""]
     if first:
         yield f"{first}, and {len(others)} more" if others else first
@@ -100,10 +100,10 @@ def _of_segments(trajectory: Trajectory) -> Iterator[str]:
 
 
 def in_segments(found: Iterable[tuple[int, dict[str, Array]]]) -> Iterator[str]:
-    """Name the first segment for each thing that is wrong, and how many more there are.
+    """Name the first segment with each fault, and the number of further ones.
 
     Args:
-        found: by part, the index of its first segment and, by what is wrong, the segments where it is.
+        found: for each part, the index of its first segment and the faulty segments by fault.
     """
     firsts: dict[str, int] = {}
     counts: Counter[str] = Counter()
@@ -166,7 +166,7 @@ def _within(values: Array, least: float, most: float) -> Array:
 
 
 def _at(rows: Array, broken: Array) -> Array:
-    """What was found of some rows, as a column of all: (N,)."""
+    """Expand the result for some rows to a column of all rows, (N,)."""
     found = np.zeros(len(rows), dtype=np.bool_)
     found[rows] = broken
     return found
@@ -179,7 +179,7 @@ def _has_number(vectors: Array) -> Array:
 
 
 def _is_near(points: Array) -> Array:
-    """Whether (..., 3) points are where machines are, (...)."""
+    """Whether (..., 3) points are within ``FARTHEST``, (...)."""
     near: Array = norm(points) <= FARTHEST
     return near
 
@@ -191,7 +191,7 @@ def _is_unit(vectors: Array) -> Array:
 
 
 def _is_rigid(matrix: Array) -> bool:
-    """Whether a (4, 4) matrix is a rotation and a shift."""
+    """Whether a (4, 4) matrix is a rigid transform."""
     rotation = matrix[:3, :3]
     excess = np.array([*(rotation @ rotation.T - np.eye(3)), matrix[3, :3]])
     rigid = np.isfinite(matrix).all() and np.abs(excess).max() <= UNIT_TOLERANCE and matrix[3, 3] == 1

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reader: a trajectory file enters, the ``model.Trajectory`` that was written leaves, equal bit for bit.
+"""Reader: read a trajectory file as the ``model.Trajectory`` that was written, bit for bit, or report its faults.
 
-Or what is wrong with the file. The container is checked first, then the strings and numbers that have no place in a
-``Trajectory``, then what every trajectory promises, then what was computed in advance: the trajectory that is returned
-does not have it, but another player would go by it.
+The container is checked first, then the strings and numbers that a ``Trajectory`` cannot hold, then the promises of
+every trajectory, then the precomputed data: the returned trajectory does not contain it, but other players rely on it.
 """
 
 from __future__ import annotations
@@ -30,10 +29,10 @@ def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """Read a trajectory file and check all of it.
 
     Args:
-        path: the file, as the user named it: diagnostics show it so.
+        path: the file, as named by the user and shown in diagnostics.
 
     Returns:
-        The trajectory, or None when the file has a fault; and the faults found: T101 for a file of another kind,
+        The trajectory, or None if the file has a fault; and the faults: T101 for a file of another kind,
         T102 for an unknown version, T103 for damage, T106 for content that contradicts itself.
     """
     try:
@@ -44,11 +43,11 @@ def read(path: Path) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
 
 
 def decode(content: Content, file: str) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
-    """The same of the bytes of a file.
+    """The same for the bytes of a file.
 
     Args:
-        content: all of them.
-        file: what diagnostics call it.
+        content: all bytes.
+        file: its name in diagnostics.
     """
     place = Place(file)
     try:
@@ -66,7 +65,7 @@ def decode(content: Content, file: str) -> tuple[Trajectory | None, tuple[Diagno
 
 
 def _broken_advance(trajectory: Trajectory, tables: dict[str, Records]) -> Iterator[str]:
-    """What of the data computed in advance does not follow from the trajectory."""
+    """Precomputed data that does not follow from the trajectory."""
     records = tables["segments"]
     found = ((begin, strayed(part, records[begin : begin + len(part)])) for begin, part in parts(trajectory))
     for words in in_segments(found):
@@ -106,7 +105,7 @@ def _tolerances(tip: float, axis: float) -> Tolerances | None:
 def _strings(places: Records, text: Records) -> list[str]:
     """The strings at their places in the text table.
 
-    No two may share bytes: many long ones on the same few bytes would grow far beyond the file.
+    No two may share bytes: many long strings on the same bytes would expand far beyond the size of the file.
     """
     offset, length = places["offset"], places["length"]
     outside = (offset > len(text)) | (length > len(text) - np.minimum(offset, len(text)))
@@ -123,9 +122,9 @@ def _strings(places: Records, text: Records) -> list[str]:
 
 
 def _columns(segments: Records) -> dict[str, Any]:
-    """The columns of a trajectory, part by part, as a record is fetched from memory as a whole.
+    """The columns of a trajectory, read part by part, as whole records are fetched from memory.
 
-    A column whose rows are all alike, as that of the axis of work with three axes, takes the memory of one.
+    A column with equal rows, such as the axis in three-axis work, takes the memory of one row.
     """
     columns = {name: Filled(len(segments)) for name in TRAJECTORY_COLUMNS}
     for begin in range(0, max(len(segments), 1), SEGMENTS):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Writer: a ``model.Trajectory`` enters, a trajectory file leaves; the same trajectory gives the same bytes.
+"""Writer: write a ``model.Trajectory`` to a trajectory file; the same trajectory gives the same bytes.
 
-The tables follow the header without gaps in the order of ``layout.TABLES``; tools are sorted by number. The strings
-stand in the text table in the order machine, source, operations, tools. Segments are encoded and written part by part,
-so that the writer needs little memory beside the trajectory; the header, with the sum of all bytes, is written last.
+The tables follow the header without gaps in the order of ``layout.TABLES``; tools are sorted by number. The text table
+has the strings in the order machine, source, operations, tools. Segments are encoded and written part by part, so the
+writer needs little memory besides the trajectory; the header, with the checksum of all bytes, is written last.
 """
 
 from __future__ import annotations
@@ -44,11 +44,11 @@ def write(trajectory: Trajectory, path: Path) -> None:
     """Write a trajectory file; it appears complete or not at all.
 
     Args:
-        trajectory: what to write.
-        path: the file; its folder is made when it is missing, a file that is there is replaced.
+        trajectory: the trajectory to write.
+        path: the file; a missing folder is created, an existing file is replaced.
 
     Raises:
-        ValueError: the trajectory does not keep the promises of a trajectory, contradicts itself, or has a text that is
+        ValueError: the trajectory breaks the promises of a trajectory, contradicts itself, or has a text that is
             not Unicode.
         OSError: the file cannot be written.
     """
@@ -67,7 +67,7 @@ def write(trajectory: Trajectory, path: Path) -> None:
 
 @dataclass(frozen=True)
 class _Strings:
-    """Where the strings stand in the text table, each (n,) of ``layout.STRING``, and the bytes of all of them."""
+    """Places of the strings in the text table, each (n,) of ``layout.STRING``, and the bytes of all strings."""
 
     machine_and_source: Records
     operations: Records
@@ -91,7 +91,7 @@ def _tools_by_number(trajectory: Trajectory) -> list[Tool]:
 
 
 def _header(trajectory: Trajectory, strings: _Strings) -> Records:
-    """The header without sizes and checksums of the tables."""
+    """The header without the sizes and checksums of the tables."""
     header: Records = np.zeros((), HEADER)
     header["magic"], header["major"], header["minor"], header["header_size"] = MAGIC, MAJOR, MINOR, HEADER.itemsize
     header["machine"], header["source"] = strings.machine_and_source
@@ -108,10 +108,10 @@ def _header(trajectory: Trajectory, strings: _Strings) -> Records:
 
 
 def _write_tables(file: BinaryIO, header: Records, trajectory: Trajectory, strings: _Strings) -> None:
-    """Write the tables behind the header, and enter in it where they are and the sum of their bytes."""
+    """Write the tables after the header, and enter their offsets and checksum in it."""
     tables: dict[str, Iterable[Records]] = {
         "segments": (_segments(begin, part) for begin, part in parts(trajectory)),
-        "blocks": (blocks(trajectory) for _ in range(1)),  # not before the segments are done with
+        "blocks": (blocks(trajectory) for _ in range(1)),  # deferred until the segments are written
         "instructions": [_instructions(trajectory.events)],
         "tools": [_tools(_tools_by_number(trajectory), strings.tools)],
         "operations": [_operations(strings.operations)],
@@ -152,7 +152,7 @@ def _instructions(events: tuple[Event, ...]) -> Records:
 
 
 def _segments(begin: int, trajectory: Trajectory) -> Records:
-    """The records of a part; ``begin`` is the index of its first segment in the whole."""
+    """The records of a part; ``begin`` is the index of its first segment in the trajectory."""
     table = np.zeros(len(trajectory), SEGMENT)
     for column in TRAJECTORY_COLUMNS:
         table[column] = getattr(trajectory, column)
