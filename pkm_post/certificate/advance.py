@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Advance: whether a played program goes along its trajectory, and never back.
+"""Advance: whether a played program moves forward along its trajectory, and never backward.
 
-Enters: the course of a program, the trajectory's ruler, and when each joint is passed. Leaves: by how much the tool
-goes back on a segment, in tolerances, and when. A tool that runs to and fro on the path keeps within all tolerances.
-What it is measured by, the programmed pose that fits it best, may itself go back by as much as the tool may be off.
+Enters: the path of a program, the trajectory's ruler, and when each joint is passed. Leaves: the largest backward
+motion on a segment, in tolerances, and its time. A tool that moves back and forth on the path stays within all
+tolerances. The reference, the best-fitting programmed pose, may itself move backward by as much as the tolerance.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from pkm_post.geometry import norm
 from pkm_post.geometry.vectors import Array
 
 _LOOKS = np.linspace(0.125, 1.0, 8)[:, None]
-"""Shares of each interval that are looked at."""
+"""Shares of each interval at which it is evaluated."""
 _AT_ONCE = 8192
 
 
 def most_back(course: PlayedCourse, ruler: TrajectoryRuler, passed: Array) -> tuple[float, float]:
-    """By how much the tool goes back at most, 1 is what it may be off; and when that is, s."""
+    """Largest backward motion of the tool, where 1 is the tolerance; and its time, s."""
     count = len(course.time) - 1
     parts = [
         _along(course, np.arange(first, min(first + _AT_ONCE, count)), ruler, passed)
@@ -34,7 +34,7 @@ def most_back(course: PlayedCourse, ruler: TrajectoryRuler, passed: Array) -> tu
 
 
 def _along(course: PlayedCourse, rows: Array, ruler: TrajectoryRuler, passed: Array) -> Array:
-    """Times in intervals; how far the tool is then, in segments; and by how much that may be off, (3, M)."""
+    """Times in intervals; progress of the tool, in segments; and the tolerance of that progress, (3, M)."""
     place = course.at(rows, _LOOKS).transpose(0, 2, 1).reshape(7, -1)
     begin, end = course.time[rows, None], course.time[rows + 1, None]
     time = (begin + (end - begin) * _LOOKS[:, 0]).ravel()

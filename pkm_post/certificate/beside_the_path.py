@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beside the path: how far approach, tool changes and the start of the spindle are covered.
+"""Beside the path: coverage of approach, tool changes and spindle start.
 
-A machine and a trajectory enter; rows of coverage leave. What the machine file states is not taken for granted: a row
-says covered where the trajectory has it.
+Enters: a machine and a trajectory. Leaves: rows of coverage. Statements of the machine file alone are not trusted: a
+row is covered if the trajectory confirms it.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from pkm_post.model import EventKind, Kind, Machine, Trajectory
 from pkm_post.model.certificate import Coverage, Extent, Topic
 
 _SAME = 1e-6
-"""mm, and of unit axes: a tool that changes so near to the pose of the machine file changes there."""
+"""mm, and of unit axes: a tool change within this distance of the pose in the machine file counts as there."""
 _UNPLANNED = "each strut moves by itself, on a way that is not planned"
 _PLANNED_BY_HAND = f"{_UNPLANNED}; pmac approach and the panel plan one, loading the program by other means does not"
 _Answer = tuple[str, str]
-"""How a hazard is covered, or nothing; and why it is not."""
+"""How a hazard is covered, or nothing; and the reason if it is not."""
 
 
 def beside_the_path(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
-    """How the tool comes to the first point, to tool changes and back, and how the spindle comes to its speed."""
+    """Coverage of the approach to the first point, of moves to and from tool changes, and of spindle acceleration."""
     rows: tuple[tuple[str, _Answer], ...] = (
         ("way to the start of the program", ("", _to_the_start(machine))),
         ("approach from the start to the first point", (_from_the_start(trajectory), "")),

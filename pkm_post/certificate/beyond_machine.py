@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beyond the machine: what a trajectory says that nothing posted for its machine can say.
+"""Beyond the machine: values of a trajectory that no posting for its machine can produce.
 
-Enters: a trajectory that was read from a file, and the machine it names. Leaves: places, and what was found there. A
-file that says so was changed; it is not planned, since its way or its time may be beyond all bounds.
+Enters: a trajectory read from a file, and the machine it names. Leaves: places, and the value found there. Such a file
+was modified; it is not planned, since its path or duration may be unbounded.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from pkm_post.geometry import norm
 from pkm_post.model import EventKind, Kind, Machine, Place, Trajectory
 
 _FARTHEST = 10
-"""Longest struts from the middle of the base, as placement has it."""
+"""Distance from the middle of the base in longest struts, as in placement."""
 _ROUNDING = 1e-9
-"""Of limits that were converted from other units."""
+"""Relative rounding error of limits converted from other units."""
 _SAME = 1e-9
 """mm, rad, and of unit axes."""
 
 
 def beyond_machine(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:
-    """Each thing that is beyond the machine, with its first place.
+    """Each quantity beyond the machine, with its first place.
 
     Args:
-        trajectory: at least one segment of any values that a trajectory file may have.
-        machine: that it was made for.
+        trajectory: at least one segment with any values that a trajectory file may have.
+        machine: the machine it was made for.
     """
     yield from _of_segments(trajectory, machine)
     yield from _of_start(trajectory, machine)

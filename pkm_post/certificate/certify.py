@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Certify: decide whether a program does what was programmed, within tolerances and limits.
+"""Certify: decide whether a program follows its trajectory within tolerances and limits.
 
 Enters: the strut motion read back from the written program, the trajectory read back from its file, the machine, and
-the planned motion, which says for each knot where on the trajectory it ought to be. Leaves: a certificate, and a
-diagnostic for everything that does not hold.
+the planned motion, which assigns each knot a place on the trajectory. Leaves: a certificate, and a diagnostic for every
+finding that does not hold.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion, Trajectory
 from pkm_post.model.certificate import Certificate, Coverage, Tolerances
 
 _FEED_SHARE = 1.01
-"""How far the cubic may swing about the planned speed where the acceleration changes."""
+"""Factor by which the cubic may exceed the planned speed where the acceleration changes."""
 _SWING = 1 / 3
-"""Part of the change of speed within one millisecond, which no point can divide: where the tip is at speed long before
-its end, the cubic is faster by that in between, to have gone as far."""
+"""Share of the change of speed within one millisecond, which cannot be divided by a knot: if the tip reaches its speed
+long before the end, the cubic is faster by this in between, to cover the same distance."""
 _FEED_ROUNDING = 0.05
-"""mm/s: what rounding lengths to six decimals can do to the speed within one millisecond, with room to spare."""
+"""mm/s: effect of rounding lengths to six decimals on the speed within one millisecond, with margin."""
 
 
 def certify(
@@ -47,13 +47,13 @@ def certify(
     Args:
         struts: the program, read back.
         program_name: names the program in diagnostics.
-        trajectory: what was programmed.
+        trajectory: the programmed trajectory.
         machine: geometry and limits.
-        motion: the plan, or what was recovered of it; program and plan must have the same knots.
-        tolerances: what was asked for.
-        collisions: what was checked against part, stock and fixtures.
-        spin_off: (K + 1,) mm by which struts are off for a spin that was not programmed, where the motion was recovered
-            and so has the spin of the program itself.
+        motion: the plan, or the recovered motion; program and plan must have the same knots.
+        tolerances: the requested tolerances.
+        collisions: coverage of the checks against part, stock and fixtures.
+        spin_off: (K + 1,) mm, strut deviation due to spin error, if the motion was recovered and so has the spin of
+            the program itself.
     """
     faults = structure_faults(struts, program_name, trajectory, machine, motion)
     if faults:
@@ -91,7 +91,7 @@ def _certificate(
 
 
 def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:
-    """Highest tip speed each interval may have: that of the fastest segment it touches, (K,)."""
+    """Highest allowed tip speed of each interval: that of the fastest segment it touches, (K,)."""
     first, last = motion.segment[:-1], motion.segment[1:]
     # reduceat over pairs (first, last + 1): the maxima of the ranges are every second result.
     bounds = np.column_stack([first, last + 1]).ravel()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coverage: what a certificate covers, hazard by hazard, and what it does not.
+"""Coverage: which hazards a certificate covers, and which it does not.
 
-A machine and a trajectory enter; a row for each hazard leaves. A machine that does not state the size of a body has no
-check of it, so the rows differ from machine to machine. docs/certificate.md has the same table for people.
+Enters: a machine and a trajectory. Leaves: a row for each hazard. A body whose size the machine file does not state is
+not checked, so the rows differ from machine to machine. docs/certificate.md has the same table for users.
 """
 
 from __future__ import annotations
@@ -45,18 +45,18 @@ PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN = (
     )
 )
 NO_SETUP = (PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN)
-"""Collisions with a set-up that is not known, as when a program is verified."""
+"""Collisions with an unknown set-up, as when a program is verified."""
 
 
 def coverage(
     machine: Machine, trajectory: Trajectory, collisions: tuple[Coverage, ...] = NO_SETUP
 ) -> tuple[Coverage, ...]:
-    """The hazards in the order of their topics.
+    """The hazards, ordered by topic.
 
     Args:
-        machine: what its file states decides what was checked.
-        trajectory: what is beside its path is known from it.
-        collisions: rows of what was checked against part, stock and fixtures that the machine file does not have.
+        machine: the statements of its file determine what was checked.
+        trajectory: determines the coverage beside the path.
+        collisions: rows of checks against part, stock and fixtures, which are not in the machine file.
     """
     return (
         *_rows(Topic.PATH, Extent.PROVEN, _PATH),
@@ -82,14 +82,14 @@ def _block_rate(machine: Machine) -> Coverage:
 
 
 def _following(machine: Machine) -> Coverage:
-    """Following errors are told as a contour error at the knots; there is no limit of it."""
+    """Following errors are reported as a contour error at the knots, without a limit."""
     if machine.velocity_gain is None:
         return Coverage(Topic.SETUP, "following error", Extent.NOT_COVERED, _NO_LIMIT.format("struts.velocity_gain"))
     return Coverage(Topic.SETUP, "following error", Extent.SAMPLED, "struts as first-order lags; a figure, no limit")
 
 
 def _jerks(machine: Machine) -> tuple[Coverage, ...]:
-    """Jerk is looked at from one interval to the next, where a limit is stated; steps at the knots have no limit."""
+    """Jerk is checked from one interval to the next if a limit is stated; steps at the knots have no limit."""
     limits = (
         ("strut jerk", "struts.jerk", machine.strut_jerk),
         ("tip jerk", "tool_path.tip_jerk", machine.tip_jerk),
@@ -104,7 +104,7 @@ def _jerks(machine: Machine) -> tuple[Coverage, ...]:
 
 
 def _collisions(machine: Machine) -> tuple[Coverage, ...]:
-    """The bodies that the machine file states are checked on the planned path."""
+    """The bodies in the machine file are checked on the planned path."""
     struts, bodies, fixtures = has_strut_bodies(machine), bool(machine.bodies), bool(machine.fixtures)
     pairs = (
         ("strut and strut", struts, "tubes or rods of the struts"),

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Deviation: how far tool poses are from segments of the programmed trajectory, found without any time or plan.
+"""Deviation: distance of tool poses from segments of the programmed trajectory, independent of time and plan.
 
-Enters: poses, and for each the segment that the caller names. Leaves: how far off tip (mm) and axis (rad) are. A pose
-is compared with the programmed pose of that segment that fits it best: the one with the least sum of squares of tip and
-axis deviation, each by its tolerance. On a helix that pose is one step of Newton's method away from the one at the same
-angle. A segment that is the wrong one can make a deviation larger than that from the trajectory, never smaller.
+Enters: poses, and a segment for each. Leaves: deviations of tip (mm) and axis (rad). A pose is compared with the
+best-fitting programmed pose of its segment: the one with the least sum of squares of tip and axis deviation, each by
+its tolerance. On a helix that pose is one step of Newton's method away from the one at the same angle. A wrong segment
+can only give a deviation larger than that from the trajectory, never smaller.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from pkm_post.model.certificate import Tolerances
 from pkm_post.model.columns import both_by_row, uniform
 
 _NEARLY_CLOSED = 4.0
-"""Tolerances of the tip: an arc that leaves no more open than these may have a pose near both of its ends."""
+"""Tip tolerances: an arc whose gap is no larger may have a pose near both of its ends."""
 
 
 class TrajectoryRuler:
     """Measures poses against the segments of one trajectory.
 
     Attributes:
-        axis_tolerance: how far the tool axis may be off, rad.
-        tip_tolerance: (N,) how far the tip may be off each segment, mm.
+        axis_tolerance: tolerance of the tool axis, rad.
+        tip_tolerance: (N,) tolerance of the tip on each segment, mm.
     """
 
     def __init__(self, trajectory: Trajectory, tolerances: Tolerances) -> None:
@@ -41,11 +41,11 @@ class TrajectoryRuler:
         self._bend = _bends(trajectory, self._tip_before)
 
     def bend(self, segment: Array) -> Array:
-        """Curvature of segments, as they were programmed, 1/mm; of any shape."""
+        """Curvature of segments as programmed, 1/mm; any shape of array."""
         return np.asarray(self._bend[segment])
 
     def deviation_from(self, tip: Array, axis: Array, segment: Array) -> Array:
-        """How far poses are from the programmed pose of their segment that fits best, tip and axis each by tolerance.
+        """Deviation of poses from the best-fitting programmed pose of their segment, weighted by the tolerances.
 
         Args:
             tip: (N, 3) tool tips in the machine frame, mm.
@@ -53,8 +53,8 @@ class TrajectoryRuler:
             segment: (N,) the segment to measure each pose from.
 
         Returns:
-            (3, N): deviations of the tip, mm, and of the axis, rad, from one and the same programmed pose; and what
-            that of the tip may be, mm.
+            (3, N): deviations of the tip, mm, and of the axis, rad, from the same programmed pose; and the tolerance
+            of the tip, mm.
         """
         if not len(segment):
             return np.empty((3, 0))
@@ -79,9 +79,9 @@ class TrajectoryRuler:
         return np.stack([norm(off), angle_between(axis, expected), self.tip_tolerance[segments][at]])
 
     def share_of(self, tip: Array, axis: Array, segment: Array) -> tuple[Array, Array]:
-        """At which share of their segment poses fit best, (N,); and by how much that may be off within the tolerances.
+        """The best-fitting share of the segment for each pose, (N,); and its slack within the tolerances.
 
-        The latter is infinite where the segment moves neither tip nor axis: there every share fits alike.
+        The latter is infinite if the segment moves neither tip nor axis: every share then fits equally well.
         """
         start, turn = self._axis_before[segment], self._axis_turn[segment]
         before = self._tip_before[segment]
@@ -101,14 +101,14 @@ class TrajectoryRuler:
         return np.clip(share, 0.0, 1.0), slack
 
     def _weights(self, segments: Array) -> tuple[Array, ...]:
-        """How much the shares that are nearest for the tip alone and for the axis alone count.
+        """Weights of the nearest shares for the tip alone and for the axis alone.
 
-        Along a segment tip and axis move evenly, so the least sum of squares is at the weighted mean of these shares.
+        Along a segment both move uniformly, so the least sum of squares is at the weighted mean of these shares.
         """
         by_tip = (self._trajectory.length[segments] / self.tip_tolerance[segments]) ** 2
         by_axis = (self._trajectory.angle[segments] / self.axis_tolerance) ** 2
         both = by_tip + by_axis
-        moves = both > 0  # a turn about the tool axis alone moves neither; every share of it fits alike
+        moves = both > 0  # a pure turn about the tool axis moves neither; every share fits
         return tuple(np.divide(one, both, out=np.zeros_like(both), where=moves) for one in (by_tip, by_axis))
 
     def _share_of_arc(self, tip: Array, axis: Array, segment: Array) -> Array:
@@ -116,7 +116,7 @@ class TrajectoryRuler:
         turn, centre = trajectory.arc_axis[segment], trajectory.arc_centre[segment]
         start, here = across(self._tip_before[segment] - centre, turn), across(tip - centre, turn)
         sweep = trajectory.sweep[segment]
-        # Angles are counted from the middle of what the arc leaves open, so that no point near an end wraps around.
+        # Angles are measured from the middle of the arc's gap, so that no point near an end wraps around.
         open_half = (2 * np.pi - sweep) / 2
         angle = np.arctan2(dot(cross(start, here), turn), dot(start, here))
         share = (np.mod(angle + open_half, 2 * np.pi) - open_half) / sweep
@@ -126,13 +126,13 @@ class TrajectoryRuler:
         rise = dot(trajectory.tip[segment] - self._tip_before[segment], turn)
         rising = np.flatnonzero(rise)
         way = (sweep[:, None] * cross(turn, here) + rise[:, None] * turn)[rising]
-        # at the same angle a helix is farther away than beside it: one step of Newton's method along it
+        # the nearest point of a helix is not at the same angle: one step of Newton's method along it
         off = tip[rising] - self._on_arc(segment[rising], share[rising])
         share[rising] += dot(off, way) / dot(way, way)
         return share
 
     def _in_closed_turn(self, share: Array, tip: Array, axis: Array, segment: Array) -> Array:
-        """Shares of turns that end where they begin: of those a turn apart, the one at which the pose fits best."""
+        """Shares of closed turns: of candidates a full turn apart, the one that fits the pose best."""
         turn = 2 * np.pi / self._trajectory.sweep[segment]
         shares = share + turn * [[0.0], [1.0], [-1.0]]
         found = np.clip(shares, 0.0, 1.0)
@@ -153,7 +153,7 @@ class TrajectoryRuler:
 
 
 def _bends(trajectory: Trajectory, before: Array) -> Array:
-    """Curvature of each segment, (N,) 1/mm: of a helix no more than that of its circle."""
+    """Curvature of each segment, (N,) 1/mm: for a helix bounded by that of its circle."""
     arcs = np.flatnonzero(trajectory.kind == Kind.ARC)
     bend = np.zeros(len(trajectory)) if len(arcs) else uniform(0.0, len(trajectory))
     if len(arcs):
@@ -164,6 +164,6 @@ def _bends(trajectory: Trajectory, before: Array) -> Array:
 
 
 def _over_square(vectors: Array) -> Array:
-    """Vectors over the squares of their lengths, (N, 3); zero where they have none."""
+    """Vectors divided by the squares of their lengths, (N, 3); zero for zero vectors."""
     square = dot(vectors, vectors)[:, None]
     return np.divide(vectors, square, out=np.zeros_like(vectors), where=square > 0)

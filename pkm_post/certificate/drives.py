@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drives: what encoders and position loops make of a program at the tip, as far as the machine file describes them.
+"""Drives: effects of encoders and position loops at the tip, as far as the machine file describes them.
 
-Enters: a task of playback. Leaves: figures at the knots; they are samples, no bounds.
+Enters: a playback task. Leaves: figures at the knots; they are samples, not bounds.
 
-One count of each strut is 1 / c mm, and with the signs that add up the tip is off by |J^-1 s| / c, s being +1 or -1.
+One count of each strut is 1 / c mm, and for the worst signs s of +1 or -1 the tip deviates by |J^-1 s| / c.
 
 A strut with the velocity gain k follows its length l as a first-order lag, y' = k (l - y). The lag e = l - y obeys
-e' = l' - k e, which on a cubic has the solution l' / k - l'' / k^2 + j / k^3, j being its jerk, and what is left of the
-lag before, times exp(-k t). With T the mean of all 1 / k, l(t - T) is a place of the path; what J^-1 makes of
-y(t) - l(t - T) across the way of the tip there is the contour error.
+e' = l' - k e, which on a cubic has the solution l' / k - l'' / k^2 + j / k^3, j being its jerk, plus the residual of
+the earlier lag times exp(-k t). With T the mean of all 1 / k, l(t - T) is a place of the path; the component of
+J^-1 (y(t) - l(t - T)) perpendicular to the tip's motion there is the contour error.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from pkm_post.geometry.vectors import Array, length_of
 from pkm_post.model import StrutMotion
 
 _STANDING = 1e-9
-"""mm/s: below it the tip has no way that anything could be across."""
+"""mm/s: below it the tip has no direction of motion."""
 _SIGNS = np.array([signs for signs in itertools.product((1.0, -1.0), repeat=6) if signs[0] > 0]).T
 _FORGOTTEN = 1e-12
-"""Part of a lag below which it no longer counts."""
+"""Share of a lag below which it is negligible."""
 _MICROMETRES = 1000.0
 _MOST_KNOTS = 2048
 _AT_ONCE = 4096
 
 
 def count_at_tip(task: Task, counts_per_mm: float) -> Array:
-    """How far one count of each strut moves the tip, (K + 1,) micrometres at even knots, 0 at those between.
+    """Tip displacement by one count of each strut, (K + 1,) micrometres at sampled knots, 0 at the others.
 
-    The Jacobian changes little from knot to knot: of many not each is looked at.
+    The Jacobian changes little from knot to knot: long programs are sampled evenly.
     """
     largest = np.zeros(len(task.struts))
     rows = slice(None, None, -(-len(largest) // _MOST_KNOTS))
@@ -46,22 +46,22 @@ def count_at_tip(task: Task, counts_per_mm: float) -> Array:
 
 
 def contour_error(task: Task, gain: Array) -> Array:
-    """By how much the lag of the struts takes the tip off its path, (K,) micrometres at the ends of intervals.
+    """Contour error of the tip from the lag of the struts, (K,) micrometres at the ends of intervals.
 
     Args:
-        task: what is played.
+        task: the playback task.
         gain: (6,) velocity gains, 1/s.
     """
     struts, delay = task.struts, float((1 / gain).mean())
     actual, rounds = np.empty((len(struts) - 1, 6)), _rounds(struts, gain)
-    for strut in range(6):  # one by one: there are many columns on the way to a lag
+    for strut in range(6):  # one by one: a lag needs many temporary columns
         actual[:, strut] = struts.length[1:, strut] - _lag(struts, strut, gain[strut], rounds)
     time = np.maximum(struts.time_ms[1:] / 1000 - delay, 0.0)
     return _MICROMETRES * _across(task, time, actual)
 
 
 def _lag(struts: StrutMotion, strut: int, gain: float, rounds: int) -> Array:
-    """Lag of a loop that follows the K cubics of a strut from rest, (K,) mm at the end of each."""
+    """Lag of a position loop that follows the K cubics of a strut from rest, (K,) mm at the end of each."""
     length, speed, duration = struts.length[:, strut, None], struts.speed[:, strut, None], _durations(struts)
     begin, end = hermite_accelerations(length[:-1], speed[:-1], length[1:], speed[1:], duration)
     duration = duration[:, None]
@@ -76,7 +76,7 @@ def _durations(struts: StrutMotion) -> Array:
 
 
 def _rounds(struts: StrutMotion, gain: Array) -> int:
-    """How often to double the rows that are summed, until little is kept by the slowest loop."""
+    """Doublings of the summed rows until the residual of the slowest loop is negligible."""
     part, rounds = np.exp(-gain.min() * _durations(struts)), 0
     while (1 << rounds) < len(part) and part[1 << rounds :].max() > _FORGOTTEN:
         part[1 << rounds :] *= part[: -(1 << rounds)].copy()
@@ -93,14 +93,14 @@ def _summed(added: Array, part: Array, rounds: int) -> Array:
 
 
 def _across(task: Task, time: Array, actual: Array) -> Array:
-    """How far lengths, (K, 6), are from the path across its way at given times, (K,) s: mm of the tip."""
+    """Deviation of the tip, mm, perpendicular to its motion, for lengths (K, 6) at times (K,) s."""
     struts, error = task.struts, np.empty(len(time))
     knot = np.clip(np.searchsorted(struts.time_ms, 1000 * time, side="right") - 1, 0, len(struts) - 2)
     for first in range(0, len(error), _AT_ONCE):
         rows = slice(first, first + _AT_ONCE)
         cubic = cubics(struts, knot[rows])
         share = ((time[rows] - struts.time_ms[knot[rows]] / 1000) / cubic[-1])[:, None]
-        # the difference is small: the Jacobian of a knot nearby carries it
+        # the difference is small: the Jacobian of a nearby knot is accurate enough
         columns = np.stack([actual[rows] - hermite_lengths(*cubic, share)[:, 0], hermite_speeds(*cubic, share)[:, 0]])
         off, way = (task.knots.tip_inverse[knot[rows]] @ columns.transpose(1, 2, 0)).transpose(2, 1, 0)
         along = (off * way).sum(axis=0) / np.maximum(np.square(way).sum(axis=0), _STANDING**2)

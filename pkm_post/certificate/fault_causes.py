@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fault causes: why a limit is not kept: by the plan, or by the decimals that the program was printed with.
+"""Fault causes: whether a limit is violated by the plan, or by the decimals of the printed program.
 
-Enters: a certificate, and the program it is about. Leaves: a diagnostic for each finding that does not hold. A program
-that is its plan as printed is played once more with the lengths and speeds of the plan itself; what holds then is the
-fault of the decimals, and more of them are tried until it holds. Units: mm, mm/s.
+Enters: a certificate, and its program. Leaves: a diagnostic for each finding that does not hold. A program that equals
+its printed plan is played again with the exact lengths and speeds of the plan; findings that then hold are due to the
+decimals, and more decimals are tried until they hold. Units: mm, mm/s.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from pkm_post.model.certificate import Certificate, Finding
 from pkm_post.model.columns import in_pieces
 
 Decimals = tuple[int, int]
-"""Of lengths and of speeds."""
+"""Decimals of lengths and of speeds."""
 Measured = Callable[[StrutMotion], Certificate]
 
 _DECIMALS = ("length_decimals", "speed_decimals")
 _MOST_DECIMALS = 9
-"""That a machine file may state."""
+"""Most decimals that a machine file may state."""
 _MORE = (1, 2, 3, 4, 5)
 _HALF_DIGIT = 0.51
-"""Of the last decimal: how far a program is from its plan by rounding."""
+"""Largest deviation of a program from its plan by rounding, in units of the last decimal."""
 _OF_KNOTS = ("V101", "V102", "V103", "V104", "V108", "V110", "V113", "V114")
-"""What more knots would mend."""
+"""Findings that more knots would improve."""
 _LITTLE = 0.01
-"""Part of a value that makes no difference worth a word."""
+"""Relative difference that is not worth reporting."""
 _AT_ONCE = 2048
 
 
@@ -42,7 +42,7 @@ def fault_causes(
     """A diagnostic for each finding that does not hold.
 
     Args:
-        certificate: of the program.
+        certificate: certificate of the program.
         struts: the program, read back.
         machine: states the decimals.
         motion: the plan.
@@ -63,7 +63,7 @@ def fault_causes(
 
 
 def _of_short_intervals(fault: Diagnostic, time: float, struts: StrutMotion, machine: Machine) -> Diagnostic:
-    """The same, or that of an interval which the controller does not take in two, if it could be cut without that."""
+    """The same diagnostic, or that of an interval that only the controller's shortest interval keeps from being cut."""
     row = np.clip(np.searchsorted(struts.time_ms, 1000 * time, side="right") - 1, 0, len(struts) - 2)
     interval = int(np.diff(struts.time_ms[row : row + 2])[0])
     if fault.code not in _OF_KNOTS or not 1 < interval < 2 * machine.shortest_interval:
@@ -75,7 +75,7 @@ def _of_short_intervals(fault: Diagnostic, time: float, struts: StrutMotion, mac
 
 
 def _as_printed(struts: StrutMotion, exact: StrutMotion, machine: Machine) -> Decimals | None:
-    """The decimals of the program; None where it is not what its plan is when it is printed."""
+    """The decimals of the program; None if it differs from its printed plan."""
     if not all(name in machine.controller for name in _DECIMALS):
         return None
     length, speed = (int(machine.controller[name]) for name in _DECIMALS)
@@ -85,7 +85,7 @@ def _as_printed(struts: StrutMotion, exact: StrutMotion, machine: Machine) -> De
 
 
 def _enough(exact: StrutMotion, decimals: Decimals, rounded: list[int], measured: Measured) -> Decimals | None:
-    """The fewest decimals tried with which these findings hold."""
+    """The fewest of the tried decimals with which these findings hold."""
     for more in _further(decimals):
         length, speed = (np.round(one, digits) for one, digits in zip((exact.length, exact.speed), more, strict=True))
         found = measured(replace(exact, length=_without_sign(length), speed=_without_sign(speed))).findings
@@ -95,7 +95,7 @@ def _enough(exact: StrutMotion, decimals: Decimals, rounded: list[int], measured
 
 
 def _further(decimals: Decimals) -> Iterator[Decimals]:
-    """More of lengths, of speeds, of both; then still more."""
+    """More decimals for lengths, for speeds, for both; then still more."""
     length, speed = decimals
     for more in _MORE:
         tried = (length + more, speed), (length, speed + more), (length + more, speed + more)
@@ -107,7 +107,7 @@ def _without_sign(values: Array) -> Array:
 
 
 def _diagnostic(row: Finding, plan: Finding, decimals: Decimals, enough: Decimals | None) -> Diagnostic:
-    """The fault, with what it would be without rounding where that differs, and what decimals would do."""
+    """The fault, with its value without rounding if that differs, and the decimals that would suffice."""
     fault = row.diagnostic()
     if plan.holds or abs(row.value - plan.value) > _LITTLE * abs(row.value):
         fault = replace(fault, found=f"{fault.found}; {plan.value:.6g} {row.unit} without rounding".rstrip())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Findings: each quantity of a played program at its worst, with its limit, a time and a source line.
 
-Enters: what was played, and what was found of it. Leaves: the rows of a certificate, and figures that have no limit.
-docs/certificate.md has the table; ``limit_table`` says which row holds which entry of the machine file.
+Enters: a playback task and its measured values. Leaves: the rows of a certificate, and figures without a limit.
+docs/certificate.md has the table; ``limit_table`` assigns entries of the machine file to rows.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from pkm_post.model.certificate import Figure, Finding, Tolerances
 def findings(
     task: Task, played: Played, passed: Passed, trajectory: Trajectory, tolerances: Tolerances
 ) -> tuple[Finding, ...]:
-    """One row for each quantity: code, name, unit, values, limit, and when and where they were taken."""
+    """One row for each quantity: code, name, unit, values, limit, and the time and place of each value."""
     struts, machine, motion = task.struts, task.machine, task.motion
     starts = partial(_start, motion)
     knots = _at_knots(task)
@@ -66,7 +66,7 @@ def findings(
 
 
 def figures(task: Task, trajectory: Trajectory) -> tuple[Figure, ...]:
-    """What is measured and has no limit."""
+    """Measured quantities without a limit."""
     machine, struts, knots = task.machine, task.struts, _at_knots(task)
     rows = [
         ("step of strut acceleration at a knot", "mm/s^2", acceleration_steps(struts), knots),
@@ -90,16 +90,16 @@ def _figure(trajectory: Trajectory, name: str, unit: str, values: Array, when: _
 
 
 _When = Callable[[int], tuple[float, int]]
-"""When a row of a quantity was taken, s, and the trajectory segment executed then. Asked of the worst row only."""
+"""Time of a row of a quantity, s, and the trajectory segment executed then. Evaluated for the worst row only."""
 _Row = tuple[str, str, str, Array, Array | float, _When]
 
 
 def _where_most_was_found(
     task: Task, passed: Passed, played: Played, looked: Looked, values: Array, limit: Array | float
 ) -> tuple[Array, float, _When]:
-    """The largest figure by its limit, as that of the interval in which most was found; the limit; and when it was.
+    """The largest figure by its limit, assigned to the interval with the largest measured value; its limit and time.
 
-    The figure may be another interval's, by what can hide there; nobody can tell when that would be.
+    The figure may belong to another interval, due to its undetected part, whose time is unknown.
     """
     interval = int(played.most_found[looked])
     there = float(np.broadcast_to(limit, values.shape)[interval])
@@ -108,7 +108,7 @@ def _where_most_was_found(
 
 
 def _start(motion: Motion, interval: int) -> tuple[float, int]:
-    """When an interval starts, and what is executed just after that."""
+    """The start of an interval, s, and the segment executed just after it."""
     time = float(motion.time_ms[interval]) / 1000
     return time, int(np.searchsorted(motion.joint_time, time, side="right"))
 
@@ -124,7 +124,7 @@ def _of_columns(time: Array, segment: Array, row: int) -> tuple[float, int]:
 def _worst(
     trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: Array | float, when: _When
 ) -> Finding:
-    """The finding at the largest value, by its limit if limits differ; no number counts as beyond every limit."""
+    """The finding at the largest value, by its limit if limits differ; NaN counts as a violation."""
     values, limits = np.where(np.isnan(values), np.inf, values), np.broadcast_to(limit, values.shape)
     row = int(np.argmax(values if np.ndim(limit) == 0 else values / limits))
     value, most, (time, segment) = float(values[row]), float(limits[row]), when(row)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Instants: how far off the tool is at even instants of some intervals, and how much more there can be between them.
+"""Instants: deviation of the tool at even instants of some intervals, and bounds on it between them.
 
-Enters: what is played, and the intervals that are looked at. Leaves: the worst values at the instants, and what can
-hide, each by what it may be; and of one interval the moment of the worst. Where the tool is comes from ``tool_at``: on
-its course, where what it can be off that is told with what hides, or closely, by forward kinematics.
+Enters: a playback task, and the intervals to sample. Leaves: the worst values at the instants, and how much more may go
+undetected, each by its limit; and for one interval the time of the worst. Tool poses come from ``tool_at``: on the
+tool's cubics, whose error adds to the undetected part, or closely, by forward kinematics.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from pkm_post.certificate.tool_at import Task, ToolAt, by_kinematics, on_course
 from pkm_post.geometry.vectors import Array, length_of
 
 _TO_FIND_THE_WORST = 257
-"""Instants of the one interval in which the moment of the worst is looked for."""
+"""Instants of the single interval searched for the time of the worst."""
 
 
 class Looked(IntEnum):
-    """What is looked at in instants; the numbers are rows of ``Seen``."""
+    """Quantities evaluated at instants; the numbers are rows of ``Seen``."""
 
     TIP = 0
     AXIS = 1
@@ -32,13 +32,13 @@ class Looked(IntEnum):
 
 @dataclass(frozen=True)
 class Seen:
-    """What instants of N intervals showed: deviations of tip and axis and tip speed, each by what it may be.
+    """Results at instants of N intervals: deviations of tip and axis and tip speed, each by its limit.
 
     Attributes:
-        found: (N,) whether a pose belongs to every instant.
-        worst: (3, N) the largest at an instant.
-        hidden: (3, N) by how much more there can be, between two of them and at them.
-        tip_tolerance: (N,) what the tip may be off where it is worst, mm.
+        found: (N,) whether every instant has a pose.
+        worst: (3, N) the largest value at an instant.
+        hidden: (3, N) bound on the undetected excess, at and between instants.
+        tip_tolerance: (N,) tolerance of the tip where it is worst, mm.
     """
 
     found: Array
@@ -48,20 +48,20 @@ class Seen:
 
     @classmethod
     def nothing(cls, count: int) -> Seen:
-        """Of intervals that were not looked at: anything can be there."""
+        """Intervals that were not sampled: their values are unbounded."""
         return cls(np.ones(count, dtype=bool), np.zeros((3, count)), np.full((3, count), np.inf), np.ones(count))
 
 
 @dataclass(frozen=True)
 class _Measured:
-    """What the tool does at M instants of N intervals.
+    """Measured values at M instants of N intervals.
 
     Attributes:
-        tool: where it is.
+        tool: pose and velocity of the tool.
         time: (M, N) s since the start.
-        segment: (M, N) the trajectory segment executed then, from which it is measured.
-        tip_tolerance: (M, N) what the tip may be off there, mm.
-        looked: deviation of the tip by what it may be, of the axis, rad, and speed of the tip, mm/s; (M, N) each.
+        segment: (M, N) the trajectory segment executed then, the reference of the deviation.
+        tip_tolerance: (M, N) tolerance of the tip there, mm.
+        looked: deviation of the tip by tolerance, of the axis, rad, and speed of the tip, mm/s; (M, N) each.
     """
 
     tool: ToolAt
@@ -72,7 +72,7 @@ class _Measured:
 
 
 def look(task: Task, rows: Array, instants: int, closely: bool) -> Seen:
-    """Play the intervals that begin at some knots, (N,), and measure them at a number of even instants of each."""
+    """Play the intervals that begin at some knots, (N,), and measure each at a number of even instants."""
     measured = _measured(task, rows, instants, closely)
     tool, tip_tolerance, (by_tolerance, off_axis, speed) = measured.tool, measured.tip_tolerance, measured.looked
     worst = np.argmax(by_tolerance, axis=0), np.arange(len(rows))
@@ -92,7 +92,7 @@ def look(task: Task, rows: Array, instants: int, closely: bool) -> Seen:
 
 
 def when_worst(task: Task, passed: Passed, looked: Looked, row: int) -> tuple[float, int]:
-    """When in the interval that begins at a knot something is worst, s since the start, and on which segment."""
+    """Time of the worst value in the interval that begins at a knot, s since the start, and its segment."""
     measured = _measured(task, np.array([row]), _TO_FIND_THE_WORST, closely=True)
     allowed = 1.0, task.ruler.axis_tolerance, task.ceiling[row]
     joints = np.flatnonzero((passed.intervals == row).any(axis=0))
@@ -104,12 +104,12 @@ def when_worst(task: Task, passed: Passed, looked: Looked, row: int) -> tuple[fl
 
 
 def _measured(task: Task, rows: Array, instants: int, closely: bool) -> _Measured:
-    """Where the tool is at even instants of the intervals that begin at some knots, (N,), and how far off that is."""
+    """Tool poses at even instants of the intervals that begin at some knots, (N,), and their deviations."""
     motion, shares = task.motion, np.linspace(0, 1, instants)
     tool = (by_kinematics if closely else on_course)(task, rows, shares)
     begin, end = (task.struts.time_ms[knot] / 1000 for knot in (rows, rows + 1))
     time = begin + (end - begin) * shares[:, None]
-    # an interval that begins at a joint is behind it: there the tool may have been changed for a longer one
+    # an interval that begins at a joint belongs to the next segment: the tool may have been changed there
     last = motion.segment[rows + 1]
     first = np.minimum(np.searchsorted(motion.joint_time, begin, side="right"), last)
     segment = np.clip(np.searchsorted(motion.joint_time, time), first, last)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joints: where a played motion is at the moments when it ought to pass from one segment to the next.
+"""Joints: tool poses of a played motion at the times when it should pass from one segment to the next.
 
-Enters: a task of playback. Leaves: how far the tool is from each programmed point, and from the segments on both sides
-of it. Deviation from the trajectory alone would not notice a motion that turns back too early; and in the middle of a
-rounded corner, where it is farthest from both its segments, even instants seldom look.
+Enters: a playback task. Leaves: deviations of the tool from each programmed point, and from the segments on both sides
+of it. Deviation from the trajectory alone would miss a motion that turns back too early; and even instants rarely hit
+the middle of a rounded corner, where the tool is farthest from both segments.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pkm_post.model import Trajectory
 from pkm_post.workers import workers
 
 _SETTLED = 0.005
-"""Part of the tolerances by which the course may miss a joint: what it can miss is added to what is told."""
+"""Share of the tolerances by which the tool's cubics may miss a joint; the error is added to the reported deviation."""
 _AT_ONCE = 8192
 """Joints in one pass: the working arrays of one pass stay in the processor's cache."""
 
@@ -31,11 +31,11 @@ class Passed:
     """Columns of N joints, each at the end of a segment.
 
     Attributes:
-        tip: (N,) how far the tip is from the programmed point, mm; infinite where the struts have no pose.
-        axis: (N,) how far the tool axis is from the programmed one, rad.
-        off: (2, N) how far tip and axis are from either of the two segments there, at most, by what they may be.
-        tip_tolerance: (N,) what the tip may be, mm.
-        intervals: (2, N) first and last interval that touch it: two, where it is passed at a knot.
+        tip: (N,) distance of the tip from the programmed point, mm; infinite where the struts have no pose.
+        axis: (N,) angle of the tool axis from the programmed one, rad.
+        off: (2, N) largest deviation of tip and axis from either of the two segments there, by tolerance.
+        tip_tolerance: (N,) tolerance of the tip, mm.
+        intervals: (2, N) first and last interval that touch it: two, if it is passed at a knot.
     """
 
     tip: Array
@@ -46,7 +46,7 @@ class Passed:
 
 
 def pass_joints(task: Task, trajectory: Trajectory) -> Passed:
-    """Where the tool is at the joints of a trajectory."""
+    """Measure the tool at the joints of a trajectory."""
 
     def part(first: int) -> tuple[Array, ...]:
         return _passed(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
@@ -67,7 +67,7 @@ def _passed(task: Task, trajectory: Trajectory, rows: Array) -> tuple[Array, ...
     off_point = norm(tip - programmed_tip), angle_between(axis, programmed_axis)
     off, tolerance = _off_both(task, tip, axis, rows, len(trajectory) - 1)
     tight = np.stack([tolerance.min(axis=0), np.full(len(rows), task.ruler.axis_tolerance)])
-    # the programmed point lies on both segments: it counts where it fits better than the best of each of them
+    # the programmed point lies on both segments: it counts where it fits better than their best-fitting poses
     at_point = np.stack(off_point) / tight
     by_point = at_point.max(axis=0) < off.max(axis=(0, 1))
     worse = (off[1, 0] > off[0, 0]).astype(int)
@@ -81,9 +81,9 @@ def _passed(task: Task, trajectory: Trajectory, rows: Array) -> tuple[Array, ...
 
 
 def _tool_at(task: Task, trajectory: Trajectory, rows: Array, knot: Array, share: Array) -> tuple[Array, ...]:
-    """Tip and axis at some joints, (N, 3) each; how far off that can be, (2, N); and whether there is a pose, (N,).
+    """Tip and axis at some joints, (N, 3) each; their error bounds, (2, N); and whether there is a pose, (N,).
 
-    On the course of the tool, where it is told well enough; else by Newton's method.
+    They come from the tool's cubics if these are accurate enough; else from Newton's method.
     """
     tip, axis, _ = (columns.reshape(-1, len(rows)).T for columns in task.course.at(knot, share[None]))
     missed, found = task.course.missed[:2, knot], np.ones(len(rows), dtype=bool)
@@ -100,9 +100,9 @@ def _tool_at(task: Task, trajectory: Trajectory, rows: Array, knot: Array, share
 
 
 def _off_both(task: Task, tip: Array, axis: Array, rows: Array, last: int) -> tuple[Array, Array]:
-    """How far tip and axis of poses are from both segments at a joint, (2, 2, N) by what they may be, and that, (2, N).
+    """Deviations of poses from both segments at a joint, (2, 2, N) by tolerance, and the tolerances, (2, N).
 
-    Segments come first.
+    The first index is the segment.
     """
     before, after = (task.ruler.deviation_from(tip, axis, segment) for segment in (rows, np.minimum(rows + 1, last)))
     off = np.stack([before[:2], after[:2]])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Knots: what the machine is like at the knots of the plan, from which playback begins its search.
+"""Knots: kinematic state at the knots of the plan, the start values of playback.
 
-Enters: the planned motion. Leaves: strut lengths and speeds as planned, inverse Jacobians, and between which knots the
-Jacobian stays so much alike that the mean of both inverses may stand for that of an instant.
+Enters: the planned motion. Leaves: strut lengths and speeds as planned, inverse Jacobians, and the intervals in which
+the Jacobian varies so little that the mean of both inverses can replace that of an instant.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pkm_post.kinematics import moving
 from pkm_post.model import Machine, Motion
 
 _MOST_CHANGE = 0.02
-"""Part by which the Jacobian may change in an interval; the mean of the inverses is then off by some 1e-4 of itself."""
+"""Relative change of the Jacobian allowed in an interval; the mean of the inverses then has an error of some 1e-4."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class Knots:
     Attributes:
         length: (K + 1, 6) planned strut lengths, mm.
         speed: (K + 1, 6) mm/s.
-        tip_inverse: (K + 1, 3, 6) upper halves of the inverse Jacobians: what struts do to the tip.
-        alike: (K,) whether the Jacobian changes little from one knot to the next, with one and the same tool.
+        tip_inverse: (K + 1, 3, 6) upper halves of the inverse Jacobians, from struts to the tip.
+        alike: (K,) whether the Jacobian changes little from one knot to the next, with the same tool.
     """
 
     length: Array
@@ -37,14 +37,14 @@ class Knots:
 
     @classmethod
     def room(cls, motion: Motion) -> Knots:
-        """Columns for the knots of a plan, to be filled piece by piece."""
+        """Allocate columns for the knots of a plan, to be filled piece by piece."""
         length, speed = np.empty((2, len(motion), 6))
         return cls(length, speed, np.empty((len(motion), 3, 6)), np.diff(motion.tool_length) == 0)
 
     def fill(self, machine: Machine, motion: Motion, rows: slice) -> Array:
-        """Fill in some knots and the intervals between them; their inverse Jacobians of the tip, (N, 6, 6).
+        """Fill in some knots and the intervals between them; return their inverse Jacobians of the tip, (N, 6, 6).
 
-        Whole inverses are needed on the way only, and would be most of what a long program takes.
+        Full inverses are only temporary; they would take most of the memory of a long program.
         """
         self.length[rows], self.speed[rows], jacobian = moving(machine, motion.poses(rows))
         inverse = _inverted(jacobian)
@@ -63,7 +63,7 @@ def inverses_at(machine: Machine, motion: Motion, rows: Array) -> tuple[Array, A
 
 
 def _inverted(jacobian: Array) -> Array:
-    """Inverses; NaN, which is like nothing, when one has none."""
+    """Inverses; NaN for singular matrices, which never count as alike."""
     try:
         return np.linalg.inv(jacobian)
     except np.linalg.LinAlgError:
@@ -71,7 +71,7 @@ def _inverted(jacobian: Array) -> Array:
 
 
 def _change(inverse: Array, jacobian: Array, machine: Machine) -> Array:
-    """How much J1^-1 J2 differs from the identity, (N,), with turns in characteristic lengths."""
+    """Difference of J1^-1 J2 from the identity, (N,), with turns in characteristic lengths."""
     scale = np.repeat([1.0, machine.characteristic_length], 3)
     change = (inverse @ jacobian - np.eye(6)) * (scale[:, None] / scale)
     return np.asarray(np.sqrt(np.square(change).sum(axis=(1, 2))))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Limit table: which row of the certificate holds each limit that a machine file can state, or what else does.
+"""Limit table: the certificate row, or other check, that enforces each limit a machine file can state.
 
 Enters: nothing. Leaves: the table, by the entries of ``machine_file.fields.FIELDS``.
 tests/certificate/test_limit_table.py fails for an entry that is neither here nor among those that limit nothing.
@@ -20,7 +20,7 @@ CERTIFIED = {
     "tool_path.tip_jerk": ("tip jerk",),
     "tool_path.axis_speed": ("turning rate of the tool axis",),
 }
-"""Findings of the certificate, by name: figures of the program as it is written."""
+"""Findings of the certificate, by name: figures of the written program."""
 
 _ON_THE_PLAN = "proven on the planned path, between its points as well, before the program is written"
 _BEFORE_PLANNING = "a job that asks for what is outside is refused, or warned of, before anything is planned"
@@ -44,4 +44,4 @@ CHECKED_ELSEWHERE = {
     "controller.memory_words": "a program that is too long is cut into parts, or refused, before it is written",
     "controller.approach_speed": _NOT_PLANNED,
 }
-"""Limits that no finding is about, and what holds them."""
+"""Limits without a finding, and what enforces them."""

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Matching: when a played program passes the ends of the programmed segments, found without any plan.
+"""Matching: times at which a played program passes the ends of the programmed segments, found without a plan.
 
-Enters: the course of a program, a trajectory, and the knots at which both rest. Leaves: a time for each joint. Between
-two rests the way that was played is as long as the programmed one, but for what rounded corners save: that says about
-where each joint is passed, and near there the moment at which the tool fits it best is looked for. Joints that were
-found tell more closely where those beside them are. Times are no promise: the certificate measures the program with
-them, and times that are wrong can make a deviation larger, never smaller.
+Enters: the path of a program, a trajectory, and the knots at which both rest. Leaves: a time for each joint. Between
+two rests the played path is as long as the programmed one, except for rounded corners: this gives an estimate for each
+joint, near which the best-fitting time is searched for. Joints already found refine the estimates of their neighbours.
+Times are no guarantee: the certificate measures the program with them, and wrong times can only increase a deviation.
 """
 
 from __future__ import annotations
@@ -23,29 +22,29 @@ from pkm_post.model import Machine, Trajectory
 from pkm_post.model.certificate import Tolerances
 
 _LOOKS = 4
-"""Instants of each interval that are looked at."""
+"""Sampled instants of each interval."""
 _REACHES = (12, 4, 48, 8, 192, 16, 768, 24)
-"""How many instants on either side of where a joint ought to be are looked at, in turn, for those not found yet."""
+"""Numbers of instants to search on either side of the estimate, tried in turn for joints not found yet."""
 _NEAR = 24
-"""Farther away only joints are looked for that were not found at all."""
+"""Beyond this reach, only joints without any match are searched for."""
 _FITS = 1.5
-"""Deviations by tolerance within which a joint counts as found; the certificate allows 1."""
+"""Deviation by tolerance within which a joint counts as found; the certificate allows 1."""
 _WELL = 0.6
-"""Deviations by tolerance within which no better moment is looked for."""
+"""Deviation by tolerance within which no better time is searched for."""
 _NEWTON_STEPS = 8
 _SPIN_COUNTS = 1e-3
-"""Of the spin beside the tool axis: where the tool turns about its axis alone, nothing else tells when."""
+"""Weight of the spin relative to the tool axis: in a pure turn about the tool axis, only the spin tells the time."""
 _AT_ONCE = 1 << 18
 """Pairs of joints and instants in one pass."""
 
 
 @dataclass(frozen=True)
 class _Way:
-    """Even instants of all intervals, (S,), and what joints are compared with there.
+    """Even instants of all intervals, (S,), with the quantities to compare joints with.
 
     Attributes:
         place: (7, S).
-        length: (S,) way from the start, turns included, mm.
+        length: (S,) distance travelled from the start, including turns, mm.
     """
 
     place: Array
@@ -60,15 +59,15 @@ def joint_times(
     joints: Array,
     knots: Array,
 ) -> Array:
-    """When the end of each of the N segments is passed, (N,) s, never falling.
+    """Times at which the end of each of the N segments is passed, (N,) s, never decreasing.
 
     Args:
-        course: of the program.
-        trajectory: what was programmed.
-        machine: tells what a turn counts beside a way.
-        tolerances: what was asked for.
+        course: path of the program.
+        trajectory: the programmed trajectory.
+        machine: determines the weight of turns relative to distance.
+        tolerances: the requested tolerances.
         joints: (R,) segments at the ends of which both rest, ascending; the last is the last segment.
-        knots: (R,) the knots at which that is.
+        knots: (R,) the knots of these rests.
     """
     search = _Search(course, trajectory, machine, tolerances)
     time, fit = np.full((2, len(trajectory)), np.nan)
@@ -90,7 +89,7 @@ def joint_times(
 
 
 def _disorder(time: Array, joints: Array) -> Array:
-    """Rows of times that come before earlier ones or behind later ones; rests are not among them."""
+    """Rows of times that are out of order, rests excluded."""
     known = np.flatnonzero(~np.isnan(time))
     there = time[known]
     wrong = (there < np.maximum.accumulate(there)) | (there > np.minimum.accumulate(there[::-1])[::-1])
@@ -99,7 +98,7 @@ def _disorder(time: Array, joints: Array) -> Array:
 
 
 class _Search:
-    """Looks for joints on a course."""
+    """Search for joints on the path of a program."""
 
     def __init__(self, course: PlayedCourse, trajectory: Trajectory, machine: Machine, tolerances: Tolerances) -> None:
         self._course, self._count, self._machine = course, len(course.time) - 1, machine
@@ -113,7 +112,7 @@ class _Search:
         self._weight = np.vstack([by_tip, by_axis, _SPIN_COUNTS * by_axis])[[0, 0, 0, 1, 1, 1, 2]]
 
     def guess(self, rows: Array, time: Array) -> Array:
-        """About where joints are, as way from the start, (M,): by way between the joints whose times are known."""
+        """Estimated distances of joints from the start, (M,), interpolated between joints with known times."""
         known = np.flatnonzero(~np.isnan(time))
         instant = time[known] * 1.0
         at_known = np.interp(self._instant_of(instant), np.arange(len(self._way.length)), self._way.length)
@@ -121,13 +120,13 @@ class _Search:
         return np.asarray(np.interp(self._programmed[rows], programmed, np.append(0.0, at_known)))
 
     def time_of(self, length: Array) -> Array:
-        """When a way from the start has been made, s."""
+        """Time at which a distance from the start is reached, s."""
         instant = np.interp(length, self._way.length, np.arange(len(self._way.length)))
         interval = np.minimum(instant.astype(np.int64) // _LOOKS, self._count - 1)
         return self._time_at(interval, instant / _LOOKS - interval)
 
     def look(self, rows: Array, guess: Array, reach: int) -> Array:
-        """When joints are passed, s, looked for near a guess; and how far off the tool is then by tolerance, (2, M)."""
+        """Times at which joints are passed, s, searched near a guess; and the deviation then by tolerance, (2, M)."""
         middle = np.searchsorted(self._way.length, guess)
         at_once = max(1, _AT_ONCE // (2 * reach + 1))
         parts = [slice(first, first + at_once) for first in range(0, len(rows), at_once)]
@@ -141,7 +140,7 @@ class _Search:
         return self._closely(rows, instants[nearest, np.arange(len(rows))])
 
     def _closely(self, rows: Array, instant: Array) -> Array:
-        """The same from the nearest instants on, by Newton's method, with steps no longer than from one to the next."""
+        """The same, refined from the nearest instants by Newton's method, with steps no longer than one instant."""
         interval, share = self._place(instant / _LOOKS)
         time = self._time_at(interval, share)
         for _ in range(_NEWTON_STEPS):
@@ -153,7 +152,7 @@ class _Search:
         return np.stack([time, np.maximum(norm(off[:3].T), norm(off[3:6].T))])
 
     def settled(self, rows: Array, time: Array) -> Array:
-        """Times of joints, one step nearer to where the tool fits them best, by its true poses."""
+        """Times of joints, refined by one step to the best fit of the tool's exact poses."""
         if not len(rows):
             return time
         interval, share = self._place(self._instant_of(time) / _LOOKS)
@@ -167,10 +166,10 @@ class _Search:
         return np.where(pose.converged & (np.abs(late) < step), time - late, time)
 
     def _late(self, rows: Array, interval: Array, share: Array, place: Array) -> Array:
-        """By how much, s, a pose of an interval is behind the one that fits a joint best, by Newton's method.
+        """Delay, s, of a pose of an interval after the best fit to a joint, by Newton's method.
 
-        In a sharp corner the tool turns away from the joint within little way, so that its acceleration counts; where
-        that would make a farthest pose of it, it is left out.
+        In a sharp corner the tool turns away from the joint within a short distance, so its acceleration matters; it is
+        omitted where it would lead to the farthest pose instead.
         """
         weight = self._weight[:, rows]
         off = (place - self._joint[:, rows]) * weight
@@ -193,10 +192,10 @@ class _Search:
 
 
 def _way(course: PlayedCourse, turn: float) -> _Way:
-    """The course at even instants; a turn of a radian counts as so many mm."""
+    """Sample the path at even instants; a turn of one radian counts as ``turn`` mm."""
     count = len(course.time) - 1
     inside = course.at(np.arange(count), np.linspace(0.0, 1.0, _LOOKS + 1)[:, None])
-    step = np.diff(inside, axis=1)  # within intervals: where the tool is changed, what the tip jumps by is no way
+    step = np.diff(inside, axis=1)  # within intervals: the tip's jump at a tool change is not distance travelled
     way = np.sqrt(np.square(step[:3]).sum(axis=0)) + turn * (
         np.sqrt(np.square(step[3:6]).sum(axis=0)) + np.abs(step[6])
     )

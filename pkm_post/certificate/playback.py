@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Playback: what the machine does when a controller plays a strut motion, as values that nothing exceeds.
+"""Playback: upper bounds on the motion of the machine when a controller plays a strut motion.
 
-Every interval is the cubic the controller makes of it. What the struts do is known in closed form. Tip and axis are
-looked at in even instants of their course and at the joints of the trajectory, and what can hide is added; where that
-could be the worst of the program, and where the course is not known, each pose is found by forward kinematics, and
-instants are added until little can hide.
+Every interval is the cubic that the controller interpolates. Strut motion is known in closed form. Tip and axis are
+sampled at even instants and at the joints of the trajectory, and a bound on the undetected part is added; where this
+could be the worst of the program, and where the tool's cubics are unknown, poses are found by forward kinematics, with
+more instants until the undetected part is small.
 """
 
 from __future__ import annotations
@@ -21,31 +21,31 @@ from pkm_post.geometry.vectors import Array
 from pkm_post.workers import workers
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
-"""Instants of each interval that are looked at, its two knots among them; then of those in which the worst could hide:
-each time half as far apart, and a quarter can hide."""
+"""Sampled instants of each interval, including its two knots; then of intervals that may have the worst undetected:
+each step halves the spacing and quarters the undetected part."""
 _REMAINDER = np.array([0.005, 0.005, 0.001])[:, None]
-"""Parts of the worst deviations of tip and axis and of the worst speed that may hide in the end, and are added."""
+"""Final undetected shares of the worst deviations of tip and axis and of the worst speed, which are added."""
 _AT_ONCE = 8192
 """Instants in one pass: the working arrays of one pass stay in the processor's cache."""
 
 
 @dataclass(frozen=True)
 class Played:
-    """What each of K intervals does not exceed, (K,) unless said otherwise.
+    """Upper bounds for each of K intervals, (K,) unless stated otherwise.
 
     Attributes:
-        found: whether a pose belongs to every instant.
+        found: whether every instant has a pose.
         tip: deviation of the tip, mm, where it is largest by its tolerance.
-        tip_tolerance: what it may be there, mm.
+        tip_tolerance: tolerance of the tip there, mm.
         axis: deviation of the tool axis, rad.
         tip_speed: speed of the tip, mm/s.
         strut_speed: mm/s.
         strut_acceleration: mm/s^2.
         shortest: shortest strut length, mm.
         longest: longest strut length, mm.
-        instants: how many poses were looked at, joints not counted.
-        most_found: (3,) the interval in which most was found of tip, axis and speed, each by what it may be. Another
-            may have a larger figure, by what can hide there.
+        instants: number of evaluated poses, without joints.
+        most_found: (3,) the interval with the largest measured value of tip, axis and speed, each by its limit. Another
+            may have a larger bound, due to its undetected part.
     """
 
     found: Array
@@ -65,8 +65,8 @@ def play(task: Task, passed: Passed) -> Played:
     """Play a strut motion and measure it.
 
     Args:
-        task: what is played, and what it is measured by.
-        passed: where it is at the joints of the trajectory.
+        task: the motion to play, and the reference to measure it by.
+        passed: its measurements at the joints of the trajectory.
     """
     rows = np.arange(len(task.struts) - 1)
     seen, peaks = Seen.nothing(len(rows)), _Peaks.of(passed, len(rows))
@@ -94,7 +94,7 @@ def play(task: Task, passed: Passed) -> Played:
 
 
 def _look_again(task: Task, seen: Seen, peaks: _Peaks, rows: Array, instants: int, closely: bool) -> None:
-    """Replace what is known of some intervals by what more instants show."""
+    """Replace the results of some intervals by those of more instants."""
     if not len(rows):
         return
     blocks = _blocks(rows, _AT_ONCE // instants)
@@ -104,7 +104,7 @@ def _look_again(task: Task, seen: Seen, peaks: _Peaks, rows: Array, instants: in
 
 
 def _keep(seen: Seen, peaks: _Peaks, rows: Array, again: Seen) -> None:
-    """Replace what is known of some intervals, with what is known of their joints."""
+    """Replace the results of some intervals, combined with those of their joints."""
     at_joint = np.flatnonzero(peaks.off[0, rows] > again.worst[0])
     again.tip_tolerance[at_joint] = peaks.tip_tolerance[rows[at_joint]]
     seen.worst[:, rows] = np.concatenate([np.maximum(again.worst[:2], peaks.off[:, rows]), again.worst[2:]])
@@ -113,7 +113,7 @@ def _keep(seen: Seen, peaks: _Peaks, rows: Array, again: Seen) -> None:
 
 
 def _extremes(task: Task, rows: Array) -> Array:
-    """Of each interval as in ``Played``: strut speed, acceleration, shortest and longest length, (4, K)."""
+    """For each interval as in ``Played``: strut speed, acceleration, shortest and longest length, (4, K)."""
     blocks = _blocks(rows, _AT_ONCE // _INSTANTS[0])
     return np.concatenate([np.stack(extremes(*cubics(task.struts, some))) for some in blocks], axis=1)
 
@@ -124,7 +124,7 @@ def _blocks(rows: Array, at_once: int) -> list[Array]:
 
 @dataclass(frozen=True)
 class _Peaks:
-    """How far off tip and axis are at the joints of K intervals, (2, K) by what they may be; what the tip may be."""
+    """Deviations of tip and axis at the joints of K intervals, (2, K) by tolerance; and the tip tolerance."""
 
     off: Array
     tip_tolerance: Array

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Played course: where the tool goes when a program is played, from its strut lengths and speeds alone.
+"""Played course: the tool path of a played program, from its strut lengths and speeds alone.
 
-Enters: a strut motion as read back, the gauge length in use at each knot, and the pose that the program begins from.
-Leaves: tool poses at the knots by forward kinematics, each from the one before it, with their rates; between two knots
-tip, axis and spin are taken for cubics. The certificate is not measured on these cubics (``tool_at``).
+Enters: a strut motion as read back, the gauge length in use at each knot, and the start pose of the program. Leaves:
+tool poses at the knots by forward kinematics, each starting from the previous one, with their rates; between two knots
+tip, axis and spin are approximated by cubics. The certificate is not measured on these cubics (``tool_at``).
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ class PlayedCourse:
     """Columns of K + 1 knots: tip in mm, tool axis, spin in rad, one after the other.
 
     Attributes:
-        place: (7, K + 1) with the tool that leads to the knot.
+        place: (7, K + 1) with the tool of the interval before the knot.
         rate: (7, K + 1) by time.
         start: (7, K) at the start of each interval, with the tool of that interval.
         time: (K + 1,) s.
-        tool_length: (K + 1,) of the tool that leads to the knot, mm.
+        tool_length: (K + 1,) of the tool of the interval before the knot, mm.
         struts: the program, read back.
     """
 
@@ -44,7 +44,7 @@ class PlayedCourse:
     def of(
         cls, struts: StrutMotion, tool_length: Array, trajectory: Trajectory, machine: Machine
     ) -> tuple[PlayedCourse | None, int]:
-        """The course of a program; or None, and the first knot to which small steps from the start find no pose."""
+        """The tool path of a program; or None, and the first knot that small steps from the start cannot reach."""
         begin = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
         found = follow(machine, struts.length, tool_length, trajectory.start_tip, begin)
         if not found.converged.all():
@@ -62,11 +62,11 @@ class PlayedCourse:
         return cls(place, rate, start, struts.time_ms / 1000, tool_length, struts), 0
 
     def at(self, interval: Array, share: Array) -> Array:
-        """Tip, axis and spin at shares, (M, 1) or (M, N), of N intervals: (7, M, N)."""
+        """Tip, axis and spin at shares, (M, 1) or (M, N), of N intervals, (7, M, N)."""
         return hermite_columns(*self._ends(interval), share)
 
     def rates_at(self, interval: Array, share: Array) -> tuple[Array, Array]:
-        """Their first and second derivatives by time at a share of each of N intervals, (7, N) each."""
+        """First and second derivatives by time at a share of each of N intervals, (7, N) each."""
         p0, v0, p1, v1, duration = self._ends(interval)
         begin, end = (one.T for one in hermite_accelerations(p0.T, v0.T, p1.T, v1.T, duration))
         return hermite_column_speeds(p0, v0, p1, v1, duration, share[None])[:, 0], begin + (end - begin) * share
@@ -78,7 +78,7 @@ class PlayedCourse:
 
 
 def _spin(rotation: Array, start: float) -> Array:
-    """The spin of platforms along their course, without jumps, (N,), from about ``start`` on."""
+    """The continuous spin of platforms along their path, (N,), starting near ``start``."""
     x, y = untwisted(np.ascontiguousarray(rotation[:, :, 2]))
     spin = np.unwrap(np.arctan2(dot(rotation[:, :, 0], y), dot(rotation[:, :, 0], x)))
     return np.asarray(spin + 2 * np.pi * np.round((start - spin[0]) / (2 * np.pi)))

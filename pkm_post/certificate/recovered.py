@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Recovered: the motion of a program that was read back, as a plan would have it, from program and trajectory alone.
+"""Recovered: the motion of a program in the form of a plan, from program and trajectory alone.
 
-Enters: the strut motion of a program, the trajectory, the machine. Leaves: tool poses and rates at its knots, which
-segment each knot is on and when each joint is passed, so that ``certify`` can measure the program, whatever planner
-made it; and by how much the spin misses the programmed one. Where the program rests, what happens there, and in which
-order, has to be what the trajectory says.
+Enters: the strut motion of a program, the trajectory, the machine. Leaves: tool poses and rates at its knots, the
+segment of each knot and the time of each joint, so that ``certify`` can measure the program of any planner; and the
+deviation of the spin from the programmed one. Rests and events, and their order, must match the trajectory.
 """
 
 from __future__ import annotations
@@ -28,17 +27,17 @@ from pkm_post.model.certificate import Tolerances
 Findings = tuple[Diagnostic, ...]
 
 _LOOKS = np.array([[0.25], [0.5], [0.75], [1.0]])
-"""Shares of each interval at which its way is looked at."""
+"""Shares of each interval at which its pose path is sampled."""
 
 
 @dataclass(frozen=True)
 class Recovered:
-    """What a program does, as its plan would say it.
+    """The motion of a program in the form of a plan.
 
     Attributes:
-        motion: with the knots of the program.
-        spin_off: (K + 1,) mm of a strut by which the spin about each knot misses the programmed one.
-        course: of the tool.
+        motion: motion with the knots of the program.
+        spin_off: (K + 1,) mm of a strut, deviation of the spin about each knot from the programmed one.
+        course: path of the tool.
     """
 
     motion: Motion
@@ -46,7 +45,7 @@ class Recovered:
     course: PlayedCourse
 
     def way(self) -> tuple[Way, Array]:
-        """The way through poses at even instants of all intervals, and the segments they lie on."""
+        """The pose path through even instants of all intervals, and the segments of these."""
         count = len(self.motion) - 1
         first = self.course.at(np.array([0]), np.zeros((1, 1)))[:, 0]
         inside = self.course.at(np.arange(count), _LOOKS).transpose(0, 2, 1).reshape(7, -1)
@@ -61,14 +60,14 @@ class Recovered:
 def recovered(
     struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, tolerances: Tolerances
 ) -> tuple[Recovered | None, Findings]:
-    """The motion of a program, or why it is not one of this trajectory.
+    """The motion of a program, or None with diagnostics if it does not match the trajectory.
 
     Args:
         struts: the program, read back.
         program_name: names the program in diagnostics.
-        trajectory: what was programmed.
+        trajectory: the programmed trajectory.
         machine: the geometry.
-        tolerances: what was asked for.
+        tolerances: the requested tolerances.
     """
     rests = _Rests.of(struts, trajectory)
     course, fault = None, rests.fault(struts, trajectory, machine)
@@ -86,7 +85,7 @@ def recovered(
 
 
 _Fault = tuple[str, str]
-"""A code, and what was found."""
+"""A code, and its finding."""
 
 
 def _diagnostics(fault: _Fault | None, program_name: str) -> Findings:
@@ -131,11 +130,11 @@ def _motion(course: PlayedCourse, passed: Array) -> Motion:
 
 @dataclass(frozen=True)
 class _Rests:
-    """Where program and trajectory rest, one after the other, when they do so equally often.
+    """The rests of program and trajectory, in order; comparable if their numbers are equal.
 
     Attributes:
-        knots: of the program at which every printed speed is zero.
-        rows: of the trajectory before which the motion rests; row N is its end.
+        knots: knots of the program at which every printed speed is zero.
+        rows: rows of the trajectory before which the motion rests; row N is its end.
     """
 
     knots: Array
@@ -148,7 +147,7 @@ class _Rests:
         return cls(np.flatnonzero(~struts.speed.any(axis=1)), np.flatnonzero(rests))
 
     def fault(self, struts: StrutMotion, trajectory: Trajectory, machine: Machine) -> _Fault | None:
-        """What makes a comparison pointless: another machine, motion at the ends, other rests or events."""
+        """The reason that prevents a comparison: another machine, motion at the ends, other rests or events."""
         if trajectory.machine_fingerprint != machine.fingerprint:
             return "T104", f"made for {trajectory.machine}, checked on {machine.name}"
         for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):
@@ -161,6 +160,6 @@ class _Rests:
         return None if struts.events == expected else ("V109", event_fault(struts.events, expected))
 
     def tool_lengths(self, trajectory: Trajectory) -> Array:
-        """Gauge length of the tool that leads to each knot, (K + 1,): between two rests there is one."""
+        """Gauge length of the tool before each knot, (K + 1,): constant between two rests."""
         by_stretch = trajectory.tool_length()[self.rows[1:] - 1]
         return np.append(by_stretch[:1], np.repeat(by_stretch, np.diff(self.knots)))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Structure: what a program and its plan must have in common before one can be compared with the other.
+"""Structure: what a program and its plan must have in common before they can be compared.
 
-Enters: a strut motion as read back, and the plan it was made from. Leaves: diagnostics, each with the first thing that
-differs, as it was found and as it was planned. Times: whole ms, as in the program.
+Enters: a strut motion as read back, and the plan it was made from. Leaves: diagnostics, each with the first difference,
+as found and as planned. Times: whole ms, as in the program.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ _Thing = TypeVar("_Thing")
 def structure_faults(
     struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, motion: Motion
 ) -> tuple[Diagnostic, ...]:
-    """What makes a comparison pointless: another machine, other knots, other events, or motion at the ends.
+    """Diagnostics that prevent a comparison: another machine, other knots, other events, or motion at the ends.
 
     Args:
         struts: the program, read back.
         program_name: names the program in diagnostics.
-        trajectory: what was programmed.
-        machine: the machine that the program is checked on.
+        trajectory: the programmed trajectory.
+        machine: the machine to check the program on.
         motion: the plan.
     """
     another, found = machine_fault(trajectory, machine, program_name), []
@@ -44,11 +44,11 @@ def structure_faults(
 
 
 def machine_fault(trajectory: Trajectory, machine: Machine, name: str) -> Diagnostic | None:
-    """T104 for a trajectory that was made for another machine.
+    """T104 for a trajectory of another machine.
 
     Args:
-        trajectory: what was programmed.
-        machine: that it is to run on.
+        trajectory: the programmed trajectory.
+        machine: the machine to run it on.
         name: names the program in the diagnostic.
     """
     if trajectory.machine_fingerprint == machine.fingerprint:
@@ -64,7 +64,7 @@ def event_fault(found: Sequence[Event], planned: Sequence[Event]) -> str:
 def _first_difference(
     what: str, found: Sequence[_Thing], planned: Sequence[_Thing], told: Callable[[_Thing], str]
 ) -> str:
-    """The first of two rows of things that differs, by its number from 0, and how many there are in each."""
+    """The first difference of two sequences, with its index from 0, and their lengths."""
     pairs = enumerate(zip_longest(found, planned))
     number, pair = next((number, pair) for number, pair in pairs if pair[0] != pair[1])
     here, there = ("none" if thing is None else told(thing) for thing in pair)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Struts: what the cubics of a program ask of the struts, exactly, and how far they are off their plan.
+"""Struts: exact extremes of the strut cubics of a program, and their deviation from the plan.
 
 Enters: the strut motion as read back. Leaves: highest speeds and accelerations, longest and shortest lengths of every
-interval, from the closed forms of a cubic; jerk; and how far a strut can be off its plan. Units: mm, s.
+interval, from the closed forms of a cubic; jerk; and bounds on the deviation of struts from the plan. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ def cubics(struts: StrutMotion, rows: Array) -> tuple[Array, Array, Array, Array
 
 
 def extremes(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array, Array, Array]:
-    """Of N intervals of cubics: highest speed, highest acceleration, shortest and longest length, (N,) each.
+    """For N intervals of cubics: highest speed, highest acceleration, shortest and longest length, (N,) each.
 
     Acceleration is linear in time: the speed is extreme at the ends, and where the acceleration is zero. The length is
     extreme at the ends, and where the speed is zero: up to two times.
     """
     accelerations = hermite_accelerations(p0, v0, p1, v1, duration)
-    # strut after strut in memory: the extremes of six struts are those of six long columns
+    # strut-major in memory: the extremes of six struts are those of six long columns
     p0, v0, p1, v1, a0, a1 = (np.ascontiguousarray(rows.T) for rows in (p0, v0, p1, v1, *accelerations))
     jerk = (a1 - a0) / duration
     turns = np.where(a0 * a1 < 0, np.divide(-a0, jerk, out=np.zeros_like(a0), where=jerk != 0), 0.0)
     speeds = np.stack([v0, v1, v0 + a0 * turns / 2])
-    stops = np.clip(np.stack(_roots(jerk / 2, a0, v0)), 0.0, duration)  # an end, where there is none inside
+    stops = np.clip(np.stack(_roots(jerk / 2, a0, v0)), 0.0, duration)  # an end if there is none inside
     at_stops = p0 + stops * (v0 + stops * (a0 / 2 + stops * jerk / 6))
     lengths = np.concatenate([np.stack([p0, p1]), at_stops])
     return (
@@ -50,10 +50,10 @@ def extremes(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tup
 
 
 def _roots(square: Array, linear: Array, constant: Array) -> tuple[Array, Array]:
-    """Roots of quadratics; 0 where there is none."""
+    """Roots of quadratics; 0 for missing roots."""
     discriminant = linear**2 - 4 * square * constant
     there = discriminant >= 0
-    # this sum cancels nothing; one root is the quotient by it, the other that of the product of both
+    # this sum has no cancellation; one root is a quotient by it, the other follows from the product of the roots
     half = -(linear + np.copysign(np.sqrt(np.where(there, discriminant, 0.0)), linear)) / 2
     none = np.zeros_like(half)
     one = np.divide(half, square, out=none.copy(), where=there & (np.abs(square) > 0))
@@ -62,10 +62,10 @@ def _roots(square: Array, linear: Array, constant: Array) -> tuple[Array, Array]
 
 
 def off_plan(struts: StrutMotion, knots: Knots) -> Array:
-    """By how much a strut can leave its plan on either side of each knot, (K + 1,) mm.
+    """Largest deviation of a strut from its plan on either side of each knot, (K + 1,) mm.
 
-    A length that is wrong by dp and a speed that is wrong by dv move the cubic beside them by no more than
-    dp + 4/27 h dv. Tip and axis need not show it: the turn of the platform about the tool axis takes up what is left.
+    A length error dp and a speed error dv move the adjacent cubics by no more than dp + 4/27 h dv. Tip and axis need
+    not show it: the turn of the platform about the tool axis can absorb the rest.
     """
     interval = np.diff(struts.time_ms / 1000)
     longest = np.maximum(np.append(interval, 0.0), np.append(0.0, interval))[:, None]
@@ -79,24 +79,24 @@ def off_plan(struts: StrutMotion, knots: Knots) -> Array:
 
 
 def strut_jerk(struts: StrutMotion) -> Array:
-    """Jerk of the fastest changing strut about each knot, (K + 1,) mm/s^3, with rests before and behind the program.
+    """Largest strut jerk about each knot, (K + 1,) mm/s^3, with rests before and after the program.
 
-    The mean acceleration of an interval is the change of its speeds by its duration. From one interval to the next
-    it changes by no more than the jerk times the time between their middles.
+    The mean acceleration of an interval is its change of speed by its duration. From one interval to the next it
+    changes by no more than the jerk times the time between their middles.
     """
     changes, apart = mean_changes(struts.time_ms, struts.speed)
     return np.asarray(np.abs(changes).max(axis=1) / apart)
 
 
 def mean_changes(time_ms: Array, speed: Array) -> tuple[Array, Array]:
-    """By how much mean accelerations change at knots, and the times between the middles of their intervals.
+    """Changes of mean acceleration at knots, and the times between the middles of their intervals.
 
     Args:
         time_ms: (K + 1,) whole ms.
         speed: (K + 1, C) by s.
 
     Returns:
-        (K + 1, C) and (K + 1,) s, with rests before the first and behind the last knot.
+        (K + 1, C) and (K + 1,) s, with rests before the first and after the last knot.
     """
     duration = np.diff(time_ms / 1000)
     still = np.zeros((1, speed.shape[1]))
@@ -108,7 +108,7 @@ def mean_changes(time_ms: Array, speed: Array) -> tuple[Array, Array]:
 def acceleration_steps(struts: StrutMotion) -> Array:
     """Largest step of a strut's acceleration at each knot, (K + 1,) mm/s^2, from rest and to rest at the ends.
 
-    Cubics with given lengths and speeds meet with the same speed, not with the same acceleration.
+    Cubics with given lengths and speeds meet at the same speed, but not at the same acceleration.
     """
     steps, before = np.empty(len(struts)), np.zeros((1, 6))
     for piece in pieces(len(struts) - 1, _AT_ONCE):
@@ -120,5 +120,5 @@ def acceleration_steps(struts: StrutMotion) -> Array:
 
 
 def blocks_in_a_second(time_ms: Array) -> Array:
-    """How many knots are in the second that begins with each, (K + 1,); dwells, which give more time, do not count."""
+    """Number of knots in the second that begins at each knot, (K + 1,); dwells, which add time, are ignored."""
     return np.asarray(np.searchsorted(time_ms, time_ms + 1000) - np.arange(len(time_ms)))

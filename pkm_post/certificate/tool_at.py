@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool at: where the cubics of some intervals bring the tool, at shares of each.
+"""Tool at: tool pose and velocity on the cubics of some intervals, at shares of each.
 
-Enters: a strut motion as read back, and a planned motion as the place where the search for each pose begins; the poses
-found do not depend on it. Leaves: tip, axis and velocity of the tip, and how far off these can be. Either the tool is
-taken to be on its course (``tool_course``), or each pose is found by forward kinematics: most by linear steps from the
-plan (``kinematics.near``); where the Jacobian changes much, or these do not arrive, by Newton's method.
+Enters: a strut motion as read back, and a planned motion as the start value for each pose; the poses found do not
+depend on it. Leaves: tip, axis and velocity of the tip, with error bounds. Poses come from the tool's cubics
+(``tool_course``) or from forward kinematics: mostly by linear steps from the plan (``kinematics.near``); by Newton's
+method where the Jacobian changes much or these do not converge.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from pkm_post.kinematics.jacobian import linearise
 from pkm_post.model import Machine, Motion, StrutMotion
 
 _SPEED_MISSED = 2e-4
-"""Part by which a speed carried by the mean of two inverse Jacobians may be off; see ``knots``."""
+"""Relative error of a speed from the mean of two inverse Jacobians; see ``knots``."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is played, and what it is measured by.
+    """A playback task: the motion to play, and the reference to measure it by.
 
     Attributes:
         struts: the motion to play, K + 1 knots.
         machine: the geometry.
         ruler: measures poses against the programmed trajectory.
         motion: the planned motion with the same knots.
-        knots: what the machine is like there.
-        course: where the tool is, about.
-        ceiling: (K,) tip speed that each interval may have, mm/s.
-        spin_off: (K + 1,) mm of a strut by a spin that was not programmed, beside what it is off the plan.
+        knots: kinematic state at the knots.
+        course: approximate cubics of the tool.
+        ceiling: (K,) highest tip speed of each interval, mm/s.
+        spin_off: (K + 1,) mm of a strut due to spin error, in addition to the deviation from the plan.
     """
 
     struts: StrutMotion
@@ -54,13 +54,13 @@ class Task:
 
 @dataclass(frozen=True)
 class ToolAt:
-    """Where the tool is at M instants of N intervals, column after column in memory.
+    """Tool poses and velocities at M instants of N intervals, column-major in memory.
 
     Attributes:
         tip: (3, M, N) mm.
         axis: (3, M, N) unit tool axis.
         velocity: (3, M, N) of the tip, mm/s.
-        missed: (3, N) by how much tip, axis and velocity can be off that.
+        missed: (3, N) error bounds of tip, axis and velocity.
         found: (M, N) whether there is a pose.
     """
 
@@ -72,14 +72,14 @@ class ToolAt:
 
 
 def on_course(task: Task, rows: Array, shares: Array) -> ToolAt:
-    """Where the tool is at shares of intervals of which the course tells it."""
+    """The tool at shares of intervals, from its cubics."""
     course, share = task.course, shares[:, None]
     tip, axis, spin = course.at(rows, share)
     return ToolAt(tip, axis, course.velocity(rows, share), course.missed[:, rows], np.ones(spin.shape, dtype=bool))
 
 
 def by_kinematics(task: Task, rows: Array, shares: Array) -> ToolAt:
-    """Where the tool is at shares of any intervals."""
+    """The tool at shares of any intervals, from forward kinematics."""
     cubic = cubics(task.struts, rows)
     length, speed = hermite_lengths(*cubic, shares), hermite_speeds(*cubic, shares)
     machine, motion = task.machine, task.motion
@@ -116,6 +116,6 @@ def _by_newton(
     """Tip, axis and velocity of the tip, (3, N) each, and whether they were found, from lengths and speeds, (N, 6)."""
     pose = forward(machine, length, tool_length, motion.tip[knot], motion.axis[knot], motion.spin[knot])
     jacobian, _ = linearise(machine, pose.tip, pose.rotation, tool_length)
-    jacobian[~pose.converged] = np.eye(6)  # no pose was found there, which is refused as such
+    jacobian[~pose.converged] = np.eye(6)  # missing poses are refused elsewhere
     twist = np.linalg.solve(jacobian, speed[..., None])[..., 0]
     return pose.tip.T, pose.axis.T, twist[:, :3].T, pose.converged

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool course: the way of the tool in each interval as one cubic, and how far the tool can be from it.
+"""Tool course: the path of the tool in each interval as one cubic, with error bounds.
 
-Enters: a strut motion as read back, and the planned motion, near which it is looked for. Leaves: tool poses and their
-rates at the knots. Between two of them tip, axis and spin are taken for the cubics with these ends, which cost no
-kinematics. The struts that such a cubic would need are not quite those that are played; what they differ by at three
-instants tells how far the tool is from the cubic at these, and a bound follows for all others.
+Enters: a strut motion as read back, and the planned motion as start value. Leaves: tool poses and their rates at the
+knots. Between two of them tip, axis and spin follow the cubics with these ends, which need no kinematics. The struts of
+such a cubic are not exactly those that are played; their difference at three instants gives the error of the cubic
+there, and a bound for all others.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from pkm_post.model.columns import pieces
 _LOOKS = np.array([[0.25], [0.5], [0.75]])
 """Shares of an interval at which the difference is measured."""
 _MOST = 1.6
-"""What leaves a cubic as x^2 (1 - x)^2 times a quadratic leaves it by at most 1.442 of what it does at the looks."""
+"""An error x^2 (1 - x)^2 times a quadratic is at most 1.442 times its largest value at the sampled shares."""
 _FASTEST = 12.3
-"""The same of its rate, at most 11.153 of what it is at the looks by the duration."""
+"""The same for its rate: at most 11.153 times that value by the duration."""
 _BENDS = 356.0
-"""The same of its second derivative, at most 323.56 by the square of the duration. All three with a tenth of room."""
+"""The same for its second derivative: at most 323.56 by the square of the duration. All three have 10 % margin."""
 _NEAR_PLAN = 1e-4
-"""mm of a strut off its plan at a knot; beyond it, one linear step from the plan would be too coarse."""
+"""mm of deviation of a strut from its plan at a knot; beyond it, one linear step from the plan is too coarse."""
 _STEP_MISSES = np.array([1e-9, 1e-9, 1e-4])[:, None]
-"""mm, rad and mm/s, more than what such a step misses, and what speeds carried by the Jacobian before it do."""
+"""mm, rad and mm/s: bounds on the error of such a step, and of speeds from the Jacobian before it."""
 _TURN_MISSES = 2e-6
-"""rad/s: the same of turning rates."""
+"""rad/s: the same for turning rates."""
 _NEAR_CUBIC = 0.01
-"""mm of a strut between cubic and program, beyond which the difference is not told by linear steps."""
+"""mm of a strut between cubic and program; beyond it, linear steps do not resolve the difference."""
 _SMALL_TURN = 0.3
-"""rad of the axis in an interval, beyond which nothing is said of it."""
+"""rad of the axis in an interval; beyond it, no bound is given."""
 _AT_ONCE = 2048
 
 
@@ -50,8 +50,8 @@ class ToolCourse:
         place: (7, K + 1) tip in mm, tool axis, spin in rad at the knots.
         rate: (7, K + 1) their rates by time.
         duration: (K,) s.
-        missed: (3, K) how far the tool can be from the cubics: tip in mm, axis in rad, velocity of the tip in mm/s;
-            infinite where nothing is known of it.
+        missed: (3, K) error bounds of the cubics: tip in mm, axis in rad, velocity of the tip in mm/s; infinite where
+            unknown.
     """
 
     place: Array
@@ -61,12 +61,12 @@ class ToolCourse:
 
     @classmethod
     def of(cls, machine: Machine, struts: StrutMotion, motion: Motion) -> tuple[ToolCourse, Knots]:
-        """That of a strut motion with the knots of a planned one; and what the machine is like at these."""
+        """The cubics of a strut motion with the knots of a planned one; and the kinematic state at these."""
         knots, count = Knots.room(motion), len(struts) - 1
         place, rate = np.empty((2, 7, len(struts)))
         course = cls(place, rate, np.diff(struts.time_ms) / 1000, np.full((3, count), np.inf))
         for piece in pieces(count, _AT_ONCE):
-            rows = slice(piece.start, piece.stop + 1)  # with the knot at which its last interval ends
+            rows = slice(piece.start, piece.stop + 1)  # includes the end of its last interval
             inverse = knots.fill(machine, motion, rows)
             course.place[:, rows], course.rate[:, rows], near = _at_knots(struts, motion, knots, rows, inverse)
             told = course._told(knots, near, piece)
@@ -75,7 +75,7 @@ class ToolCourse:
         return course, knots
 
     def _told(self, knots: Knots, near: Array, piece: slice) -> Array:
-        """The intervals of a piece of which something can be said; ``near`` is of their knots, one more."""
+        """The intervals of a piece that have a bound; ``near`` has their knots, one more."""
         swing = length_of(*self.rate[3:6, piece.start : piece.stop + 1])
         turn = np.maximum(swing[:-1], swing[1:]) * self.duration[piece]
         return piece.start + np.flatnonzero(knots.alike[piece] & near[:-1] & near[1:] & (turn < _SMALL_TURN))
@@ -106,8 +106,7 @@ class ToolCourse:
         cos(g / 2) - g^2 / 6 > 1 - 0.3 g^2, and the axis turns faster than it by no more than that.
 
         Returns:
-            What is found at the knots, and by how much more there can be at any moment, (2, N) each; the latter is
-            infinite where nothing is known.
+            Values at the knots, and bounds on the excess at any time, (2, N) each; the latter infinite where unknown.
         """
         begin, begin_rate, end, end_rate, duration = self._ends(rows)
         both = hermite_accelerations(begin[:3].T, begin_rate[:3].T, end[:3].T, end_rate[:3].T, duration)
@@ -133,7 +132,7 @@ class ToolCourse:
     def _missed(
         self, machine: Machine, struts: StrutMotion, motion: Motion, inverses: tuple[Array, Array], rows: Array
     ) -> Array:
-        """What of N intervals is in ``missed``, (3, N), with the inverse Jacobians at both ends of each."""
+        """Column ``missed`` of N intervals, (3, N), from the inverse Jacobians at both ends of each."""
         if not len(rows):
             return np.empty((3, 0))
         tip, axis, spin = (columns.reshape(-1, _LOOKS.size * len(rows)) for columns in self.at(rows, _LOOKS))
@@ -151,7 +150,7 @@ class ToolCourse:
 def _at_knots(
     struts: StrutMotion, motion: Motion, knots: Knots, rows: slice, inverse: Array
 ) -> tuple[Array, Array, Array]:
-    """Places and rates at some knots, and where one linear step from the plan tells them."""
+    """Places and rates at some knots, and where one linear step from the plan is accurate enough."""
     residual = struts.length[rows] - knots.length[rows]
     near = np.abs(residual).max(axis=1) < _NEAR_PLAN
     step, twist = (inverse @ np.stack([residual, struts.speed[rows]], axis=2)).transpose(2, 1, 0)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool limits: how fast the tool axis turns and how hard the tip accelerates in each interval, as bounds.
+"""Tool limits: upper bounds on the turning rate of the tool axis and the acceleration of the tip in each interval.
 
-Enters: a task of playback. Leaves: figures that nothing exceeds in their interval. Most come from the course of the
-tool; where that could be the worst of the program, or decides whether a limit is kept, and where the course says
-nothing, velocity and acceleration follow from poses found by Newton's method, in as many instants as it takes.
+Enters: a playback task. Leaves: upper bounds for each interval. Most come from the tool's cubics; where these could be
+the worst of the program or decide a limit, or have no bound, velocity and acceleration follow from poses found by
+Newton's method, at as many instants as needed.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from pkm_post.kinematics.tool_rates import tool_rates
 from pkm_post.model.columns import pieces
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
-"""Instants of an interval that is looked at closely; each time half as far apart."""
+"""Instants of an interval that is checked closely; each step halves the spacing."""
 _REMAINDER = 0.005
-"""Part of the worst found by which a figure may be above it."""
+"""Share of the worst measured value by which a figure may exceed it."""
 _FAR_BELOW = 0.5
-"""Part of a limit below which it does not matter how much of a figure is there and how much may hide."""
+"""Share of a limit below which a figure need not be refined."""
 _AT_ONCE = 8192
 """Instants in one pass: the working arrays of one pass stay in the processor's cache."""
 _SPEED_BY_RESIDUAL = 10.0
-"""1/s: by how much a velocity of the tip at a knot may be off, by what a strut is off its plan there."""
+"""1/s: error of a tip velocity at a knot per deviation of a strut from its plan there."""
 
 
 def tool_limits(task: Task) -> tuple[Array, Array]:
-    """Turning rate of the tool axis, rad/s, and acceleration of the tip, mm/s^2, that K intervals do not exceed."""
+    """Upper bounds on the turning rate of the tool axis, rad/s, and the tip acceleration, mm/s^2, of K intervals."""
     limits = np.array([[task.machine.axis_speed], [task.machine.tip_acceleration]])
     found, hidden = np.empty((2, 2, len(task.struts) - 1))
     for piece in pieces(found.shape[1], _AT_ONCE):
@@ -48,7 +48,7 @@ def tool_limits(task: Task) -> tuple[Array, Array]:
 
 
 def _unsettled(found: Array, hidden: Array) -> Array:
-    """Intervals whose figures, by the limits, are not near enough to what was found there."""
+    """Intervals whose figures, by the limits, exceed the measured values by too much."""
     figure = found + hidden
     enough = np.maximum(found.max(axis=1, keepdims=True) * (1 + _REMAINDER), _FAR_BELOW)
     undecided = (found <= 1) & (figure > 1)
@@ -56,7 +56,7 @@ def _unsettled(found: Array, hidden: Array) -> Array:
 
 
 def _closely(task: Task, rows: Array, instants: int) -> tuple[Array, Array]:
-    """What is found at even instants of N intervals, and what can hide between them, (2, N) each."""
+    """Values at even instants of N intervals, and bounds on the undetected excess between them, (2, N) each."""
     shares, machine, motion = np.linspace(0, 1, instants), task.machine, task.motion
     cubic = cubics(task.struts, rows)
     begin, end = hermite_accelerations(*cubic)
@@ -74,15 +74,15 @@ def _closely(task: Task, rows: Array, instants: int) -> tuple[Array, Array]:
     each = columns.reshape(2, 3, len(rows), instants).swapaxes(2, 3)
     found = np.stack([length_of(*one).max(axis=0) for one in each])
     known = np.isfinite(found).all(axis=0)
-    hidden = np.zeros_like(found)  # where a pose is missing, the figure is infinite as it is
+    hidden = np.zeros_like(found)  # the figure is already infinite where a pose is missing
     hidden[:, known] = np.stack([bow(one[..., known]) for one in each])
     return found, hidden
 
 
 def tip_jerk(task: Task) -> Array:
-    """Jerk of the tip about each knot, (K + 1,) mm/s^3, as ``struts.strut_jerk`` has that of the struts.
+    """Jerk of the tip about each knot, (K + 1,) mm/s^3, computed as in ``struts.strut_jerk``.
 
-    Velocities at the knots are J^-1 times the printed speeds, with J of the planned pose; what they can miss is added.
+    Velocities at the knots are J^-1 times the printed speeds, with J of the planned pose; their error bound is added.
     """
     struts = task.struts
     miss = _SPEED_BY_RESIDUAL * np.abs(struts.length - task.knots.length).max(axis=1)
