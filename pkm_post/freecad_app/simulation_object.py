@@ -28,7 +28,7 @@ QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 _VIEW = "pkm_post.freecad_gui.simulation_view"
 """The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _MOST_PROBLEMS = 1000
-"""Number of stored problems, as stated in the tool tip of their count; the player has all of them."""
+"""Number of stored problems, as stated in the tooltip of their count; the player has all of them."""
 _S, _R, _T, _P = "Simulation", "Result", "Operations", "Problems"
 
 PROPERTIES: tuple[Row, ...] = (

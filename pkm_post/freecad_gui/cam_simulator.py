@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""CAM's simulator: what a job removes of its stock is shown by CAM itself.
+"""CAM's simulator: shows the material removal of a job in CAM's own simulator.
 
-A job enters; CAM's panel opens with it. That simulator knows X, Y and Z alone: it shows the tool upright.
+Takes a job; opens CAM's panel with it. That simulator handles X, Y and Z only: it shows the tool upright.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ _COMMAND = "CAM_SimulatorGL"
 
 
 def open_cam_simulator(job: Any) -> bool:
-    """Open CAM's simulator with a job; whether it did. If not, the Report view says why."""
-    importlib.import_module("Path.GuiInit").Startup()  # makes the commands known where CAM was not looked at yet
+    """Open CAM's simulator with a job; return whether it opened. If not, the Report view states why."""
+    importlib.import_module("Path.GuiInit").Startup()  # registers the commands where CAM has not been opened yet
     FreeCAD.setActiveDocument(job.Document.Name)
     if FreeCADGui.Control.activeDialog():
         told = translate("PKM_Simulate", "CAM's simulator needs the task panel: close what is open there first")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Change watch: tells a window that properties of some names changed in its document, by undo as well.
+"""Change watch: notifies a window of changes to named properties in its document, including undo.
 
-Names enter; a call leaves, one for all that changes together.
+Takes names; calls back once for all simultaneous changes.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from PySide import QtCore
 
 
 class ChangeWatch:
-    """An observer of documents, from when it is made until ``end``; FreeCAD calls its slots.
+    """A document observer, from its creation until ``end``; FreeCAD calls its slots.
 
     Args:
-        tell: called when the window is idle again.
+        tell: callback when the window is idle again.
         document: name of the document.
-        names: of the properties.
+        names: names of the properties.
     """
 
     def __init__(self, tell: Callable[[], Any], document: str, names: Iterable[str]) -> None:
@@ -30,15 +30,15 @@ class ChangeWatch:
         FreeCAD.addDocumentObserver(self)
 
     def end(self) -> None:
-        """Watch no longer."""
+        """Stop watching."""
         self._later.stop()
         FreeCAD.removeDocumentObserver(self)
 
     def slotChangedObject(self, item: Any, name: str) -> None:
-        """A property has another value."""
+        """A property has a new value."""
         if name in self._names and item.Document.Name == self._document:
             self._later.start(0)
 
     def slotRemoveDynamicProperty(self, item: Any, name: str) -> None:
-        """A property goes away."""
+        """A property is removed."""
         self.slotChangedObject(item, name)

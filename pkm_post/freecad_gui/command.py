@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Command: what FreeCAD wants of a command, and the three ways in which ours run.
+"""Command: FreeCAD's command interface, and the three ways in which our commands run.
 
-A command that changes a document runs in one transaction, so that one undo takes it back.
+A command that changes a document runs in one transaction, so that one undo reverts it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ translate = FreeCAD.Qt.translate
 
 @contextmanager
 def memory_or_told(title: str) -> Iterator[None]:
-    """Show in a window that there is not enough memory for what is done; whatever else is raised goes on.
+    """Show a lack of memory during an action in a window; other exceptions propagate.
 
     Args:
         title: of the window.
@@ -39,17 +39,17 @@ def memory_or_told(title: str) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Command:
-    """A command as FreeCAD wants it.
+    """A command with FreeCAD's interface.
 
     Attributes:
         name: its name in FreeCAD.
         icon: file name in resources/icons.
         text: menu text.
-        tip: what it does, in a sentence.
-        selectable: whether an object can be its subject.
-        action: does it to the object selected.
+        tip: its function, in a sentence.
+        selectable: whether the command accepts an object.
+        action: applies it to the selected object.
         keys: keyboard shortcut; all begin with P, K, since CAM has P and one other key.
-        alone: whether it can be done without a selection as well; the action gets None then.
+        alone: whether it also runs without a selection; the action then gets None.
     """
 
     name: str
@@ -62,7 +62,7 @@ class Command:
     alone: bool = False
 
     def GetResources(self) -> dict[str, str]:
-        """Texts, icon and shortcut. FreeCAD itself translates the texts, anew when another language is chosen."""
+        """Texts, icon and shortcut. FreeCAD itself translates the texts, again after a change of language."""
         return {
             "Pixmap": str(ICONS / self.icon),
             "MenuText": self.text,
@@ -72,14 +72,14 @@ class Command:
         }
 
     def IsActive(self) -> bool:
-        """Whether exactly one object is selected that the command is for, or none if it needs none."""
+        """Whether exactly one suitable object is selected, or none if the command needs none."""
         selected = FreeCADGui.Selection.getSelection()
         if self.alone and not selected:
             return FreeCAD.ActiveDocument is not None
         return len(selected) == 1 and self.selectable(selected[0])
 
     def Activated(self) -> None:
-        """Run the command; on a fault everything is as before."""
+        """Run the command; a fault restores the previous state."""
         subject = next(iter(FreeCADGui.Selection.getSelection()), None)
         document = subject.Document if subject else FreeCAD.ActiveDocument
         with memory_or_told(translate(self.name, self.text)):
@@ -90,7 +90,7 @@ class Command:
 
 @dataclass(frozen=True)
 class WindowCommand(Command):
-    """A command that opens a window: it needs no document and changes none. Its action gets what is selected."""
+    """A command that opens a window: it needs no document and changes none. Its action gets the selection."""
 
     def IsActive(self) -> bool:
         """Always."""
@@ -104,10 +104,10 @@ class WindowCommand(Command):
 
 @dataclass(frozen=True)
 class PanelCommand(Command):
-    """A command whose object is edited in a panel at once: that ends the transaction, so that both are one step."""
+    """A command that opens a panel for its new object: the panel ends the transaction, so both are one undo step."""
 
     def Activated(self) -> None:
-        """Add the object and open its panel; on a fault everything is as before."""
+        """Add the object and open its panel; a fault restores the previous state."""
         (subject,) = FreeCADGui.Selection.getSelection()
         document, before = subject.Document, set(subject.Document.Objects)
         with memory_or_told(translate(self.name, self.text)):

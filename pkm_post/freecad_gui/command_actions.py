@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Command actions: what each command does to the object that is selected.
+"""Command actions: the effect of each command on the selected object.
 
-What changes a document is written into macros, as the call into ``freecad_app`` that does it.
+Changes to a document are recorded in macros, as the call into ``freecad_app`` that makes them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from PySide import QtCore
 from pkm_post.freecad_app.kinds import is_job, is_simulation
 
 _A_MOMENT = 50
-"""ms between two looks at a document that is being computed."""
+"""ms between two checks whether a document is still recomputing."""
 
 
 def _do(module: str, call: str, operation: FreeCAD.DocumentObject) -> None:
@@ -26,22 +26,22 @@ def _do(module: str, call: str, operation: FreeCAD.DocumentObject) -> None:
 
 
 def mirror(operation: FreeCAD.DocumentObject) -> None:
-    """Add the mirror image of an operation."""
+    """Add a mirrored copy of an operation."""
     _do("pkm_post.freecad_app.symmetry", "create_mirror({}, normal=(0, 1, 0))", operation)
 
 
 def rotate(operation: FreeCAD.DocumentObject) -> None:
-    """Add an operation turned."""
+    """Add a rotated copy of an operation."""
     _do("pkm_post.freecad_app.symmetry", "create_rotation({}, axis=(0, 0, 1), angle=3.141592653589793)", operation)
 
 
 def compensate(operation: FreeCAD.DocumentObject) -> None:
-    """Add Normal Compensation over an operation."""
+    """Add Normal Compensation on top of an operation."""
     _do("pkm_post.freecad_app.normal_compensation", "create_normal_compensation({})", operation)
 
 
 def job_of(item: FreeCAD.DocumentObject) -> FreeCAD.DocumentObject | None:
-    """A job itself, or the job whose model an object is, as clone or as original."""
+    """The job itself, or the job whose model contains an object, as clone or original."""
     if is_job(item):
         return item
     jobs = [other for other in item.Document.Objects if is_job(other)]
@@ -50,7 +50,7 @@ def job_of(item: FreeCAD.DocumentObject) -> FreeCAD.DocumentObject | None:
 
 
 def finish(item: FreeCAD.DocumentObject) -> None:
-    """Add the operation over the faces that are selected, and open its panel when the command is done."""
+    """Add the operation for the selected faces, and open its panel at the end of the command."""
     module, document = "pkm_post.freecad_app.surface_finish", f"FreeCAD.getDocument({item.Document.Name!r})"
     job, subject = (f"{document}.getObject({each.Name!r})" for each in (job_of(item), item))
     names = [name for each in FreeCADGui.Selection.getSelectionEx() for name in each.SubElementNames]
@@ -73,7 +73,7 @@ def machine(job: FreeCAD.DocumentObject | None) -> None:
 
 
 def _create_on_machine(job: FreeCAD.DocumentObject, module: str, call: str) -> None:
-    """Add what is made of a job and, if there is one, the machine of the document."""
+    """Add an object for a job and, if there is one, the machine of the document."""
     from pkm_post.freecad_app.reach_object import machine_for
 
     machine, document = machine_for(job), f"FreeCAD.getDocument({job.Document.Name!r})"
@@ -83,12 +83,12 @@ def _create_on_machine(job: FreeCAD.DocumentObject, module: str, call: str) -> N
 
 
 def reach(job: FreeCAD.DocumentObject) -> None:
-    """Add the checks of a job, on its machine in the document if there is one."""
+    """Add the reach checks of a job, on its machine in the document if there is one."""
     _create_on_machine(job, "pkm_post.freecad_app.reach_object", "create_reach")
 
 
 def simulate(item: FreeCAD.DocumentObject) -> None:
-    """Add the simulation of a job if there is none yet, and open its player when the command is done."""
+    """Add the simulation of a job if it has none, and open its player at the end of the command."""
     from pkm_post.freecad_gui.player import open_player
 
     if not is_simulation(item) and _simulation_of(item) is None:
@@ -102,28 +102,28 @@ def _simulation_of(job: FreeCAD.DocumentObject) -> FreeCAD.DocumentObject | None
 
 
 def post(job: FreeCAD.DocumentObject) -> None:
-    """Open the panel that posts a job."""
+    """Open the post panel of a job."""
     from pkm_post.freecad_gui.post_panel import open_panel
 
     open_panel(job)
 
 
 def edit(item: FreeCAD.DocumentObject | None) -> None:
-    """Open the editor, with the part program that is selected."""
+    """Open the editor with the selected part program."""
     from pkm_post.freecad_gui.editor import open_editor
 
     open_editor(item)
 
 
 def control(_item: FreeCAD.DocumentObject | None) -> None:
-    """Open the panel of numerical control."""
+    """Open the numerical control panel."""
     from pkm_post.freecad_gui.control_panel import open_control
 
     open_control()
 
 
 def _when_computed(document: FreeCAD.Document, task: Callable[[], Any]) -> None:
-    """Do something when the window is idle and the document computed: the progress bar of that lets timers go on."""
+    """Run a task once window and document are idle: timers fire even during the progress bar of a recompute."""
 
     def try_it() -> None:
         if document.Recomputing:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Commands: one row for each."""
+"""Commands: a table with one row per command."""
 
 from __future__ import annotations
 
@@ -113,6 +113,6 @@ COMMANDS = (
 
 
 def register() -> None:
-    """Make the commands known to FreeCAD."""
+    """Register the commands with FreeCAD."""
     for command in COMMANDS:
         FreeCADGui.addCommand(command.name, command)

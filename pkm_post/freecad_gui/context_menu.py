@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Context menu: what the menu of an object in the tree has beside FreeCAD's own entries.
+"""Context menu: our entries in the menu of a tree object, beside FreeCAD's own.
 
-A menu enters and gets more entries. Commands of the workbench look and do as their buttons; for an object that belongs
-to a job, they are done to the job.
+Takes a menu and adds entries. Commands of the workbench look and act like their buttons; for an object that belongs
+to a job, they apply to the job.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ def add_entry(menu: Any, text: str, call: Callable[[], Any], icon: str = "") -> 
     """Add an entry.
 
     Args:
-        menu: gets it.
-        text: what it says, translated.
-        call: what it does.
+        menu: target menu.
+        text: label, translated.
+        call: action of the entry.
         icon: file name in resources/icons.
     """
     action = QtGui.QAction(text, menu)
@@ -38,12 +38,12 @@ def add_entry(menu: Any, text: str, call: Callable[[], Any], icon: str = "") -> 
 
 
 def add_commands(menu: Any, item: Any, *names: str) -> None:
-    """Add commands of the workbench, to be done to an object; none if there is no such object.
+    """Add commands of the workbench that apply to an object; none if there is no object.
 
     Args:
-        menu: gets them.
+        menu: target menu.
         item: an operation or a job; None for none.
-        names: of the commands.
+        names: names of the commands.
     """
     from pkm_post.freecad_gui.commands import COMMANDS
 
@@ -58,7 +58,7 @@ def add_commands(menu: Any, item: Any, *names: str) -> None:
 
 
 def add_switch(menu: Any, obj: Any) -> None:
-    """Add the entry that switches an object on and off, as its property ``Active`` does, in one step to undo."""
+    """Add the entry that toggles the property ``Active`` of an object, as one undo step."""
     action = add_entry(menu, translate("ContextMenu", "Active"), lambda: _switch(obj))
     action.setCheckable(True)
     action.setChecked(obj.Active)
@@ -69,7 +69,7 @@ def _runner(name: str, item: Any) -> Callable[[], None]:
 
 
 def _run(name: str, item: Any) -> None:
-    """As the button does: commands are for what is selected."""
+    """Run it as the button does: commands apply to the selection."""
     FreeCAD.setActiveDocument(item.Document.Name)
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(item)

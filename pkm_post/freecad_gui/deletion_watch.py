@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Deletion watch: tells a window that its document, or an object that it shows, is going to be deleted.
+"""Deletion watch: notifies a window before its document, or the object it shows, is deleted.
 
-Names enter; a call leaves. FreeCAD would leave the window open with nothing behind it.
+Takes names; calls back. FreeCAD would leave the window open without its object.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import FreeCAD
 
 
 class DeletionWatch:
-    """An observer of documents, from when it is made until ``end``; FreeCAD calls its slots.
+    """A document observer, from its creation until ``end``; FreeCAD calls its slots.
 
     Args:
-        tell: called when one of them goes away.
+        tell: callback at the deletion.
         document: name of the document.
         item: name of the object in it; None if there is none.
     """
@@ -26,15 +26,15 @@ class DeletionWatch:
         FreeCAD.addDocumentObserver(self)
 
     def end(self) -> None:
-        """Watch no longer."""
+        """Stop watching."""
         FreeCAD.removeDocumentObserver(self)
 
     def slotDeletedDocument(self, document: Any) -> None:
-        """A document goes away."""
+        """A document is deleted."""
         if document.Name == self._document:
             self._tell()
 
     def slotDeletedObject(self, item: Any) -> None:
-        """An object goes away."""
+        """An object is deleted."""
         if (item.Document.Name, item.Name) == (self._document, self._item):
             self._tell()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Film: a motion as pictures, one by one or in one animated picture.
+"""Film: exports a motion as pictures, one by one or as one animated picture.
 
-A view, a call that shows an instant, and the instants enter; PNG files leave. Escape stops it.
+Takes a view, a function that shows an instant, and the instants; writes PNG files. Escape cancels it.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from pkm_post.report.animated_png import animate
 translate = FreeCAD.Qt.translate
 
 _PICTURES, _ANIMATION = (30.0, 1280, 720), (15.0, 800, 450)
-"""Per second of film, width and height. An animation is one file, and each picture of it is compressed by itself."""
+"""Frame rate, width and height. An animation is one file, in which each picture is compressed separately."""
 
 
 @dataclass(frozen=True)
 class Film:
-    """What is filmed, and how.
+    """Subject and settings of a film.
 
     Attributes:
         view: the 3D view.
         show: shows an instant, s.
-        now: the instant that is shown, s; it is shown again when the film is done.
+        now: the instant shown before, s; it is shown again after the film.
         duration: of the motion, s.
-        pace: seconds of motion for each second of film.
-        per_second: pictures for each second of film.
+        pace: seconds of motion per second of film.
+        per_second: pictures per second of film.
         width: of a picture, pixels.
         height: of a picture, pixels.
     """
@@ -50,7 +50,7 @@ class Film:
     height: int
 
     def write_pictures(self, folder: Path) -> int:
-        """Write frame_00001.png and so on; how many there are, fewer than all if the user stopped it."""
+        """Write frame_00001.png and so on; return their number, which is smaller if the user cancelled."""
         instants, written = np.arange(0.0, self.duration + 1e-9, self.pace / self.per_second), 0
         try:
             with Progress(translate("PKM_Simulate", "Pictures"), len(instants)) as bar:
@@ -67,7 +67,7 @@ class Film:
         return written
 
     def write_animation(self, target: Path) -> int:
-        """Write an animated PNG; of how many pictures it is. What the user stopped is shown as far as it went."""
+        """Write an animated PNG; return its number of pictures. A cancelled animation is written up to that point."""
         with tempfile.TemporaryDirectory() as folder:
             written = self.write_pictures(Path(folder))
             if written:
@@ -76,18 +76,18 @@ class Film:
 
 
 Shooting = Callable[[float, int, int], Film]
-"""Makes a film of pictures per second, width and height."""
+"""Creates a film from pictures per second, width and height."""
 
 
 def ask_for_pictures(parent: Any, film: Shooting) -> None:
-    """Ask where the pictures go, and write them."""
+    """Ask for the folder of the pictures, and write them."""
     folder = QtWidgets.QFileDialog.getExistingDirectory(parent, translate("PKM_Simulate", "Folder for the pictures"))
     if folder:
         film(*_PICTURES).write_pictures(Path(folder))
 
 
 def ask_for_animation(parent: Any, film: Shooting, name: str) -> None:
-    """Ask where the animated picture goes, and write it."""
+    """Ask for the file of the animated picture, and write it."""
     title, kind = translate("PKM_Simulate", "Animated PNG"), translate("PKM_Simulate", "Animated PNG (*.png)")
     target, _ = QtWidgets.QFileDialog.getSaveFileName(parent, title, f"{name}.png", kind)
     if target:

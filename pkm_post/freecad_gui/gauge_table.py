@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Gauge table: the tool controllers of a job, each with a field for its gauge length.
 
-A job enters; gauge lengths in mm leave, for those tool controllers whose field was changed. What posting would refuse
-is told below the table in posting's own words. The table follows the document: what changes there, by undo as well,
-goes before what was typed for the same tool and not kept.
+Takes a job; returns gauge lengths in mm for the tool controllers with edited fields. What posting would refuse is
+reported below the table in posting's own words. The table follows the document: changes there, including undo,
+override unsaved input for the same tool.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ _COLUMNS = (
         QT_TRANSLATE_NOOP("GaugeTable", "From the spindle nose to the tip, measured with the tool in its holder"),
     ),
 )
-"""Head and tool tip of each column."""
+"""Header and tooltip of each column."""
 _LENGTH = len(_COLUMNS) - 1
 _WATCHED = ("GaugeLength", "ToolNumber", "Label", "Tool", "Length", "Group", "Active", "ToolController", "Base")
 _MOST_ROWS = 6
-"""So many are seen at once."""
+"""Largest number of visible rows."""
 
 
 class GaugeTable(QtWidgets.QGroupBox):
-    """The table, and below it what is to be said of its rows."""
+    """The table, and messages on its rows below it."""
 
     def __init__(self, job: Any) -> None:
         super().__init__(translate("GaugeTable", "Gauge lengths"))
@@ -76,11 +76,11 @@ class GaugeTable(QtWidgets.QGroupBox):
         layout.addWidget(self.notes)
 
     def end(self) -> None:
-        """Follow the document no longer."""
+        """Stop following the document."""
         self._watch.end()
 
     def follow(self) -> None:
-        """Show what the job says; what was typed stays for tools of which the document says the same as before."""
+        """Show the job's values; input is kept for tools whose values in the document are unchanged."""
         rows = tool_rows(self._job)
         if rows != self._rows:
             self._show(rows)
@@ -111,14 +111,14 @@ class GaugeTable(QtWidgets.QGroupBox):
         self.table.setCellWidget(number, _LENGTH, field)
 
     def _fit(self) -> None:
-        """As high as its rows, up to some."""
+        """Fit the height to the rows, up to a limit."""
         row = self.table.verticalHeader().defaultSectionSize()
         head = self.table.horizontalHeader().sizeHint().height()
         frame = 2 * self.table.frameWidth()
         self.table.setFixedHeight(head + frame + row * min(max(len(self._rows), 1), _MOST_ROWS))
 
     def show_arguments(self, lengths: Mapping[int, float]) -> None:
-        """Tell which gauge lengths the arguments give: those go before the ones of the fields.
+        """Show which gauge lengths the arguments define: these override the fields.
 
         Args:
             lengths: mm, by tool number.
@@ -127,7 +127,7 @@ class GaugeTable(QtWidgets.QGroupBox):
         self._tell()
 
     def _tell(self, *_: Any) -> None:
-        """Say what is wrong with each row, or what goes before it."""
+        """Report the fault of each row, or what overrides it."""
         notes = []
         for row in self._rows:
             fault = self._fault(row)
@@ -154,10 +154,10 @@ class GaugeTable(QtWidgets.QGroupBox):
         return f"{self.fields[row.name].text()!r} is no length above zero"
 
     def lengths(self) -> dict[str, float]:
-        """The gauge lengths that were changed, in mm by the names of the tool controllers; 0 for one taken back.
+        """The edited gauge lengths, in mm by the names of the tool controllers; 0 for a cleared one.
 
         Raises:
-            Refused: what was typed makes no sense, J113.
+            Refused: the input is invalid, J113.
         """
         said = {row: self.fields[row.name].length() for row in self._rows}
         faults = [row.unknown(self._typed(row)) for row, mm in said.items() if mm is None]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job choices: what a user chooses for the posting of a job, and how the document keeps it.
+"""Job choices: the user's choices for posting a job, stored in the document.
 
-A job enters; it keeps the choices as its arguments, and its tool controllers keep their gauge lengths, so that CAM's
-own post command does the same.
+Takes a job; stores the choices as its arguments, and the gauge lengths in its tool controllers, so that CAM's own post
+command gives the same result.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class JobChoices(QtWidgets.QWidget):
     """The fields.
 
     Attributes:
-        arguments: those of the job.
-        gauges: those of its tools.
+        arguments: fields of the job's arguments.
+        gauges: fields of its gauge lengths.
     """
 
     def __init__(self, job: Any) -> None:
@@ -49,7 +49,7 @@ class JobChoices(QtWidgets.QWidget):
         self._show_given()
 
     def end(self) -> None:
-        """Follow the document no longer."""
+        """Stop following the document."""
         self.gauges.end()
 
     def program(self) -> Path:
@@ -57,13 +57,13 @@ class JobChoices(QtWidgets.QWidget):
         return Path(self.arguments.folder.text().strip() or ".").absolute() / file_name(self._job)
 
     def keep(self) -> argparse.Namespace:
-        """Let the document keep what is chosen, in one step of undo.
+        """Store the choices in the document, in one undo step.
 
         Returns:
             The arguments of the job.
 
         Raises:
-            Refused: what is chosen makes no sense, J117 or J113; nothing is kept.
+            Refused: the choices are invalid, J117 or J113; nothing is stored.
         """
         text, job = self.arguments.text(), self._job
         chosen, lengths = job_arguments(job, text), self.gauges.lengths()
@@ -73,7 +73,7 @@ class JobChoices(QtWidgets.QWidget):
         return chosen
 
     def _show_given(self, *_changed: str) -> None:
-        """Show which gauge lengths the arguments give; those without a meaning are told when they are to be kept."""
+        """Show which gauge lengths the arguments define; invalid arguments are reported when they are to be stored."""
         try:
             given = tool_lengths_from(parsed(self.arguments.text(), Place("")))
         except Refused:
@@ -82,7 +82,7 @@ class JobChoices(QtWidgets.QWidget):
 
 
 def _folder_of(job: Any) -> Path:
-    """Where the job was posted before; else the folder of the preferences, else that of the document."""
+    """The folder of the job's previous output; else that of the preferences, else that of the document."""
     if job.PostProcessorOutputFile:
         return program_path(job).absolute().parent
     return Path(default_folder() or Path(job.Document.FileName or "job.FCStd").absolute().parent)

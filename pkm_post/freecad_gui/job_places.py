@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job places: shows in the tree where in a job something is.
+"""Job places: shows a place of a job in the tree.
 
-A job and a place enter; the operation is selected then, and the status bar tells the command.
+Takes a job and a place; selects the operation, and shows the command in the status bar.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ import FreeCADGui
 
 
 def show_place(job: Any, label: str, line: int) -> None:
-    """Select an operation of a job and tell one of its commands.
+    """Select an operation of a job and show the number of one of its commands.
 
     Args:
         job: the CAM job; None shows nothing.
         label: of the operation.
-        line: number of the command in it, from 1 on.
+        line: number of the command in it, from 1.
     """
     FreeCADGui.Selection.clearSelection()
     for operation in job.Operations.Group if job else ():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lathe: bodies of revolution for the 3D view, made once and moved by transforms alone.
+"""Lathe: bodies of revolution for the 3D view, built once and moved only by transforms.
 
-Profiles in mm enter; Coin nodes leave. Everything that is drawn of a machine is round.
+Takes profiles in mm; returns Coin nodes. All drawn machine parts are round.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ Colour = tuple[float, float, float]
 _AROUND = 32
 _ARC_STEPS = 8
 _CREASE = 0.6
-"""rad: below it the faces of a surface are drawn as one, so that it looks round."""
+"""rad: crease angle below which the faces of a surface are shaded as one, so that it looks round."""
 
 
 def material(colour: Colour) -> coin.SoMaterial:
-    """How a body looks."""
+    """The material of a body."""
     node = coin.SoMaterial()
     node.diffuseColor = colour
     node.specularColor = (0.08, 0.08, 0.08)
@@ -32,7 +32,7 @@ def material(colour: Colour) -> coin.SoMaterial:
 
 
 def turned(profile: Array) -> coin.SoSeparator:
-    """A profile turned about z.
+    """A profile revolved about z.
 
     Args:
         profile: (N, 2) radii and heights in mm.
@@ -56,13 +56,13 @@ def cylinder(radius: float, start: float, end: float) -> coin.SoSeparator:
     """A closed cylinder about z, between two heights."""
     place, node = coin.SoTransform(), coin.SoCylinder()
     place.translation = (0.0, 0.0, (start + end) / 2.0)
-    place.rotation = coin.SbRotation(coin.SbVec3f(0, 1, 0), coin.SbVec3f(0, 0, 1))  # Coin's own is about y
+    place.rotation = coin.SbRotation(coin.SbVec3f(0, 1, 0), coin.SbVec3f(0, 0, 1))  # Coin's cylinder is about y
     node.radius, node.height = radius, end - start
     return group(place, node)
 
 
 def beam(start: Array, end: Array, radius: float) -> coin.SoSeparator:
-    """A cylinder from point to point, with balls for its ends."""
+    """A cylinder between two points, with spherical ends."""
     way = end - start
     length = float(np.linalg.norm(way))
     bar = (cylinder(radius, 0.0, length),) if length > 0.0 else ()
@@ -94,13 +94,13 @@ def group(*children: coin.SoNode) -> coin.SoSeparator:
 
 
 def pointing(start: Sequence[float], direction: Sequence[float]) -> coin.SoTransform:
-    """A transform that takes z to a direction and the origin to a point."""
+    """A transform that maps z to a direction and the origin to a point."""
     node = coin.SoTransform()
     aim(node, start, direction)
     return node
 
 
 def aim(node: coin.SoTransform, start: Sequence[float], direction: Sequence[float]) -> None:
-    """Let a transform take z to a direction and the origin to a point."""
+    """Set a transform to map z to a direction and the origin to a point."""
     node.translation = tuple(float(value) for value in start)
     node.rotation = coin.SbRotation(coin.SbVec3f(0, 0, 1), coin.SbVec3f(*(float(value) for value in direction)))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Length field: a line for a length above zero with its unit, or for none.
+"""Length field: a line for a positive length with its unit, or for none.
 
-A length in mm enters and leaves. FreeCAD's own field for quantities cannot be empty, and keeps its number when what was
-typed makes no sense.
+Takes and returns a length in mm. FreeCAD's own quantity field cannot be empty, and keeps its number when the input is
+invalid.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ translate = FreeCAD.Qt.translate
 
 
 def decimal_point() -> str:
-    """What stands before decimals in the language of the window."""
+    """The decimal separator in the language of the window."""
     return str(QtCore.QLocale().decimalPoint())
 
 
 class LengthField(QtWidgets.QLineEdit):
-    """The line, with a sign in it while something is wrong.
+    """The line, with a warning icon on invalid input.
 
     Args:
-        mm: what it shows at first; 0 for no length.
+        mm: initial value; 0 for no length.
     """
 
     def __init__(self, mm: float) -> None:
@@ -40,18 +40,18 @@ class LengthField(QtWidgets.QLineEdit):
         self.editingFinished.connect(self._tidy)
 
     def length(self) -> float | None:
-        """What it says, mm; 0 for no length, None if it makes no sense. What nobody typed over is exact."""
+        """The value, mm; 0 for no length, None if it is invalid. An unedited value is exact."""
         if self.text() == self._shown:
             return self._mm
         return typed_length(self.text(), self._point) if self.text().strip() else 0.0
 
     def show_fault(self, text: str) -> None:
-        """Show that something is wrong with it, and what it is; nothing is if there is no text."""
+        """Show a fault and its text; an empty text clears it."""
         self._sign.setVisible(bool(text))
         self._sign.setToolTip(text)
 
     def _tidy(self, *_: Any) -> None:
-        """Show how it was understood: in which unit above all."""
+        """Show the parsed value, above all its unit."""
         mm = self.length()
         if mm is not None:
             self._show(mm)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine scene: the machine as a scene graph that is built once; a pose changes transforms and colours alone.
+"""Machine scene: the machine as a scene graph that is built once; a pose changes only transforms and colours.
 
-A machine and its tool enter, then poses in {M}; what is seen leaves, in mm. Joints, strut lengths and tool are true to
-the machine file. What the file does not state is drawn in proportion to it.
+Takes a machine and its tool, then poses in {M}; returns a scene in mm. Joints, strut lengths and tool match the machine
+file. Dimensions missing from the file are drawn in proportion to it.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ GOLD: Colour = (0.85, 0.65, 0.2)
 BAD: Colour = (0.85, 0.1, 0.1)
 
 _TUBE_SHARE = 0.95
-"""Of the shortest strut: how long its tube is drawn where the machine file does not say it."""
+"""Share of the shortest strut: drawn length of its tube if the machine file does not state it."""
 
 
 class MachineScene:
-    """What is seen of a machine.
+    """The scene of a machine.
 
     Attributes:
-        root: the node to put into a view.
+        root: the node to add to a view.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -42,7 +42,7 @@ class MachineScene:
         self.root = lathe.group(self._frame, self._base(), *(strut.root for strut in self._struts), self._moving())
 
     def place(self, document_from_machine: Array) -> None:
-        """Put the machine where the (4, 4) matrix says."""
+        """Place the machine by a (4, 4) matrix."""
         self._frame.matrix = _coin_matrix(document_from_machine)
 
     def take_tool(self, diameter: float, corner_radius: float, length: float) -> None:
@@ -56,7 +56,7 @@ class MachineScene:
                 self._tool.addChild(node)
 
     def show(self, pose: Pose) -> None:
-        """Move to a pose in {M}, one row as ``kinematics`` takes it; struts out of limits are red."""
+        """Move to a pose in {M}, one row for ``kinematics``; struts out of limits are red."""
         tip, axis, spin, length = pose
         joints = platform_joints(self.machine, *pose)[0]
         matrix = np.eye(4)
@@ -69,13 +69,13 @@ class MachineScene:
             strut.reach(joint, bad=bool(margin < 0.0))
 
     def _base(self) -> coin.SoSeparator:
-        """What stands still: a frame through the base joints, and the boxes of the machine file."""
+        """The fixed part: a frame through the base joints, and the boxes of the machine file."""
         beams = _ring(self.machine.base_joints, 0.15 * self._size)
         boxes = [_box(box) for box in self.machine.fixtures]
         return lathe.group(lathe.material(DARK), *beams, lathe.material(LIGHT), *boxes)
 
     def _moving(self) -> coin.SoSeparator:
-        """What moves with the platform: the bodies of the machine file, or a plate and a spindle; and the tool."""
+        """The moving part: the bodies of the machine file, or a plate and a spindle; and the tool."""
         machine, size = self.machine, self._size
         shapes = [(body.radius, body.start, body.end) for body in machine.bodies]
         shapes = shapes or [(1.05 * size, 0.0, 0.12 * size), (0.25 * size, -machine.spindle_nose, 0.6 * size)]
@@ -87,7 +87,7 @@ class MachineScene:
 
 
 class _Strut:
-    """A tube that swings about its base joint, and a rod that slides in it."""
+    """A tube that pivots about its base joint, and a rod that slides in it."""
 
     def __init__(self, machine: Machine, number: int, size: float) -> None:
         shortest, longest = machine.strut_stroke
@@ -126,5 +126,5 @@ def _box(box: Box) -> coin.SoSeparator:
 
 
 def _coin_matrix(matrix: Array) -> coin.SbMatrix:
-    """Coin multiplies rows with matrices: its matrix is the transpose."""
+    """Coin multiplies row vectors by matrices: its matrix is the transpose."""
     return coin.SbMatrix(*(float(value) for value in matrix.T.ravel()))

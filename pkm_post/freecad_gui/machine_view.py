@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine view: how the machine of a document is seen, in the tree and in 3D.
+"""Machine view: the machine of a document in the tree and in 3D.
 
-A view object enters and gets its provider. A change of the pose moves transforms; another machine file builds a new
-scene. Saved documents name this class by its module: place and name are a file format.
+Takes a view object and sets its provider. A change of the pose moves transforms; another machine file builds a new
+scene. Saved documents store the module of this class: module and class name are a file format.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ class MachineView(DrawnView):
     """Draws the machine around the part.
 
     Attributes:
-        scene: what is seen of it; None while its file has faults.
-        played: whether a simulation moves it; then the pose of the properties waits.
+        scene: the scene of the machine; None while its file has faults.
+        played: whether a simulation moves it; the pose of the properties is then ignored.
     """
 
     icon, mode = "machine.svg", "Machine"
 
     def attach(self, vobj: Any) -> None:
-        """Begin without a scene; called for new and for restored objects."""
+        """Start without a scene; called for new and for restored objects."""
         self.scene, self.played = None, False
         super().attach(vobj)
 
     def updateData(self, obj: Any, name: str) -> None:
-        """Follow a property of the object; FreeCAD calls this for each one when a document is opened as well."""
+        """Follow a property of the object; FreeCAD also calls this for each one when a document is opened."""
         if name in _MACHINE or (self.scene is None and name in _POSE):
             self.refresh()
         elif self.scene is None or self.played:
@@ -50,27 +50,27 @@ class MachineView(DrawnView):
             self._follow(obj, tool_too=name in _TOOL)
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """The pose at home, and what there is to do with the job."""
+        """Add the home pose, and the commands for the job."""
         add_entry(menu, translate("PKM_Machine", "Move it home"), lambda: _bring_home(vobj.Object), self.icon)
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object.Job, "PKM_Reach", "PKM_Simulate", "PKM_Post")
 
     def refresh(self) -> None:
-        """Build the scene anew."""
+        """Rebuild the scene."""
         self._root.removeAllChildren()
         self.scene = None
         if not all(hasattr(self.Object, name) for name in (*_MACHINE, *_TOOL, *_POSE)):
-            return  # FreeCAD restores one property after the other
+            return  # FreeCAD restores the properties one by one
         try:
             self.scene = MachineScene(machine_of(self.Object))
         except Refused:
-            return  # the object itself tells what is wrong
+            return  # the object itself reports the fault
         self._root.addChild(self.scene.root)
         self._follow(self.Object, tool_too=True)
 
     def _follow(self, obj: Any, tool_too: bool) -> None:
         if not any(obj.ToolAxis):
-            return  # there is no such pose; the object tells it
+            return  # there is no such pose; the object reports it
         self.scene.place(matrix_of(obj.Frame))
         if tool_too:
             self.scene.take_tool(obj.ToolDiameter.Value, obj.ToolCornerRadius.Value, obj.ToolLength.Value)
@@ -78,7 +78,7 @@ class MachineView(DrawnView):
 
 
 def _bring_home(obj: Any) -> None:
-    """Set the pose of the machine at home, in one step to undo."""
+    """Set the home pose of the machine, in one undo step."""
     document = obj.Document
     with transaction(document, translate("PKM_Machine", "Move it home")):
         go_home(obj, machine_of(obj))

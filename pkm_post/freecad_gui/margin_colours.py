@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Margin colours: red out of limits, from amber to green with what is left; and the legend of them in the 3D view.
+"""Margin colours: red out of limits, amber to green by margin; and their legend in the 3D view.
 
-Margins enter, colours or Coin nodes leave. The legend has a camera of its own, so that it stays in its corner.
+Takes margins; returns colours or Coin nodes. The legend has a camera of its own, so that it stays in its corner.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _BAR = (-0.96, -0.92, -0.55, 0.15)
 _STEPS = 16
 _SHEET_WIDTH = 0.27
 _SHEET = (0.93, 0.93, 0.93)
-"""What the legend is drawn on, so that it can be read before any background."""
+"""Colour behind the legend, for contrast with any background."""
 
 
 def colours_of(margin: Array) -> Array:
@@ -29,7 +29,7 @@ def colours_of(margin: Array) -> Array:
 
 
 def largest(margin: Array) -> float:
-    """The margin that is all green."""
+    """The margin that is fully green."""
     return max(float(margin.max(initial=0.0)), 1e-9)
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Marks: points that are seen through the part as well.
+"""Marks: points that are visible through the part.
 
-Points in mm and a colour enter; a Coin node leaves.
+Takes points in mm and a colour; returns a Coin node.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from pkm_post.freecad_gui.lathe import Colour
 Point = Sequence[float]
 
 OUT: Colour = (0.85, 0.0, 0.0)
-"""Of what is out of limits."""
+"""Colour for violated limits."""
 
 
 def marks(points: Sequence[Point], colour: Colour, size: float) -> coin.SoSeparator:
     """Points drawn over everything else.
 
     Args:
-        points: where they are.
+        points: their positions.
         colour: of all of them.
         size: of each, pixels.
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Normal Compensation view: how the dress-up looks in the tree, its base below it.
+"""Normal Compensation view: the dress-up in the tree, with its base below it.
 
-A view object enters and gets its provider. Saved documents name this class by its module: place and name are a file
-format.
+Takes a view object and sets its provider. Saved documents store the module of this class: module and class name are a
+file format.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pkm_post.freecad_gui.views import View
 
 
 class NormalCompensationView(View):
-    """The icon of the dress-up, and its base as its child. That the base goes back is up to the object itself."""
+    """The icon of the dress-up, and its base as its child. The object itself restores its base on deletion."""
 
     icon = "normal_compensation.svg"
 
@@ -23,6 +23,6 @@ class NormalCompensationView(View):
         return [] if self.Object.Base is None else [self.Object.Base]
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """What can be made of the operation."""
+        """Add the commands for the operation."""
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object, "PKM_Mirror", "PKM_Rotate")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Player: a dock that plays the planned motion of a simulation object, in real time and faster or slower.
+"""Player: a dock that plays the planned motion of a simulation object, in real time, faster or slower.
 
-A simulation object enters; the machine moves in the 3D view, with a cursor over the curves of its struts. Only
-transforms change from frame to frame. The clock is that of the computer: a frame that comes late is left out, the
-motion is not slowed down. When the document is computed anew, what is played is the new plan.
+Takes a simulation object; moves the machine in the 3D view, and a cursor over the curves of its struts. Only transforms
+change from frame to frame. The player runs on wall-clock time: late frames are dropped, the motion is not slowed down.
+After a recompute of the document it plays the new plan.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ class Player(QtWidgets.QDockWidget):
         controls: the row of buttons.
         lists: problems and operations.
         simulation: its plan.
-        seconds: the time that is shown.
-        problem: at which the player has stopped, if it has.
+        seconds: the current time.
+        problem: the one at which the player has stopped, if any.
     """
 
     def __init__(self, subject: Any, simulation: Simulation) -> None:
@@ -65,7 +65,7 @@ class Player(QtWidgets.QDockWidget):
         self.take(simulation)
 
     def _connect(self) -> None:
-        """Let the user's wishes be done."""
+        """Connect the signals of the user interface."""
         controls, lists = self.controls, self.lists
         for signal, action in (
             (controls.play, self.toggle),
@@ -92,7 +92,7 @@ class Player(QtWidgets.QDockWidget):
         self.go_to(self.seconds)
 
     def _follow(self) -> None:
-        """The document was computed: play what the object holds now, or end where there is nothing."""
+        """The document was recomputed: play the object's current plan, or close if there is none."""
         plan = self.subject.Proxy.plan
         if plan is None:
             self.close()
@@ -100,7 +100,7 @@ class Player(QtWidgets.QDockWidget):
             self.take(plan)
 
     def go_to(self, seconds: float) -> None:
-        """Show a time."""
+        """Show the motion at a time."""
         self.seconds = min(max(seconds, 0.0), self.simulation.duration)
         if self._stage is not None:
             self._stage.show(self.seconds)
@@ -109,12 +109,12 @@ class Player(QtWidgets.QDockWidget):
         self.controls.tell(told(self.simulation, self.seconds, self.problem, override))
 
     def leave_for(self, seconds: float) -> None:
-        """Show another time than that of a problem."""
+        """Show a time unrelated to a problem."""
         self.problem = None
         self.go_to(seconds)
 
     def toggle(self) -> None:
-        """Play or pause; at the end, from the beginning."""
+        """Play or pause; at the end, play from the start."""
         if self._timer.isActive():
             self.pause()
             return
@@ -125,17 +125,17 @@ class Player(QtWidgets.QDockWidget):
         self.controls.show_playing(True)
 
     def pause(self) -> None:
-        """Stand still."""
+        """Pause."""
         self._timer.stop()
         self.controls.show_playing(False)
 
     def step(self) -> None:
-        """To the end of the block."""
+        """Go to the end of the block."""
         self.pause()
         self.leave_for(self.simulation.next_block(self.seconds))
 
     def step_back(self) -> None:
-        """To the beginning of the block."""
+        """Go to the start of the block."""
         self.pause()
         self.leave_for(self.simulation.block_before(self.seconds))
 
@@ -145,7 +145,7 @@ class Player(QtWidgets.QDockWidget):
         self.advance(passed * self.controls.pace())
 
     def advance(self, seconds: float) -> None:
-        """Go on by a time of the plan, no further than the next problem if the player stops at them."""
+        """Advance by a planned time, at most to the next problem if the player stops at problems."""
         to = min(self.seconds + seconds, self.simulation.duration)
         stops = self.controls.stops.isChecked()
         self.problem = self.simulation.problem_between(self.seconds, to) if stops else None
@@ -154,7 +154,7 @@ class Player(QtWidgets.QDockWidget):
             self.pause()
 
     def show_problem(self, number: int) -> None:
-        """Where a problem is worst: its time, its operation, and its mark."""
+        """Show the worst point of a problem: its time, its operation, and its mark."""
         self.pause()
         self.problem = self.simulation.problems[number]
         self.go_to(self.problem.worst_time)
@@ -162,7 +162,7 @@ class Player(QtWidgets.QDockWidget):
         self._show(self.problem.worst_place)
 
     def show_operation(self, number: int) -> None:
-        """Where an operation begins."""
+        """Show the start of an operation."""
         self.pause()
         row, begins = self.simulation.operation_begins(number)
         self.leave_for(begins)
@@ -172,7 +172,7 @@ class Player(QtWidgets.QDockWidget):
         show_place(self.subject.Job, place.operation, place.line)
 
     def film(self, per_second: float, width: int, height: int) -> Film:
-        """The motion as pictures, at the speed that is chosen."""
+        """The motion as pictures, at the current speed."""
         self.pause()
         return Film(
             view=FreeCADGui.getDocument(self._document).activeView(),
@@ -190,7 +190,7 @@ class Player(QtWidgets.QDockWidget):
         open_cam_simulator(self.subject.Job)
 
     def closeEvent(self, event: Any) -> None:
-        """Give the view back."""
+        """Restore the view."""
         self.pause()
         for watch in self._watches:
             watch.end()
@@ -203,7 +203,7 @@ class Player(QtWidgets.QDockWidget):
 
 
 def open_player(subject: Any) -> Player | None:
-    """Open the player of a simulation object, or tell why there is none; one that is open is closed."""
+    """Open the player of a simulation object, or report why there is none; an already open player is closed."""
     window = FreeCADGui.getMainWindow()
     for open_before in window.findChildren(QtWidgets.QDockWidget, _NAME):
         open_before.close()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Player content: what is in the dock of the player: controls, slider, curves, and the lists to be clicked.
+"""Player content: the widgets in the player's dock: controls, slider, curves, and clickable lists.
 
-A simulation enters, then times in s; a time that the user wants to see leaves.
+Takes a simulation, then times in s; emits a time that the user selects.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pkm_post.freecad_gui.player_lists import PlayerLists
 from pkm_post.freecad_gui.strut_plot import StrutPlot
 
 _PER_SECOND = 1000
-"""Steps of the slider, as many as the motion has milliseconds."""
+"""Slider steps per second: one per millisecond of motion."""
 
 
 class PlayerContent(QtWidgets.QWidget):
@@ -52,7 +52,7 @@ class PlayerContent(QtWidgets.QWidget):
         self.slider.blockSignals(False)
 
     def show_time(self, seconds: float) -> None:
-        """Move cursor and slider; it is the player that moves them, not the user."""
+        """Move cursor and slider without signals of user input."""
         self.plot.show_time(seconds)
         self.slider.blockSignals(True)
         self.slider.setValue(round(seconds * _PER_SECOND))

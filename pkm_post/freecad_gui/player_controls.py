@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Player controls: the row of buttons of the player, how fast it plays, and what it tells.
+"""Player controls: the player's buttons, its speed, and its status line.
 
-What the user wants leaves as signals.
+Emits the user's commands as signals.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ translate = FreeCAD.Qt.translate
 
 FACTORS = ("0.1", "0.25", "0.5", "1", "2", "5", "10", "50", "100")
 _OVERRIDES = 5, 200
-"""Least and greatest, per cent."""
+"""Smallest and largest override, per cent."""
 
 
 class PlayerControls(QtWidgets.QWidget):
     """The row.
 
     Attributes:
-        factor: how many times as fast as the machine.
+        factor: playing speed as a multiple of the machine's.
         override: the feed override of the machine, per cent.
         stops: whether to stop at problems.
     """
@@ -76,11 +76,11 @@ class PlayerControls(QtWidgets.QWidget):
         self.override.valueChanged.connect(lambda value: self.overridden.emit(value / 100.0))
         self.stops.setText(translate("PKM_Simulate", "Stop at problems"))
         self.stops.setChecked(True)
-        # a text that changes with every frame must not lay out the dock anew
+        # a text that changes with every frame must not change the layout of the dock
         self._told.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
 
     def pace(self) -> float:
-        """Seconds of the motion as planned for each second of the user."""
+        """Seconds of planned motion per second of real time."""
         return float(self.factor.currentText().rstrip("x")) * self.override.value() / 100.0
 
     def tell(self, text: str) -> None:
@@ -89,11 +89,11 @@ class PlayerControls(QtWidgets.QWidget):
         self._told.setToolTip(text)
 
     def told(self) -> str:
-        """The line that is shown."""
+        """The displayed line."""
         return str(self._told.text())
 
     def show_playing(self, plays: bool) -> None:
-        """The button pauses while it plays."""
+        """Turn the button into a pause button during play."""
         self._play.setIcon(_icon("SP_MediaPause" if plays else "SP_MediaPlay"))
 
 
@@ -107,5 +107,5 @@ def _button(layout: Any, icon: str, tip: str, wanted: Any) -> QtWidgets.QToolBut
 
 
 def _icon(name: str) -> Any:
-    """An icon of Qt's own, so that the buttons look like those of other players here."""
+    """A standard Qt icon, so that the buttons look like those of other players on this system."""
     return QtWidgets.QApplication.style().standardIcon(getattr(QtWidgets.QStyle.StandardPixmap, name))

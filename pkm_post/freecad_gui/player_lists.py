@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Player lists: the problems of a simulation and the times of its operations, to be clicked.
+"""Player lists: the problems of a simulation and the times of its operations, for clicking.
 
-A simulation enters; the number of a problem or of an operation leaves when the user clicks it.
+Takes a simulation; emits the number of the clicked problem or operation.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ translate = FreeCAD.Qt.translate
 _RED = QtGui.QColor(200, 0, 0)
 _MOST_SHOWN = 1000
 _WIDTH = 380
-"""Pixels, at first."""
+"""Initial width, pixels."""
 
 
 class PlayerLists(QtWidgets.QTabWidget):
-    """Two lists, one behind the other."""
+    """Two lists as tabs."""
 
     problem = QtCore.Signal(int)
     operation = QtCore.Signal(int)
@@ -39,7 +39,7 @@ class PlayerLists(QtWidgets.QTabWidget):
         return QtCore.QSize(_WIDTH, 120)
 
     def take(self, simulation: Simulation) -> None:
-        """Show another simulation; its problems if it has some."""
+        """Show another simulation; the tab of its problems if there are any."""
         moving, dwelling = simulation.operation_times()
         times = (moving + dwelling).tolist()
         _fill(self.problems, [_told(problem) for problem in simulation.problems[:_MOST_SHOWN]])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Player text: what the player says of an instant: time, block, the problem at which it stopped, struts too fast.
+"""Player text: the player's status at an instant: time, block, the problem at which it stopped, struts too fast.
 
-A simulation and a time in s enter; a line leaves, in the language of FreeCAD.
+Takes a simulation and a time in s; returns a line in FreeCAD's language.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ translate = FreeCAD.Qt.translate
 
 
 def told(simulation: Simulation, seconds: float, problem: Problem | None, override: float) -> str:
-    """The line.
+    """Return the status line.
 
     Args:
-        simulation: what is played.
-        seconds: the time that is shown.
-        problem: at which the player has stopped, if it has.
+        simulation: the simulation being played.
+        seconds: the current time.
+        problem: the one at which the player has stopped, if any.
         override: feed override as a share: 1 is as planned.
     """
     place = simulation.trajectory.place(simulation.block_at(seconds))
@@ -31,7 +31,7 @@ def told(simulation: Simulation, seconds: float, problem: Problem | None, overri
 
 
 def _too_fast(simulation: Simulation, override: float) -> list[str]:
-    """Which strut would be faster than it can be, with the override that is chosen."""
+    """The struts that would exceed their speed limit at the chosen override."""
     limit, speeds = simulation.machine.strut_speed, simulation.greatest_speeds * override
     if override <= 1.0 or speeds.max() <= limit:
         return []

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post choices: the fields for what a user may choose when posting.
+"""Post choices: the fields for the posting options.
 
-The text of arguments enters, as a job keeps it, and leaves as the fields say it. What has no field is in a line of its
+Takes the argument text of a job; returns it as edited in the fields. Arguments without a field are in a line of their
 own, so that nothing is lost. Lengths and angles are FreeCAD quantities.
 """
 
@@ -95,7 +95,7 @@ _ROWS = (
         QT_TRANSLATE_NOOP("PostChoices", "Where the files are written"),
     ),
 )
-"""Attribute, label and tool tip of each field, from top to bottom."""
+"""Attribute, label and tooltip of each field, from top to bottom."""
 
 
 class PostChoices(QtWidgets.QWidget):
@@ -127,7 +127,7 @@ class PostChoices(QtWidgets.QWidget):
             layout.addRow(translate("PostChoices", label), row)
 
     def show_text(self, text: str) -> None:
-        """Show what arguments say; those that are not understood stay as they are, in the line for all others."""
+        """Show arguments in the fields; invalid ones stay unchanged, in the line for all others."""
         try:
             chosen, rest = parsed(text, Place("")), rewritten(text, dict.fromkeys(FLAGS))
         except Refused:
@@ -158,11 +158,11 @@ class PostChoices(QtWidgets.QWidget):
         }
         try:
             return rewritten(self.more.text(), chosen)
-        except ValueError:  # who reads them tells what is wrong
+        except ValueError:  # the parser reports the error
             return self.more.text()
 
     def _offer_work_offsets(self, machine: str) -> None:
-        """Offer those of the machine; what was typed stays."""
+        """Offer the work offsets of the machine; the current input stays."""
         typed = self.work_offset.currentText()
         found, _ = machine_named(machine.strip())
         self.work_offset.clear()
@@ -186,7 +186,7 @@ class PostChoices(QtWidgets.QWidget):
 
 
 def _offset_text(offset: Any) -> str:
-    """A work offset as it is typed."""
+    """A work offset in the syntax of the arguments."""
     if isinstance(offset, str):
         return "" if offset == FIXTURE_OF_THE_JOB else offset
     shown = offset if offset[3] else offset[:3]

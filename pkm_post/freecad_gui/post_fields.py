@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post fields: the kinds of fields that the choices for posting are made of."""
+"""Post fields: the field types for the posting options."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _DECIMALS = 6
 
 
 def editable_box(items: Iterable[str]) -> QtWidgets.QComboBox:
-    """A box to choose from, or to type into."""
+    """An editable combo box."""
     box = QtWidgets.QComboBox()
     box.setEditable(True)
     box.setInsertPolicy(QtWidgets.QComboBox.InsertPolicy.NoInsert)
@@ -31,9 +31,9 @@ def quantity_field(unit: str) -> Any:
 
 
 def show_quantity(field: Any, value: float, unit: str) -> None:
-    """Show a number with decimals enough for thousandths: a field forgets what it does not show.
+    """Show a number with decimals for thousandths at least: a field drops digits that it does not show.
 
-    The unit of the field itself is the one that it shows, which may be another one of its kind.
+    The field's own unit is its display unit, which may be another unit of its kind.
     """
     quantity = FreeCAD.Units.Quantity(f"{value:.9g} {unit}")
     quantity.Format = {"Precision": _DECIMALS}
@@ -41,12 +41,12 @@ def show_quantity(field: Any, value: float, unit: str) -> None:
 
 
 def number_text(field: Any) -> str:
-    """The number of a field in mm or degrees, whatever unit it shows."""
+    """The number of a field in mm or degrees, whatever unit it displays."""
     return f"{field.property('rawValue'):.9g}"
 
 
 def with_button(field: QtWidgets.QWidget, action: Callable[[], None]) -> QtWidgets.QWidget:
-    """A field with a button behind it that asks for what is to stand in it."""
+    """A field followed by a button that asks for its value."""
     both, button = QtWidgets.QWidget(), QtWidgets.QToolButton()
     layout = QtWidgets.QHBoxLayout(both)
     layout.setContentsMargins(0, 0, 0, 0)
@@ -58,7 +58,7 @@ def with_button(field: QtWidgets.QWidget, action: Callable[[], None]) -> QtWidge
 
 
 def below_each_other(fields: Iterable[QtWidgets.QWidget]) -> QtWidgets.QWidget:
-    """Several fields as one."""
+    """Several fields in a column."""
     whole = QtWidgets.QWidget()
     layout = QtWidgets.QVBoxLayout(whole)
     layout.setContentsMargins(0, 0, 0, 0)

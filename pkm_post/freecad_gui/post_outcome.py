@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post outcome: what came of posting, to look at: the certificate with its picture, or the reasons for a refusal.
+"""Post outcome: displays the result of posting: the certificate with its picture, or the reasons for a refusal.
 
-What was posted enters, or diagnostics do; a click on a row tells the operation and the line it is about.
+Takes posting results or diagnostics; a click on a row emits its operation and line.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ _HEAD = (
     QT_TRANSLATE_NOOP("PostOutcome", "Where"),
 )
 _PLACE = QtCore.Qt.ItemDataRole.UserRole
-"""Of a row: the label of its operation, and the number of the command in it."""
+"""Role of a row's operation label and command number."""
 _WIDTH = 380
-"""Of the picture, pixels; a click shows it as it is."""
+"""Width of the picture, pixels; a click shows it in full size."""
 
 
 class PostOutcome(QtWidgets.QWidget):
@@ -55,7 +55,7 @@ class PostOutcome(QtWidgets.QWidget):
         self.show_nothing("")
 
     def show_nothing(self, text: str) -> None:
-        """Show a line and nothing else."""
+        """Show only a line of text."""
         self.verdict.setText(text)
         self._show_diagnostics(())
         self.meaning.hide()
@@ -99,7 +99,7 @@ class PostOutcome(QtWidgets.QWidget):
 
 
 class _Picture(QtWidgets.QLabel):
-    """The report's picture, small; a click shows it as it is."""
+    """The report's picture as a thumbnail; a click shows it in full size."""
 
     def show_file(self, name: str) -> None:
         """Show a picture."""
@@ -108,7 +108,7 @@ class _Picture(QtWidgets.QLabel):
         self.setToolTip(translate("PostOutcome", "Click to see it in full size"))
 
     def mousePressEvent(self, _event: Any) -> None:
-        """Show it as it is."""
+        """Show it in full size."""
         QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(self._name))
 
 
@@ -122,7 +122,7 @@ def _table() -> QtWidgets.QTableWidget:
 
 
 def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> None:
-    """One row for each finding of the report."""
+    """Add one row per finding of the report."""
     table.setRowCount(len(findings))
     for row, each in enumerate(findings):
         where = f"{each['operation']}: {each['line']}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post panel: a CAM job becomes a certified motion program, beside the window.
+"""Post panel: converts a CAM job to a certified motion program, beside the window.
 
-A job enters; the document keeps what is chosen. The job is read in the thread of the window, as documents must be, and
-posted in another one.
+Takes a job; stores the choices in the document. The job is read in the window's thread, as documents require, and
+posted in another thread.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class PostPanel:
 
     Attributes:
         choices: the fields.
-        outcome: what came of it.
+        outcome: the result.
         post, stop, folder, simulate: buttons.
     """
 
@@ -79,7 +79,7 @@ class PostPanel:
             layout.addWidget(part)
 
     def begin(self) -> None:
-        """Keep what is chosen, read the job, and begin to post it."""
+        """Store the choices, read the job, and start posting it."""
         self._show_running(True)
         self._show_progress(READING, 0.0)
         QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
@@ -98,14 +98,14 @@ class PostPanel:
         task.start()
 
     def _read(self) -> Prepared:
-        """The job and its machine, when the job has kept what is chosen."""
+        """Read the job and its machine, after storing the choices."""
         self.choices.keep()
         self._target = self.choices.program()
         self.job.Document.recompute()
         return prepared_job(self.job, settings_of(self.job))
 
     def _keep_or_tell(self) -> bool:
-        """Let the document keep what is chosen, without posting; if that makes no sense, show why."""
+        """Store the choices in the document without posting; if they are invalid, show why."""
         try:
             self.choices.keep()
         except Refused as refused:
@@ -115,7 +115,7 @@ class PostPanel:
         return True
 
     def cancel(self) -> None:
-        """Stop after the current step; nothing is written then."""
+        """Stop after the current step; nothing is then written."""
         if self._task is not None:
             self._task.stop()
             self.stop.setEnabled(False)
@@ -160,14 +160,14 @@ class PostPanel:
             self.step.setText(step_text(step))
 
     def _show_place(self, operation: str, line: int) -> None:
-        """Show where in the job a row is about."""
+        """Show the place in the job to which a row refers."""
         show_place(self.job, operation, line)
 
     def _open_folder(self) -> None:
         QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(str(self._target.parent)))
 
     def _simulate(self) -> None:
-        """Keep what is chosen, and do as the command does, which tells for itself why there is nothing to play."""
+        """Store the choices, and run the command, which itself reports why there is nothing to play."""
         if not self._keep_or_tell():
             return
         FreeCADGui.Selection.clearSelection()
@@ -175,27 +175,27 @@ class PostPanel:
         FreeCADGui.runCommand("PKM_Simulate", 0)
 
     def getStandardButtons(self) -> Any:
-        """Apply, which keeps what is chosen and posts nothing, and Close."""
+        """Apply, which stores the choices without posting, and Close."""
         return _APPLY | QtWidgets.QDialogButtonBox.StandardButton.Close
 
     def modifyStandardButtons(self, box: Any) -> None:
-        """Give the button that FreeCAD made its meaning."""
+        """Connect the button that FreeCAD created."""
         button = box.button(_APPLY)
         button.setToolTip(translate("PostPanel", "Keep in the document what is chosen, and post nothing"))
         button.clicked.connect(lambda: self._apply())
         self._used_at_rest.append(button)
 
     def _apply(self) -> None:
-        """Keep what is chosen, for reach, simulation and operations that need the machine or a gauge length."""
+        """Store the choices, for reach, simulation and operations that need the machine or a gauge length."""
         if self._keep_or_tell():
             self.outcome.show_nothing(translate("PostPanel", "Kept in the document. Nothing was posted."))
 
     def reject(self) -> bool:
-        """Close the panel; what is being posted is stopped before."""
+        """Close the panel, after stopping any posting."""
         self._watch.end()
         self.choices.end()
         if self._task is not None:
-            self._task.finished.disconnect(self._end)  # it has nothing to be shown in any more
+            self._task.finished.disconnect(self._end)  # the display no longer exists
             self._task.finish()
         FreeCADGui.Control.closeDialog()
         return True

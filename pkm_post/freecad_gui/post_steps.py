@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post steps: the steps of posting in the language of the user."""
+"""Post steps: the steps of posting in the user's language."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ STEPS = {
     "also linuxcnc": QT_TRANSLATE_NOOP("PostSteps", "G-code for LinuxCNC"),
     "": QT_TRANSLATE_NOOP("PostSteps", "Moving the files to their folder"),
 }
-"""What each step is called, by its name in ``pkm_post.pipeline`` and ``pkm_post.options``."""
+"""Displayed name of each step, by its name in ``pkm_post.pipeline`` and ``pkm_post.options``."""
 
 
 def step_text(step: str) -> str:
-    """What a step is called."""
+    """The displayed name of a step."""
     return translate("PostSteps", STEPS[step])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Preferences: what the post panel shows at first for a job that was never posted, and the page to set it.
+"""Preferences: initial values of the post panel for a job that was never posted, and the page to set them.
 
-The page enters into FreeCAD's preferences. Nothing but the panel reads them: what is posted depends on the job alone.
+Adds the page to FreeCAD's preferences. Only the panel reads them: the output depends on the job alone.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ _ARGUMENTS, _FOLDER = "Arguments", "Folder"
 
 
 def default_arguments() -> str:
-    """The arguments that a job is offered at first."""
+    """Initial arguments of a job."""
     text: str = FreeCAD.ParamGet(GROUP).GetString(_ARGUMENTS, "")
     return text
 
 
 def default_folder() -> str:
-    """The folder that a job is offered at first; empty for that of its document."""
+    """Initial output folder of a job; empty for that of its document."""
     text: str = FreeCAD.ParamGet(GROUP).GetString(_FOLDER, "")
     return text
 
 
 class PostPreferences:
-    """The page, as FreeCAD wants it."""
+    """The page, with FreeCAD's interface."""
 
     def __init__(self, _parent: Any = None) -> None:
         from pkm_post.freecad_gui.post_choices import PostChoices
@@ -51,19 +51,19 @@ class PostPreferences:
         layout.addStretch(1)
 
     def loadSettings(self) -> None:
-        """Show what is stored."""
+        """Show the stored values."""
         self.choices.show_text(default_arguments())
         self.choices.folder.setText(default_folder())
 
     def saveSettings(self) -> None:
-        """Store what is shown."""
+        """Store the displayed values."""
         group = FreeCAD.ParamGet(GROUP)
         group.SetString(_ARGUMENTS, self.choices.text())
         group.SetString(_FOLDER, self.choices.folder.text())
 
 
 def install() -> None:
-    """Add the page to FreeCAD's preferences; they name the icon of a group themselves."""
+    """Add the page to FreeCAD's preferences, which derive the icon from the group's name."""
     from pkm_post.freecad_gui.workbench import ICONS
 
     FreeCADGui.addIcon(f"preferences-{PAGES.lower().replace(' ', '_')}", str(ICONS / "pkm_post.svg"))

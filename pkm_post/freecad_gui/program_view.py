@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program view: how part programs look in the tree; a double click opens them in the editor.
+"""Program view: part programs in the tree; a double click opens them in the editor.
 
-A view object enters and gets its provider. Saved documents name this class by its module: place and name are a file
-format.
+Takes a view object and sets its provider. Saved documents store the module of this class: module and class name are a
+file format.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ translate = FreeCAD.Qt.translate
 
 
 class ProgramView(View):
-    """The icon of a part program, and the way to its editor."""
+    """The icon of a part program, and access to its editor."""
 
     icon = "program.svg"
 
@@ -31,7 +31,7 @@ class ProgramView(View):
         return True
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """The editor, and what it does with a program."""
+        """Add the editor, and its actions on a program."""
         obj = vobj.Object
         add_entry(menu, translate("PKM_Editor", "Open in the editor"), lambda: self.doubleClicked(vobj), self.icon)
         add_entry(menu, translate("PKM_Editor", "Decode into a job"), lambda: _in_editor(obj, "decode"))
@@ -40,7 +40,7 @@ class ProgramView(View):
 
 
 def _in_editor(obj: Any, call: str) -> None:
-    """Open the editor and let it do something with the program, unless it keeps another one that is not saved."""
+    """Open the editor and run one of its actions on the program, unless it holds another unsaved program."""
     from pkm_post.freecad_gui.editor import open_editor
 
     editor = open_editor(obj)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach panel: the findings of a reach object as a table; a click on one shows where it is worst.
+"""Reach panel: the findings of a reach object as a table; a click on one shows its worst point.
 
-The object enters; its way is coloured by the check that is clicked, and the operation is selected that has the worst
-point. The colouring is part of the document, so the panel is one step of undo.
+Takes the object; colours its path by the clicked check, and selects the operation with the worst point. The colouring
+is part of the document, so the panel is one undo step.
 """
 
 from __future__ import annotations
@@ -48,13 +48,13 @@ class ReachPanel:
         self.table.cellClicked.connect(lambda row, _column: self.show_worst(row))
 
     def show_worst(self, row: int) -> None:
-        """Colour by the check of a row and select the operation that has its worst point."""
+        """Colour by the check of a row and select the operation with its worst point."""
         obj = self.obj
         obj.ColourBy = obj.Checks[row]
         show_place(obj.Job, obj.WorstOperations[row], obj.WorstLines[row])
 
     def getStandardButtons(self) -> Any:
-        """There is nothing to accept or reject."""
+        """Only Close: there is nothing to accept or reject."""
         return QtWidgets.QDialogButtonBox.StandardButton.Close
 
     def reject(self) -> bool:

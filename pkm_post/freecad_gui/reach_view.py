@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach view: the way of the tool coloured by what is left of a check, with its legend and its worst point.
+"""Reach view: the tool path coloured by the margin of a check, with its legend and its worst point.
 
-A view object enters and gets its provider. Saved documents name this class by its module: place and name are a file
-format.
+Takes a view object and sets its provider. Saved documents store the module of this class: module and class name are a
+file format.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ _WORST_IN_LIMITS = (0.1, 0.2, 0.8)
 
 
 class ReachView(DrawnView):
-    """Draws the way. Double click opens the findings."""
+    """Draws the path. A double click opens the findings."""
 
     icon, mode = "reach.svg", "Reach"
 
     def updateData(self, _obj: Any, name: str) -> None:
-        """Draw anew when the way has its margins: these are set last."""
+        """Redraw when the path has its margins: these are set last."""
         if name in ("Margins", "Points"):
             self.refresh()
 
     def refresh(self) -> None:
-        """Draw the way, if there is one."""
+        """Draw the path, if there is one."""
         self._root.removeAllChildren()
         obj = self.Object
         margin = np.array(getattr(obj, "Margins", ()))
@@ -57,7 +57,7 @@ class ReachView(DrawnView):
         return bool(vobj.Document.setEdit(vobj, 0))
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """The findings, and what else there is to do with the job."""
+        """Add the findings, and the other commands for the job."""
         add_entry(menu, translate("PKM_Reach", "Open the findings"), lambda: self.doubleClicked(vobj), self.icon)
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object.Job, "PKM_Simulate", "PKM_Post")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Recompute watch: tells a window that its document was computed anew.
+"""Recompute watch: notifies a window of a recompute of its document.
 
-A name enters; a call leaves.
+Takes a name; calls back.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import FreeCAD
 
 
 class RecomputeWatch:
-    """An observer of documents, from when it is made until ``end``; FreeCAD calls its slot.
+    """A document observer, from its creation until ``end``; FreeCAD calls its slot.
 
     Args:
-        tell: called when the document was computed.
+        tell: callback after a recompute.
         document: its name.
     """
 
@@ -25,10 +25,10 @@ class RecomputeWatch:
         FreeCAD.addDocumentObserver(self)
 
     def end(self) -> None:
-        """Watch no longer."""
+        """Stop watching."""
         FreeCAD.removeDocumentObserver(self)
 
     def slotRecomputedDocument(self, document: Any) -> None:
-        """A document was computed."""
+        """A document was recomputed."""
         if document.Name == self._document:
             self._tell()

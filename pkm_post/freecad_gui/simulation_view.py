@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Simulation view: where a simulated job cannot be followed, marked in 3D; a double click opens the player.
+"""Simulation view: marks the violations of a simulated job in 3D; a double click opens the player.
 
-A view object enters and gets its provider. Saved documents name this class by its module: place and name are a file
-format.
+Takes a view object and sets its provider. Saved documents store the module of this class: module and class name are a
+file format.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ class SimulationView(DrawnView):
     """Marks the worst point of each problem.
 
     Attributes:
-        chosen: number of the problem that is marked larger; None if none is.
+        chosen: number of the problem with a larger mark; None if there is none.
     """
 
     icon, mode = "simulate.svg", "Simulation"
     chosen: int | None = None
 
     def updateData(self, _obj: Any, name: str) -> None:
-        """Draw anew when the problems are told: their texts are set last."""
+        """Redraw when the problems are complete: their texts are set last."""
         if name == "Problems":
             self.choose(None)
 
@@ -57,7 +57,7 @@ class SimulationView(DrawnView):
         return True
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """The player, and what else there is to do with the job."""
+        """Add the player, and the other commands for the job."""
         add_entry(menu, translate("PKM_Simulate", "Open the player"), lambda: self.doubleClicked(vobj), self.icon)
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object.Job, "PKM_Reach", "PKM_Post")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Stage: the machine that a simulation moves in the 3D view.
 
-A simulation and, if there is one, the machine object of the document enter. The object's own scene is moved; without
-one a scene is put into the view. Nothing of the document changes, and when the stage is struck all is as before.
+Takes a simulation and optionally the machine object of the document. It moves the object's own scene; without an object
+it adds a scene to the view. The document does not change, and striking the stage restores the view.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pkm_post.model import Tool
 
 
 class Stage:
-    """Where the simulation is seen."""
+    """The display of a simulation."""
 
     def __init__(self, simulation: Simulation, document: Any, machine_object: Any = None) -> None:
         self._simulation, self._tool = simulation, None
@@ -33,7 +33,7 @@ class Stage:
         self._scene.place(np.linalg.inv(simulation.trajectory.machine_from_work))
 
     def show(self, seconds: float) -> None:
-        """Move the machine to where it is at a time."""
+        """Move the machine to its pose at a time."""
         tool: Tool = self._simulation.tool_at(seconds)
         if tool is not self._tool:
             self._tool = tool
@@ -41,7 +41,7 @@ class Stage:
         self._scene.show(self._simulation.pose_at(np.array([seconds])))
 
     def strike(self) -> None:
-        """Give the view back."""
+        """Restore the view."""
         if self._graph is not None:
             self._graph.removeChild(self._scene.root)
             self._graph = None

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Strut plot: lengths and speeds of the six struts over time, with a cursor; a click goes there.
+"""Strut plot: lengths and speeds of the six struts over time, with a cursor; a click selects a time.
 
-A simulation enters. The curves are drawn once for each size of the widget, from the least and largest value in each
-column of pixels, so that long motions cost no more than short ones; when the cursor moves, the strips are painted anew
-where it was and where it is.
+Takes a simulation. The curves are drawn once per widget size, from the smallest and largest value in each column of
+pixels, so that long motions cost no more than short ones; a cursor move repaints only the strips at its old and new
+positions.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ _COLOURS = ("#3465a4", "#cc0000", "#4e9a06", "#f57900", "#75507b", "#8f5902")
 _MARGIN_LEFT, _MARGIN, _GAP = 64, 6, 18
 _CURSOR, _LIMIT = "#204a87", "#a40000"
 _STRIP = 5
-"""Pixels: the width of what is painted anew for the cursor."""
+"""Width of the strip repainted for the cursor, pixels."""
 
 
 class StrutPlot(QtWidgets.QWidget):
     """The widget.
 
     Args:
-        simulation: what is drawn.
-        go_to: takes a time in s when the user clicks there.
+        simulation: the displayed simulation.
+        go_to: callback for the time in s at which the user clicks.
     """
 
     def __init__(self, simulation: Simulation, go_to: Callable[[float], None]) -> None:
@@ -63,22 +63,22 @@ class StrutPlot(QtWidgets.QWidget):
         self.update()
 
     def _cursor(self) -> int:
-        """Where the cursor is, pixels from the left."""
+        """Cursor position, pixels from the left."""
         share = self._seconds / max(self._simulation.duration, 1e-9)
         return _MARGIN_LEFT + round(share * (self._width() - 1))
 
     def resizeEvent(self, _event: Any) -> None:
-        """The curves are those of another size."""
+        """Discard the curves of the previous size."""
         self._curves = None
 
     def mousePressEvent(self, event: Any) -> None:
-        """Go to where the click is."""
+        """Go to the clicked time."""
         position = event.position().x() if hasattr(event, "position") else event.x()
         share = (position - _MARGIN_LEFT) / max(self._width(), 1)
         self._go_to(min(max(share, 0.0), 1.0) * self._simulation.duration)
 
     def paintEvent(self, _event: Any) -> None:
-        """Curves and cursor."""
+        """Paint curves and cursor."""
         if self._curves is None:
             self._curves = self._drawn()
         painter = QtGui.QPainter(self)
@@ -110,7 +110,7 @@ class StrutPlot(QtWidgets.QWidget):
 
 
 def _draw_curves(painter: Any, area: Any, values: Array, limits: tuple[float, float], title: str) -> None:
-    """One diagram: frame, title, limits as far as they are near, a curve for each strut."""
+    """Draw one diagram: frame, title, nearby limits, a curve per strut."""
     low, high = float(values.min()), float(values.max())
     room = 0.05 * (high - low) or 1.0
     low, high = low - room, high + room

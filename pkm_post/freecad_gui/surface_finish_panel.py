@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Surface Finish panel: the operation's page in CAM's task panel.
 
-The operation enters, its properties change. CAM's panel holds the pages together: accepting it commits its transaction,
-rejecting it aborts it. The rows of the page are a table.
+Takes the operation and changes its properties. CAM's panel contains the pages: accepting it commits its transaction,
+rejecting it aborts it. A table defines the rows of the page.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ ROWS: tuple[tuple[str, str, str], ...] = (
     (_QUANTITY, "LeadLength", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Length of leads")),
     (_QUANTITY, "CheckSpacing", QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Check points, distance")),
 )
-"""Kind of field, property and label, from top to bottom."""
+"""Field type, property and label, from top to bottom."""
 CHOICES: tuple[str, ...] = (
     QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "None"),
     QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Flood"),
@@ -58,14 +58,14 @@ CHOICES: tuple[str, ...] = (
     QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Tangent"),
     QT_TRANSLATE_NOOP("PKM_SurfaceFinish", "Arc"),
 )
-"""What the properties with choices may be; documents keep the English words."""
+"""Choices of the enumeration properties; documents store the English words."""
 
 
 class SurfaceFinishPage(CamGui.TaskPanelPage):
-    """The page: tool controller, then a field for each row of the table. Other properties are in the property view."""
+    """The page: tool controller, then a field per table row. The property view shows all other properties."""
 
     def getForm(self) -> Any:
-        """Make the fields."""
+        """Create the fields."""
         form = QtWidgets.QWidget()
         layout = QtWidgets.QFormLayout(form)
         form.controllers = QtWidgets.QComboBox()
@@ -84,7 +84,7 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
         return form
 
     def setFields(self, obj: Any) -> None:
-        """Show what the properties are."""
+        """Show the properties."""
         labels = [controller.Label for controller in PathUtils.getToolControllers(obj)]
         current = obj.ToolController.Label if obj.ToolController else ""
         _show(self.form.controllers, labels, labels, current)
@@ -99,7 +99,7 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
                 _refresh(self.form.quantities[name])
 
     def getFields(self, obj: Any) -> None:
-        """Set the properties that differ from what is shown."""
+        """Set the properties that differ from the fields."""
         for controller in PathUtils.getToolControllers(obj):
             if controller.Label == self.form.controllers.currentText() and controller != obj.ToolController:
                 obj.ToolController = controller
@@ -113,7 +113,7 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
                 setattr(obj, name, value)
 
     def getSignalsForUpdate(self, obj: Any) -> list[Any]:
-        """What tells that a field was changed."""
+        """Signals for changed fields."""
         fields = self.form.fields
         return [self.form.controllers.currentIndexChanged] + [
             getattr(fields[name], _SIGNALS[kind]) for kind, name, _ in ROWS
@@ -121,7 +121,7 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
 
 
 def _show(box: Any, texts: list[str], words: list[str], current: str) -> None:
-    """Fill a box with choices, telling nobody; each shows a text and stands for a word."""
+    """Fill a box with choices, with signals blocked; each shows a text and stands for a word."""
     box.blockSignals(True)
     box.clear()
     for text, word in zip(texts, words, strict=True):
@@ -131,7 +131,7 @@ def _show(box: Any, texts: list[str], words: list[str], current: str) -> None:
 
 
 def _refresh(quantity: Any) -> None:
-    """Show the value of the property; FreeCAD 1.0 has another name for it."""
+    """Show the value of the property; FreeCAD 1.0 has another name for this call."""
     getattr(quantity, "updateWidget" if hasattr(quantity, "updateWidget") else "updateSpinBox")()
 
 

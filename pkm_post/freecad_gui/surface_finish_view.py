@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish view: how the operation looks in the tree, and its panel.
+"""Surface Finish view: the operation in the tree, and its panel.
 
-A view object enters and gets CAM's own provider of operations, with the icon and the page of this one. Saved documents
-name this class by its module: place and name are a file format.
+Takes a view object and sets CAM's own provider for operations, with the icon and page of this one. Saved documents
+store the module of this class: module and class name are a file format.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _ICON = str(ICONS / "surface_finish.svg")
 
 
 class SurfaceFinishView(CamGui.ViewProvider):
-    """CAM's provider: double click opens CAM's panel with faces, heights and the page of this operation."""
+    """CAM's provider: a double click opens CAM's panel with faces, heights and the page of this operation."""
 
     def __init__(self, vobj: Any) -> None:
         resources = CamGui.CommandResources("Surface Finish", None, SurfaceFinishPage, "", "", None, "")
@@ -29,20 +29,20 @@ class SurfaceFinishView(CamGui.ViewProvider):
         vobj.Proxy = self
 
     def getSelectionFactory(self) -> Any:
-        """Faces can be picked, as for CAM's own surface operation."""
+        """Allow picking faces, as in CAM's own surface operation."""
         return CamSelection.select("Surface")
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """CAM's own entry, which opens the panel, and what can be made of the operation."""
+        """Add CAM's own entry, which opens the panel, and the commands for the operation."""
         super().setupContextMenu(vobj, menu)
         add_switch(menu, vobj.Object)
         add_commands(menu, vobj.Object, "PKM_Mirror", "PKM_Rotate")
 
     def dumps(self) -> None:
-        """Nothing is saved: where the icon lies is another place on another computer."""
+        """Save nothing: the path of the icon differs between computers."""
 
     def loads(self, state: object) -> None:
-        """Be as a new one that has been accepted."""
+        """Restore the state of a new, accepted operation."""
         self.OpName, self.OpIcon = "Surface Finish", _ICON
         self.OpPageModule, self.OpPageClass = SurfaceFinishPage.__module__, SurfaceFinishPage.__name__
         self.deleteOnReject = False

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Symmetry fields: vectors, quantities and lists of angles as fields of the symmetry panel.
 
-Values in mm and degrees enter and leave; people type in the units that they have chosen.
+Values are in mm and degrees; the user types in the selected display units.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ _SIDES = {
     "Left": QT_TRANSLATE_NOOP("SymmetryPanel", "Left of the original's way"),
     "Right": QT_TRANSLATE_NOOP("SymmetryPanel", "Right of the original's way"),
 }
-"""What the choices of MaterialSide are called."""
+"""Displayed names of the choices of MaterialSide."""
 
 
 def text_of(side: str) -> str:
-    """What a choice of MaterialSide is called."""
+    """The displayed name of a choice of MaterialSide."""
     return str(translate("SymmetryPanel", _SIDES[side]))
 
 
 def said_of(obj: Any, name: str) -> str:
-    """What is said of a property, as the tool tip of its field."""
+    """The description of a property, as the tooltip of its field."""
     return str(translate("App::Property", obj.getDocumentationOfProperty(name)))
 
 
 def quantity(unit: str, changed: Callable[..., None]) -> Any:
-    """A field with a unit, or for a number if there is none; it tells when it was edited."""
+    """A field with a unit, or for a plain number; it reports edits."""
     field = FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox")
     field.setProperty("unit", unit)
     field.editingFinished.connect(changed)
@@ -54,18 +54,18 @@ class Three(QtWidgets.QWidget):
             layout.addWidget(field)
 
     def show_values(self, values: Iterable[float], enabled: bool) -> None:
-        """Show a vector, and say whether it can be typed in."""
+        """Show a vector, and whether it can be edited."""
         for field, value in zip(self.fields, values, strict=True):
             field.setProperty("rawValue", value)
         self.setEnabled(enabled)
 
     def vector(self) -> FreeCAD.Vector:
-        """The vector that is shown."""
+        """The displayed vector."""
         return FreeCAD.Vector(*(field.property("rawValue") for field in self.fields))
 
 
 def angles_of(text: str, before: Sequence[float]) -> list[float]:
-    """Angles in degrees of a list as people type it, with or without units; those before where it is no such list."""
+    """Parse a typed list of angles in degrees, with or without units; returns the previous angles if it is invalid."""
     try:
         quantities = [FreeCAD.Units.Quantity(part) for part in text.split(";") if part.strip()]
     except (ValueError, ArithmeticError):
@@ -77,5 +77,5 @@ def angles_of(text: str, before: Sequence[float]) -> list[float]:
 
 
 def told_angles(angles: Sequence[float]) -> str:
-    """Angles in degrees as a list that people can edit."""
+    """Angles in degrees as an editable list."""
     return "; ".join(f"{angle:.10g}" for angle in angles)

@@ -16,15 +16,15 @@ QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 @dataclass(frozen=True)
 class Frame:
-    """What a mirror or a turn is made at.
+    """The reference of a mirror or a rotation.
 
     Attributes:
         direction: property with the normal or the axis.
-        link: property with what was picked.
-        read: gives point and direction of what was picked.
+        link: property with the picked element.
+        read: returns point and direction of the picked element.
         label: of the choice.
         choices: texts and directions.
-        hint: what may be picked.
+        hint: pickable elements.
     """
 
     direction: str

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry panel: where a mirrored or turned operation stands, how it is cut, and the report of its copies.
+"""Symmetry panel: reference and cut direction of a mirrored or rotated operation, and the report of its copies.
 
-The object enters; its properties change with the fields, and it is computed anew a moment later. A plane or axis is
-chosen, typed in, or picked in the 3D view. Accepting commits the transaction, rejecting aborts it: with a new object,
-the object goes as well.
+Takes the object; its properties follow the fields, with a recompute shortly after. A plane or axis is selected, typed
+in, or picked in the 3D view. Accepting commits the transaction, rejecting aborts it, which also removes a new
+object.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from pkm_post.freecad_gui.symmetry_text import report_lines
 translate = FreeCAD.Qt.translate
 
 _A_MOMENT = 300
-"""ms after the last change until the copies are computed anew."""
+"""ms from the last change to the recompute of the copies."""
 
 
 class SymmetryPanel:
     """The task panel.
 
     Attributes:
-        obj: the mirrored or turned operation.
+        obj: the mirrored or rotated operation.
         form: the widget, with the fields as attributes of the panel.
         place: the fields for the plane or the axis.
-        opened: the panel that is open.
+        opened: the open panel.
     """
 
     opened: ClassVar[SymmetryPanel | None] = None
 
     def __init__(self, obj: Any) -> None:
         self.obj = obj
-        if not obj.Document.HasPendingTransaction:  # a command leaves that of a new object open
+        if not obj.Document.HasPendingTransaction:  # a command leaves the transaction of a new object open
             obj.Document.openTransaction(translate("SymmetryPanel", "Edit symmetric operation"))
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(obj.Label)
@@ -88,7 +88,7 @@ class SymmetryPanel:
         self._fields.addRow(translate("SymmetryPanel", "Material"), self.side)
 
     def show(self) -> None:
-        """Show what the properties are, and the report."""
+        """Show the properties, and the report."""
         obj = self.obj
         blockers = [QtCore.QSignalBlocker(field) for field in self.form.findChildren(QtWidgets.QWidget)]
         self.place.show()
@@ -103,7 +103,7 @@ class SymmetryPanel:
         del blockers
 
     def addSelection(self, document: str, name: str, element: str, _point: Any) -> None:
-        """Take what is picked in the 3D view or in the tree while the panel waits for it."""
+        """Take an element picked in the 3D view or in the tree while the panel waits for it."""
         self.place.pick(FreeCAD.getDocument(document).getObject(name), element)
 
     def apply(self, *_: Any) -> None:
@@ -122,8 +122,8 @@ class SymmetryPanel:
                 self._later.start()
 
     def compute(self) -> None:
-        """Compute the copies anew, and show the report."""
-        if self.obj.Document.Recomputing:  # its progress bar lets timers go on
+        """Recompute the copies, and show the report."""
+        if self.obj.Document.Recomputing:  # timers fire even during its progress bar
             self._later.start()
             return
         self._later.stop()
@@ -132,19 +132,19 @@ class SymmetryPanel:
         self.place.follow()
 
     def accept(self) -> bool:
-        """Keep everything, as one step of undo."""
+        """Keep everything, as one undo step."""
         self.apply()
         self.obj.Document.recompute()
         self._close(self.obj.Document.commitTransaction)
         return True
 
     def reject(self) -> bool:
-        """Leave everything as it was before."""
+        """Restore the previous state."""
         self._close(self.obj.Document.abortTransaction)
         return True
 
     def release(self) -> None:
-        """Compute nothing any more, and take nothing that is picked."""
+        """Stop recomputing, and ignore picks."""
         self._later.stop()
         if SymmetryPanel.opened is self:
             FreeCADGui.Selection.removeObserver(self)

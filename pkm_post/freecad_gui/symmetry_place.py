@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry place: the fields for the plane of a mirror or the axis of a turn.
+"""Symmetry place: the fields for the plane of a mirror or the axis of a rotation.
 
-The object enters; its point, its direction and what was picked change with the fields. The plane or axis is one of
-those of the document, or picked in the 3D view, or typed in.
+Takes the object; its point, its direction and the picked element follow the fields. The plane or axis is one of the
+document's, or picked in the 3D view, or typed in.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class SymmetryPlace:
     """Rows of a form.
 
     Attributes:
-        frame: what is chosen, a plane or an axis.
+        frame: the reference, a plane or an axis.
         choice, picked, direction, point: the fields.
     """
 
@@ -33,9 +33,9 @@ class SymmetryPlace:
         """Add the rows.
 
         Args:
-            obj: the mirrored or turned operation.
+            obj: the mirrored or rotated operation.
             form: gets the rows.
-            typed: called when something was typed in.
+            typed: called after typed input.
             chosen: called when the object has another plane or axis.
         """
         self._obj, self._changed = obj, chosen
@@ -55,17 +55,17 @@ class SymmetryPlace:
         form.addRow(translate("SymmetryPanel", "Point"), self.point)
 
     def show(self) -> None:
-        """Show what the properties are."""
+        """Show the properties."""
         self.choice.setCurrentIndex(self._chosen())
         self._show_values()
 
     def follow(self) -> None:
-        """Show what came of a pick; other fields may be being typed in."""
+        """Show the result of a pick; other fields may be in use."""
         if self._link():
             self._show_values()
 
     def values(self) -> dict[str, Any]:
-        """The properties that are typed in here."""
+        """The properties edited here."""
         values = {}
         if self.direction.isEnabled() and self.direction.vector().Length > 0:
             values[self.frame.direction] = self.direction.vector()
@@ -74,7 +74,7 @@ class SymmetryPlace:
         return values
 
     def choose(self, index: int) -> None:
-        """Take the plane or axis that is chosen, or wait for one to be picked."""
+        """Take the selected plane or axis, or wait for a pick."""
         if index != self._pick_index:
             setattr(self._obj, self.frame.link, None)
         if index < self._pick_index:
@@ -83,7 +83,7 @@ class SymmetryPlace:
         self._changed()
 
     def pick(self, item: Any, element: str) -> None:
-        """Take what is picked, if it is waited for."""
+        """Take the picked element, if one is awaited."""
         if self.choice.currentIndex() != self._pick_index or item.Document != self._obj.Document:
             return
         if self._obj == item or self._obj in item.OutListRecursive:
@@ -103,7 +103,7 @@ class SymmetryPlace:
         return getattr(self._obj, self.frame.link)
 
     def _chosen(self) -> int:
-        """Which choice is shown: who picks or types goes on with it, whatever the direction is."""
+        """The displayed choice: a picked or typed reference stays that choice, whatever its direction."""
         if self._link():
             return self._pick_index
         if self.choice.currentIndex() >= self._pick_index:
@@ -113,14 +113,14 @@ class SymmetryPlace:
         return known.index(direction) if direction in known else len(known) + 1
 
     def _show_values(self) -> None:
-        """Show direction and point, what of them can be typed in, and what was picked."""
+        """Show direction and point, which of them are editable, and the picked element."""
         chosen = self.choice.currentIndex()
         self._tell(self._told_pick())
         self.direction.show_values(getattr(self._obj, self.frame.direction), enabled=chosen == self._pick_index + 1)
         self.point.show_values(self._obj.Point, enabled=chosen != self._pick_index)
 
     def _tell(self, text: str) -> None:
-        """Say what is picked, or what could be."""
+        """Show the picked element, or what can be picked."""
         self.picked.setText(text)
         self.picked.setVisible(bool(text))
 

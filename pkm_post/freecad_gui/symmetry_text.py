@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry text: the report of a mirrored or turned operation in sentences.
+"""Symmetry text: the report of a mirrored or rotated operation in sentences.
 
-The object enters; lines leave, in the language of FreeCAD and the units that people have chosen.
+Takes the object; returns lines in FreeCAD's language and the selected display units.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _CUTS = {
 
 
 def report_lines(obj: Any) -> list[str]:
-    """What is to be known of the copies: how they cut, where they lie, how they meet.
+    """The report lines of the copies: how they cut, where they are, how they meet.
 
     Args:
         obj: the operation, computed.
@@ -86,7 +86,7 @@ def _joints(count: int, distance: Any, turn: Any) -> list[str]:
 
 
 def _family(obj: Any, family: Family) -> list[str]:
-    """The job as a whole, where the original has more copies than these and they go round an axis."""
+    """The job as a whole, if the original has more copies than these and they lie around an axis."""
     own = 1 + (len(obj.Angles) or obj.Copies if hasattr(obj, "Angles") else 1)
     if family.coverage is None or family.members == own:
         return []

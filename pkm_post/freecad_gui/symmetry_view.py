@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry view: how mirrored and turned operations look in the tree, and their panel.
+"""Symmetry view: mirrored and rotated operations in the tree, and their panel.
 
-A view object enters and gets its provider. Saved documents name this class by its module: place and name are a file
-format.
+Takes a view object and sets its provider. Saved documents store the module of this class: module and class name are a
+file format.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ translate = FreeCAD.Qt.translate
 
 
 class SymmetryView(View):
-    """The icon of a symmetric operation. The base stays where it is in the tree: the copy stands beside it."""
+    """The icon of a symmetric operation. The base keeps its place in the tree: the copy is beside it."""
 
     def getIcon(self) -> str:
-        """A mirror for operations with a plane, a turn for those with an angle."""
+        """A mirror icon for operations with a plane, a rotation icon for those with an angle."""
         return str(ICONS / ("rotate.svg" if hasattr(self.Object, "Angle") else "mirror.svg"))
 
     def doubleClicked(self, vobj: Any) -> bool:
@@ -32,7 +32,7 @@ class SymmetryView(View):
         return bool(vobj.Document.setEdit(vobj, 0))
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """The panel, and further copies."""
+        """Add the panel, and further copies."""
         add_entry(menu, translate("SymmetryPanel", "Edit"), lambda: self.doubleClicked(vobj), Path(self.getIcon()).name)
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object, "PKM_Mirror", "PKM_Rotate")
@@ -45,7 +45,7 @@ class SymmetryView(View):
         return True
 
     def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
-        """Close the panel; FreeCAD asks for that as well when another object is edited, or the document closed."""
+        """Close the panel; FreeCAD also calls this when another object is edited, or the document closed."""
         from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
 
         if SymmetryPanel.opened is not None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Task: a call that runs beside the window; its value, or what it raised, is fetched when it has finished.
+"""Task: runs a call beside the window; its value or exception is available when it has finished.
 
-What the call tells of its progress reaches the window as a signal. The window can ask it to stop: it does so when it
-tells of its progress the next time.
+Progress reports of the call reach the window as a signal. The window can request a stop, which takes effect at the next
+progress report.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Task(QtCore.QThread):
     """One call. ``finished`` is emitted in the thread of the window."""
 
     progressed = QtCore.Signal(str, float)
-    """The name of the step that begins, and the share of the work that is done, 0 to 1."""
+    """The name of the step that begins, and the completed share of the work, 0 to 1."""
 
     def __init__(self, call: Callable[[], Any], parent: QtCore.QObject) -> None:
         super().__init__(parent)
@@ -28,30 +28,30 @@ class Task(QtCore.QThread):
         self._value: Any = None
         self._fault: BaseException | None = None
         self._is_wanted = True
-        # Qt ends the process when a thread is destroyed that still runs
+        # Qt ends the process when a running thread is destroyed
         QtCore.QCoreApplication.instance().aboutToQuit.connect(self.finish)
 
     def tell(self, step: str, share: float) -> None:
         """Called in the other thread, as ``pipeline.Progress``.
 
         Raises:
-            Stopped: the window asked for it.
+            Stopped: the window requested a stop.
         """
         if not self._is_wanted:
             raise Stopped(step)
         self.progressed.emit(step, share)
 
     def stop(self) -> None:
-        """Ask the call to end; ``finished`` tells when it has."""
+        """Request the call to stop; ``finished`` is emitted when it has."""
         self._is_wanted = False
 
     def finish(self) -> None:
-        """Ask the call to end, and wait until it has."""
+        """Request the call to stop, and wait for it."""
         self.stop()
         self.wait()
 
     def run(self) -> None:
-        """Called by Qt in the other thread: nothing may leave it but what is kept here."""
+        """Called by Qt in the other thread: store the result or the exception, so that none escapes."""
         try:
             with memory_or_refused("PKM Post"):
                 self._value = self._call()
@@ -59,7 +59,7 @@ class Task(QtCore.QThread):
             self._fault = fault
 
     def value(self) -> Any:
-        """What the call gave back; what it raised is raised here, and ``Refused`` where memory ran out."""
+        """Return the value of the call; raise its exception, or ``Refused`` if memory ran out."""
         if self._fault is not None:
             raise self._fault
         return self._value

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Views: what the view providers of document objects have in common.
+"""Views: base classes of the view providers of document objects.
 
-A view object enters and gets its provider. Saved documents name the classes that inherit from these, never these, by
-their modules.
+Takes a view object and sets its provider. Saved documents store the module names of the subclasses, never those of
+these classes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class View:
 
     Attributes:
         icon: file name in resources/icons.
-        Object: what is shown.
+        Object: the displayed object.
     """
 
     icon: ClassVar[str]
@@ -30,7 +30,7 @@ class View:
         vobj.Proxy = self
 
     def attach(self, vobj: Any) -> None:
-        """Remember the object that is shown; called for new and for restored ones."""
+        """Remember the displayed object; called for new and for restored ones."""
         self.Object = vobj.Object
 
     def getIcon(self) -> str:
@@ -38,32 +38,32 @@ class View:
         return str(ICONS / self.icon)
 
     def claimChildren(self) -> list[Any]:
-        """No children: what an object is made from has its own place in the tree."""
+        """No children: the sources of an object have their own place in the tree."""
         return []
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """FreeCAD asks for the entries of the menu beside its own: a switch, where the object has one."""
+        """Called by FreeCAD to add entries to its menu: a toggle, if the object has one."""
         if hasattr(vobj.Object, "Active"):
             add_switch(menu, vobj.Object)
 
     def dumps(self) -> None:
-        """Nothing is saved."""
+        """Save nothing."""
 
     def loads(self, state: object) -> None:
-        """Nothing was saved."""
+        """Restore nothing: nothing was saved."""
 
 
 class DrawnView(View, abc.ABC):
-    """An object that is drawn in the 3D view as well, in one way.
+    """An object that is also drawn in the 3D view, in one display mode.
 
     Attributes:
-        mode: the name of the way.
+        mode: the name of the display mode.
     """
 
     mode: ClassVar[str]
 
     def attach(self, vobj: Any) -> None:
-        """Make the root of the scene and draw."""
+        """Create the root of the scene and draw."""
         super().attach(vobj)
         self._root = coin.SoSeparator()
         vobj.addDisplayMode(self._root, self.mode)
@@ -71,16 +71,16 @@ class DrawnView(View, abc.ABC):
 
     @abc.abstractmethod
     def refresh(self) -> None:
-        """Draw anew below the root, whatever is there."""
+        """Redraw everything below the root."""
 
     def getDisplayModes(self, _vobj: Any) -> list[str]:
-        """The one way it is shown."""
+        """The only display mode."""
         return [self.mode]
 
     def getDefaultDisplayMode(self) -> str:
-        """The one way it is shown."""
+        """The only display mode."""
         return self.mode
 
     def setDisplayMode(self, mode: str) -> str:
-        """The one way it is shown."""
+        """The only display mode."""
         return mode

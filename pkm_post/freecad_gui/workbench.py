@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The workbench PKM Post, and its commands in CAM's own menu."""
+"""The PKM Post workbench, and its commands in CAM's own menu."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class PkmPostWorkbench(FreeCADGui.Workbench):
     Icon = str(ICONS / "pkm_post.svg")
 
     def __init__(self):
-        # FreeCAD takes it from the class, as it is
+        # FreeCAD reads it from the class
         PkmPostWorkbench.ToolTip = FreeCAD.Qt.translate("Workbench", "Post CAM jobs to hexapod machine tools")
 
     def Initialize(self):
@@ -33,18 +33,18 @@ class PkmPostWorkbench(FreeCADGui.Workbench):
         self.appendMenu("&PKM Post", names)
 
     def GetClassName(self):
-        """The kind of workbench FreeCAD makes of this."""
+        """The kind of workbench that FreeCAD creates."""
         return "Gui::PythonWorkbench"
 
 
 class CamMenu:
-    """Puts the commands into CAM's menu; FreeCAD asks it at every change of workbench."""
+    """Adds the commands to CAM's menu; FreeCAD calls it at every change of workbench."""
 
     registered: ClassVar[list[CamMenu]] = []
     """FreeCAD keeps no reference of its own."""
 
     def modifyMenuBar(self):
-        """The commands that follow CAM's own copy of an operation."""
+        """Add the commands after CAM's own copy of an operation."""
         from pkm_post.freecad_gui.commands import COMMANDS
 
         return [{"append": command.name, "menuItem": "CAM_SimpleCopy"} for command in COMMANDS]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Control panel: the dock in which a machine is connected to, looked at and operated.
+"""Control panel: the dock for connecting to a machine, monitoring and operating it.
 
-What needs no window is in ``pkm_post.numerical_control``. One thread, the worker's, talks to the controller; the window
-looks ten times a second at what it found.
+Code that needs no window is in ``pkm_post.numerical_control``. Only the worker thread communicates with the controller;
+the window polls its results ten times a second.
 """
 
 from pkm_post.freecad_gui.control_panel.dock import ControlPanel, open_control

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beside: what needs no controller and takes long is done beside the window, one after the other.
+"""Beside: runs long calls that need no controller outside the window's thread, one after the other.
 
-Calls enter; their results leave as calls in the thread of the window. To connect, to leave and to read a file are such.
+Takes calls; returns their results as calls in the window's thread. Examples: connecting, disconnecting, reading a file.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ class Beside(QtCore.QObject):
     """A queue of calls."""
 
     changed = QtCore.Signal()
-    """One was begun or has ended."""
+    """Emitted when a call begins or ends."""
 
     def __init__(self, parent: QtCore.QObject, tell: Callable[[Exception], None], told: tuple[type[Exception], ...]):
-        """Make it.
+        """Create the queue.
 
         Args:
-            parent: of the threads.
-            tell: gets faults that are told to the user.
-            told: what faults these are; others are ours and are raised.
+            parent: parent of the threads.
+            tell: callback for faults to report to the user.
+            told: types of these faults; others are our own errors and are raised.
         """
         super().__init__(parent)
         self._tell, self._told = tell, told
@@ -39,15 +39,15 @@ class Beside(QtCore.QObject):
 
     @property
     def is_busy(self) -> bool:
-        """Whether something is being done."""
+        """Whether a call is running or waiting."""
         return self._task is not None
 
     def do(self, call: Callable[[], Any], then: Then) -> None:
-        """Have something done.
+        """Queue a call.
 
         Args:
-            call: is made in a thread of its own.
-            then: gets what it gave back, in the thread of the window.
+            call: runs in a thread of its own.
+            then: gets its return value, in the window's thread.
         """
         self._waiting.append((call, then))
         if self._task is None:

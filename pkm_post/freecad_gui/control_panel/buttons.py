@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Buttons: those that give orders, and know why they cannot."""
+"""Buttons: buttons for orders, which also state why an order is not possible."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pkm_post.numerical_control.permissions import Order, Why, refusal
 
 
 class OrderButton(QtWidgets.QPushButton):
-    """A button for an order; where the order makes no sense it is grey, and its tip says why."""
+    """A button for an order; where the order is not possible it is disabled, and its tooltip states why."""
 
     def __init__(self, text: str, tip: str, order: Order, action: Callable[[], Any]) -> None:
         super().__init__(text)
@@ -24,7 +24,7 @@ class OrderButton(QtWidgets.QPushButton):
         self.clicked.connect(lambda: action())
 
     def refresh(self, found: frozenset[Why]) -> None:
-        """Show whether the order makes sense."""
+        """Enable or disable the button."""
         why = refusal(self._order, found)
         self.setEnabled(why is None)
         if why is not self._why:
@@ -33,13 +33,13 @@ class OrderButton(QtWidgets.QPushButton):
 
 
 def refresh_all(buttons: Iterable[OrderButton], found: frozenset[Why]) -> None:
-    """Show of several whether they make sense."""
+    """Enable or disable several buttons."""
     for button in buttons:
         button.refresh(found)
 
 
 def plain_button(text: str, tip: str, action: Callable[[], Any]) -> QtWidgets.QPushButton:
-    """A button that gives no order to a machine."""
+    """A button without an order to the machine."""
     button = QtWidgets.QPushButton(text)
     button.setToolTip(tip)
     button.setAutoDefault(False)

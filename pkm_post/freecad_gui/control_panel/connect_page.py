@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Connect page: which controller, which machine, which tool; or a simulated machine to train with.
+"""Connect page: selects controller, machine and tool; or a simulated machine for training.
 
-Names enter; a connection of the console comes of them, or what is wrong with them is told.
+Takes names; makes a connection of the console, or reports what is wrong with them.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ class ConnectPage(QtWidgets.QWidget):
 
     Attributes:
         port, machine, tool_length: the fields.
-        taken_length: of the tool that poses are told for, mm.
+        taken_length: length of the tool to which displayed poses refer, mm.
         connect, train, leave: the buttons.
     """
 
     def __init__(self, console: Console, leave: Callable[[], None]) -> None:
-        """Make it.
+        """Create the page.
 
         Args:
-            console: connects.
-            leave: ends the connection, when the user does not mind.
+            console: makes the connection.
+            leave: ends the connection, if the user agrees.
         """
         super().__init__()
         self._console, kept = console, FreeCAD.ParamGet(GROUP)
@@ -77,7 +77,7 @@ class ConnectPage(QtWidgets.QWidget):
         layout.addRow(side_by_side(self.connect, self.train, self.leave))
 
     def refresh(self, _state: State, found: frozenset[Why]) -> None:
-        """Show what can be done."""
+        """Enable what is possible."""
         connected, waits = Why.NOT_CONNECTED not in found, self._console.waits
         for widget in (self.port, self.machine.parentWidget(), self.connect, self.train):
             widget.setEnabled(not (connected or waits))
@@ -98,7 +98,7 @@ class ConnectPage(QtWidgets.QWidget):
             return False
         try:
             target, told = target_of(port, name)
-        except ValueError as fault:  # the name of the port
+        except ValueError as fault:  # invalid port name
             self._console.told.emit(str(fault), True)
             return False
         for each in told:
@@ -110,7 +110,7 @@ class ConnectPage(QtWidgets.QWidget):
         return True
 
     def _take_tool_length(self) -> None:
-        """A tool of another length is in the spindle: the tip is elsewhere then."""
+        """Apply the length of another tool in the spindle: the tip is elsewhere then."""
         length = self.tool_length.property("rawValue")
         if self._console.connection is not None and length not in (0.0, self.taken_length):
             self.taken_length = length

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Console: the connection of a panel and the orders under way, without a widget.
+"""Console: the connection of a panel and its pending orders, without a widget.
 
-Orders enter as functions of the control. Their results leave as calls in the thread of the window, from a timer that
-looks ten times a second. Nothing here waits: what takes long runs in the worker's thread, or beside the window.
+Takes orders as functions of the control; returns their results as calls in the window's thread, from a timer that
+polls ten times a second. Nothing here blocks: long calls run in the worker thread, or beside the window.
 """
 
 from __future__ import annotations
@@ -31,26 +31,26 @@ Call = Callable[[NumericalControl], Any]
 
 _LOOK_MS = 100
 _TOLD = (PmacError, OSError, UnicodeError, ImportError, Refused)
-"""Faults of machine, link and files, and packages that are not installed: a person reads them. All others are ours."""
+"""Faults of machine, link and files, and missing packages: reported to the user. All others are our own errors."""
 
 
 class Console(QtCore.QObject):
-    """What the parts of a panel share.
+    """State shared by the parts of a panel.
 
     Attributes:
-        connection: to the machine; None while there is none.
-        job: the program that was opened.
-        loaded: whether it was loaded by this panel.
-        stops: how many stops (M0, M1) it has to go on after.
-        stepping: whether its blocks were taken for single block.
-        progress: lines of it that are loaded, and of how many.
-        beside: does what needs no controller.
+        connection: to the machine; None if there is none.
+        job: the opened program.
+        loaded: whether this panel has loaded it.
+        stops: number of stops (M0, M1) after which it can continue.
+        stepping: whether its blocks are in use for single block.
+        progress: its loaded lines, and the total.
+        beside: runs what needs no controller.
     """
 
     looked = QtCore.Signal()
-    """Ten times a second, and when something has changed."""
+    """Emitted ten times a second, and on changes."""
     told = QtCore.Signal(str, bool)
-    """A text for the user, and whether something is wrong."""
+    """A text for the user, and whether it reports a fault."""
 
     def __init__(self, parent: QtCore.QObject) -> None:
         super().__init__(parent)
@@ -66,21 +66,21 @@ class Console(QtCore.QObject):
 
     @property
     def state(self) -> State:
-        """The newest."""
+        """The latest state."""
         return State(None, None) if self.connection is None else self.connection.worker.state
 
     @property
     def waits(self) -> bool:
-        """Whether something is done beside the window: connecting, leaving, reading a file."""
+        """Whether a call is running beside the window: connecting, disconnecting, reading a file."""
         return self.beside.is_busy
 
     @property
     def has_orders(self) -> bool:
-        """Whether orders are under way."""
+        """Whether orders are pending."""
         return bool(self._under_way)
 
     def desk(self) -> Desk:
-        """What is known here besides the state."""
+        """What the panel knows besides the state."""
         return Desk(
             connected=self.connection is not None,
             watch_only=self.connection is not None and self.connection.target.watch_only,
@@ -93,7 +93,7 @@ class Console(QtCore.QObject):
         )
 
     def found(self) -> frozenset[Why]:
-        """Everything that may stand against an order now."""
+        """All current reasons against orders."""
         return facts(self.state, self.desk())
 
     def connect_to(self, target: Target, tool_length: float) -> None:
@@ -108,7 +108,7 @@ class Console(QtCore.QObject):
             self.leave()
 
     def leave(self) -> None:
-        """End the connection beside the window, as soon as there is one; nothing is stopped."""
+        """End the connection beside the window, as soon as it exists; nothing is stopped."""
         self._is_wanted = False
         self._cancelled.set()
         connection, self.connection = self.connection, None
@@ -119,13 +119,13 @@ class Console(QtCore.QObject):
             self.beside.do(connection.close, lambda _ended: None)
 
     def order(self, call: Call, then: Then | None = None) -> None:
-        """Have something done by the control; ``then`` gets the result, unless a stop comes between."""
+        """Queue an order for the control; ``then`` gets the result, unless a stop intervenes."""
         assert self.connection is not None
         self._under_way.append((self.connection.worker.submit(call), then))
         self.looked.emit()
 
     def stop(self, call: Call) -> None:
-        """Have a stop done next: what waits is cancelled, and what was to follow does not follow."""
+        """Run a stop next: waiting orders are cancelled, and so are their continuations."""
         assert self.connection is not None
         self._cancelled.set()
         self._under_way = [(future, None) for future, _ in self._under_way]
@@ -133,7 +133,7 @@ class Console(QtCore.QObject):
         self.looked.emit()
 
     def abort(self, at_once: bool) -> None:
-        """End the program; a homing is no longer watched."""
+        """Abort the program; a homing is no longer monitored."""
         self._homing = False
         self.stop(lambda control: control.abort(at_once))
 
@@ -145,12 +145,12 @@ class Console(QtCore.QObject):
         self._homing = True
 
     def move(self, planning: Callable[[NumericalControl], Any], then: Then, sends: bool = True) -> None:
-        """Plan a move and, if nothing stands against it, have it carried out.
+        """Plan a move and, unless something prevents it, execute it.
 
         Args:
-            planning: gives the plan, or None, and what is to be told.
+            planning: returns the plan, or None, and the diagnostics.
             then: gets the plan, or None.
-            sends: whether it is carried out; else it is planned alone.
+            sends: whether to execute it; otherwise it is only planned.
         """
         self.order(planning, lambda found: self._planned(*found, then, sends))
 
@@ -162,18 +162,18 @@ class Console(QtCore.QObject):
             self.order(lambda control: control.execute(plan))
 
     def load(self) -> None:
-        """Load the program that was opened; ``cancel_load`` ends that."""
+        """Load the opened program; ``cancel_load`` ends that."""
         assert self.job is not None
         job, self.loaded = self.job, False
         self._cancelled.clear()
         self.order(lambda control: control.load(job, self._progressed, self._cancelled.is_set), self._has_loaded)
 
     def cancel_load(self) -> None:
-        """End a download; nothing is left of it in the controller."""
+        """Cancel a download; nothing of it remains in the controller."""
         self._cancelled.set()
 
     def _progressed(self, done: int, lines: int) -> None:
-        """Called in the worker's thread."""
+        """Called in the worker thread."""
         self.progress = done, lines
 
     def _has_loaded(self, loaded: Any) -> None:
@@ -182,13 +182,13 @@ class Console(QtCore.QObject):
         self.told.emit(text.format(loaded.program, loaded.lines), False)
 
     def take_job(self, job: Job | None) -> None:
-        """Have another program opened, or none; blocks of the one before do not come next any more."""
+        """Replace the opened program, or close it; blocks of the previous one are no longer next."""
         self.job: Job | None = job
         self.loaded, self.stepping, self.progress = False, False, (0, 0)
         self.stops = 0 if job is None else len(stops_of(job))
 
     def _look(self) -> None:
-        """Called by the timer; while it calls, somebody can see what the machine does."""
+        """Called by the timer; as long as it runs, the user can see what the machine does."""
         if self.connection is not None:
             self.connection.worker.attend()
         if self.connection is not None and self.connection.worker.failure is not None:
@@ -213,7 +213,7 @@ class Console(QtCore.QObject):
             then(future.result())
 
     def _quit(self) -> None:
-        """FreeCAD ends: the link is closed in order; who wanted to be asked was asked before."""
+        """FreeCAD ends: close the link in order; any question to the user came before."""
         connection, self.connection = self.connection, None
         self._timer.stop()
         if connection is not None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dock: numerical control as a window beside the 3D view, one for each main window.
+"""Dock: numerical control as a window beside the 3D view, one per main window.
 
-It is closed, and FreeCAD ends, only after the user has said what becomes of a machine that moves.
+While a machine moves, neither the dock nor FreeCAD closes before the user has decided what happens to it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class ControlPanel(QtWidgets.QDockWidget):
 
     Attributes:
         console: connection and orders.
-        face: what is seen.
+        face: the content.
     """
 
     def __init__(self, window: QtWidgets.QMainWindow) -> None:
@@ -42,12 +42,12 @@ class ControlPanel(QtWidgets.QDockWidget):
         self.face.refresh()
 
     def leave(self) -> None:
-        """End the connection, unless the user wants to stay with a machine that moves."""
+        """End the connection, unless the user wants to stay with a moving machine."""
         if self._may_leave(self.leave):
             self.console.leave()
 
     def closeEvent(self, event: Any) -> None:
-        """Called by Qt: the connection ends with the window."""
+        """Called by Qt: closing the window ends the connection."""
         if not self._may_leave(self.close):
             event.ignore()
             return
@@ -55,7 +55,7 @@ class ControlPanel(QtWidgets.QDockWidget):
         super().closeEvent(event)
 
     def eventFilter(self, watched: QtCore.QObject, event: QtCore.QEvent) -> bool:
-        """Called by Qt: FreeCAD does not end beside a machine that moves without a question."""
+        """Called by Qt: FreeCAD asks before it ends while a machine moves."""
         window = self.parent()
         if event.type() == QtCore.QEvent.Type.Close and watched is window and not self._may_leave(window.close):
             event.ignore()
@@ -63,7 +63,7 @@ class ControlPanel(QtWidgets.QDockWidget):
         return False
 
     def _may_leave(self, again: Callable[[], Any]) -> bool:
-        """Whether the connection may end now; ``again`` is called when the machine stands, if the user wishes that."""
+        """Whether the connection may end now; ``again`` is called at standstill, if the user wishes that."""
         if self.console.connection is None or not (may_move(self.console.state) or self.console.has_orders):
             return True
         box = QtWidgets.QMessageBox(self)
@@ -83,7 +83,7 @@ class ControlPanel(QtWidgets.QDockWidget):
         return box.clickedButton() is goes_on
 
     def _close_at_rest(self) -> None:
-        """What was put off until the machine stands."""
+        """Run what was deferred until standstill."""
         again = self._when_at_rest
         if again is not None and not may_move(self.console.state) and not self.console.has_orders:
             self._when_at_rest = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Face: what stands in the dock of numerical control, from top to bottom, and is brought up to date as one."""
+"""Face: the content of the numerical control dock, from top to bottom, refreshed as one."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ class Face(QtWidgets.QWidget):
     """The parts.
 
     Attributes:
-        training: that the machine is simulated.
-        banner: what is wrong with the link, and what to do then.
-        activity: what the controller does.
-        readout, struts, stops: pose, struts, and what stops.
+        training: label of a simulated machine.
+        banner: fault of the link, and the action to take.
+        activity: current activity of the controller.
+        readout, struts, stops: pose, struts, and the stop bar.
         connecting, homing, jog, mdi, program: the pages.
-        follows: whether the machine object of the document moves along.
-        messages: what was told, the newest last.
+        follows: whether the machine object of the document follows the machine.
+        messages: all messages, the newest last.
     """
 
     def __init__(self, console: Console, leave: Callable[[], None]) -> None:
@@ -104,7 +104,7 @@ class Face(QtWidgets.QWidget):
         self.messages.scrollToBottom()
 
     def refresh(self) -> None:
-        """Show the newest state."""
+        """Show the latest state."""
         console = self._console
         state, found, connection = console.state, console.found(), console.connection
         if connection is not self._connection:
@@ -118,7 +118,7 @@ class Face(QtWidgets.QWidget):
         self._follower.show(state.pose, self.connecting.taken_length)
 
     def _take(self, connection: Connection | None) -> None:
-        """Another machine, or none."""
+        """Switch to another machine, or none."""
         self._connection = connection
         self.readout.work_offset.clear()
         if connection is not None:
@@ -127,7 +127,7 @@ class Face(QtWidgets.QWidget):
         self._follow(self.follows.isChecked())
 
     def _machine_from_work(self) -> Array:
-        """The (4, 4) pose of the work frame that is chosen."""
+        """The (4, 4) pose of the selected work frame."""
         if self._connection is None:
             return np.eye(4)
         return self._connection.target.machine.work_offsets.get(self.readout.work_offset.currentText(), np.eye(4))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Follower: the machine object of the document moves as the machine does.
+"""Follower: the machine object of the document follows the machine.
 
-A machine, poses and the length of the tool enter; the scene of the object is moved. Nothing of the document changes,
-and at the end the object shows its own pose again.
+Takes a machine, poses and the tool length; moves the scene of the object. The document does not change, and at the end
+the object shows its own pose again.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pkm_post.model import Machine
 from pkm_post.pmac_link.readout import Pose
 
 _SEEN = 1e-5
-"""mm, rad: less than this nobody sees."""
+"""mm, rad: smaller changes are not visible."""
 
 
 class Follower:
@@ -31,7 +31,7 @@ class Follower:
         self._seen: Array | None = None
 
     def begin(self, document: Any, machine: Machine) -> bool:
-        """Follow with the object of a document that shows a machine; whether there is one."""
+        """Follow with the object of a document that shows a machine; return whether there is one."""
         self.end()
         obj = None if document is None else _object_for(document, machine)
         if obj is None:
@@ -47,7 +47,7 @@ class Follower:
             return
         seen = np.array([*pose.tip, *pose.axis, pose.spin, tool_length])
         if self._seen is not None and np.abs(seen - self._seen).max() < _SEEN:
-            return  # drawing takes long where nothing but the processor draws
+            return  # software rendering is slow
         self._seen = seen
         scene, obj = self._view.scene, self._view.Object
         tool = obj.ToolDiameter.Value, obj.ToolCornerRadius.Value, tool_length
@@ -57,7 +57,7 @@ class Follower:
         scene.show((pose.tip[None], pose.axis[None], np.array([pose.spin]), np.array([tool_length])))
 
     def end(self) -> None:
-        """Let the object show its own pose."""
+        """Restore the object's own pose."""
         view = self._view
         self._forget()
         if view is not None:
@@ -71,7 +71,7 @@ class Follower:
 
 
 def _object_for(document: Any, machine: Machine) -> Any:
-    """The first object that shows a machine and is moved by nothing else."""
+    """The first object that shows a machine and that nothing else moves."""
     for obj in document.Objects:
         if not (hasattr(obj, "MachineFile") and hasattr(obj, "OutOfLimits")):
             continue

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Homing page: the line that starts the homing of the machine, and how far it is.
+"""Homing page: the command that starts the homing of the machine, and its progress.
 
-A line enters; it is sent when the user has said that the way is free.
+Takes a line; sends it after the user has confirmed that the travel is clear.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class HomingPage(QtWidgets.QWidget):
     Attributes:
         trigger: the line.
         home: the button.
-        told: how far it is.
+        told: progress of the homing.
     """
 
     def __init__(self, console: Console) -> None:
@@ -55,7 +55,7 @@ class HomingPage(QtWidgets.QWidget):
         layout.addStretch(1)
 
     def refresh(self, state: State, found: frozenset[Why]) -> None:
-        """Show what can be done, and how far a homing is."""
+        """Enable what is possible, and show the progress of a homing."""
         self.home.refresh(found)
         self.told.setText("" if state.homing is None else homing_text(state.homing))
         connection = self._console.connection
@@ -68,11 +68,11 @@ class HomingPage(QtWidgets.QWidget):
         trigger, connection = self.trigger.text().strip(), self._console.connection
         try:
             check_trigger(trigger)
-        except ValueError as fault:  # the user typed it
+        except ValueError as fault:  # invalid user input
             self._console.told.emit(str(fault), True)
             return
         if not self._is_sure(trigger) or refusal(Order.HOME, self._console.found()) is not None:
-            return  # the state may have changed while the user was asked
+            return  # the state may have changed during the question
         if connection is not None and not connection.simulated:
             FreeCAD.ParamGet(GROUP).SetString(_ENTRY, trigger)
         self._console.home(trigger)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jog page: the tool or one strut moved by a step.
+"""Jog page: moves the tool or one strut by a step.
 
-Steps and speeds enter as quantities; a planned move of the console comes of a click. Directions are those of {M}.
+Takes steps and speeds as quantities; a click plans a move of the console. Directions are those of {M}.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _TOOL = (
         QT_TRANSLATE_NOOP("ControlPanel", "The platform about the tool axis; the tip stands"),
     ),
 )
-"""Label and tip of each of the six numbers of a jog of the tool: three lengths, three angles."""
+"""Label and tooltip of each of the six axes of a tool jog: three lengths, three angles."""
 _LENGTHS = 3
 _FIELDS = (
     ("step", QT_TRANSLATE_NOOP("ControlPanel", "Step"), 1.0, "mm"),
@@ -54,8 +54,8 @@ class JogPage(QtWidgets.QWidget):
     """The page.
 
     Attributes:
-        step, turn, speed, turning: step of lengths and angles, speed of the tip and of turns in place.
-        strut: the number of the strut that is jogged alone.
+        step, turn, speed, turning: step of lengths and angles, speed of the tip and of rotations in place.
+        strut: the number of the strut for single-strut jogs.
         buttons: by name and direction, such as ``("X", 1)`` and ``("strut", -1)``.
     """
 
@@ -91,7 +91,7 @@ class JogPage(QtWidgets.QWidget):
         tip = translate("ControlPanel", "One strut alone; it takes the platform with it")
         self._add_row(grid, len(_TOOL), "strut", translate("ControlPanel", "Strut"), tip, self._of_strut)
         for column in (1, 2):
-            grid.setColumnStretch(column, 1)  # room goes to the buttons, and each label stands beside its own
+            grid.setColumnStretch(column, 1)  # buttons take the spare width, so each label stays beside its own
         return grid
 
     def _add_row(
@@ -104,7 +104,7 @@ class JogPage(QtWidgets.QWidget):
             grid.addWidget(button, row, column)
 
     def refresh(self, _state: State, found: frozenset[Why]) -> None:
-        """Show what can be done."""
+        """Enable what is possible."""
         refresh_all(self.buttons.values(), found)
 
     def _of_tool(self, row: int, sign: int) -> Jog:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""MDI page: lines of G-code typed by hand, and those that were typed before.
+"""MDI page: lines of G-code typed by hand, with a history.
 
-A line enters; where it leads and how long it takes is told, and it is carried out when that is wished.
+Takes a line; shows its end point and duration, and executes it on request.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ _KEPT = 100
 
 
 class HistoryLine(QtWidgets.QLineEdit):
-    """A line; the keys up and down bring back what was typed before.
+    """A line; the up and down keys recall earlier input.
 
     Attributes:
-        history: what was typed, the newest last.
+        history: earlier input, the newest last.
     """
 
     def __init__(self) -> None:
@@ -38,7 +38,7 @@ class HistoryLine(QtWidgets.QLineEdit):
         self._place = 0
 
     def remember(self, text: str) -> None:
-        """Keep a line."""
+        """Add a line to the history."""
         self.history = [*(each for each in self.history if each != text), text][-_KEPT:]
         self._place = len(self.history)
 
@@ -57,10 +57,10 @@ class MdiPage(QtWidgets.QWidget):
     """The page.
 
     Attributes:
-        line: what is typed.
-        axis_words: how it says the tool axis.
+        line: the input.
+        axis_words: form of the tool axis in it.
         check, run: the buttons.
-        outcome: where the line leads.
+        outcome: end point of the line.
     """
 
     def __init__(self, console: Console, work_offset: QtWidgets.QComboBox) -> None:
@@ -94,7 +94,7 @@ class MdiPage(QtWidgets.QWidget):
         layout.addStretch(1)
 
     def refresh(self, _state: State, found: frozenset[Why]) -> None:
-        """Show what can be done."""
+        """Enable what is possible."""
         refresh_all((self.check, self.run), found)
 
     def _enter(self) -> None:
@@ -102,7 +102,7 @@ class MdiPage(QtWidgets.QWidget):
             self._plan(sends=True)
 
     def _plan(self, sends: bool) -> None:
-        line = " ".join(self.line.text().split())  # what was pasted may have had several lines
+        line = " ".join(self.line.text().split())  # pasted text may contain several lines
         if not line:
             return
         self.line.remember(line)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program page: a motion program opened, loaded, started, or run line by line of its source.
+"""Program page: opens, loads and starts a motion program, or runs it line by line of its source.
 
-A file enters, is read beside the window, and goes to the controller when that is wished.
+Takes a file, reads it beside the window, and sends it to the controller on request.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ class ProgramPage(QtWidgets.QWidget):
     """The page.
 
     Attributes:
-        name: of the file that was opened.
+        name: of the opened file.
         open, load, cancel, approach, start, begin_at, step, go_on: the buttons.
-        block, stop: numbers of the block to begin at, and of the stop to go on after.
-        bar: how much is loaded.
+        block, stop: numbers of the start block, and of the stop after which to continue.
+        bar: loaded share.
     """
 
     def __init__(self, console: Console) -> None:
@@ -75,7 +75,7 @@ class ProgramPage(QtWidgets.QWidget):
         layout.addStretch(1)
 
     def refresh(self, _state: State, found: frozenset[Why]) -> None:
-        """Show what can be done, and how far loading is."""
+        """Enable what is possible, and show the progress of loading."""
         console, (done, lines) = self._console, self._console.progress
         refresh_all((self.load, self.approach, self.start, self.begin_at, self.step, self.go_on), found)
         self.open.setEnabled(not {Why.NOT_CONNECTED, Why.WATCH_ONLY} & found and not console.waits)
@@ -92,7 +92,7 @@ class ProgramPage(QtWidgets.QWidget):
             self.read(Path(name))
 
     def read(self, file: Path, uncertified: bool = False) -> None:
-        """Read a program file beside the window, certified or, where a macro says so, ``uncertified``."""
+        """Read a program file beside the window, certified or, if a macro requests it, ``uncertified``."""
         connection = self._console.connection
         assert connection is not None
         target = connection.target
@@ -127,7 +127,7 @@ class ProgramPage(QtWidgets.QWidget):
 
     def _go_on(self) -> None:
         job, stop = self._console.job, self.stop.value()
-        self._console.loaded = False  # its rest takes its place in the controller
+        self._console.loaded = False  # its remainder replaces it in the controller
         self._console.order(lambda control: control.go_on(job, stop))
 
     def _begin_at(self) -> None:
@@ -141,7 +141,7 @@ class ProgramPage(QtWidgets.QWidget):
             self._console.told.emit(str(each), blocks is None)
         if blocks is not None and self._console.connection is not None:
             first = min(at, len(blocks))
-            opened = lambda count: self._opened(count, first)  # noqa: E731 - with what was asked for
+            opened = lambda count: self._opened(count, first)  # noqa: E731 - with the requested block
             self._console.order(lambda control: control.open_blocks(blocks, first), opened)
 
     def _opened(self, count: int, first: int) -> None:

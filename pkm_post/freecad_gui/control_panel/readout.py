@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Readout: where the tool is, in large digits, and how each strut is.
+"""Readout: the tool position in large digits, and the state of each strut.
 
-A state enters ten times a second, with a work offset. The large digits are coordinates of the work frame, those beside
-them of the machine frame; lengths are in the unit that FreeCAD shows lengths in.
+Takes a state ten times a second, with a work offset. The large digits are coordinates in the work frame, those beside
+them in the machine frame; lengths are in FreeCAD's display unit.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class PoseReadout(QtWidgets.QWidget):
     Attributes:
         work_offset: names of the work offsets of the machine.
         in_work, in_machine: coordinates of the tip, by name.
-        axis, tilt: of the tool in the work frame, with the axis in the machine frame as tip.
+        axis, tilt: of the tool in the work frame, with the axis in the machine frame as tooltip.
         spin: of the platform.
     """
 
@@ -115,7 +115,7 @@ class StrutTable(QtWidgets.QTableWidget):
 
 
 def length_text(millimetres: float) -> str:
-    """A length in the unit that FreeCAD shows lengths of 100 mm in; as fine as a micron, whatever unit that is."""
+    """A length in FreeCAD's unit for lengths of 100 mm, with micron resolution in any unit."""
     _, factor, unit = FreeCAD.Units.Quantity("100 mm").getUserPreferred()
     return f"{_fixed(millimetres / factor, _MM_DECIMALS + max(0, round(math.log10(factor))))} {unit}"
 
@@ -126,12 +126,12 @@ def angle_text(radians: float) -> str:
 
 
 def axis_text(axis: Array) -> str:
-    """The three numbers of an axis."""
+    """The three components of an axis."""
     return "  ".join(f"{name} {_fixed(float(value), 6)}" for name, value in zip("IJK", axis, strict=True))
 
 
 def _fixed(value: float, decimals: int) -> str:
-    """A number with its decimals, and no minus in front of zero."""
+    """A number with fixed decimals, and no minus sign on zero."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 
@@ -142,7 +142,7 @@ def _strut_row(status: Status, row: int) -> tuple[str, ...]:
 
 
 def _digits(large: bool = False) -> QtWidgets.QLabel:
-    """A label for a number that changes without moving what stands around it."""
+    """A label for a changing number that does not shift its neighbours."""
     label, font = QtWidgets.QLabel(_NOTHING), QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont)
     if large:
         font.setPointSizeF(1.8 * font.pointSizeF())

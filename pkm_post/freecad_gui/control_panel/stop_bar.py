@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stop bar: hold, resume, abort and override; always in sight, and never grey while there is a connection."""
+"""Stop bar: hold, resume, abort and override; always visible, and never disabled while connected."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ _BUTTONS: tuple[tuple[str, str, Order, Callable[[Console], None]], ...] = (
         lambda console: console.abort(at_once=True),
     ),
 )
-"""Text, tip and order of each button, and what it does."""
+"""Text, tooltip, order and action of each button."""
 _RED = "QPushButton:enabled { background-color: #cc0000; color: white; font-weight: bold; }"
 _QUIET_MS = 300
-"""So long the slider has to rest before its override is sent."""
+"""Idle time of the slider before its override is sent."""
 
 
 class StopBar(QtWidgets.QWidget):
@@ -85,7 +85,7 @@ class StopBar(QtWidgets.QWidget):
         self.override.valueChanged.connect(self._changed)
 
     def refresh(self, state: State, found: frozenset[Why]) -> None:
-        """Show what can be done, and the override of the controller while nobody sets another one."""
+        """Enable what is possible, and show the controller's override unless the user is setting another one."""
         refresh_all(self._buttons, found)
         against = refusal(Order.OVERRIDE, found)
         self.override.setEnabled(against in (None, Why.BUSY))

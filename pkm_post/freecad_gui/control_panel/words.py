@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words: what the room of numerical control tells, in the language of the user.
+"""Words: messages of numerical control in the user's language.
 
-Names and texts of ``pmac_link`` and ``numerical_control`` enter, translated text leaves. The English is theirs, letter
-by letter: a test compares it. Refusals of the controller and diagnostics stay as they are told.
+Takes names and texts of ``pmac_link`` and ``numerical_control``; returns translated text. The English matches theirs
+exactly: a test compares it. Refusals of the controller and diagnostics stay untranslated.
 """
 
 from __future__ import annotations
@@ -93,12 +93,12 @@ EMERGENCY = (
 
 
 def why_text(why: Why) -> str:
-    """What stands against an order."""
+    """The reason against an order."""
     return translate("ControlPanel", WHY[why])
 
 
 def activity_text(state: State) -> str:
-    """What the controller does, in a line, with what is wrong with the program."""
+    """The controller's activity in one line, with any fault of the program."""
     status = state.status
     if status is None:
         return translate("ControlPanel", "Nothing was read yet")
@@ -112,7 +112,7 @@ def activity_text(state: State) -> str:
 
 
 def _block_text(block: Shown) -> str:
-    """The operation of the job has a name of its own."""
+    """A block with the job operation's own name."""
     text = ": ".join(filter(None, (block.operation, block.text)))
     return translate("ControlPanel", "block {} of {} comes next, line {}: {}").format(
         block.number, block.count, block.line, text
@@ -120,12 +120,12 @@ def _block_text(block: Shown) -> str:
 
 
 def strut_text(status: Status, index: int) -> str:
-    """What is to be said of a strut, from 0; empty when all is well."""
+    """Message for a strut, counted from 0; empty if all is well."""
     return ", ".join(_told(status.motors[index], MOTOR))
 
 
 def homing_text(homing: Homing) -> str:
-    """How far a homing is."""
+    """Progress of a homing."""
     told = translate("ControlPanel", PHASES[homing.phase])
     if not homing.missing:
         return told
@@ -134,7 +134,7 @@ def homing_text(homing: Homing) -> str:
 
 
 def emergency_text(lines: tuple[str, ...]) -> str:
-    """What a person has to do."""
+    """Instructions for the operator."""
     return "\n".join(translate("ControlPanel", line) for line in lines)
 
 

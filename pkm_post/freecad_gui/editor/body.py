@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Body: the text of a part program with all that is told of it while it is typed.
+"""Body: the text of a part program with live feedback.
 
-A text, the name of its file and what is said of it enter; the faults, what the program holds, and the block under the
-cursor on the path of its program object are shown.
+Takes a text, its file name and its reading options; shows the faults, the contents of the program, and the block under
+the cursor on the path of its program object.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ from pkm_post.sources import Reading
 translate = FreeCAD.Qt.translate
 
 _NEW = "new.ngc"
-"""The name of a text without a file: it is taken for G-code."""
+"""The name of a text without a file: it counts as G-code."""
 _NUMBERED = re.compile(r"^[ \t]*/?[ \t]*N\d", re.M)
-"""The beginning of a block that ``renumbered`` gave a number."""
+"""The start of a block that ``renumbered`` has numbered."""
 
 
 class Body(QtWidgets.QWidget):
-    """The text and what is told of it.
+    """The text and its feedback.
 
     Attributes:
-        file: where the text comes from; None for a new one.
-        program: what the text means, for as long as that is known.
+        file: source of the text; None for a new one.
+        program: the parsed program, as long as it is up to date.
     """
 
     def __init__(self, parent: QtWidgets.QWidget) -> None:
@@ -67,18 +67,18 @@ class Body(QtWidgets.QWidget):
         self.reading.changed.connect(self._read_otherwise)
 
     def name(self) -> str:
-        """The name of the file, or the one that stands in for it."""
+        """The name of the file, or its placeholder."""
         return str(self.file or _NEW)
 
     def language(self) -> Language:
-        """What the text is written in."""
+        """The language of the text."""
         return language_of(self.name())
 
     def set_file(self, file: Path | None) -> None:
-        """The text is that of this file from now on."""
+        """Attach the text to this file."""
         self.file = file
         obj = linked.object_of(file)
-        # What was said of other CL data is not said of this file; of G-code most files have the same.
+        # Options of other CL data do not apply to this file; G-code files mostly share theirs.
         kept = replace(
             self.reading.chosen(), unit=None, contour_data=None, cl_dialect=None, cycle_values=(), allow_open_end=False
         )
@@ -88,13 +88,13 @@ class Body(QtWidgets.QWidget):
         self.checker.request()
 
     def follow(self) -> None:
-        """The file was written: let its object read it again."""
+        """The file was saved: let its object read it again."""
         obj = linked.object_of(self.file)
         if obj is not None:
             linked.bring_up_to_date(obj, self.reading.chosen())
 
     def renumber(self) -> None:
-        """Give each block a line number; CL data has none."""
+        """Number all blocks; CL data has no line numbers."""
         if self.language() is not Language.GCODE:
             return
         first = step = 10
@@ -108,7 +108,7 @@ class Body(QtWidgets.QWidget):
         self.text.edits.change(changed)
 
     def busy(self) -> bool:
-        """Whether the text is being changed, or something of it is still to be told."""
+        """Whether the text is being changed, or a check is pending."""
         return self.text.edits.busy() or self.checker.busy()
 
     def _text_to_check(self) -> tuple[str, str, Reading]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Checker: reads the text of an editor beside the window, when nobody has typed for a moment."""
+"""Checker: reads the text of an editor beside the window, after a pause in typing."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from pkm_post.program_text import check_text
 from pkm_post.sources import Reading
 
 PAUSE_MS = 300
-"""How long nobody has to type before a text is read."""
+"""Pause in typing before a text is read."""
 
 
 class Checker(QtCore.QObject):
-    """Reads one text at a time. What has become old meanwhile is not told."""
+    """Reads one text at a time. Outdated results are dropped."""
 
     checked = QtCore.Signal(object)
     """A ``CheckedText``."""
     missing = QtCore.Signal(str)
-    """What is not installed, or that there is no memory, so that nothing can be read."""
+    """A missing package, or a lack of memory, which prevents reading."""
 
     def __init__(self, text_of: Callable[[], tuple[str, str, Reading]], parent: QtCore.QObject) -> None:
         super().__init__(parent)
@@ -35,11 +35,11 @@ class Checker(QtCore.QObject):
         self._pause.timeout.connect(self._begin)
 
     def request(self) -> None:
-        """The text has changed."""
+        """Request a check of the changed text."""
         self._pause.start()
 
     def busy(self) -> bool:
-        """Whether something is still to be told."""
+        """Whether a result is pending."""
         return self._pause.isActive() or self._task is not None
 
     def _begin(self) -> None:

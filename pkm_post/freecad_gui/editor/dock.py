@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dock: the editor of part programs as a window beside the 3D view, one for each main window.
+"""Dock: the part program editor as a window beside the 3D view, one per main window.
 
-A file, or the file of a program object, enters; it leaves as it was edited, decoded into a job, or posted.
+Takes a file, or that of a program object; saves the edited text, decodes it into a job, or posts it.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ class ProgramEditor(QtWidgets.QDockWidget):
     """The editor.
 
     Attributes:
-        body: the text and what is told of it.
-        posting: makes motion programs.
+        body: the text and its feedback.
+        posting: creates motion programs.
     """
 
     def __init__(self, window: QtWidgets.QMainWindow) -> None:
@@ -53,7 +53,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         self._document.modificationChanged.connect(self._name_window)
         window.installEventFilter(self)
         drop = FileDrop(self, self, self.body.text, self.body.text.viewport())
-        # what is dragged is taken first; a question to the user would hold up the other program
+        # children get drags first; queued, since a question to the user would block the source program
         drop.dropped.connect(self.open_file, QtCore.Qt.ConnectionType.QueuedConnection)
         self._name_window()
 
@@ -66,7 +66,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
             self.open_file(Path(name))
 
     def open_file(self, file: Path) -> bool:
-        """Edit a file; whether it is open then."""
+        """Edit a file; return whether it was opened."""
         if not self._may_leave():
             return False
         try:
@@ -80,11 +80,11 @@ class ProgramEditor(QtWidgets.QDockWidget):
         return True
 
     def save(self) -> bool:
-        """Write the text to its file, and let its object follow; whether it is written."""
+        """Write the text to its file, and update its object; return whether it was written."""
         return self.save_as() if self.body.file is None else self._write(self.body.file)
 
     def save_as(self) -> bool:
-        """Write the text to a file that the user chooses; whether it is written."""
+        """Write the text to a file that the user chooses; return whether it was written."""
         name = QtWidgets.QFileDialog.getSaveFileName(
             self, translate("PKM_Editor", "Save"), self._folder(), _name_filter()
         )[0]
@@ -108,7 +108,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         return True
 
     def decode(self) -> Any:
-        """Make the program an operation of a CAM job; the operation, or None when that was not possible."""
+        """Convert the program to an operation of a CAM job; return the operation, or None on failure."""
         title = translate("PKM_Editor", "Decode into a job")
         job = linked.chosen_job(self, title)
         if job is None:
@@ -140,7 +140,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         return is_saved or self.save()
 
     def _may_leave(self) -> bool:
-        """Whether the text is saved or may be lost."""
+        """Whether the text is saved or the user discards it."""
         if not self._document.isModified():
             return True
         buttons = QtWidgets.QMessageBox.StandardButton
@@ -172,5 +172,5 @@ def open_editor(item: Any = None) -> ProgramEditor:
 
 
 def _name_filter() -> str:
-    kind = translate("PKM_Editor", "Part programs")  # lupdate does not look into f-strings
+    kind = translate("PKM_Editor", "Part programs")  # lupdate does not read f-strings
     return f"{kind} ({' '.join(f'*{suffix}' for suffix in SUFFIXES)})"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""File drop: part programs that are dragged from a file manager and dropped on a widget."""
+"""File drop: accepts part programs dropped from a file manager on a widget."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _DRAGGED = (QtCore.QEvent.Type.DragEnter, QtCore.QEvent.Type.DragMove)
 
 
 class FileDrop(QtCore.QObject):
-    """Takes part programs that are dropped on widgets. Text goes its usual way, other files to the window around."""
+    """Accepts part programs dropped on widgets. Text is handled as usual, other files by the enclosing window."""
 
     dropped = QtCore.Signal(object)
-    """The path of the first of them."""
+    """The path of the first file."""
 
     def __init__(self, parent: QtCore.QObject, *widgets: QtWidgets.QWidget) -> None:
         super().__init__(parent)
@@ -32,7 +32,7 @@ class FileDrop(QtCore.QObject):
         if not event.mimeData().hasUrls():
             return False
         file = _part_program(event.mimeData())
-        if file is None:  # a text would insert the name of the file; FreeCAD's window may know what to do with it
+        if file is None:  # a text widget would insert the file name; FreeCAD's window may handle it
             event.ignore()
             return True
         event.setDropAction(QtCore.Qt.DropAction.CopyAction)
@@ -43,6 +43,6 @@ class FileDrop(QtCore.QObject):
 
 
 def _part_program(data: QtCore.QMimeData) -> Path | None:
-    """The first part program of what is dragged."""
+    """The first part program among the dragged files."""
     files = (Path(url.toLocalFile()) for url in data.urls() if url.isLocalFile())
     return next((file for file in files if is_part_program(file)), None)

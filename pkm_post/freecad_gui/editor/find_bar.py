@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Find bar: finds and replaces in the text of an editor."""
+"""Find bar: find and replace in the text of an editor."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ translate = FreeCAD.Qt.translate
 
 
 class FindBar(QtWidgets.QWidget):
-    """A line to find and a line to put in its place. Capital and small letters are the same."""
+    """Fields for the search text and its replacement. The search ignores case."""
 
     replaced = QtCore.Signal(int)
-    """How many places were replaced at once."""
+    """Number of simultaneous replacements."""
 
     def __init__(self, text: TextView, parent: QtWidgets.QWidget) -> None:
         super().__init__(parent)
@@ -46,16 +46,16 @@ class FindBar(QtWidgets.QWidget):
         layout.addWidget(button)
 
     def begin(self) -> None:
-        """Show the bar, with what is selected in the text."""
+        """Show the bar with the selected text."""
         selected = self._text.textCursor().selectedText()
-        if selected and "\u2029" not in selected:  # Qt's end of a line
+        if selected and "\u2029" not in selected:  # Qt's line separator
             self.wanted.setText(selected)
         self.show()
         self.wanted.setFocus()
         self.wanted.selectAll()
 
     def keyPressEvent(self, event: QtGui.QKeyEvent) -> None:
-        """Called by Qt: Escape leads back to the text."""
+        """Called by Qt: Escape returns to the text."""
         if event.key() == QtCore.Qt.Key.Key_Escape:
             self.hide()
             self._text.setFocus()
@@ -63,7 +63,7 @@ class FindBar(QtWidgets.QWidget):
             super().keyPressEvent(event)
 
     def find_next(self) -> bool:
-        """Select the next place, from the beginning again after the last; whether there is one."""
+        """Select the next match, wrapping around at the end; return whether there is one."""
         if not self.wanted.text():
             return False
         text, wanted = self._text.toPlainText(), self._wanted()
@@ -71,7 +71,7 @@ class FindBar(QtWidgets.QWidget):
         return self._select(text, wanted.search(text, here) or wanted.search(text))
 
     def find_previous(self) -> bool:
-        """The same backwards."""
+        """Select the previous match in the same manner."""
         if not self.wanted.text():
             return False
         text, wanted = self._text.toPlainText(), self._wanted()
@@ -92,7 +92,7 @@ class FindBar(QtWidgets.QWidget):
         return True
 
     def replace(self) -> None:
-        """Replace what is selected, if it is what is wanted, and go to the next place."""
+        """Replace the selection, if it is a match, and go to the next match."""
         self._text.edits.finish()
         cursor = self._text.textCursor()
         if cursor.hasSelection() and cursor.selectedText().casefold() == self.wanted.text().casefold():
@@ -100,7 +100,7 @@ class FindBar(QtWidgets.QWidget):
         self.find_next()
 
     def replace_all(self) -> None:
-        """Replace everywhere, in one step to undo; ``replaced`` tells how many there were."""
+        """Replace all matches, in one undo step; ``replaced`` reports their number."""
         if not self.wanted.text():
             return
         wanted, instead = self._wanted(), self.instead.text()
@@ -115,10 +115,10 @@ class FindBar(QtWidgets.QWidget):
 
 
 def _index(text: str, position: int) -> int:
-    """The index in a text of a position of Qt, which counts in UTF-16."""
+    """Convert a Qt position, which counts in UTF-16, to a string index."""
     return position if text.isascii() else len(text.encode("utf-16-le")[: 2 * position].decode("utf-16-le"))
 
 
 def _position(text: str, index: int) -> int:
-    """The other way round."""
+    """Convert a string index to a Qt position."""
     return index if text.isascii() else len(text[:index].encode("utf-16-le")) // 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Findings: the list of what is wrong with the text of an editor."""
+"""Findings: the list of faults in the text of an editor."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pkm_post.program_text import Language, extent
 
 
 class Findings(QtWidgets.QListWidget):
-    """One row for each diagnostic; a click tells its line and column."""
+    """One row per diagnostic; a click emits its line and column."""
 
     chosen = QtCore.Signal(int, int)
 
@@ -26,7 +26,7 @@ class Findings(QtWidgets.QListWidget):
         self.itemActivated.connect(self._tell)
 
     def show_all(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show these, in their order."""
+        """Show diagnostics in the given order."""
         self.clear()
         for each in diagnostics:
             item = QtWidgets.QListWidgetItem(_icon(self, each), _told(each))
@@ -42,7 +42,7 @@ class Findings(QtWidgets.QListWidget):
 
 
 def marks_of(diagnostics: Sequence[Diagnostic], lines: Sequence[str], language: Language) -> list[Mark]:
-    """What to underline, for the diagnostics that have a line in the text."""
+    """The marks to underline, for the diagnostics that have a line in the text."""
     return [
         Mark(
             each.place.line - 1,

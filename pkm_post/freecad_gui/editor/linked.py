@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Linked: the program object that stands for the file of an editor, in any open document.
+"""Linked: the program object for the file of an editor, in any open document.
 
-It is looked up by the name of its file at every use: documents are closed and objects deleted without notice.
+It is looked up by file name at every use: documents are closed and objects deleted without notice.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ def object_of(file: Path | None) -> Any:
 
 
 def bring_up_to_date(obj: Any, reading: Reading) -> None:
-    """Let the object read its file again, as the editor does."""
+    """Let the object read its file again, with the editor's reading options."""
     set_reading(obj, reading)
     obj.touch()
     obj.Document.recompute()
 
 
 def scene_of(obj: Any) -> Any:
-    """Where to draw beside the path of an object; None if there is nothing."""
+    """The scene in which to draw beside the path of an object; None if there is none."""
     return obj.ViewObject.RootNode if obj is not None and obj.ViewObject is not None else None
 
 
@@ -59,10 +59,10 @@ def chosen_job(parent: QtWidgets.QWidget, title: str) -> Any:
 
 
 def decode_file(file: Path, reading: Reading, job: Any) -> Any:
-    """Make a file an operation of a job, in one step to undo; it gets a program object if it has none.
+    """Convert a file to an operation of a job, in one undo step; it gets a program object if it has none.
 
     Raises:
-        Refused: as ``decode``; the document is as it was.
+        Refused: as ``decode``; the document is unchanged.
     """
     document = job.Document
     with transaction(document, translate("PKM_Editor", "Decode into a job")):

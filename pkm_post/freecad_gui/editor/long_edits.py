@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Long edits: a text is loaded, or all of its lines are changed, in slices between which the window goes on working.
+"""Long edits: loads a text, or changes all of its lines, in slices between which the window stays responsive.
 
-What is done at once in a short text takes a third of a second in one of 100,000 lines. While an edit is under way the
-text cannot be edited otherwise. It is undone and redone as one, again in slices.
+An edit that is instantaneous in a short text takes a third of a second in one of 100,000 lines. During an edit the text
+is locked for other edits. Undo and redo treat it as one, again in slices.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from dataclasses import dataclass
 from PySide import QtCore, QtGui, QtWidgets
 
 _LINES = 1000
-"""Lines of a slice: some milliseconds of work."""
+"""Lines per slice: some milliseconds of work."""
 _BUDGET = 0.02
-"""Seconds of work after which the window has its turn."""
+"""Seconds of work before control returns to the window."""
 
 
 def _nothing() -> None:
-    """What follows an edit after which nothing is to be done."""
+    """Default continuation: do nothing."""
 
 
 @dataclass(frozen=True)
 class _Edit:
-    """An edit that was made in slices, by how much could be undone before it and after it."""
+    """A sliced edit, defined by the number of undo steps before and after it."""
 
     before: int
     after: int
@@ -35,7 +35,7 @@ class LongEdits(QtCore.QObject):
     """The long edits of one text, one at a time."""
 
     progressed = QtCore.Signal(float)
-    """The share that is done, 0 to 1."""
+    """The completed share, 0 to 1."""
     ended = QtCore.Signal()
 
     def __init__(self, text: QtWidgets.QPlainTextEdit) -> None:
@@ -49,16 +49,16 @@ class LongEdits(QtCore.QObject):
         self._document.undoCommandAdded.connect(self._forget)
 
     def busy(self) -> bool:
-        """Whether an edit is under way."""
+        """Whether an edit is running."""
         return self._work is not None
 
     def finish(self) -> None:
-        """Do at once what is left: somebody needs the whole text."""
+        """Complete the edit at once: the whole text is needed."""
         while self.busy():
             self._go_on()
 
     def load(self, text: str) -> None:
-        """Put another text in the place of all; it cannot be undone."""
+        """Replace the whole text; this cannot be undone."""
         self._edits.clear()
         self._begin(self._loaded(text.split("\n")))
 
@@ -66,13 +66,13 @@ class LongEdits(QtCore.QObject):
         """Change lines.
 
         Args:
-            changed: from some lines to as many; it is called with all lines in their order, slice by slice.
-            then: called when all are changed.
+            changed: maps some lines to as many; called with all lines in order, slice by slice.
+            then: called after all changes.
         """
         self._begin(self._changed(changed, then))
 
     def undo(self) -> None:
-        """Take back what was done last."""
+        """Undo the last edit."""
         state = self._document.availableUndoSteps()
         edit = next((edit for edit in self._edits if edit.after == state), None)
         if edit is None:
@@ -81,7 +81,7 @@ class LongEdits(QtCore.QObject):
             self._begin(self._moved(self._document.undo, edit.after, edit.before))
 
     def redo(self) -> None:
-        """Do again what was taken back last."""
+        """Redo the last undone edit."""
         state = self._document.availableUndoSteps()
         edit = next((edit for edit in self._edits if edit.before == state), None)
         if edit is None or not self._document.isRedoAvailable():
@@ -131,7 +131,7 @@ class LongEdits(QtCore.QObject):
         then()
 
     def _change_slice(self, first: int, end: int, changed: Callable[[str], str]) -> None:
-        """Change the lines of a slice, from the first to the last that becomes another."""
+        """Change the lines of a slice, from the first to the last that differs."""
         cursor = QtGui.QTextCursor(self._document.findBlockByNumber(first))
         last = self._document.findBlockByNumber(end - 1)
         cursor.setPosition(last.position() + last.length() - 1, QtGui.QTextCursor.MoveMode.KeepAnchor)
@@ -145,13 +145,13 @@ class LongEdits(QtCore.QObject):
             cursor.insertText("\n".join(new[begin : others[-1] + 1]))
 
     def _moved(self, step: Callable[[], None], begin: int, end: int) -> Iterator[float]:
-        """Undo or redo until as much can be undone as at one end of an edit."""
+        """Undo or redo until the number of undo steps matches one end of an edit."""
         while (state := self._document.availableUndoSteps()) != end:
             yield (state - begin) / (end - begin)
             step()
 
     def _forget(self) -> None:
-        """Something was edited: what had been taken back cannot be done again."""
+        """The text was edited: undone edits cannot be redone."""
         if not self.busy():
             state = self._document.availableUndoSteps()
             self._edits = [edit for edit in self._edits if edit.after < state]

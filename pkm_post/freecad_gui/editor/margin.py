@@ -12,19 +12,19 @@ if TYPE_CHECKING:
 
 
 class Margin(QtWidgets.QWidget):
-    """The line numbers of the lines in sight; the text says where these are."""
+    """The numbers of the visible lines; the text provides their positions."""
 
     def __init__(self, text: TextView) -> None:
         super().__init__(text)
         self._text = text
 
     def wanted_width(self) -> int:
-        """As wide as the largest number needs."""
+        """The width of the largest number."""
         digits = len(str(self._text.blockCount()))
         return self._text.fontMetrics().horizontalAdvance("9") * (max(digits, 3) + 1) + 6
 
     def paintEvent(self, event: QtGui.QPaintEvent) -> None:
-        """Called by Qt: paint the numbers of the lines in sight."""
+        """Called by Qt: paint the numbers of the visible lines."""
         painter, metrics = QtGui.QPainter(self), self._text.fontMetrics()
         painter.setFont(self._text.font())
         painter.fillRect(event.rect(), QtGui.QColor("#2b2f2b" if self._text.is_dark() else "#f0f0ee"))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Posting: the file of an editor becomes a certified motion program, beside the window.
+"""Posting: converts the file of an editor to a certified motion program, beside the window.
 
-What can be chosen is asked for in the fields of the post panel, and kept in the preferences.
+The user's choices come from the fields of the post panel, and are stored in the preferences.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _ENTRY, _AT_FIRST = "EditorArguments", "--machine example_6tps --work-offset G54
 
 
 class Posting(QtCore.QObject):
-    """One run at a time, with a progress bar while it lasts and a message at its end."""
+    """One run at a time, with a progress bar during the run and a message at its end."""
 
     ended = QtCore.Signal()
 
@@ -45,7 +45,7 @@ class Posting(QtCore.QObject):
         self._progress: Any = None
 
     def ask_and_post(self, file: Path, reading: Reading) -> None:
-        """Ask for what can be chosen, in the fields of the post panel, and post a file into its folder."""
+        """Show the fields of the post panel, and post a file into its folder."""
         kept = FreeCAD.ParamGet(GROUP).GetString(_ENTRY, default_arguments() or _AT_FIRST)
         dialog = _Dialog(PostChoices(kept, str(file.parent)), self._title, self._window)
         if dialog.is_accepted():
@@ -55,9 +55,9 @@ class Posting(QtCore.QObject):
         dialog.deleteLater()
 
     def post(self, file: Path, reading: Reading, arguments: str, folder: Path | None = None) -> None:
-        """Post a file, beside it if no folder is given; what arguments say of it goes before ``reading``.
+        """Post a file, beside it if no folder is given; its options in the arguments override ``reading``.
 
-        ``ended`` tells when its files are there, or why they are not was told.
+        ``ended`` is emitted when its files exist, or after the reason for their absence was reported.
         """
         if self._task is not None:
             return
@@ -111,7 +111,7 @@ class Posting(QtCore.QObject):
 
 
 def _with_typed(reading: Reading, chosen: Namespace) -> Reading:
-    """What is chosen beside the text, and what is typed as arguments, which goes before it."""
+    """The options chosen beside the text, overridden by those typed as arguments."""
     typed = part_program_from(chosen, reading.axis_words)
     return replace(
         typed,
@@ -125,7 +125,7 @@ def _with_typed(reading: Reading, chosen: Namespace) -> Reading:
 
 
 class _Dialog(QtWidgets.QDialog):
-    """The fields in a window of their own."""
+    """The fields in a dialog."""
 
     def __init__(self, fields: PostChoices, title: str, window: QtWidgets.QWidget) -> None:
         super().__init__(window)
@@ -140,6 +140,6 @@ class _Dialog(QtWidgets.QDialog):
         layout.addWidget(buttons)
 
     def is_accepted(self) -> bool:
-        """Show it; whether the user accepted what is in the fields."""
+        """Show the dialog; return whether the user accepted it."""
         show = getattr(self, "exec", None) or self.exec_  # Qt 6, Qt 5
         return bool(show())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reading fields: what a part program does not say itself, chosen beside its text.
+"""Reading fields: options that a part program does not state itself, chosen beside its text.
 
-A reading enters and is shown; the one that is chosen leaves. G-code and CL data leave different things open, and only
-the fields of the language are offered.
+Shows a reading; returns the chosen one. G-code and CL data leave different options open, and only the fields of the
+current language are offered.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class ReadingFields(QtWidgets.QWidget):
         self.unit, self.contour_data = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.cl_dialect = QtWidgets.QComboBox(self)
         self.allow_open_end = QtWidgets.QCheckBox(translate("PKM_Editor", "Open end allowed"), self)
-        # Seldom needed, and chosen in the properties of the program object: here it is kept alone.
+        # Seldom needed, and chosen in the properties of the program object: here only stored.
         self._cycle_values: tuple[str, ...] = ()
         self.axis_words.addItems(list(AXIS_WORDS))
         self.dwell_unit.addItems(list(DWELL_UNITS))
@@ -67,14 +67,14 @@ class ReadingFields(QtWidgets.QWidget):
         self.offer_for(Language.GCODE)
 
     def offer_for(self, language: Language) -> None:
-        """Show the fields that a language has a use for."""
+        """Show the fields that apply to a language."""
         for field in (self.axis_words, self.dwell_unit):
             field.setVisible(language is Language.GCODE)
         for field in (self.contour_data, self.cl_dialect):
             field.setVisible(language is not Language.GCODE)
 
     def chosen(self) -> Reading:
-        """What is chosen."""
+        """The chosen options."""
         return Reading(
             self.axis_words.currentText(),
             dwell_unit=self.dwell_unit.currentText(),
@@ -86,7 +86,7 @@ class ReadingFields(QtWidgets.QWidget):
         )
 
     def show_reading(self, reading: Reading) -> None:
-        """Choose what a reading says, which is no change."""
+        """Show a reading, which does not count as a change."""
         blocker = QtCore.QSignalBlocker(self)
         self.axis_words.setCurrentText(reading.axis_words)
         self.dwell_unit.setCurrentText(reading.dwell_unit)

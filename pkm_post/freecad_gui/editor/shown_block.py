@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shown block: the way of one block of a part program, drawn over its path in the 3D view.
+"""Shown block: the path of one block of a part program, drawn over the program's path in the 3D view.
 
-It is a branch of the scene beside what FreeCAD draws: no document is touched.
+It is a branch of the scene beside FreeCAD's own: no document is changed.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class ShownBlock:
         self._points.numPoints = len(points) if len(ways) == 1 else 0
 
     def remove(self) -> None:
-        """Draw nothing."""
+        """Remove the drawing."""
         if self._root is not None:
             self._root.removeChild(self._branch)
             self._root = None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Text view: the text of a part program with line numbers, colours and underlines.
 
-Only the lines in sight are coloured, when they come into sight: a key costs the colours of one line, however long the
-text is. A block remembers in its user state for which of its revisions it was coloured.
+Only visible lines are coloured, when they become visible: a keystroke recolours one line, whatever the length of the
+text. The user state of a block stores the revision for which it was coloured.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ DARK: dict[Colour, str] = {
     Colour.OPERATOR: "#f0908c",
     Colour.TEXT: "#a3d977",
 }
-"""Colours of the parts of a line, on a light ground and on a dark one."""
+"""Colours of the parts of a line, on a light and on a dark background."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """What is underlined: characters ``start`` to ``end`` of a line, from 0."""
+    """An underline: characters ``start`` to ``end`` of a line, from 0."""
 
     line: int
     start: int
@@ -52,7 +52,7 @@ class Mark:
 
 
 class TextView(QtWidgets.QPlainTextEdit):
-    """The text. Its margin is a widget of its own that paints what the text tells it.
+    """The text. Its margin is a separate widget that paints the line numbers.
 
     Attributes:
         edits: loads the text, and changes many lines of it.
@@ -75,21 +75,21 @@ class TextView(QtWidgets.QPlainTextEdit):
         self._fit_margin()
 
     def set_language(self, language: Language) -> None:
-        """Colour as this language."""
+        """Colour the text for this language."""
         self._language = language
         self._colouring.start()
 
     def set_marks(self, marks: Sequence[Mark]) -> None:
-        """Underline these."""
+        """Underline these marks."""
         self._marks = tuple(marks)
         self._select_extra()
 
     def current_line(self) -> int:
-        """The line of the cursor, from 1."""
+        """The cursor's line, from 1."""
         return self.textCursor().blockNumber() + 1
 
     def jump(self, line: int, column: int = 1) -> None:
-        """Put the cursor to a line and column, both from 1, into the middle of the view."""
+        """Move the cursor to a line and column, both from 1, and centre it in the view."""
         block = self.document().findBlockByNumber(line - 1)
         if block.isValid():
             cursor = QtGui.QTextCursor(block)
@@ -98,15 +98,15 @@ class TextView(QtWidgets.QPlainTextEdit):
             self.centerCursor()
 
     def undo(self) -> None:
-        """Take back what was done last."""
+        """Undo the last edit."""
         self.edits.undo()
 
     def redo(self) -> None:
-        """Do again what was taken back last."""
+        """Redo the last undone edit."""
         self.edits.redo()
 
     def keyPressEvent(self, event: QtGui.QKeyEvent) -> None:
-        """Called by Qt, whose own undo would take back one slice of a long edit."""
+        """Called by Qt, whose own undo would revert only one slice of a long edit."""
         keys = QtGui.QKeySequence.StandardKey
         for key, action in ((keys.Undo, self.undo), (keys.Redo, self.redo)):
             if event.matches(key):
@@ -116,7 +116,7 @@ class TextView(QtWidgets.QPlainTextEdit):
         super().keyPressEvent(event)
 
     def contextMenuEvent(self, event: QtGui.QContextMenuEvent) -> None:
-        """Called by Qt: its menu, with the undo and redo of this text."""
+        """Called by Qt: the standard menu with the undo and redo of this text."""
         menu = self.createStandardContextMenu()
         for action in menu.actions():
             own = {"edit-undo": self.undo, "edit-redo": self.redo}.get(action.objectName())
@@ -127,13 +127,13 @@ class TextView(QtWidgets.QPlainTextEdit):
         menu.deleteLater()
 
     def resizeEvent(self, event: QtGui.QResizeEvent) -> None:
-        """Called by Qt: the margin goes along."""
+        """Called by Qt: resize the margin too."""
         super().resizeEvent(event)
         inside = self.contentsRect()
         self._margin.setGeometry(inside.left(), inside.top(), self._margin.wanted_width(), inside.height())
 
     def lines_in_sight(self) -> Iterator[tuple[QtGui.QTextBlock, float]]:
-        """The blocks in sight, each with the height of its top."""
+        """The visible blocks, each with the height of its top."""
         block, offset = self.firstVisibleBlock(), self.contentOffset()
         while block.isValid():
             top = self.blockBoundingGeometry(block).translated(offset).top()
@@ -143,7 +143,7 @@ class TextView(QtWidgets.QPlainTextEdit):
             block = block.next()
 
     def is_dark(self) -> bool:
-        """Whether the ground is dark."""
+        """Whether the background is dark."""
         return self.palette().color(QtGui.QPalette.ColorRole.Base).lightness() < 128
 
     def _fit_margin(self, count: int = 0) -> None:
@@ -165,7 +165,7 @@ class TextView(QtWidgets.QPlainTextEdit):
                 self.document().markContentsDirty(block.position(), block.length())
 
     def _select_extra(self) -> None:
-        """Ground of the line of the cursor, and the underlines."""
+        """Highlight the cursor's line and draw the underlines."""
         here = QtWidgets.QTextEdit.ExtraSelection()
         here.format.setBackground(QtGui.QColor("#333b33" if self.is_dark() else "#eef3ee"))
         here.format.setProperty(QtGui.QTextFormat.Property.FullWidthSelection, True)

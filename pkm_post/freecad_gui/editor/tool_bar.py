@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool bar: what the editor can be told to do, as buttons and as shortcuts.
+"""Tool bar: the editor's actions as buttons and shortcuts.
 
-The editor enters; its bar leaves. The shortcuts count while the keys go to the editor: elsewhere the same keys are
+Takes the editor; returns its bar. The shortcuts apply while the editor has the focus: elsewhere the same keys are
 FreeCAD's.
 """
 
@@ -38,21 +38,21 @@ _BUTTONS: tuple[tuple[str, str, Any, Callable[[ProgramEditor], Any]], ...] = (
     (QT_TRANSLATE_NOOP("PKM_Editor", "Post"), QT_TRANSLATE_NOOP("PKM_Editor", "Write a certified motion program"),
      _NO_KEY, lambda editor: editor.post()),
 )  # fmt: skip
-"""Text, tip, shortcut and deed of each button."""
+"""Text, tooltip, shortcut and action of each button."""
 _SHORTCUTS: tuple[tuple[Any, Callable[[ProgramEditor], Any]], ...] = (
     (_KEYS.FindNext, lambda editor: editor.body.find_bar.find_next()),
     (_KEYS.FindPrevious, lambda editor: editor.body.find_bar.find_previous()),
     (_KEYS.Replace, lambda editor: editor.body.find_bar.begin()),
 )
-"""Those without a button."""
+"""Actions without a button."""
 
 
 def tool_bar(editor: ProgramEditor, parent: QtWidgets.QWidget) -> QtWidgets.QToolBar:
-    """The bar of an editor whose body stands; the editor has the actions from then on.
+    """Create the bar of an editor that has its body; this also adds the actions to the editor.
 
     Args:
-        editor: what the actions are done to.
-        parent: the widget that the bar lies in.
+        editor: target of the actions.
+        parent: parent widget of the bar.
     """
     bar = QtWidgets.QToolBar(parent)
     for text, tip, key, call in _BUTTONS:
