@@ -26,7 +26,7 @@ from pkm_post.model import Diagnostic, Place, Program
 from pkm_post.placement import joined, mirror, reversed_passes, rotation, transform
 
 _VIEW = "pkm_post.freecad_gui.symmetry_view"
-"""The view is a floor above: it is named and not imported, as in saved documents."""
+"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 
 
 class _SymmetricOperation(DerivedOperation):

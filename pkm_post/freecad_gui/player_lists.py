@@ -35,7 +35,7 @@ class PlayerLists(QtWidgets.QTabWidget):
             self.addTab(rows, "")
 
     def sizeHint(self) -> QtCore.QSize:
-        """Wide enough for most lines, and no higher than the curves beside it."""
+        """Wide enough for most lines, and no taller than the curves beside it."""
         return QtCore.QSize(_WIDTH, 120)
 
     def take(self, simulation: Simulation) -> None:

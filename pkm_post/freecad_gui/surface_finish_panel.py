@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Surface Finish panel: the operation's page in CAM's task panel.
 
-Takes the operation and changes its properties. CAM's panel contains the pages: accepting it commits its transaction,
+Takes the operation and changes its properties. CAM's panel hosts the pages: accepting it commits its transaction,
 rejecting it aborts it. A table defines the rows of the page.
 """
 

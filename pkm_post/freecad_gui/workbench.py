@@ -41,7 +41,7 @@ class CamMenu:
     """Adds the commands to CAM's menu; FreeCAD calls it at every change of workbench."""
 
     registered: ClassVar[list[CamMenu]] = []
-    """FreeCAD keeps no reference of its own."""
+    """Keeps the objects alive: FreeCAD holds no reference."""
 
     def modifyMenuBar(self):
         """Add the commands after CAM's own copy of an operation."""
@@ -56,7 +56,7 @@ def install() -> None:
     from pkm_post.freecad_gui.commands import register
 
     FreeCADGui.addLanguagePath(str(TRANSLATIONS))
-    FreeCADGui.updateLocale()  # FreeCAD has chosen its language before it looks for add-ons
+    FreeCADGui.updateLocale()  # FreeCAD selects its language before it loads add-ons
     register()
     preferences.install()
     FreeCADGui.addWorkbench(PkmPostWorkbench())

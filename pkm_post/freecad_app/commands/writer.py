@@ -75,7 +75,7 @@ def _moves(program: Program, first: int, last: int) -> list[Any]:
     before = program.position[np.maximum(np.arange(first, last) - 1, 0)]
     to_centre = (program.arc_centre[rows] - before) * [1.0, 1.0, 0.0]
     vectors = np.where(arc[:, None], to_centre, program.tool_axis[rows])
-    numbers = np.hstack([program.position[rows], vectors, program.feed[rows, None]]) + 0.0  # no -0
+    numbers = np.hstack([program.position[rows], vectors, program.feed[rows, None]]) + 0.0  # avoids -0
     name = np.where(arc, np.where(program.arc_axis[rows, 2] < 0, "G2", "G3"), _STRAIGHT[program.kind[rows]])
     letters = _LETTERS if np.any(norm(program.tool_axis - _UP) > _EXACT) else _LETTERS | _LETTERS_UPRIGHT
     commands = []
