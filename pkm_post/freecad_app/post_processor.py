@@ -85,7 +85,7 @@ class HexapodPost(PostProcessor):
         return program_path(self._job).suffix.lstrip(".")
 
     def apply_configuration_bundle(self, overrides: Mapping[str, Any] | None = None) -> None:
-        """Take the fixtures chosen in the dialog of FreeCAD newer than 1.1; its other settings are for its own posts.
+        """Take the fixtures chosen in the dialog of FreeCAD newer than 1.1; its other settings are for FreeCAD's posts.
 
         Args:
             overrides: settings of the dialog, by name.

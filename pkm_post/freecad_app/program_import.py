@@ -17,7 +17,7 @@ from pkm_post.freecad_app.program_object import create_program
 from pkm_post.freecad_app.transaction import transaction
 
 
-def open(filename: str) -> Any:  # noqa: A001 - FreeCAD requires this name
+def open(filename: str) -> Any:  # noqa: A001 - FreeCAD wants this name
     """Show a part program in a new document."""
     document = App.newDocument(FilePath(filename).stem)
     insert(filename, document.Name)

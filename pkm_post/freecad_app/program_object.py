@@ -192,7 +192,7 @@ def decode(obj: Any, job: Any) -> Any:
 
 
 def _first_controller(program: Program, job: Any) -> Any:
-    """The tool controller for the start of a program; the job's first one if it calls no tool."""
+    """The tool controller of the first tool that a program calls; the job's first one if it calls none."""
     called = next((event.value for event in program.events if event.kind is EventKind.TOOL_CHANGE), None)
     fitting = [each for each in job.Tools.Group if called in (None, each.ToolNumber)]
     if not fitting:

@@ -22,7 +22,7 @@ _WATCH = "pkm_post.freecad_gui.escape_watch"
 """The watch is in a higher layer: referenced by name, not imported."""
 
 
-class Stopped(Exception):  # noqa: N818 - not a program error
+class Stopped(Exception):  # noqa: N818 - it is no error of the program
     """The user cancelled the computation; its result does not exist."""
 
 

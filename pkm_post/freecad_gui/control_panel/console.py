@@ -188,7 +188,7 @@ class Console(QtCore.QObject):
         self.stops = 0 if job is None else len(stops_of(job))
 
     def _look(self) -> None:
-        """Called by the timer; as long as it runs, the user can see what the machine does."""
+        """Called by the timer; its calls confirm to the worker that the user can see what the machine does."""
         if self.connection is not None:
             self.connection.worker.attend()
         if self.connection is not None and self.connection.worker.failure is not None:

@@ -141,7 +141,7 @@ class ProgramPage(QtWidgets.QWidget):
             self._console.told.emit(str(each), blocks is None)
         if blocks is not None and self._console.connection is not None:
             first = min(at, len(blocks))
-            opened = lambda count: self._opened(count, first)  # noqa: E731 - with the requested block
+            opened = lambda count: self._opened(count, first)  # noqa: E731 - with what was asked for
             self._console.order(lambda control: control.open_blocks(blocks, first), opened)
 
     def _opened(self, count: int, first: int) -> None:
