@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Controllers: from strut motion to the text a controller plays, and from that text back to strut motion.
+"""Controllers: convert strut motion to controller programs, and programs back to strut motion.
 
-A folder for each controller, a table of them by ``controller.kind``, and tables of the motion for other readers.
+A folder for each controller, a table of controllers by ``controller.kind``, and tables of the motion for other readers.
 """
 
 from pkm_post.controllers.kinds import (

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Halstreamer: strut lengths row by row at a fixed period, for the program of that name of LinuxCNC.
+"""Halstreamer: strut lengths row by row at a fixed period, for LinuxCNC's ``halstreamer``.
 
 Enters: the cubics of a strut motion. Leaves: tables of six lengths in mm, one row for each period of 1 ms, and back.
-Dwells are rows that stay the same. Whatever else happens needs another program: there a table ends, at rest, and the
-next one begins. A drive that goes straight from row to row leaves the cubic by no more than ``chord_error``.
+Dwells repeat a row. Other events need another program: a table ends there, at rest, and the next one begins. A drive
+that interpolates linearly between rows deviates from the cubic by no more than ``chord_error``.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from pkm_post.model.program import Array
 
 SUFFIX = "-halstreamer.txt"
 PERIOD_MS = 1
-"""The servo period that LinuxCNC's own configurations have."""
+"""The servo period of LinuxCNC's own configurations."""
 DECIMALS = 6
 _HALF_DIGIT = 0.5001 * 10.0**-DECIMALS
-"""mm, what rounding can do, with a little for the arithmetic."""
+"""mm: rounding error, with margin for the arithmetic."""
 _ROWS_PER_CHUNK = 1 << 16
 
 _LENGTH = r"-?(?:0|[1-9][0-9]*)\.[0-9]+"
@@ -40,7 +40,7 @@ class Stream:
     """One table.
 
     Attributes:
-        period_ms: from row to row.
+        period_ms: time between rows.
         length: (M, 6) strut lengths in mm.
     """
 
@@ -67,7 +67,7 @@ def lengths_at(motion: StrutMotion, time_ms: Array) -> Array:
 
 
 def chord_error(motion: StrutMotion) -> float:
-    """How far a straight line from row to row can be from the cubics, mm: T^2 / 8 max |p''|."""
+    """Largest deviation of the straight line between rows from the cubics, mm: T^2 / 8 max |p''|."""
     if len(motion) == 1:
         return 0.0
     accelerations = hermite_accelerations(*motion.cubics(np.arange(len(motion) - 1)))
@@ -79,7 +79,7 @@ def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
 
     Args:
         motion: the cubics.
-        heading: lines of printable ASCII for people.
+        heading: lines of printable ASCII for the user.
     """
     made = stretches(motion)
     error = chord_error(motion)
@@ -123,7 +123,7 @@ def read_stream(text: str, file: str) -> tuple[Stream | None, tuple[Diagnostic, 
         file: its name, for the diagnostics.
 
     Returns:
-        The table, or None and the first thing that is wrong.
+        The table, or None and the first fault.
     """
     position, periods, rows = 0, [], []
     while match := _PIECES.match(text, position):
@@ -140,7 +140,7 @@ def read_stream(text: str, file: str) -> tuple[Stream | None, tuple[Diagnostic, 
 
 
 def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
-    """Read the tables back and measure, at their rows and half way between, how far they are from the cubics."""
+    """Read the tables back and measure their deviation from the cubics, at their rows and half way between."""
     limits = _HALF_DIGIT, chord_error(motion) + _HALF_DIGIT
     worst, rows = 0.0, 0
     made = stretches(motion)
@@ -159,7 +159,7 @@ def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str
 
 
 def _apart(stream: Stream, stretch: Stretch, motion: StrutMotion) -> tuple[float, float]:
-    """How far a table is from the cubics at its rows and between them, mm; infinite with another number of rows."""
+    """Deviation of a table from the cubics at its rows and between them, mm; infinite if the number of rows differs."""
     times = stretch.rows_ms(stream.period_ms)
     if len(times) != len(stream.length):
         return math.inf, math.inf

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Kinds: the controllers by the ``controller.kind`` of the machine file, and what each of them offers.
+"""Kinds: the controllers by the ``controller.kind`` of the machine file, and their interface.
 
-A machine enters, the module of its controller leaves. The motion it is given is in mm, mm/s and whole ms.
+Enters: a machine. Leaves: the module of its controller, which takes motion in mm, mm/s and whole ms.
 """
 
 from __future__ import annotations
@@ -17,38 +17,38 @@ Findings = tuple[Diagnostic, ...]
 
 
 class Controller(Protocol):
-    """What the module of a controller offers. Settings are a class of its own.
+    """The interface of a controller module. Settings are a class of its own.
 
     Attributes:
-        SETUP_SUFFIX: how the name of the set-up file goes on behind that of the job.
+        SETUP_SUFFIX: suffix of the set-up file, appended to the name of the job.
     """
 
     SETUP_SUFFIX: str
 
     def settings_of(self, machine: Machine) -> tuple[Any | None, Findings]:
-        """The settings of a machine's controller, or why there are none."""
+        """The settings of a machine's controller, or None with diagnostics."""
 
     def faults(self, motion: StrutMotion, settings: Any, file: str) -> Findings:
-        """Why a motion cannot be written, for the job of this name."""
+        """The reasons why a motion cannot be written, for the job of this name."""
 
     def program_parts(self, motion: StrutMotion, settings: Any, heading: Sequence[str]) -> tuple[str, ...]:
-        """The program, in one text or in several that run one after the other."""
+        """The program, as one text or as several that run in sequence."""
 
     def stated_part(self, text: str) -> tuple[int, int]:
-        """Which part a program says it is, and of how many."""
+        """The part number that a program states, and the number of parts."""
 
     def read_parts(self, texts: Sequence[tuple[str, str]], settings: Any) -> tuple[StrutMotion | None, Findings]:
         """The motion of a program, from file name and text of each of its parts."""
 
     def setup_text(self, settings: Any, machine_name: str, stroke: tuple[float, float]) -> str | None:
-        """The set-up that programs rely on, None when there is none; the stroke in mm."""
+        """The set-up that programs rely on, None if there is none; the stroke in mm."""
 
 
 CONTROLLERS: dict[str, Controller] = {"turbo_pmac": pmac, "power_pmac": power_pmac}
 
 
 def controller_of(machine: Machine) -> tuple[Controller | None, Findings]:
-    """The controller of a machine, or why there is none."""
+    """The controller of a machine, or None with diagnostics."""
     kind = machine.controller.get("kind")
     if kind in CONTROLLERS:
         return CONTROLLERS[kind], ()
@@ -57,9 +57,9 @@ def controller_of(machine: Machine) -> tuple[Controller | None, Findings]:
 
 
 def controller_settings(machine: Machine) -> tuple[tuple[Controller, Any] | None, Findings]:
-    """The controller of a machine and its settings, or what stands against writing a program for it.
+    """The controller of a machine and its settings, or None with diagnostics.
 
-    Posting and checking a machine file ask this one function, so that a file that is complete can be posted for.
+    Posting and the machine file check share this function, so a file that passes the check can be posted for.
     """
     controller, faults = controller_of(machine)
     if controller is None:
@@ -69,12 +69,12 @@ def controller_settings(machine: Machine) -> tuple[tuple[Controller, Any] | None
 
 
 def part_names(name: str, count: int) -> list[str]:
-    """The names of the parts of a file; the first, or the only one, has the name itself."""
+    """The names of the parts of a file; the first, or only, part keeps the name."""
     path = PurePath(name)
     return [name, *(f"{path.stem}-part{number}{path.suffix}" for number in range(2, count + 1))]
 
 
 def part_siblings(controller: Controller, name: str, text: str) -> list[str]:
-    """The names of the other parts of a program, as its first part states them."""
+    """The names of the other parts of a program, as stated by its first part."""
     number, count = controller.stated_part(text)
     return part_names(name, count)[1:] if number == 1 else []

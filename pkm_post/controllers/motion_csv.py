@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motion CSV: strut motion as a table that every program can read, and back.
+"""Motion CSV: strut motion as a CSV table, and back.
 
 Enters: strut motion. Leaves: a line of names, then a line for each knot: time in ms, six lengths in mm, six speeds in
-mm/s, and what happens there. Numbers have as many digits as they need: what is read back is the same motion.
+mm/s, and its events. Numbers have as many digits as needed to read back the same motion.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _HEADER = ",".join(_NAMES) + "\n"
 _NUMBERS = len(_NAMES) - 1
 _ROWS_PER_CHUNK = 4096
 _LAST_MS = 2**53
-"""Beyond it a double does not tell one millisecond from the next."""
+"""Beyond it a double does not resolve milliseconds."""
 
 _NUMBER = r"-?[0-9]+(?:\.[0-9]+)?(?:e[-+]?[0-9]+)?"
 _EVENT = rf"({'|'.join(kind.name.lower() for kind in EventKind)})=({_NUMBER})"
@@ -36,10 +36,10 @@ _EVENTS = re.compile(rf"{_EVENT}(?=[;\n])")
 
 
 def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
-    """The table of a motion, without the heading: a table of numbers has no comments.
+    """The table of a motion, without the heading, as CSV has no comments.
 
     Raises:
-        ValueError: a number of it is not finite.
+        ValueError: the motion has a number that is not finite.
     """
     if not (np.isfinite(motion.length).all() and np.isfinite(motion.speed).all()):
         raise ValueError("motion: expected finite lengths and speeds, got NaN or infinity")
@@ -63,7 +63,7 @@ def read_table(text: str, file: str) -> tuple[StrutMotion | None, tuple[Diagnost
         file: its name, for the diagnostics.
 
     Returns:
-        The motion, or None and the first thing that is wrong.
+        The motion, or None and the first fault.
     """
     lines = text.splitlines(keepends=True)
     wrong = next((number for number, line in enumerate(lines) if not _is_right(number, line)), None)
@@ -97,7 +97,7 @@ def _is_right(number: int, line: str) -> bool:
 
 
 def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
-    """Read a table back and compare it with its motion, of which it must be the very same."""
+    """Read a table back and compare it with its motion, which it must equal exactly."""
     ((file, text),) = texts
     read, faults = read_table(text, file)
     if read is None:
@@ -109,7 +109,7 @@ def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str
 
 
 def _apart(first: StrutMotion, second: StrutMotion) -> float:
-    """The largest difference; infinite when times or events differ."""
+    """The largest difference; infinite if times or events differ."""
     if not np.array_equal(first.time_ms, second.time_ms) or first.events != second.events:
         return math.inf
     return max(float(np.abs(getattr(first, name) - getattr(second, name)).max()) for name in ("length", "speed"))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program files: the bytes of a motion program, read the same way at every door.
+"""Program files: read the bytes of a motion program, identically at every entry point.
 
-Enters: bytes, or the file of a program or of its first part. Leaves: text with LF at the end of its lines, or what is
-wrong. Printable ASCII, LF and CR LF are all that a program may have: any other control character acts on the controller
-at once, even within a comment, and other readers take some of them for the end of a line.
+Enters: bytes, or the file of a program or of its first part. Leaves: text with LF line ends, or diagnostics. A program
+may have only printable ASCII, LF and CR LF: any other control character acts on the controller immediately, even within
+a comment, and some readers treat some of them as line ends.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _NAMES = {
 
 
 def text_of(content: bytes, file: str) -> tuple[str | None, Findings]:
-    """The text of a program, its lines ending with LF; or its first 20 characters that no program may have.
+    """The text of a program, with LF line ends; or its first 20 illegal characters.
 
     Args:
-        content: of the file.
+        content: bytes of the file.
         file: its name, for the diagnostics.
     """
     content = content.replace(b"\r\n", b"\n")
@@ -60,7 +60,7 @@ def read_text(file: Path) -> tuple[str | None, Findings]:
 
 
 def read_texts(program: Path, controller: Controller) -> tuple[Texts | None, Findings]:
-    """The texts of all parts of a program; they lie beside its first one, which states how many there are."""
+    """The texts of all parts of a program, in the folder of its first part, which states their number."""
     first, faults = read_text(program)
     if first is None:
         return None, faults

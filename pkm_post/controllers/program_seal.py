@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program seal: what a motion program says in its heading of its own bytes and of the files it was made from.
+"""Program seal: hashes in the heading of a motion program, of its own text and of its source files.
 
-Enters: the text of a program. Leaves: the same text with the SHA-256 of all its other lines, and whether a text has
-the one it states. A heading keeps 32 of the 64 digits of each, so that its lines stay short; the report has all of
-them. Line ends do not count: both kinds are LF here (``program_files``).
+Enters: the text of a program. Leaves: the same text with the SHA-256 of all its other lines, and whether a text matches
+its stated hash. A heading has 32 of the 64 digits of each hash, to keep its lines short; the report has all of them.
+Line ends are ignored: both kinds are LF here (``program_files``).
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ def digest(text: str) -> str:
 
 
 def record_lines(trajectory: str, machine: str) -> list[str]:
-    """Lines of the heading that name the files a program was made from, by the SHA-256 of each."""
+    """Lines of the heading that identify the source files of a program by SHA-256."""
     return [f"{_WORDS[name]} {value[:_DIGITS]}" for name, value in (("trajectory", trajectory), ("machine", machine))]
 
 
 def sealed(text: str) -> str:
-    """A program with the SHA-256 of all its lines as one more line of its heading.
+    """Add the SHA-256 of all lines of a program as a line of its heading.
 
     Raises:
         ValueError: it has no heading.
@@ -42,16 +42,16 @@ def sealed(text: str) -> str:
 
 
 def has_its_seal(text: str) -> bool | None:
-    """Whether a program is as it was sealed; None when it never was."""
+    """Whether a program matches its seal; None if it has none."""
     found = _STATED["program"].search(text, 0, _heading_end(text))
     return None if found is None else found[1] == digest(text[: found.start()] + text[found.end() :])[:_DIGITS]
 
 
 def states(text: str, name: str, value: str) -> bool:
-    """Whether the heading of a program names a file with this SHA-256.
+    """Whether the heading of a program states a file with this SHA-256.
 
     Args:
-        text: of the program.
+        text: text of the program.
         name: "trajectory" or "machine".
         value: hexadecimal.
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stretches: a motion with its dwells in it, in pieces between what else happens.
+"""Stretches: a motion including its dwells, split at all other events.
 
-Enters: strut motion, whose clock stands still in dwells. Leaves: for each piece a clock that runs in dwells as well, in
-ms, and what has to happen before it, and behind the last one.
+Enters: strut motion, whose clock stops during dwells. Leaves: for each stretch a clock that also runs during dwells, in
+ms, and the events before it, and after the last one.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from pkm_post.model.program import Array
 
 @dataclass(frozen=True)
 class Stretch:
-    """A piece of a motion.
+    """A stretch of a motion.
 
     Attributes:
-        before: what happens before it begins, in order.
+        before: events before it begins, in order.
         clock_ms: marks on its own clock, from 0 on.
         motion_ms: the time of the motion at each of these marks; linear between them.
-        after: what happens when it has ended; of the last piece only.
+        after: events after its end; last stretch only.
     """
 
     before: tuple[Event, ...]
@@ -32,18 +32,18 @@ class Stretch:
     after: tuple[Event, ...] = ()
 
     def time_at(self, clock_ms: Array) -> Array:
-        """The time of the motion in ms, (M,), at times of this clock; it stands still behind the end."""
+        """The time of the motion in ms, (M,), at times of this clock; constant after the end."""
         return np.interp(clock_ms, self.clock_ms, self.motion_ms)
 
     def rows_ms(self, period_ms: int) -> Array:
-        """The time of the motion in ms at every period, (M,), from the first mark to the last or just beyond."""
+        """The time of the motion in ms at every period, (M,), from the first mark to the last or just after it."""
         periods = int(np.ceil(self.clock_ms[-1] / period_ms))
         return self.time_at(np.arange(periods + 1) * float(period_ms))
 
 
 @dataclass
 class _Piece:
-    """A stretch in the making."""
+    """A stretch under construction."""
 
     motion_ms: list[float]
     clock_ms: list[float] = field(default_factory=lambda: [0.0])
@@ -66,7 +66,7 @@ class _Piece:
 
 
 def stretches(motion: StrutMotion) -> tuple[Stretch, ...]:
-    """The pieces of a motion, one at least; only a motion that stands still has a piece without duration."""
+    """The stretches of a motion, at least one; only a motion at standstill has a stretch without duration."""
     pieces = [_Piece([0.0])]
     for event in motion.events:
         pieces[-1].go_to(float(motion.time_ms[event.row]))

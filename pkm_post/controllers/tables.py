@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables: what is written beside the program on request, made from the motion that was certified.
+"""Tables: optional outputs beside the program, made from the certified motion.
 
-A table is no program: nothing here plays it. It is read back and compared with the motion it was made from.
+A table is not a program and is not played here. It is read back and compared with the motion it was made from.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from pkm_post.model import Diagnostic, StrutMotion
 
 
 class Table(Protocol):
-    """What the module of a table offers.
+    """The interface of a table module.
 
     Attributes:
-        SUFFIX: how the name of its file goes on behind that of the job.
+        SUFFIX: suffix of its file, appended to the name of the job.
     """
 
     SUFFIX: str
 
     def texts(self, motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
-        """The table, in one text or in several; the heading is for people."""
+        """The table, as one text or several; the heading is for the user."""
 
     def measured(self, texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
-        """File names and texts, read back and compared with the motion: what was found, in words, and the faults."""
+        """Read file names and texts back and compare them with the motion: the result in words, and the faults."""
 
 
 TABLES: dict[str, Table] = {"csv": motion_csv, "halstreamer": halstreamer}
-"""By the word that people type."""
+"""Tables by option value."""

@@ -36,11 +36,11 @@ SETUP_SUFFIX = "-setup.pmc"
 
 
 def faults(motion: StrutMotion, settings: Settings, file: str) -> tuple[Diagnostic, ...]:
-    """Why a motion cannot be written for this controller.
+    """The reasons why a motion cannot be written for this controller.
 
     Args:
         motion: the motion to be written.
-        settings: of the controller.
+        settings: settings of the controller.
         file: name of the job, for the diagnostics.
     """
     return event_faults(motion, settings.codes, file) + memory_faults(motion, settings, file)
@@ -49,12 +49,12 @@ def faults(motion: StrutMotion, settings: Settings, file: str) -> tuple[Diagnost
 def read_parts(
     texts: Sequence[tuple[str, str]], settings: Settings
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """Read a motion program that was written in parts, or in one; as ``pvt.reader.read_parts``."""
+    """Read a motion program in one or several parts; as ``pvt.reader.read_parts``."""
     return reader.read_parts(texts, grammar(settings), settings)
 
 
 def read_part(text: str, settings: Settings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """Read a motion program, or one part of it by itself; what it says of other parts is not looked at."""
+    """Read a motion program, or a single part of it; its statements about other parts are ignored."""
     return reader.read_program(text, grammar(settings), settings, file)
 
 
@@ -63,10 +63,10 @@ def read_program(text: str, settings: Settings, file: str) -> tuple[StrutMotion 
 
     Args:
         text: the program.
-        settings: of the controller it was written for.
+        settings: settings of the controller it was written for.
         file: its name, for the diagnostics.
 
     Returns:
-        The motion, or None when there are faults; and the first 20 faults in the order of their lines.
+        The motion, or None if there are faults; and the first 20 faults in line order.
     """
     return read_parts([(file, text)], settings)

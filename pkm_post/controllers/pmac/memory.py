@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Memory: whether a motion program fits into the controller, and where it is cut when it does not.
+"""Memory: whether a motion program fits into the controller, and where to cut it if it does not.
 
 Enters: strut motion. Leaves: an estimate of the program's size in the controller's 48-bit words, the knots where it is
-cut into parts that fit, and a diagnostic when there is no rest to cut it at. The controller keeps one word per value;
-``SIZE`` tells what it has free.
+cut into parts that fit, and a diagnostic if there is no rest for a cut. The controller stores one word per value;
+``SIZE`` reports its free memory.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ WORDS_PER_EVENT = 6
 """DWELL0, the code, which may assign and dwell, and the PVT that resumes the motion."""
 
 WORDS_OF_FRAME = 20
-"""ABS, FRAX with six letters, LINEAR, TA, TS, F, two DWELL0, LINEAR, with some to spare."""
+"""ABS, FRAX with six letters, LINEAR, TA, TS, F, two DWELL0, LINEAR, with margin."""
 
 _GOOD_FOR_A_CUT = {EventKind.TOOL_CHANGE: 2, EventKind.STOP: 1}
-"""Where the machine is best left waiting for the next part: the higher, the better; 0 for any other rest."""
+"""Merit of events at which the machine waits for the next part: the higher, the better; 0 for any other rest."""
 
 
 def _words_by_knot(motion: StrutMotion) -> Array:
-    """Words of each knot and of what happens there, (M,)."""
+    """Words of each knot and its events, (M,)."""
     words = np.full(len(motion), WORDS_PER_KNOT)
     words[1:] += np.diff(np.diff(motion.time_ms), prepend=0) != 0
     np.add.at(words, [event.row for event in motion.events], WORDS_PER_EVENT)
@@ -37,12 +37,12 @@ def _words_by_knot(motion: StrutMotion) -> Array:
 
 
 def memory_cuts(motion: StrutMotion, settings: Settings) -> tuple[int, ...]:
-    """The knots where a motion is cut so that each part fits into the controller.
+    """The knots where a motion is cut for each part to fit into the controller.
 
-    Each part is cut at the best rest within the memory, and at the last of those that are equally good.
+    Each part is cut at the best rest within the memory, and at the last of equally good ones.
 
     Raises:
-        ValueError: there is no rest within the memory; ``memory_faults`` tells beforehand.
+        ValueError: there is no rest within the memory; ``memory_faults`` reports this beforehand.
     """
     cuts, stuck = _cuts(motion, settings)
     if stuck is not None:
@@ -55,7 +55,7 @@ def memory_faults(motion: StrutMotion, settings: Settings, file: str) -> tuple[D
 
     Args:
         motion: the motion to be written.
-        settings: of the controller.
+        settings: settings of the controller.
         file: name of the job, for the diagnostic.
     """
     _, stuck = _cuts(motion, settings)
@@ -72,7 +72,7 @@ def memory_faults(motion: StrutMotion, settings: Settings, file: str) -> tuple[D
 
 
 def _cuts(motion: StrutMotion, settings: Settings) -> tuple[tuple[int, ...], int | None]:
-    """The cuts, and the knot behind which there is no rest near enough, if there is one."""
+    """The cuts, and the knot after which no rest is within the memory, if any."""
     own = _words_by_knot(motion)
     if own.sum() <= _room(settings, 0):
         return (), None
@@ -91,12 +91,12 @@ def _cuts(motion: StrutMotion, settings: Settings) -> tuple[tuple[int, ...], int
 
 
 def _room(settings: Settings, first: int) -> int:
-    """Words for the knots of a part; one that begins at a cut needs a word more, the time of its first interval."""
+    """Words for the knots of a part; a part after a cut needs one more, for the time of its first interval."""
     return settings.memory_words - WORDS_OF_FRAME - (first > 0)
 
 
 def _merit(motion: StrutMotion) -> Array:
-    """How good each knot is for a cut, (M,)."""
+    """Merit of each knot for a cut, (M,)."""
     merit = np.zeros(len(motion), dtype=np.int64)
     for event in motion.events:
         merit[event.row] = max(merit[event.row], _GOOD_FOR_A_CUT.get(event.kind, 0))

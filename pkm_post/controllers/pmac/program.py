@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program: strut motion written as a Turbo PMAC motion program.
 
-Enters: strut motion in mm, mm/s and whole ms. Leaves: the words and the frame of the Turbo PMAC about its moves, in
-one program or in as many parts as its memory asks for.
+Enters: strut motion in mm, mm/s and whole ms. Leaves: the moves with the words and the frame of the Turbo PMAC, in one
+program or in as many parts as its memory requires.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ def program_text(motion: StrutMotion, settings: Settings, heading: Sequence[str]
 
 
 def program_parts(motion: StrutMotion, settings: Settings, heading: Sequence[str]) -> tuple[str, ...]:
-    """Write a motion as one program, or as several that fit into the memory one after the other.
+    """Write a motion as one program, or as several that each fit into the memory.
 
     Args:
         motion: as for ``program_text``.
-        settings: of the controller.
+        settings: settings of the controller.
         heading: lines of text for the comment on top of each part.
 
     Raises:
-        ValueError: the motion cannot be written, or no rest is near enough; ``memory_faults`` tells beforehand.
+        ValueError: the motion cannot be written, or no rest is near enough; ``memory_faults`` reports this beforehand.
     """
     motions = parts.parted(motion, memory_cuts(motion, settings))
     headings = parts.headings(heading, len(motions))
@@ -42,7 +42,7 @@ def program_parts(motion: StrutMotion, settings: Settings, heading: Sequence[str
 
 
 def buffer_opening(settings: Settings) -> str:
-    """The lines that open the buffer of the program, empty: all that precedes its modes and moves."""
+    """The lines that open and clear the program buffer: all that precedes its modes and moves."""
     return f"CLOSE\nDELETE GATHER\nOPEN PROG {settings.program}\nCLEAR\n"
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotary: a motion program in the form that runs from a rotary buffer while it is still being sent.
+"""Rotary: a motion program in the form that runs from a rotary buffer during its transfer.
 
-Enters: the text of a program, as it was certified. Leaves: the same lines in the frame of the rotary buffer. A program
-that is larger than the memory can run so: the controller forgets what it has carried out. The buffer itself is defined
-once after each reset, by whoever set the machine up.
+Enters: the text of a certified program. Leaves: the same lines in the frame of the rotary buffer. This runs programs
+larger than the memory, as the controller discards executed lines. The buffer itself is defined once after each reset,
+as part of the machine's set-up.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from pkm_post.controllers.pmac.settings import Settings
 
 
 def rotary_opening(settings: Settings) -> tuple[str, ...]:
-    """The lines that open the rotary buffer, empty, with the coordinate system pointed to it."""
-    # Behind OPEN ROT, B0 would be a move of axis B.
+    """The lines that open and clear the rotary buffer, with the coordinate system pointed to it."""
+    # After OPEN ROT, B0 would be a move of axis B.
     return "CLOSE", "DELETE GATHER", f"&{settings.coordinate_system}B0", "OPEN ROT", "CLEAR"
 
 
@@ -23,10 +23,10 @@ def rotary_text(program: str, settings: Settings) -> str:
 
     Args:
         program: text of a motion program in one part.
-        settings: of the controller it was written for.
+        settings: settings of the controller it was written for.
 
     Raises:
-        ValueError: the text has not the frame of a program of this controller.
+        ValueError: the text lacks the frame of a program for this controller.
     """
     opening = buffer_opening(settings)
     if program.count(opening) != 1:

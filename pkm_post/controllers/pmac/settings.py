@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Settings: how one machine's Turbo PMAC is wired and spoken to.
+"""Settings: wiring and communication of one machine's Turbo PMAC.
 
 Enters: the ``[controller]`` table of the machine file. Leaves: settings with the memory of the controller.
 """
@@ -14,10 +14,10 @@ from pkm_post.model import Diagnostic, Machine
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(pvt.Settings):
-    """Settings of the Turbo PMAC of one machine; it keeps about 10 significant digits of a number.
+    """Settings of the Turbo PMAC of one machine; it stores about 10 significant digits of a number.
 
     Attributes:
-        memory_words: 48-bit words that the controller has free for the program.
+        memory_words: 48-bit words of controller memory free for the program.
     """
 
     KIND = "turbo_pmac"
@@ -26,5 +26,5 @@ class Settings(pvt.Settings):
 
 
 def settings_of(machine: Machine) -> tuple[Settings | None, tuple[Diagnostic, ...]]:
-    """Settings of a machine's controller, or why there are none."""
+    """Settings of a machine's controller, or None with diagnostics."""
     return pvt.settings_of(Settings, machine)

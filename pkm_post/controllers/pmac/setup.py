@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Set-up: the lines that make axis values true strut lengths, for the controls engineer to load once.
+"""Set-up: commands that make axis values true strut lengths, loaded once by the controls engineer.
 
-Enters: settings and the stroke of the struts in mm. Leaves: ASCII text of on-line commands, apart from the programs:
-a part program must not redefine the machine. Positions are in encoder counts from motor zero.
+Enters: settings and the stroke of the struts in mm. Leaves: ASCII text of on-line commands, separate from the programs,
+as a part program must not redefine the machine. Positions are in encoder counts from motor zero.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ def setup_text(settings: Settings, machine_name: str, stroke: tuple[float, float
         counts = counts_per_mm * (strut length - zero_length)
 
     Args:
-        settings: of the controller.
+        settings: settings of the controller.
         machine_name: name of the machine, for the comment on top.
         stroke: shortest and longest joint-to-joint length of a strut, mm.
 
     Raises:
-        ValueError: the stroke is not two growing lengths.
+        ValueError: the stroke is not two increasing lengths.
     """
     check_stroke(stroke)
-    # All lines with & and # come before the first assignment: some tools that read such files let an expression
-    # run on into a following line that begins with one of these.
+    # All lines with & and # come before the first assignment: some tools that read such files continue an expression
+    # into a following line that begins with one of these.
     lines = [
         *comment_lines(f"Set-up of {machine_name}", settings.line_limit),
         "; Strut i is motor i. Axis values are joint-to-joint strut lengths in mm, speeds are in mm/s.",

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Syntax: what opens a Turbo PMAC program, for the reader.
+"""Syntax: the opening lines of a Turbo PMAC program, for the reader.
 
-Enters: the settings of the controller. Leaves: the grammar of its programs. It is stated here on its own, not taken
-from the writer: a fault of the writer must not be read as if it were none.
+Enters: the settings of the controller. Leaves: the grammar of its programs. It is independent of the writer, so that
+the reader detects a fault of the writer.
 """
 
 from __future__ import annotations

@@ -28,11 +28,11 @@ SETUP_SUFFIX = "-setup.cfg"
 
 
 def faults(motion: StrutMotion, settings: Settings, file: str) -> tuple[Diagnostic, ...]:
-    """Why a motion cannot be written for this controller.
+    """The reasons why a motion cannot be written for this controller.
 
     Args:
         motion: the motion to be written.
-        settings: of the controller.
+        settings: settings of the controller.
         file: name of the job, for the diagnostics.
     """
     return event_faults(motion, settings.codes, file)

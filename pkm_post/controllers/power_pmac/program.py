@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program: strut motion written as a Power PMAC motion program.
 
-Enters: strut motion in mm, mm/s and whole ms. Leaves: the words and the frame of the Power PMAC about its moves. Its
-memory is set in the controller's own project, so the motion is never cut into parts.
+Enters: strut motion in mm, mm/s and whole ms. Leaves: the moves with the words and the frame of the Power PMAC. Its
+memory is configured in the controller's own project, so the motion is never cut into parts.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def program_text(motion: StrutMotion, settings: Settings, heading: Sequence[str]
 
 
 def program_parts(motion: StrutMotion, settings: Settings, heading: Sequence[str]) -> tuple[str, ...]:
-    """Write a motion; there is one part always."""
+    """Write a motion, always as one part."""
     return (program_text(motion, settings, heading),)
 
 

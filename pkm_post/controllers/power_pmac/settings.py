@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Settings: how one machine's Power PMAC is wired and spoken to.
+"""Settings: wiring and communication of one machine's Power PMAC.
 
-Enters: the ``[controller]`` table of the machine file. Leaves: settings. The memory for programs is set in the
-controller's own project, so the machine file does not say how much there is.
+Enters: the ``[controller]`` table of the machine file. Leaves: settings. The program memory is configured in the
+controller's own project, so the machine file does not state it.
 """
 
 from __future__ import annotations
@@ -21,5 +21,5 @@ class Settings(pvt.Settings):
 
 
 def settings_of(machine: Machine) -> tuple[Settings | None, tuple[Diagnostic, ...]]:
-    """Settings of a machine's controller, or why there are none."""
+    """Settings of a machine's controller, or None with diagnostics."""
     return pvt.settings_of(Settings, machine)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Set-up: the lines that make axis values true strut lengths, for the controls engineer to load once.
+"""Set-up: commands that make axis values true strut lengths, loaded once by the controls engineer.
 
-Enters: settings and the stroke of the struts in mm. Leaves: ASCII text of on-line commands, apart from the programs:
-a part program must not redefine the machine. Positions are in motor units from motor zero; a motor unit is one count.
+Enters: settings and the stroke of the struts in mm. Leaves: ASCII text of on-line commands, separate from the programs,
+as a part program must not redefine the machine. Positions are in motor units from motor zero; a motor unit is one
+count.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ def setup_text(settings: Settings, machine_name: str, stroke: tuple[float, float
         motor units = counts_per_mm * (strut length - zero_length)
 
     Args:
-        settings: of the controller.
+        settings: settings of the controller.
         machine_name: name of the machine, for the comment on top.
         stroke: shortest and longest length of a strut, mm.
 
     Raises:
-        ValueError: the stroke is not two growing lengths.
+        ValueError: the stroke is not two increasing lengths.
     """
     check_stroke(stroke)
     lines = [

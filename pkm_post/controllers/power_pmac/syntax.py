@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Syntax: what opens a Power PMAC program, for the reader.
+"""Syntax: the opening lines of a Power PMAC program, for the reader.
 
-Enters: the settings of the controller. Leaves: the grammar of its programs. It is stated here on its own, not taken
-from the writer: a fault of the writer must not be read as if it were none. The controller takes capitals for small
-letters and the other way round; the reader does not, for the writer has no choice either.
+Enters: the settings of the controller. Leaves: the grammar of its programs. It is independent of the writer, so that
+the reader detects a fault of the writer. The controller ignores case; the reader does not, as the writer's case is
+fixed.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pkm_post.controllers.pvt.settings import APPROACH_RAMP_MS
 from pkm_post.controllers.pvt.syntax import FLOW_FROM_MODES, PRINTABLE, START, Flow, Grammar, body_forms, form
 
 FLOW: Flow = {START: {"comment": START, "open": "cleared"}, **FLOW_FROM_MODES}
-"""Opening a program empties it."""
+"""Opening a program clears it."""
 
 
 def grammar(settings: Settings) -> Grammar:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Axes: the lines that make axis values true strut lengths, and the stroke in counts.
+"""Axes: the axis definitions that make axis values true strut lengths, and the stroke in counts.
 
     counts = counts_per_mm * (strut length - zero_length)
 
-Enters: settings, and the stroke of the struts in mm. Leaves: lines of text, and exact decimals: rounding in binary
-would put a digit into the file that nobody wrote.
+Enters: settings, and the stroke of the struts in mm. Leaves: lines of text, and exact decimals: binary rounding would
+add spurious digits to the file.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from pkm_post.controllers.pvt.decimals import exact, plain
 from pkm_post.controllers.pvt.settings import Settings
 
 ROTARY_LETTERS = "ABC"
-"""Axes that a controller of the family takes for rotary ones."""
+"""Axes that controllers of the family treat as rotary."""
 
 
 def check_stroke(stroke: tuple[float, float]) -> None:
-    """Check that the stroke is two growing lengths.
+    """Check that the stroke is two increasing lengths.
 
     Raises:
         ValueError: it is not.
@@ -31,7 +31,7 @@ def check_stroke(stroke: tuple[float, float]) -> None:
 
 
 def axis_definitions(settings: Settings) -> list[str]:
-    """For each motor the axis it belongs to: ``#motor->SCALE LETTER OFFSET``, without the spaces."""
+    """The axis definition of each motor: ``#motor->SCALE LETTER OFFSET``, without the spaces."""
     scale = exact(settings.counts_per_mm)
     offsets = [-scale * exact(length) for length in settings.zero_length]
     return [
@@ -41,7 +41,7 @@ def axis_definitions(settings: Settings) -> list[str]:
 
 
 def stroke_counts(settings: Settings, stroke: tuple[float, float]) -> list[tuple[Decimal, Decimal]]:
-    """For each strut its lowest and highest count."""
+    """The lowest and highest count of each strut."""
     scale = exact(settings.counts_per_mm)
     ends = [[scale * (exact(length) - exact(zero)) for length in stroke] for zero in settings.zero_length]
     return [(min(counts), max(counts)) for counts in ends]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Codes: the words of a machine for its events, such as ``T3 M6`` for a tool change.
+"""Codes: a machine's program text for its events, such as ``T3 M6`` for a tool change.
 
-Enters: an event and the machine's table of codes. Leaves: the line of the program that makes it happen. The table must
-be invertible: no text may stand for two events, so that a program can be read back and compared with its job.
-Values are in the units of the event, except the dwell: s inside, ms in the program. A code may call a subprogram of
-the machine (M, T, S words) or set an output with a synchronous assignment, ``M60==1 DWELL0``.
+Enters: an event and the machine's table of codes. Leaves: the program line that executes it. The table must be
+invertible: no text may stand for two events, so that a program can be read back and compared with its job. Values are
+in the units of the event, except the dwell: s inside, ms in the program. A code may call a subprogram of the machine
+(M, T, S words) or set an output with a synchronous assignment, ``M60==1 DWELL0``.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
 
 @dataclass(frozen=True)
 class Meaning:
-    """What the code of one name does.
+    """The effect of the code with one name.
 
     Attributes:
         kind: the kind of event.
-        value: the value of the event; None when the code states it.
-        sign: sign of the event's value against the number in the code.
+        value: the value of the event; None if the code states it.
+        sign: sign of the event's value relative to the number in the code.
     """
 
     kind: EventKind
@@ -49,11 +49,11 @@ MEANINGS: dict[str, Meaning] = {
     "stop": Meaning(EventKind.STOP, 0.0),
     "optional_stop": Meaning(EventKind.STOP, 1.0),
 }
-"""The first that covers an event is its code: the stop of the spindle stands before its two directions. The
-reader has a statement of its own of what each code does (``syntax.EFFECTS``)."""
+"""The first entry that covers an event is its code: spindle stop comes before the two directions. The reader has
+its own definition of what each code does (``syntax.EFFECTS``)."""
 
 LONGEST_DWELL = 8388.607
-"""s; the controller cuts longer dwells down to this."""
+"""s; the controller truncates longer dwells to this."""
 
 FIELD = re.compile(r"\{value(?::(?P<form>d|\.[1-9]f))?\}")
 """``{value}`` is the exact number, ``{value:d}`` a whole number, ``{value:.3f}`` one with three decimals."""
@@ -66,7 +66,7 @@ _COMMENTS = ("//", "/*")
 _MODES = re.compile(
     r"(?<![A-Z])(PVT|LINEAR|RAPID|CIRCLE|SPLINE|INC|ABS|FRAX|NORMAL|OPEN|CLOSE|CLEAR|DELETE)(?![A-Z])", re.IGNORECASE
 )
-"""What changes how the moves after it are taken, or the program itself."""
+"""Words that change the interpretation of the following moves, or the program itself."""
 _SYNCHRONOUS = re.compile(r"[=&|^]=")
 _WITH_DWELL = re.compile(r".* DWELL *0", re.IGNORECASE)
 _OTHER_NUMBERS = ("7919", "7919.5")
@@ -76,8 +76,8 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
     """Check that a table of codes is complete, well formed and invertible, and moves no strut.
 
     Args:
-        codes: for each name of ``MEANINGS`` its text, with one field where it states the value of the event.
-        letters: those of the axes.
+        codes: text for each name of ``MEANINGS``, with one field if it states the value of the event.
+        letters: letters of the axes.
 
     Raises:
         ValueError: a name is missing or unknown, a text is malformed, changes modes or moves an axis, or some text
@@ -101,13 +101,13 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
 
 
 def _check_synchronous(name: str, template: str) -> None:
-    """A synchronous assignment waits for the next move or dwell: behind the last move it would never be carried out."""
+    """Require a dwell after a synchronous assignment: it waits for the next move or dwell, and might never execute."""
     if _SYNCHRONOUS.search(template) and not _WITH_DWELL.fullmatch(template):
         raise ValueError(f"codes.{name}: expected DWELL0 behind a synchronous assignment, got {template!r}")
 
 
 def _check_stands(name: str, template: str, letters: Sequence[str]) -> None:
-    """The certificate knows of no other moves and modes than those of the program itself."""
+    """Refuse codes with moves and modes: the certificate only knows those of the program itself."""
     moves = re.compile(rf"(?<![A-Z])({'|'.join(map(re.escape, letters))})\s*[-+.(0-9{{]", re.IGNORECASE)
     found = _MODES.search(template) or moves.search(template)
     if found:
@@ -115,7 +115,7 @@ def _check_stands(name: str, template: str, letters: Sequence[str]) -> None:
 
 
 def _check_invertible(codes: Mapping[str, str]) -> None:
-    """Try every code with the numbers that stand in the table and two others: if these do not clash, none does."""
+    """Try every code with the numbers in the table and two others: if these do not clash, none do."""
     numbers = {*_OTHER_NUMBERS, *re.findall(r"[0-9]+(?:\.[0-9]+)?", " ".join(codes.values()))}
     patterns = {name: _pattern(template) for name, template in codes.items()}
     for name, template in codes.items():
@@ -141,7 +141,7 @@ def _number_text(template: str, value: float) -> str:
 
 
 def unwritable(event: Event, codes: Mapping[str, str]) -> str:
-    """Why ``event`` has no code, in words; empty when it has one."""
+    """The reason why ``event`` has no code, in words; empty if it has one."""
     if event.kind == EventKind.DWELL:
         return "" if 0 <= event.value <= LONGEST_DWELL else f"a dwell lasts 0 to {LONGEST_DWELL} s"
     name = _name(event)
@@ -152,15 +152,15 @@ def unwritable(event: Event, codes: Mapping[str, str]) -> str:
 
 
 def code_text(event: Event, codes: Mapping[str, str], dwell: str = "DWELL") -> str:
-    """The line of the program that makes ``event`` happen.
+    """The program line that executes ``event``.
 
     Args:
-        event: what happens.
+        event: the event.
         codes: the machine's table of codes.
         dwell: the controller's word for a dwell.
 
     Raises:
-        ValueError: the event has no code; ``event_faults`` tells beforehand.
+        ValueError: the event has no code; ``event_faults`` reports this beforehand.
     """
     reason = unwritable(event, codes)
     if reason:
@@ -172,7 +172,7 @@ def code_text(event: Event, codes: Mapping[str, str], dwell: str = "DWELL") -> s
 
 
 def event_faults(motion: StrutMotion, codes: Mapping[str, str], file: str) -> tuple[Diagnostic, ...]:
-    """The events of a motion that the machine has no code for.
+    """Diagnostics for the events of a motion without a code on the machine.
 
     Args:
         motion: the motion to be written.

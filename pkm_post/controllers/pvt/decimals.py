@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Decimals: numbers as the controller reads them.
+"""Decimals: numbers in the form that the controller reads.
 
-The controller takes plain decimals: digits, and a point with digits on both sides of it. It has no exponent form.
+The controller reads plain decimals: digits, and a point with digits on both sides of it. It has no exponent form.
 Enters: a number of any unit. Leaves: the shortest such decimal that reads back as the same number.
 """
 
@@ -16,7 +16,7 @@ def exact(value: float | Decimal) -> Decimal:
 
 
 def plain(value: float | Decimal) -> str:
-    """Write a number without exponent, without trailing zeros and without a minus sign before zero.
+    """Print a number without exponent, trailing zeros or negative zero.
 
     Args:
         value: any finite number.

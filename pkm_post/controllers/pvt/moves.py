@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Moves: the lines of moves of a text, and the intervals between them, found and read all at once, for the reader.
+"""Moves: find and read all lines of moves of a text, and the intervals between them, at once, for the reader.
 
-Enters: text, and the forms of the two kinds of line. Leaves: which lines have these forms, and their numbers. When all
-of their numbers have a point, lines of moves are alike but for signs and digits. All other characters are marks, and
-their places tell where the numbers are. What is found is proven to have its form; a line that is not found may have it.
+Enters: text, and the forms of the two kinds of line. Leaves: which lines have these forms, and their numbers. If all
+numbers have a point, lines of moves differ only in signs and digits. All other characters are marks, whose places
+locate the numbers. Lines that are found are proven to have the form; a line that is not found may still have it.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ class Lines:
     """The lines of a text.
 
     Attributes:
-        edges: place where each line begins, and the end of the text, (L + 1,).
-        complete: how many of them have a line end; the last one may not.
-        is_move: whether a line was found to be one of moves, (L,).
+        edges: start of each line, and the end of the text, (L + 1,).
+        complete: number of lines with a line end; the last one may lack it.
+        is_move: whether a line was found to be a line of moves, (L,).
         values: lengths and speeds of these lines in mm and mm/s, (M, 6, 2).
-        interval: of a line that was found to be one, in ms; zero elsewhere, (L,).
+        interval: interval of a line found to be one, in ms; zero elsewhere, (L,).
     """
 
     edges: Array
@@ -37,9 +37,9 @@ class Lines:
     interval: Array
 
     def stretches(self) -> Iterator[tuple[int, int]]:
-        """Each line that has to be read by itself, and where what follows it ends: moves with intervals between them.
+        """Each line to be read individually, and the end of the stretch of moves and intervals after it.
 
-        The first line of moves counts as one to be read by itself, so that its place in the program is judged.
+        The first line of moves is also read individually, so that its place in the program is checked.
         """
         is_move = np.concatenate([[False], self.is_move, [False]])
         regular = self.is_move | ((self.interval > 0) & is_move[:-2] & is_move[2:])
@@ -47,12 +47,12 @@ class Lines:
         yield from zip(alone, [*alone[1:], len(regular)], strict=False)
 
     def moves(self, first: int, end: int, interval: int) -> tuple[Array, Array]:
-        """The lengths and speeds of the moves in a range of lines, (M, 6, 2), and the ms that each of them takes, (M,).
+        """The lengths and speeds of the moves in a range of lines, (M, 6, 2), and the duration of each in ms, (M,).
 
         Args:
-            first: line of the range.
-            end: the line behind it.
-            interval: in force before the first line, ms.
+            first: first line of the range.
+            end: the line after the range.
+            interval: interval in force before the first line, ms.
         """
         is_move, told = self.is_move[first:end], self.interval[first:end].copy()
         told[0] = told[0] or interval
@@ -61,7 +61,7 @@ class Lines:
         return self.values[begin : begin + np.count_nonzero(is_move)], told[since][is_move]
 
     def lengths(self) -> Array:
-        """The characters of each line without its line end, (L,)."""
+        """The number of characters of each line without its line end, (L,)."""
         lengths = np.diff(self.edges)
         lengths[: self.complete] -= 1
         return lengths
@@ -72,9 +72,9 @@ def lines_of(text: bytes, move: Form, interval: Form, longest: int) -> Lines:
 
     Args:
         text: any characters.
-        move: six times a letter, a decimal, a colon and a decimal, with a space between them.
+        move: six times a letter, a decimal, a colon and a decimal, separated by spaces.
         interval: characters and a whole number.
-        longest: intervals beyond it are not taken, ms.
+        longest: longer intervals are not found, ms.
     """
     marks = _Marks(text)
     rows, values = marks.moves(move)
@@ -90,7 +90,7 @@ class _Marks:
     """The characters of a text that are neither digits nor signs.
 
     Attributes:
-        edges, complete: as of ``Lines``.
+        edges, complete: as in ``Lines``.
     """
 
     def __init__(self, text: bytes) -> None:
@@ -123,7 +123,7 @@ class _Marks:
         return rows[right], value[right]
 
     def _alike(self, line: str) -> tuple[Array, Array]:
-        """Rows of the complete lines that have the marks of a line, (M,), and the places of these, (M, marks)."""
+        """Rows of the complete lines with the same marks as a line, (M,), and the places of these, (M, marks)."""
         expected = np.frombuffer(f"{line}\n".encode("ascii"), dtype=np.uint8)
         rows = np.flatnonzero(np.diff(self._closing, prepend=-1) == len(expected))
         marks = self._closing[rows, None] + np.arange(1 - len(expected), 1)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts: a motion in several programs that run one after the other, and the whole of it again.
+"""Parts: split a motion into several programs that run in sequence, and join them again.
 
 Enters: strut motion and the knots where it is cut, or the motions read from the parts. Leaves: a motion for each part,
-each from 0 ms on, or one motion. What happens at a cut belongs to the part behind it. Each part says in its heading
-which it is, for people and for the reader.
+each starting at 0 ms, or one motion. Events at a cut belong to the part after it. Each part states its number in its
+heading, for the user and for the reader.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ import numpy as np
 from pkm_post.model import Diagnostic, Event, Place, StrutMotion
 
 _STATED = re.compile(r"(?:(?:;|//).*\n)*?(?:;|//) part ([1-9][0-9]{0,3}) of ([1-9][0-9]{0,3}):")
-"""Stands in the comment on top; the rest of a program may be long. There are not so many parts as a lie could say."""
+"""Matches in the comment on top only, as a program may be long; four digits limit the number of stated parts."""
 
 
 def parted(motion: StrutMotion, cuts: Sequence[int]) -> tuple[StrutMotion, ...]:
     """The parts of a motion.
 
     Args:
-        motion: the whole.
-        cuts: knots where it rests, in order, without its first and its last.
+        motion: the whole motion.
+        cuts: knots where it rests, in order, without the first and the last.
     """
     edges = [0, *cuts, len(motion) - 1]
     return tuple(
@@ -44,20 +44,20 @@ def _between(motion: StrutMotion, first: int, last: int, ends: bool) -> StrutMot
 
 
 def headings(heading: Sequence[str], count: int) -> Iterator[list[str]]:
-    """The heading of each part: nothing is added when there is one only."""
+    """The heading of each part; unchanged if there is only one."""
     for number in range(1, count + 1):
         after = "the first" if number == 1 else f"start it where part {number - 1} ended, and only there"
         yield [*heading, *([f"part {number} of {count}: {after}"] if count > 1 else [])]
 
 
 def stated_part(text: str) -> tuple[int, int]:
-    """Which part a program says it is, and of how many; 1 of 1 when it says nothing."""
+    """The part number that a program states, and the number of parts; 1 of 1 if it states none."""
     found = _STATED.match(text)
     return (int(found[1]), int(found[2])) if found else (1, 1)
 
 
 def part_faults(texts: Sequence[tuple[str, str]]) -> tuple[Diagnostic, ...]:
-    """What the parts say of themselves that does not go together.
+    """Inconsistencies between the statements of the parts.
 
     Args:
         texts: file name and text of each part, in order.
@@ -71,10 +71,10 @@ def part_faults(texts: Sequence[tuple[str, str]]) -> tuple[Diagnostic, ...]:
 
 
 def joined(motions: Sequence[StrutMotion], files: Sequence[str]) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """The whole of the motions of the parts, when each begins where the one before it ended, at rest.
+    """Join the motions of the parts, if each begins where the previous one ended, at rest.
 
     Args:
-        motions: of the parts, in order.
+        motions: motions of the parts, in order.
         files: their names, for the diagnostics.
     """
     if len(motions) == 1:

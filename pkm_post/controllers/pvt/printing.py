@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Printing: many numbers printed at once, for the writer.
+"""Printing: print many numbers at once, for the writer.
 
-Enters: numbers of any unit, and with how many decimals they are printed. Leaves: their characters as columns of bytes,
-place by place, so that no number is a Python object on its way. Numbers are rounded to whole numbers of their last
-decimal, of which each division by ten gives one column of digits. Beyond what doubles hold so, Python prints them.
+Enters: numbers of any unit, and their number of decimals. Leaves: their characters as columns of bytes, without a
+Python object per number. Numbers are rounded to integers in units of the last decimal; each division by ten gives one
+column of digits. Numbers beyond the exact range of doubles are printed by Python.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import numpy as np
 from pkm_post.model.program import Array
 
 BLANK = b"\0"
-"""Stands where a number has no character; who joins the columns takes it out."""
+"""Fills places without a character; removed when the columns are joined."""
 _EXACT = 2**52
-"""Below so many last decimals the nearest double is off by less than half of one, and prints as the decimal."""
+"""In units of the last decimal; below it the nearest double errs by less than half a unit and prints exactly."""
 
 
 def rounded(values: Array, decimals: int) -> Array:
-    """The numbers as they are printed; adding zero turns -0.0 into 0.0."""
+    """The numbers as printed; adding zero turns -0.0 into 0.0."""
     return np.round(values, decimals) + 0.0
 
 
@@ -28,10 +28,10 @@ def printed(values: Array, decimals: int) -> Array:
 
     Args:
         values: (...), finite, at least one.
-        decimals: digits behind the point, at least one.
+        decimals: digits after the point, at least one.
 
     Returns:
-        (..., W) characters, as many as the longest number has; the others have blanks among theirs.
+        (..., W) characters, with W those of the longest number; shorter ones contain blanks.
     """
     scaled = np.rint(values * 10.0**decimals)
     most = np.abs(scaled).max()
@@ -42,18 +42,18 @@ def printed(values: Array, decimals: int) -> Array:
 
 
 def _columns(scaled: Array, most: int, decimals: int) -> Array:
-    """Whole numbers of the last decimal, none beyond ``most``: a sign, digits, the point and the decimals."""
+    """Characters of integers in units of the last decimal, up to ``most``: sign, digits, point and decimals."""
     before_point = len(str(most // 10**decimals))
     columns = np.empty((1 + before_point + 1 + decimals, *scaled.shape), dtype=np.uint8)
     last = len(columns) - 1
     point = last - decimals
     columns[0] = np.where(scaled < 0, ord("-"), 0)
     columns[point] = ord(".")
-    rest = np.abs(scaled).astype(np.min_scalar_type(most))  # narrow numbers are divided much faster
+    rest = np.abs(scaled).astype(np.min_scalar_type(most))  # narrow integers divide much faster
     for column in [*range(last, point, -1), *range(point - 1, 0, -1)]:
         above = rest // 10
         columns[column] = ord("0") + (rest - above * 10)
         if column < point - 1:
-            columns[column] *= rest > 0  # no zeros in front
+            columns[column] *= rest > 0  # no leading zeros
         rest = above
     return np.moveaxis(columns, 0, -1)

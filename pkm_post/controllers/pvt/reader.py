@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reader: a motion program read back as strut motion, or the list of what is wrong with it.
+"""Reader: read a motion program back as strut motion, or report its faults.
 
 Enters: the text of a program or of its parts, the grammar of the controller and the settings it was written for.
-Leaves: knots with lengths in mm and speeds in mm/s at whole ms, and the events, as the controller will carry them out.
-The reader is strict: a line it does not know, or one in a place where it does not belong, is a fault.
+Leaves: knots with lengths in mm and speeds in mm/s at whole ms, and the events, as the controller executes them.
+The reader is strict: an unknown or misplaced line is a fault.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ _CHUNK = 1 << 20
 def read_parts(
     texts: Sequence[tuple[str, str]], grammar: Grammar, settings: Settings
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """Read a motion program that was written in parts, or in one.
+    """Read a motion program in one or several parts.
 
     Args:
         texts: file name and text of each part, in order.
-        grammar: of the controller.
-        settings: of the controller it was written for.
+        grammar: grammar of the controller.
+        settings: settings of the controller it was written for.
 
     Returns:
-        The whole motion, or None when there are faults; and the faults.
+        The whole motion, or None if there are faults; and the faults.
     """
     faults = part_faults(texts)
     motions = []
@@ -51,12 +51,12 @@ def read_program(
 
     Args:
         text: the program.
-        grammar: of the controller.
-        settings: of the controller it was written for.
+        grammar: grammar of the controller.
+        settings: settings of the controller it was written for.
         file: its name, for the diagnostics.
 
     Returns:
-        The motion, or None when there are faults; and the first 20 faults in the order of their lines.
+        The motion, or None if there are faults; and the first 20 faults in line order.
     """
     reading = Reading(grammar, file)
     number = 1
@@ -74,7 +74,7 @@ def read_program(
 
 
 def _chunks(text: str) -> Iterator[str]:
-    """A text in pieces of whole lines, so that what is computed of them at a time takes little memory."""
+    """A text in pieces of whole lines, to limit the memory of their working arrays."""
     start = 0
     while start < len(text):
         end = text.find("\n", start + _CHUNK) + 1 or len(text)

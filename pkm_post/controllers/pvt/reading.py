@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reading: what is known of a program after each of its lines, and what is wrong with it so far.
+"""Reading: the state of the reader after each line of a program, and the faults so far.
 
 Enters: lines in order, those of moves in stretches, and the grammar of the controller. Leaves: knots with lengths in mm
 and speeds in mm/s at whole ms, and the events; or the faults, by line and column.
@@ -25,11 +25,11 @@ _SHOWN = 40
 
 
 class Reading:
-    """What is known of a program, line by line.
+    """The state of the reader, line by line.
 
     Attributes:
         forms: the forms of its lines.
-        faults: what was wrong so far.
+        faults: faults so far.
     """
 
     def __init__(self, grammar: Grammar, file: str) -> None:
@@ -50,12 +50,12 @@ class Reading:
         self._acts |= {"interval": self._new_interval, "move": self._move}
 
     def lines_of(self, text: str) -> Lines:
-        """The lines of a text, of which moves and intervals are found already."""
-        # one byte per character: one that is not Latin-1 becomes a question mark, which is in no line of these
+        """The lines of a text, with moves and intervals already found."""
+        # one byte per character: others become question marks, which no valid line has
         return lines_of(text.encode("latin-1", "replace"), self.forms["move"], self.forms["interval"], _INTERVAL_MS)
 
     def take(self, number: int, text: str, lines: Lines) -> None:
-        """Take the lines of a text, the first of them line ``number``."""
+        """Process the lines of a text, starting at line ``number``."""
         for row, end in lines.stretches():
             if len(self.faults) >= MOST_FAULTS:
                 break
@@ -75,7 +75,7 @@ class Reading:
             self._act(name, number, line, numbers)
 
     def finish(self, number: int) -> StrutMotion | None:
-        """The motion of a text that ended before line ``number``; None when there were faults."""
+        """The motion of a text that ended before line ``number``; None if there were faults."""
         if self._state != FINISHED:
             self._fault(number, 0, "", self._expected())
         if self.faults:
@@ -89,14 +89,14 @@ class Reading:
         return StrutMotion(locked(time_ms), _joined(self._lengths), _joined(self._speeds), tuple(self._events))
 
     def _check_rest(self, motion: StrutMotion) -> None:
-        """Every interruption must find the struts at rest; whether the end does is a matter of the whole motion."""
+        """Check that the struts rest at every interruption; the end is checked with the whole motion."""
         eventful = {event.row for event in motion.events}
         for knot, number in self._halts:
             if motion.speed[knot].any() and (knot < len(motion) - 1 or knot in eventful):
                 self._fault(number, 0, self.forms["halt"].name, "struts at rest")
 
     def _form_of(self, line: str) -> tuple[str, Sequence[str] | None]:
-        """The form of a line, one that is due if there is one, and its numbers; nothing when it has no known form."""
+        """The form of a line, preferably an expected one, and its numbers; empty if it has no known form."""
         for name in (*self._due[self._state], *self.forms):
             match = self.forms[name].fits(line)
             if match:
@@ -123,7 +123,7 @@ class Reading:
         self._moves(np.array([[float(number) for number in numbers]]).reshape(1, 6, 2), np.array([self._interval]))
 
     def _moves(self, values: Array, intervals: Array) -> None:
-        """Take moves: their lengths and speeds, (M, 6, 2), and the time that each takes in ms, (M,)."""
+        """Append moves: their lengths and speeds, (M, 6, 2), and the duration of each in ms, (M,)."""
         self._lengths.append(values[:, :, 0].copy())
         self._speeds.append(values[:, :, 1].copy())
         self._intervals.append(intervals)
@@ -145,7 +145,7 @@ class Reading:
         self._events.append(Event(self._knots - 1, EventKind.DWELL, float(milliseconds / 1000)))
 
     def _malformed(self, number: int, line: str) -> str:
-        """Report a line of no known form; the kind of line that was meant, empty when it cannot be told."""
+        """Report a line of no known form; return the intended kind of line, empty if unclear."""
         agreed, expected, name = max(
             ((*self.forms[name].agreement(line), name) for name in self._due[self._state]),
             default=(0, "", ""),
@@ -166,7 +166,7 @@ class Reading:
 
 
 def _joined(pieces: list[Array]) -> Array:
-    """Pieces as one column, in which they end: a long program does not fit twice."""
+    """Join pieces into one column and release them: a long program does not fit into memory twice."""
     column = np.concatenate(pieces)
     pieces.clear()
     return locked(column)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Settings: how one machine's controller is wired and spoken to, as far as it is the same for the whole family.
+"""Settings: wiring and communication of one machine's controller, as far as common to the family.
 
 Enters: the ``[controller]`` table of a machine, whose entries the reader of machine files has checked one by one.
-Leaves: settings that the writer, the reader and the set-up file share as data. Checked here is what the reader of
-machine files does not know: which kind of controller is spoken to, whether the codes can be told apart, and the number
-of a program that no file states. Units: mm, mm/s, ms, encoder counts.
+Leaves: settings that the writer, the reader and the set-up file share as data. Checks here are those that the reader of
+machine files cannot make: the kind of controller, whether the codes are distinguishable, and a program number that no
+file states. Units: mm, mm/s, ms, encoder counts.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from pkm_post.controllers.pvt.codes import check_codes
 from pkm_post.model import Diagnostic, Machine, Place
 
 APPROACH_RAMP_MS = 500
-"""How long the approach takes to reach its speed, and to stop."""
+"""Duration of acceleration and of deceleration of the approach."""
 _LAST_PROGRAM = 999
-"""From 1000 on live the subprograms of the codes G, M, T, D."""
+"""Programs from 1000 on are the subprograms of the codes G, M, T, D."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,19 +27,19 @@ class Settings:
     """Settings of the controller of one machine; strut i is motor i is the axis of letter i.
 
     Attributes:
-        counts_per_mm: encoder counts per mm of strut length; negative when the count falls as the strut grows.
-        zero_length: for each strut its length in mm at motor position zero.
-        approach_speed: root of the sum of the squares of the six strut speeds on the way to the first knot, mm/s.
-        letters: for each strut its axis letter.
-        coordinate_system: number of the coordinate system the six motors belong to.
+        counts_per_mm: encoder counts per mm of strut length; negative if the count falls as the strut extends.
+        zero_length: length of each strut in mm at motor position zero.
+        approach_speed: root of the sum of the squares of the six strut speeds on the approach to the first knot, mm/s.
+        letters: axis letter of each strut.
+        coordinate_system: number of the coordinate system of the six motors.
         program: number of the motion program.
         length_decimals: digits after the point of a length in mm.
         speed_decimals: digits after the point of a speed in mm/s.
-        line_limit: longest line the controller takes, in characters.
+        line_limit: longest line that the controller accepts, in characters.
         codes: text of each event, by the names of ``codes.MEANINGS``.
 
     Raises:
-        ValueError: the codes cannot be told apart, or the program has a number that is none for a program.
+        ValueError: the codes are not distinguishable, or the program number is not valid.
     """
 
     KIND: ClassVar[str]
@@ -57,17 +57,17 @@ class Settings:
     codes: Mapping[str, str]
 
     def __post_init__(self) -> None:
-        # moves by hand and single blocks run under a number that is chosen when the machine is operated
+        # manual moves and single blocks run under a program number chosen at run time
         if not 1 <= self.program <= _LAST_PROGRAM:
             raise ValueError(f"program: expected a whole number from 1 to {_LAST_PROGRAM}, got {self.program}")
         check_codes(self.codes, self.letters)
 
     @classmethod
     def of(cls, controller: Mapping[str, Any]) -> Self:
-        """Settings from ``Machine.controller``; entries that have no meaning for this controller are left out.
+        """Settings from ``Machine.controller``; entries without meaning for this controller are ignored.
 
         Raises:
-            ValueError: the table is of another kind of controller, or its codes cannot be told apart.
+            ValueError: the table is of another kind of controller, or its codes are not distinguishable.
         """
         kind = controller.get("kind")
         if kind != cls.KIND:
@@ -79,11 +79,11 @@ AnySettings = TypeVar("AnySettings", bound=Settings)
 
 
 def settings_of(form: type[AnySettings], machine: Machine) -> tuple[AnySettings | None, tuple[Diagnostic, ...]]:
-    """Settings of a machine's controller, or why there are none.
+    """Settings of a machine's controller, or None with diagnostics.
 
     Args:
-        form: the settings that this kind of controller has.
-        machine: as the reader of machine files made it.
+        form: the settings class of this kind of controller.
+        machine: as returned by the reader of machine files.
     """
     try:
         return form.of(machine.controller), ()

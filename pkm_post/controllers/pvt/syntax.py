@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Syntax: the lines of a strut program, and which may follow which, for the reader.
+"""Syntax: the lines of a strut program and their valid order, for the reader.
 
-Enters: the settings of the controller. Leaves: for each kind of line its form, a sequence of pieces, so that a wrong
-line can be told to the column; what each code does; and the flow, the order of the program. These rules are stated here
-on their own, not taken from the writer: a fault of the writer must not be read as if it were none. What opens a program
-each controller states for itself.
+Enters: the settings of the controller. Leaves: the form of each kind of line, a sequence of pieces, so that faults are
+located to the column; the effect of each code; and the flow, the order of the program. These rules are independent of
+the writer, so that the reader detects a fault of the writer. Each controller defines the opening of its programs.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from pkm_post.model import EventKind
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of a line: its pattern, what people call it, and what it says if that is always the same."""
+    """A part of a line: its pattern, its name for the user, and its text if constant."""
 
     pattern: str
     name: str
@@ -43,9 +42,9 @@ class Form:
     """The form of one kind of line.
 
     Attributes:
-        name: what people call the line.
+        name: name of the line for the user.
         pieces: its parts, in order; they have one group for each number.
-        pattern: all of them, compiled.
+        pattern: the compiled pattern of all pieces.
     """
 
     name: str
@@ -53,15 +52,15 @@ class Form:
     pattern: re.Pattern[str]
 
     def fits(self, line: str) -> re.Match[str] | None:
-        """The match when the whole line has this form."""
+        """The match if the whole line has this form."""
         return self.pattern.fullmatch(line)
 
     def with_numbers(self, number: str) -> str:
-        """The line with this in the place of each of its numbers."""
+        """The line with ``number`` in place of each of its numbers."""
         return "".join(piece.fixed or number for piece in self.pieces)
 
     def agreement(self, line: str) -> tuple[int, str]:
-        """How far a line agrees with this form, in characters, and what is expected there."""
+        """The number of characters in which a line agrees with this form, and what is expected there."""
         position = 0
         for piece in (*self.pieces, END):
             match = re.compile(piece.pattern).match(line, position)
@@ -78,11 +77,11 @@ def form(name: str, *parts: str | Piece) -> Form:
 
 
 def body_forms(settings: Settings, spelt: Callable[[str], str]) -> dict[str, Form]:
-    """The forms of the lines that all controllers of the family have, by kind; the codes of events by their names.
+    """The forms of the lines common to all controllers of the family, by kind; codes of events by their names.
 
     Args:
-        settings: of the controller.
-        spelt: a word in capitals as this controller's programs have it.
+        settings: settings of the controller.
+        spelt: converts a word in capitals to the spelling of this controller's programs.
     """
     lengths: list[Parts] = [(letter, SIGNED, " ") for letter in settings.letters]
     lengths_and_speeds: list[Parts] = [(letter, SIGNED, ":", SIGNED, " ") for letter in settings.letters]
@@ -126,16 +125,16 @@ EFFECTS: Mapping[str, _Effect] = {
     "coolant_flood": (EventKind.COOLANT, 1.0),
     "coolant_off": (EventKind.COOLANT, 0.0),
 }
-"""What the code of each name does: the kind of event, and its value, or the value by the number in the code. The names
-are those of ``[controller.codes]`` in machine files, which say in words what the code makes the machine do."""
+"""Effect of the code of each name: the kind of event, and its value, or the value by the number in the code. The names
+are those of ``[controller.codes]`` in machine files, which describe the action of the machine."""
 
 
 def effect(name: str, numbers: Sequence[str]) -> tuple[EventKind, float]:
-    """Kind and value of the event that a code makes happen.
+    """Kind and value of the event that a code executes.
 
     Args:
-        name: of the code.
-        numbers: that stand in its line.
+        name: name of the code.
+        numbers: numbers in its line.
     """
     kind, value = EFFECTS[name]
     return kind, value(float(numbers[0])) if callable(value) else value
@@ -143,7 +142,7 @@ def effect(name: str, numbers: Sequence[str]) -> tuple[EventKind, float]:
 
 START, FINISHED = "start", "finished"
 Flow = Mapping[str, Mapping[str, str]]
-"""For each state of the program the kinds of line that may come next, and the state each leads to."""
+"""For each state of the program the kinds of line that may follow, and the state each leads to."""
 
 FLOW_FROM_MODES: Flow = {
     "cleared": {"absolute": "absolute"},
@@ -158,21 +157,21 @@ FLOW_FROM_MODES: Flow = {
     "ending": {"close": FINISHED},
     FINISHED: {},
 }
-"""The flow from the program's empty buffer on."""
+"""The flow after the program buffer is cleared."""
 
 _FIRST_OF_BODY = "approached"
 
 
 def state_after(flow: Flow, state: str, kind: str) -> str:
-    """The state a line leads to, also when it is out of place.
+    """The state that a line leads to, even if it is misplaced.
 
-    It then counts as if the lines missing before it had been there, within the head or the body of the program, so
-    that one fault is told once. A line that belongs to the other part leads nowhere.
+    A misplaced line counts as if the missing lines before it were present, within the head or the body of the program,
+    so that one fault is reported once. A line that belongs to the other part leads nowhere.
 
     Args:
-        flow: of the whole program.
-        state: before the line.
-        kind: of the line.
+        flow: flow of the whole program.
+        state: state before the line.
+        kind: kind of the line.
     """
     states = list(flow)
     here, body = states.index(state), states.index(_FIRST_OF_BODY)
@@ -182,12 +181,12 @@ def state_after(flow: Flow, state: str, kind: str) -> str:
 
 @dataclass(frozen=True)
 class Grammar:
-    """All that the reader needs to know of one controller's programs.
+    """The grammar of one controller's programs.
 
     Attributes:
-        forms: of all lines, by kind.
-        flow: of the program.
-        feed: what the line of the approach states: ms to reach the speed, ms of rounding, mm/s.
+        forms: forms of all lines, by kind.
+        flow: flow of the program.
+        feed: values in the line of the approach: ms of acceleration, ms of rounding, mm/s.
     """
 
     forms: Mapping[str, Form]

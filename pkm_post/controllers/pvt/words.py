@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words: how one controller of the family spells what all of them say, for the writer.
+"""Words: the spelling of the common commands for one controller of the family, for the writer.
 
-The reader has its own statement of them: a fault of the writer must not be read as if it were none.
+The reader has its own definition, so that it detects a fault of the writer.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ class Words:
     """The words of one controller.
 
     Attributes:
-        comment: begins a comment.
+        comment: start of a comment.
         linear: the mode of the approach, which also ends PVT mode.
-        dwell: a dwell in ms; one of 0 stands still and stops computing ahead.
+        dwell: a dwell in ms; a dwell of 0 also stops look-ahead.
         interval: PVT mode with intervals in ms.
         close: ends the program.
     """

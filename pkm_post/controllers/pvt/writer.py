@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Writer: strut motion as the text of a motion program, from its first comment to the end of its last move.
+"""Writer: write strut motion as the text of a motion program, from its first comment to its last move.
 
 Enters: knots with six lengths in mm and six speeds in mm/s at whole ms. Leaves: ASCII text. The controller approaches
-knot 0 slowly in LINEAR mode, then follows from knot to knot the one cubic that has the lengths and speeds of both
-(PVT mode). Axis values are true strut lengths; times in the program are in ms.
+knot 0 slowly in LINEAR mode, then follows the cubic through the lengths and speeds of consecutive knots (PVT mode).
+Axis values are true strut lengths; times in the program are in ms.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pkm_post.model.program import Array
 LONGEST_INTERVAL_MS = 4095
 _ROWS_PER_CHUNK = 4096
 _END_OF_STRETCH = "\x1e"
-"""ASCII's record separator, which no program has."""
+"""The ASCII record separator, which no program contains."""
 
 
 def program_text(motion: StrutMotion, settings: Settings, words: Words, opening: str, heading: Sequence[str]) -> str:
@@ -32,13 +32,13 @@ def program_text(motion: StrutMotion, settings: Settings, words: Words, opening:
 
     Args:
         motion: at rest at both ends and at every event; knots from 1 to 4095 ms apart, the first at 0.
-        settings: of the controller.
-        words: of the controller.
-        opening: what stands between the comment on top and the lengths of knot 0.
+        settings: settings of the controller.
+        words: words of the controller.
+        opening: text between the comment on top and the lengths of knot 0.
         heading: lines of text for the comment on top.
 
     Raises:
-        ValueError: the motion cannot be written: its times, a number that is not finite, a speed where it must rest,
+        ValueError: the motion cannot be written: invalid times, a non-finite number, a speed where it must rest,
             or an event without code.
     """
     _check(motion, settings)
@@ -54,14 +54,14 @@ def rests(motion: StrutMotion, settings: Settings) -> Array:
 
 
 def _approach(motion: StrutMotion, settings: Settings) -> str:
-    """The line that leads to knot 0: lengths alone."""
+    """The line that moves to knot 0: lengths only."""
     decimals = settings.length_decimals
     lengths = rounded(motion.length[0], decimals).tolist()
     return " ".join(f"{letter}{at:.{decimals}f}" for letter, at in zip(settings.letters, lengths, strict=True)) + "\n"
 
 
 def _stretches(motion: StrutMotion, settings: Settings, words: Words) -> list[str]:
-    """The lines of the other knots, with the intervals to be told: one text up to each knot where the motion rests."""
+    """The lines of the other knots, with changed intervals: one text up to each knot where the motion rests."""
     intervals = _interval_lines(motion, words.interval)
     ends = np.zeros(len(motion), dtype=np.uint8)
     ends[_resting_knots(motion)] = ord(_END_OF_STRETCH)
@@ -78,14 +78,14 @@ def _stretches(motion: StrutMotion, settings: Settings, words: Words) -> list[st
 
 
 def _lines(intervals: Array, letters: Sequence[str], length: Array, speed: Array, ends: Array) -> Array:
-    """Lines of moves as records of characters with blanks in them, (N,).
+    """Lines of moves as records of characters and blanks, (N,).
 
     Args:
-        intervals: the line before each, or nothing, (N,).
-        letters: of the axes.
+        intervals: the interval line before each, or nothing, (N,).
+        letters: letters of the axes.
         length: printed, (N, 6, W).
         speed: printed, (N, 6, V).
-        ends: the character behind each line, (N,).
+        ends: the character after each line, (N,).
     """
     columns = [("letter", 1), ("length", length.shape[-1]), ("colon", 1), ("speed", speed.shape[-1]), ("behind", 1)]
     axis = np.dtype([(name, np.uint8, (width,)) for name, width in columns])
@@ -102,9 +102,9 @@ def _resting_knots(motion: StrutMotion) -> list[int]:
 
 
 def _interruptions(motion: StrutMotion, settings: Settings, words: Words) -> Iterable[str]:
-    """What stands behind the line of each knot where the motion rests, in order.
+    """The text after the line of each knot where the motion rests, in order.
 
-    A dwell of 0 comes first: it keeps the controller from computing ahead, which would carry out the codes too early.
+    A dwell of 0 comes first: it stops the controller's look-ahead, which would execute the codes too early.
     """
     text = dict.fromkeys(_resting_knots(motion), f"{words.dwell}0\n")
     for event in motion.events:
@@ -113,9 +113,9 @@ def _interruptions(motion: StrutMotion, settings: Settings, words: Words) -> Ite
 
 
 def _interval_lines(motion: StrutMotion, word: str) -> Array:
-    """For each knot the line that tells the controller the interval before it; empty where that is known, (M,).
+    """The line with the interval before each knot; empty if it is already in force, (M,).
 
-    It must be told when the time changes, and when an interruption ended PVT mode.
+    It is needed when the interval changes, and after an interruption that ended PVT mode.
     """
     intervals = np.diff(motion.time_ms, prepend=0)
     told = np.diff(intervals, prepend=0) != 0
