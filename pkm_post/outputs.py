@@ -31,7 +31,7 @@ def left_over(program: Path, names: Collection[str], earlier: Collection[str] = 
     """The warning that files of an earlier result remain beside a new one, or nothing.
 
     A smaller memory gives more parts, the program may have had another suffix, and the additional files may have
-    changed: leftovers look as if they belonged to the new program.
+    changed: leftovers appear to belong to the new program.
 
     Args:
         program: path of the motion program.

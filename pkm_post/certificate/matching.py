@@ -33,7 +33,7 @@ _WELL = 0.6
 """Deviation by tolerance within which no better time is searched for."""
 _NEWTON_STEPS = 8
 _SPIN_COUNTS = 1e-3
-"""Weight of the spin relative to the tool axis: in a pure turn about the tool axis, only the spin tells the time."""
+"""Weight of the spin relative to the tool axis: in a pure turn about the tool axis, only the spin gives the time."""
 _AT_ONCE = 1 << 18
 """Pairs of joints and instants in one pass."""
 

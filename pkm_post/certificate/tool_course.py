@@ -24,7 +24,7 @@ from pkm_post.model.columns import pieces
 _LOOKS = np.array([[0.25], [0.5], [0.75]])
 """Shares of an interval at which the difference is measured."""
 _MOST = 1.6
-"""An error x^2 (1 - x)^2 times a quadratic is at most 1.442 times its largest value at the sampled shares."""
+"""An error x^2 (1 - x)^2 times a quadratic is at most 1.442 times its largest value at ``_LOOKS``."""
 _FASTEST = 12.3
 """The same for its rate: at most 11.153 times that value by the duration."""
 _BENDS = 356.0

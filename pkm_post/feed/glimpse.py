@@ -5,7 +5,7 @@ Enters: path lengths. Leaves: tips, axes, spins and tangents of the tip, column-
 segment next to a joint, a path of lines needs no case distinction: with t the tangent of the segment, D that of its
 neighbour at the joint minus t, W the step, H its integral and x the distance from the joint,
 
-    p = p_line + D H(-x) before the joint, p_line - D H(-x) behind it,    p' = t + D W(-x)
+    p = p_line + D H(-x) before the joint, p_line - D H(-x) after it,    p' = t + D W(-x)
 
 as H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin follow the same formulas. Places near an arc are left to
 ``ToolPath.at``, which gives the same result for lines by extending both segments.

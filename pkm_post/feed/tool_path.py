@@ -51,9 +51,9 @@ class ToolPath:
 
         Args:
             trajectory: at least one segment.
-            tip_tolerance: how far the tip may leave the segments at corners, mm; a number, or (N,) by segment. At a
-                joint the lower tolerance of its two segments applies.
-            axis_tolerance: how far the tool axis may, rad.
+            tip_tolerance: largest deviation of the tip from the segments at corners, mm; a number, or (N,) by segment.
+                At a joint the lower tolerance of its two segments applies.
+            axis_tolerance: largest deviation of the tool axis, rad.
         """
         segments = Segments.of(trajectory)
         rests = np.concatenate([[True], trajectory.exact_stop])

@@ -42,7 +42,7 @@ SENSIBLE: dict[EventKind, Callable[[float], bool]] = {
 
 
 def broken_promises(trajectory: Trajectory) -> list[str]:
-    """Name the promises a trajectory breaks, each with its first offender; none for a sound one."""
+    """Name the broken promises of a trajectory, each with its first offender; none for a sound one."""
     with np.errstate(all="ignore"):  # any numbers may occur
         return [
             *_of_start(trajectory),

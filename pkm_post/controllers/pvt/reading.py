@@ -51,7 +51,7 @@ class Reading:
 
     def lines_of(self, text: str) -> Lines:
         """The lines of a text, with moves and intervals already found."""
-        # one byte per character: others become question marks, which no valid line has
+        # one byte per character: one that is not Latin-1 becomes a question mark, which no line of these forms has
         return lines_of(text.encode("latin-1", "replace"), self.forms["move"], self.forms["interval"], _INTERVAL_MS)
 
     def take(self, number: int, text: str, lines: Lines) -> None:

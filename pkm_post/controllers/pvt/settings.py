@@ -24,7 +24,7 @@ _LAST_PROGRAM = 999
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Settings of the controller of one machine; strut i is motor i is the axis of letter i.
+    """Settings of the controller of one machine; strut i is motor i and the axis of letter i.
 
     Attributes:
         counts_per_mm: encoder counts per mm of strut length; negative if the count falls as the strut extends.

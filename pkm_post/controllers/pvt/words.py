@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Words:
-    """The words of one controller.
+    """The command words of one controller.
 
     Attributes:
         comment: start of a comment.
