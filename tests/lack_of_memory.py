@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A lack of memory, made: a call of one function of PKM Post raises MemoryError, whatever it was called for."""
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from types import CodeType, FrameType
 
-PACKAGE = str(Path(__file__).parents[1] / "pkm_post")
+import pkm_post
+
+PACKAGE = os.path.dirname(pkm_post.__file__)
 WHAT = "Unable to allocate 7 GiB"
 
 

@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from interpreter import PYTHON
 
 ADDON = Path(__file__).parents[1]
-PYTHON = sys.executable if "python" in sys.executable else "python3"
 PART = "G21 G90 G17\nT1 M6\nS5000 M3\nG0 X0 Y0 Z300\nG1 X10 F600\nM5\nM30\n"
 TOOL = ("--tool-length", "1=120")
 ODD = os.fsdecode(b"\xff\xfe.ngc")

@@ -5,15 +5,14 @@ import os
 import re
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
+from interpreter import PYTHON
 
 from pkm_post.cli.many import run_many
 
-PYTHON = sys.executable if "python" in sys.executable else "python3"
 ADDON = Path(__file__).parents[1]
 G_CODE = """\
 T1 M6 G43 H1

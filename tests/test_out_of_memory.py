@@ -10,6 +10,7 @@ import weakref
 
 import numpy as np
 import pytest
+from interpreter import PYTHON
 from lack_of_memory import WHAT, lacking, place_of, traced
 from programs import cone
 
@@ -251,7 +252,7 @@ def limited(loaded, megabytes, arguments, folder):
         "PYTHONPATH": os.pathsep.join(sys.path),
     }
     return subprocess.run(
-        [sys.executable, "-c", LIMITED, loaded, str(megabytes), *arguments],
+        [PYTHON, "-c", LIMITED, loaded, str(megabytes), *arguments],
         capture_output=True, text=True, check=False, timeout=120, cwd=folder, env=environment,
     )  # fmt: skip
 

@@ -3,11 +3,11 @@
 
 import hashlib
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from interpreter import PYTHON
 
 from pkm_post import trajectory_file
 from pkm_post.cli import main
@@ -215,7 +215,7 @@ def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
     arguments = ["post", "a.cls", "--out", "made", "--work-offset=0,0,250", "--tool-length", "1=60"]
     script = "import sys; sys.modules['FreeCAD'] = None; from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
     told = subprocess.run(
-        [sys.executable if "python" in sys.executable else "python3", "-c", script, *arguments],
+        [PYTHON, "-c", script, *arguments],
         cwd=tmp_path,
         env={"PYTHONPATH": str(ADDON), "PATH": "/usr/bin:/bin", "MPLBACKEND": "Agg"},
         capture_output=True,

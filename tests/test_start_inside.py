@@ -3,15 +3,14 @@
 
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from interpreter import PYTHON
 
 from pkm_post.cli import inside_freecad
 from pkm_post.cli.inside_freecad import as_ended_inside, command_inside, freecad_command, judged
 
-PYTHON = sys.executable if "python" in sys.executable else "python3"
 ADDON = Path(__file__).parents[1]
 
 

@@ -104,8 +104,9 @@ def in_processes(count, arguments):
         printed = [Path(folder) / str(number) for number in range(1, count)]
         children = [_fork(arguments, next_file, path) for path in [None, *printed]]
         codes = [_exit_code_of(child) for child in children]
-        for path in printed:
-            print(path.read_text(encoding="utf-8"), end="", flush=True)
+        for path, code in zip(printed, codes[1:], strict=True):
+            if code != pytest.ExitCode.NO_TESTS_COLLECTED:  # it found no file left to claim
+                print(path.read_text(encoding="utf-8"), end="", flush=True)
     return codes
 
 

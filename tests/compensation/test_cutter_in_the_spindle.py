@@ -84,7 +84,7 @@ def compensated(file, *arguments):
     add_reading(parser)
     chosen = parser.parse_args(["--axis-words", "vector", "--tool-length", "1=80", *arguments])
     read = prepared_file(file, options=options_from(chosen), tool_lengths={1: 80.0}, reading=reading_from(chosen))
-    assert not read.found
+    assert {fault.code for fault in read.found} <= {"V131"}, "the cuts end where the cutter stands in the surface"
     return compensate(read.program, read.options.contours, read.options.actual_tools)
 
 
@@ -176,7 +176,9 @@ def test_check_and_convert_take_the_corner_as_well(tmp_path, monkeypatch, comman
 
 def test_a_cutter_of_cl_data_keeps_its_name_and_length(tmp_path):
     file = tmp_path / "part.cls"
-    file.write_text("UNITS/MM\nTLDATA/MILL,10,5,50,0,0\nLOADTL/1,LENGTH,80\nFEDRAT/600,MMPM\nGOTO/0,0,0\nGOTO/9,0,0\n")
+    file.write_text(
+        "UNITS/MM\nTLDATA/MILL,10,5,50,0,0\nLOADTL/1,LENGTH,80\nFEDRAT/600,MMPM\nGOTO/0,0,0\nGOTO/9,0,0\nFINI\n"
+    )
     parser = argparse.ArgumentParser()
     add_options(parser)
     add_reading(parser)

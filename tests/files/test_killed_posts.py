@@ -5,10 +5,10 @@ import importlib
 import json
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from interpreter import PYTHON
 from killed_posts import MANIFEST, NAMES, post, whole, written
 
 from pkm_post import manifest
@@ -16,7 +16,6 @@ from pkm_post.files import BusyError, staged
 from pkm_post.files.lock import locked
 
 ROOT = Path(__file__).parents[2]
-PYTHON = sys.executable if "python" in sys.executable else "python3"
 KILLS = 200
 POSTS = 40
 RESULTS = sorted([*NAMES, MANIFEST])

@@ -4,11 +4,11 @@
 import signal
 import stat
 import subprocess
-import sys
+
+from interpreter import PYTHON
 
 from pkm_post.files.lock import locked, words_of
 
-_PYTHON = sys.executable if "python" in sys.executable else "python3"
 _CHILD = """
 import sys, time
 from pathlib import Path
@@ -33,7 +33,7 @@ def test_a_lock_is_had_once_and_says_whose_it_is(tmp_path):
 
 def test_a_process_that_is_killed_leaves_no_lock(tmp_path):
     path = tmp_path / "a.lock"
-    child = subprocess.Popen([_PYTHON, "-c", _CHILD, path], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    child = subprocess.Popen([PYTHON, "-c", _CHILD, path], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     try:
         assert child.stdout.readline() == b"locked\n"
         assert locked(path) is None and words_of(path) == {"what": "child"}

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from interpreter import PYTHON
 from link_faults import FIRST, small_program
 from rig import SETTINGS, Wire, controller, served
 from test_stopping import SLOW
@@ -223,7 +224,7 @@ sys.stdin.read()
 def test_a_client_that_was_killed_locks_nobody_out():
     with served(controller(), speed=10.0) as name:
         script = _CLIENT.format(paths=[path for path in sys.path if path])
-        child = subprocess.Popen([sys.executable, "-c", script, name], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        child = subprocess.Popen([PYTHON, "-c", script, name], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         try:
             assert child.stdout.readline() == b"taken\n"
             with Session(port_named(name)) as session, pytest.raises(NotOwnerError, match="download"):

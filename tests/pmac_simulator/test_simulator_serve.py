@@ -8,11 +8,11 @@ import signal
 import socket
 import struct
 import subprocess
-import sys
 import threading
 import time
 
 import pytest
+from interpreter import PYTHON
 
 from pkm_post.cli import main
 from pkm_post.pmac_simulator import Controller, Server, serve
@@ -138,7 +138,7 @@ def test_a_client_that_says_much_and_never_reads_is_not_listened_to_any_more(ser
 def test_a_server_without_file_descriptors_goes_on_and_takes_clients_again():
     limit = "import resource, sys; resource.setrlimit(resource.RLIMIT_NOFILE, (16, 16))"
     code = f"{limit}; from pkm_post.cli import main; sys.exit(main(['pmac', 'simulate', '--tcp', '0']))"
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as child:
+    with subprocess.Popen([PYTHON, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as child:
         try:
             port = int(re.search(rb"tcp:127.0.0.1:(\d+)", child.stdout.readline())[1])
             clients = [connected(port) for _ in range(30)]
