@@ -28,6 +28,8 @@ _OWNER = "owner"
 """Lock file of a private folder, held for the life of its process."""
 _PATIENCE = 30.0
 """s, timeout for another process to move its files; that takes milliseconds."""
+_RESERVE = 4 << 20
+"""Bytes that are free again when the private folder is removed: that takes memory, also where all of it is used."""
 _PAUSE = 0.005
 """s, between attempts to acquire the lock."""
 
@@ -76,9 +78,11 @@ def _private(folder: Path) -> Iterator[Path]:
     with ExitStack() as stack:
         with _lock_of(folder / _LOCK):
             _sweep(folder)
+            reserve = [bytearray(_RESERVE)]
             private = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
             stack.callback(shutil.rmtree, private, ignore_errors=True)  # the next sweep removes what is left
             stack.enter_context(_lock_of(private / _OWNER))
+            stack.callback(reserve.clear)
         yield private
 
 
