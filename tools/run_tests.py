@@ -62,7 +62,7 @@ class ClaimedFiles:
     """A pytest plug-in that runs the tests of those files that this process claims."""
 
     def __init__(self, next_file):
-        self._next_file = next_file
+        self._next_file, self.has_claimed = next_file, False
 
     def pytest_runtestloop(self, session):
         """Take the place of pytest's own loop, but for runs that execute nothing."""
@@ -83,6 +83,7 @@ class ClaimedFiles:
 
     def _claimed(self, files):
         while (number := self._next_file.claim()) < len(files):
+            self.has_claimed = True
             yield from files[number]
 
 
@@ -104,9 +105,8 @@ def in_processes(count, arguments):
         printed = [Path(folder) / str(number) for number in range(1, count)]
         children = [_fork(arguments, next_file, path) for path in [None, *printed]]
         codes = [_exit_code_of(child) for child in children]
-        for path, code in zip(printed, codes[1:], strict=True):
-            if code != pytest.ExitCode.NO_TESTS_COLLECTED:  # it found no file left to claim
-                print(path.read_text(encoding="utf-8"), end="", flush=True)
+        for path in printed:
+            print(path.read_text(encoding="utf-8"), end="", flush=True)
     return codes
 
 
@@ -116,11 +116,13 @@ def _fork(arguments, next_file, printed):
     if not child:
         if printed:
             sys.stdout = printed.open("w", encoding="utf-8")
-        code = 1
+        code, files = 1, ClaimedFiles(next_file)
         try:
-            code = int(pytest.main(list(arguments), plugins=[ExecutedTests(), ClaimedFiles(next_file)]))
+            code = int(pytest.main(list(arguments), plugins=[ExecutedTests(), files]))
         finally:
             sys.stdout.flush()
+            if printed and code == pytest.ExitCode.NO_TESTS_COLLECTED and not files.has_claimed:
+                sys.stdout.truncate(0)  # the last line of all is that of a run
             os._exit(code)  # the parent tidies up
     return child
 
