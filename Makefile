@@ -66,11 +66,11 @@ fuzz: $(FUZZ_VENV)/made ## feed the readers with bytes, and verify with trajecto
 
 soak: $(VENV)/made ## sessions and downloads over faulty links, killed posts (SOAK_DOWNLOADS=10000 SOAK_KILLS=1000)
 	@folder=$$(mktemp -d); trap 'rm -rf "$$folder"' EXIT; \
-	PYTHONPATH=. $(VENV)/bin/python tests/files/killed_posts.py "$$folder" $(SOAK_KILLS)
-	@PYTHONPATH=. $(VENV)/bin/python tests/pmac_link/soak.py $(SOAK_DOWNLOADS)
+	PYTHONPATH=. $(VENV)/bin/python tests/system/killed_posts.py "$$folder" $(SOAK_KILLS)
+	@PYTHONPATH=. $(VENV)/bin/python tests/control/link/soak.py $(SOAK_DOWNLOADS)
 
 conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it
-	@$(VENV)/bin/python tests/trajectory_file/conformance.py $(CONFORMANCE)
+	@$(VENV)/bin/python tests/writing/trajectory_file/conformance.py $(CONFORMANCE)
 
 package: $(VENV)/made ## build a wheel in dist/, and check a machine with it in an environment of its own
 	@rm -rf dist

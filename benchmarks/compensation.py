@@ -17,7 +17,10 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pkm_post.compensation import (  # noqa: E402 - the path comes first
+from pkm_post.geometry.nurbs import NurbsSurface  # noqa: E402
+from pkm_post.geometry.nurbs_nearest import nearest  # noqa: E402
+from pkm_post.model import Event, EventKind, Kind, Program, Tool  # noqa: E402
+from pkm_post.toolpath.compensation import (  # noqa: E402 - the path comes first
     Cutter,
     OffsetOptions,
     compensate_tips,
@@ -26,9 +29,6 @@ from pkm_post.compensation import (  # noqa: E402 - the path comes first
     tip_from_contact,
     tip_shift,
 )
-from pkm_post.geometry.nurbs import NurbsSurface  # noqa: E402
-from pkm_post.geometry.nurbs_nearest import nearest  # noqa: E402
-from pkm_post.model import Event, EventKind, Kind, Program, Tool  # noqa: E402
 
 REPEATS = 3
 """Runs of each service; the fastest counts, as the others were disturbed."""

@@ -25,7 +25,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import numpy as np  # noqa: E402 - the threads are chosen first
 
-from pkm_post.kinematics import (  # noqa: E402 - the path comes first
+from pkm_post.machine.description import find_machine, read_machine  # noqa: E402
+from pkm_post.machine.kinematics import (  # noqa: E402 - the path comes first
     Part,
     Way,
     forward,
@@ -34,8 +35,7 @@ from pkm_post.kinematics import (  # noqa: E402 - the path comes first
     scaled_jacobian,
     strut_lengths,
 )
-from pkm_post.kinematics.margins import smallest_singular_value  # noqa: E402
-from pkm_post.machine_file import find_machine, read_machine  # noqa: E402
+from pkm_post.machine.kinematics.margins import smallest_singular_value  # noqa: E402
 
 REPEATS = 7
 """Runs of each step; the fastest counts, as the others were disturbed."""

@@ -98,7 +98,7 @@ def memory(entry):
 
 def roomy_machine(folder):
     """The example machine with a controller whose memory the machine file does not limit."""
-    from pkm_post.machine_file import find_machine
+    from pkm_post.machine.description import find_machine
 
     text = find_machine("example_6tps").read_text(encoding="utf-8")
     path = Path(folder) / "roomy.toml"
@@ -110,8 +110,8 @@ def roomy_machine(folder):
 def post(path, axes):
     """Post a file and print what that took; the whole life of a process."""
     from pkm_post.model import Refused
-    from pkm_post.post_file import post_file
-    from pkm_post.sources import Reading
+    from pkm_post.posting.post_file import post_file
+    from pkm_post.reading.sources import Reading
 
     meter = Meter()
     reading = Reading(axis_words="vector" if axes == 5 else "none")

@@ -16,11 +16,12 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pkm_post import planning, trajectory_file  # noqa: E402 - the path comes first
-from pkm_post.cubics import poses_at  # noqa: E402
-from pkm_post.feed import glimpse  # noqa: E402
-from pkm_post.kinematics import Ends, Inside, stray  # noqa: E402
-from pkm_post.machine_file import machine_named  # noqa: E402
+from pkm_post.machine.description import machine_named  # noqa: E402
+from pkm_post.machine.kinematics import Ends, Inside, stray  # noqa: E402
+from pkm_post.planning import motion as planning  # noqa: E402 - the path comes first
+from pkm_post.planning.cubics import poses_at  # noqa: E402
+from pkm_post.planning.glimpse import glimpse  # noqa: E402
+from pkm_post.writing import trajectory_file  # noqa: E402 - the path comes first
 
 FIXED_MS = (1, 2, 5, 10)
 SHARES = np.sort(np.arange(1, 10) * (np.sqrt(5) - 1) / 2 % 1)

@@ -31,12 +31,13 @@ sys.path[:0] = [str(ROOT), str(HERE)]
 
 from decode import OPTIONS, PROGRAMS, write_program  # noqa: E402 - the path comes first
 
-from pkm_post import gcode, trajectory_file  # noqa: E402
-from pkm_post.machine_file import find_machine, read_machine  # noqa: E402
+from pkm_post.machine.description import find_machine, read_machine  # noqa: E402
 from pkm_post.model import Kind, Trajectory  # noqa: E402
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS  # noqa: E402
-from pkm_post.placement import place  # noqa: E402
-from pkm_post.trajectory_file.layout import HEADER, SEGMENT  # noqa: E402
+from pkm_post.reading import gcode  # noqa: E402
+from pkm_post.toolpath.placement import place  # noqa: E402
+from pkm_post.writing import trajectory_file  # noqa: E402
+from pkm_post.writing.trajectory_file.layout import HEADER, SEGMENT  # noqa: E402
 
 REPEATS = 5
 """Runs of all but the slowest; the fastest counts, as the others were disturbed."""

@@ -12,7 +12,7 @@ from pathlib import Path
 import atheris
 
 with atheris.instrument_imports(include=["pkm_post"]):
-    from pkm_post import cldata, gcode
+    from pkm_post.reading import cldata, gcode
 
 AXIS_WORDS = sorted(gcode.options.AXIS_WORDS)
 BOUNDED = gcode.ExecutionLimits(blocks=2000, operations=20000)

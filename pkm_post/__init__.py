@@ -17,7 +17,7 @@ def post_job(job, machine=None, out=".", **choices):  # type: ignore[no-untyped-
         pkm_post.model.Refused: as that function, and F130 if memory runs out.
     """
     from pkm_post.freecad_app.post_job import post_job as post
-    from pkm_post.out_of_memory import memory_or_refused
+    from pkm_post.system import memory_or_refused
 
     with memory_or_refused(job.Label):
         return post(job, machine, out, **choices)
@@ -35,12 +35,12 @@ def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-d
             the example machine.
         out: folder for the results.
         choices: ``arguments`` (text as on the command line, option by option) or ``options``
-            (``pkm_post.pipeline.Options``, which replace all settings of the job), ``tool_lengths`` (mm by tool
-            number), ``log`` (receives a line for each step) and ``progress`` (``pkm_post.pipeline.Progress``) for all;
-            ``job_name`` for documents, ``reading`` (``pkm_post.sources.Reading``) for part programs.
+            (``pkm_post.options.Options``, which replace all settings of the job), ``tool_lengths`` (mm by tool
+            number), ``log`` (receives a line for each step) and ``progress`` (``pkm_post.posting.Progress``) for all;
+            ``job_name`` for documents, ``reading`` (``pkm_post.reading.Reading``) for part programs.
 
     Returns:
-        A tuple with a ``pkm_post.pipeline.Posted`` for each motion program: one, or one for each job of a document.
+        A tuple with a ``pkm_post.posting.Posted`` for each motion program: one, or one for each job of a document.
 
     Raises:
         pkm_post.model.Refused: something in the input or the folder does not allow it, or there is not enough memory
@@ -50,12 +50,12 @@ def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-d
     from os import PathLike
     from pathlib import Path
 
-    from pkm_post.out_of_memory import memory_or_refused
+    from pkm_post.system import memory_or_refused
 
     is_path = isinstance(source, str | PathLike)
     with memory_or_refused(str(source) if is_path else source.Label):
         if is_path and Path(source).suffix.lower() != ".fcstd":
-            from pkm_post.post_file import post_file
+            from pkm_post.posting import post_file
 
             return (post_file(Path(source), machine, out, **choices),)
         from pkm_post.freecad_app import post_job as jobs

@@ -15,13 +15,13 @@ import warnings
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [path for path in (str(HERE.parent), str(HERE / "trajectory_file")) if path not in sys.path]
+sys.path[:0] = [path for path in (str(HERE.parent), str(HERE / "writing" / "trajectory_file")) if path not in sys.path]
 
 import numpy as np  # noqa: E402 - the path comes first
 from made_files import header_of, sealed  # noqa: E402
 
 from pkm_post.cli import main  # noqa: E402
-from pkm_post.trajectory_file.layout import HEADER, TABLES  # noqa: E402
+from pkm_post.writing.trajectory_file.layout import HEADER, TABLES  # noqa: E402
 
 GCODE = """T1 M6
 S1000 M3

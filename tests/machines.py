@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.machine_file import find_machine
+from pkm_post.machine.description import find_machine
 from pkm_post.model import Machine, ToolChange
 
 INCH = 25.4
@@ -62,7 +62,7 @@ def direction(tilt_deg, azimuth_deg):
 
 def axis_and_spin(rotation):
     """The tool axis and spin that give a rotation matrix; for poses published as Euler angles."""
-    from pkm_post.kinematics import platform_rotation
+    from pkm_post.machine.kinematics import platform_rotation
 
     axis = rotation[:, 2]
     rest = platform_rotation(axis[None], np.zeros(1))[0].T @ rotation

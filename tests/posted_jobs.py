@@ -6,14 +6,14 @@ from functools import cache
 import numpy as np
 from programs import random_job
 
-from pkm_post import planning
 from pkm_post.certificate import certify
 from pkm_post.geometry import hermite_lengths
-from pkm_post.kinematics import forward
-from pkm_post.machine_file import machine_named
+from pkm_post.machine.description import machine_named
+from pkm_post.machine.kinematics import forward
 from pkm_post.model import StrutMotion
 from pkm_post.model.certificate import Tolerances
-from pkm_post.placement.place import place
+from pkm_post.planning import motion as planning
+from pkm_post.toolpath.placement.place import place
 
 NARROW, WIDE, UNEQUAL = (1e-3, 1e-3), (0.2, 2.0), (1e-3, 2.0)
 """Tolerances of tip, mm, and tool axis, degrees."""

@@ -12,14 +12,14 @@ import pytest
 from programs import program
 from test_floors import FLOORS
 
-from pkm_post import planning
 from pkm_post.certificate import certify
-from pkm_post.controllers import pmac
 from pkm_post.geometry import unit
-from pkm_post.machine_file import find_machine, read_machine
+from pkm_post.machine.description import find_machine, read_machine
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import RULES
-from pkm_post.placement import place
+from pkm_post.planning import motion as planning
+from pkm_post.toolpath.placement import place
+from pkm_post.writing.controllers import pmac
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "pkm_post"
@@ -112,7 +112,7 @@ def wrong_names(page):
             yield path
     for name in DOTTED.findall(text(page)):
         parts = name.split(".")
-        if parts[-1] != "py" and (parts[0] == "pkm_post" or parts[0] in FLOORS):
+        if parts[-1] not in ("png", "py") and (parts[0] == "pkm_post" or parts[0] in FLOORS):
             parts = parts[1:] if parts[0] == "pkm_post" else parts
             if not exists(parts):
                 yield name
@@ -135,10 +135,12 @@ def test_codes_exist(page):
 
 def test_wrong_names_and_dead_links_are_found_and_right_ones_pass(tmp_path):
     page = tmp_path / "page.md"
-    page.write_text("`feed/blend.py` `pkm_post.feed.blends.STEP` `model.Machine.colour` [x](gone.md)")
-    assert list(wrong_names(page)) == ["feed/blend.py", "pkm_post.feed.blends.STEP", "model.Machine.colour"]
+    page.write_text("`feed/blend.py` `pkm_post.planning.blends.STEP` `model.Machine.colour` [x](gone.md)")
+    assert list(wrong_names(page)) == ["feed/blend.py", "pkm_post.planning.blends.STEP", "model.Machine.colour"]
     assert list(dead_links(page)) == ["gone.md"]
-    page.write_text("`feed/blends.py` `pkm_post.feed.blends.step` `feed.Schedule.of` `model.Machine.name` [x](page.md)")
+    page.write_text(
+        "`planning/blends.py` `pkm_post.planning.blends.step` `planning.Schedule.of` `model.Machine.name` [x](page.md)"
+    )
     assert not list(wrong_names(page)) and not list(dead_links(page))
 
 
@@ -168,7 +170,7 @@ def test_the_journey_is_one_that_was_made():
     schedule, _ = planning.plan_feed(path, trajectory, machine)
     motion = planning.interpolate(path, schedule, (), machine, tolerances)
     struts = planning.strut_motion(motion, machine)
-    settings = pmac.Settings.of(machine.controller)
+    settings = pmac.PmacSettings.of(machine.controller)
     written = pmac.program_text(struts, settings, [])
     played, _ = pmac.read_program(written, settings, "journey.pmc")
     certificate, _ = certify(played, "journey.pmc", trajectory, machine, motion, tolerances)

@@ -3,7 +3,12 @@
 
 from pkm_post.certificate.beyond_machine import beyond_machine
 from pkm_post.certificate.certify import certify
-from pkm_post.certificate.recovered import Recovered, recovered
+from pkm_post.certificate.recovered import recovered
 from pkm_post.certificate.structure import machine_fault
 
-__all__ = ["Recovered", "beyond_machine", "certify", "machine_fault", "recovered"]
+__all__ = [
+    "beyond_machine",
+    "certify",
+    "machine_fault",
+    "recovered",
+]

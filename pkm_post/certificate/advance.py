@@ -12,8 +12,7 @@ import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.played_course import PlayedCourse
-from pkm_post.geometry import norm
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array, norm
 
 _LOOKS = np.linspace(0.125, 1.0, 8)[:, None]
 """Shares of each interval at which it is evaluated."""

@@ -10,8 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import norm
-from pkm_post.model import EventKind, Kind, Machine, Trajectory
-from pkm_post.model.certificate import Coverage, Extent, Topic
+from pkm_post.model import Coverage, EventKind, Extent, Kind, Machine, Topic, Trajectory
 
 _SAME = 1e-6
 """mm, and of unit axes: a tool change within this distance of the pose in the machine file counts as there."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array, length_of
+from pkm_post.geometry import Array, length_of
 
 _ROOM = 1.1
 """Margin for the error of second differences, as a cubic motion of the struts is not exactly cubic for the tool."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.certificate.coverage import NO_SETUP, coverage
+from pkm_post.certificate.coverage import coverage
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.fault_causes import fault_causes
 from pkm_post.certificate.findings import figures, findings
@@ -19,9 +19,9 @@ from pkm_post.certificate.playback import play
 from pkm_post.certificate.structure import structure_faults
 from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
-from pkm_post.geometry.vectors import Array, norm
-from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Coverage, Tolerances
+from pkm_post.geometry import Array, norm
+from pkm_post.machine import NO_SETUP
+from pkm_post.model import Certificate, Coverage, Diagnostic, Machine, Motion, StrutMotion, Tolerances, Trajectory
 
 _FEED_SHARE = 1.01
 """Factor by which the cubic may exceed the planned speed where the acceleration changes."""

@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 
 from pkm_post.certificate.beside_the_path import beside_the_path
-from pkm_post.kinematics.bodies import has_strut_bodies
-from pkm_post.model import Machine, Trajectory
-from pkm_post.model.certificate import Coverage, Extent, Topic
+from pkm_post.machine import NO_SETUP, has_strut_bodies
+from pkm_post.model import Coverage, Extent, Machine, Topic, Trajectory
 
 _PATH = (
     ("tool tip and axis", "the program as written, played at every moment against the trajectory"),
@@ -36,16 +35,6 @@ _SETUP = (
 _JERK = "the mean acceleration from one interval to the next"
 _NO_LIMIT = "the machine file states no {}"
 _STEPS = "none is stated; the report has the largest"
-PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN = (
-    Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, detail)
-    for subject, detail in (
-        ("machine and tool against the part", "part: not known"),
-        ("machine and tool against clamps and fixtures", "none beside those of the machine file is known"),
-        ("machine and rapid moves against the stock", "stock: not known"),
-    )
-)
-NO_SETUP = (PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN)
-"""Collisions with an unknown set-up, as when a program is verified."""
 
 
 def coverage(

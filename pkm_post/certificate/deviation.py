@@ -11,13 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry import along, angle_between, arc_points, dot, norm, towards
-from pkm_post.geometry.arcs import across
-from pkm_post.geometry.gather import among, taken
-from pkm_post.geometry.vectors import Array, cross
-from pkm_post.model import Kind, Trajectory
-from pkm_post.model.certificate import Tolerances
-from pkm_post.model.columns import both_by_row, uniform
+from pkm_post.geometry import Array, across, along, among, angle_between, arc_points, cross, dot, norm, taken, towards
+from pkm_post.model import Kind, Tolerances, Trajectory, both_by_row, uniform
 
 _NEARLY_CLOSED = 4.0
 """Tip tolerances: an arc whose gap is no larger may have a pose near both of its ends."""

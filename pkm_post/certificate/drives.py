@@ -19,8 +19,7 @@ import numpy as np
 
 from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_at import Task
-from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds
-from pkm_post.geometry.vectors import Array, length_of
+from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, length_of
 from pkm_post.model import StrutMotion
 
 _STANDING = 1e-9

@@ -13,11 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import moving
-from pkm_post.model import Diagnostic, Machine, Motion, StrutMotion
-from pkm_post.model.certificate import Certificate, Finding
-from pkm_post.model.columns import in_pieces
+from pkm_post.geometry import Array
+from pkm_post.machine import moving
+from pkm_post.model import Certificate, Diagnostic, Finding, Machine, Motion, StrutMotion, in_pieces
 
 Decimals = tuple[int, int]
 """Decimals of lengths and of speeds."""

@@ -20,9 +20,8 @@ from pkm_post.certificate.playback import Played
 from pkm_post.certificate.struts import acceleration_steps, blocks_in_a_second, off_plan, strut_jerk
 from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_limits import tip_jerk, tool_limits
-from pkm_post.geometry.vectors import Array
-from pkm_post.model import Kind, Motion, Trajectory
-from pkm_post.model.certificate import Figure, Finding, Tolerances
+from pkm_post.geometry import Array
+from pkm_post.model import Figure, Finding, Kind, Motion, Tolerances, Trajectory
 
 
 def findings(

@@ -16,7 +16,7 @@ import numpy as np
 from pkm_post.certificate.between import arch, bow
 from pkm_post.certificate.joints import Passed
 from pkm_post.certificate.tool_at import Task, ToolAt, by_kinematics, on_course
-from pkm_post.geometry.vectors import Array, length_of
+from pkm_post.geometry import Array, length_of
 
 _TO_FIND_THE_WORST = 257
 """Instants of the single interval searched for the time of the worst."""

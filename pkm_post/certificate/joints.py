@@ -14,11 +14,10 @@ import numpy as np
 
 from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_at import Task
-from pkm_post.geometry import angle_between, hermite_lengths, norm
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import forward
+from pkm_post.geometry import Array, angle_between, hermite_lengths, norm
+from pkm_post.machine import forward
 from pkm_post.model import Trajectory
-from pkm_post.workers import workers
+from pkm_post.system import workers
 
 _SETTLED = 0.005
 """Share of the tolerances by which the tool's cubics may miss a joint; the error is added to the reported deviation."""

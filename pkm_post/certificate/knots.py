@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import moving
+from pkm_post.geometry import Array
+from pkm_post.machine import moving
 from pkm_post.model import Machine, Motion
 
 _MOST_CHANGE = 0.02

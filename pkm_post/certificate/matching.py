@@ -15,11 +15,9 @@ import numpy as np
 
 from pkm_post.certificate.played_course import PlayedCourse
 from pkm_post.certificate.struts import cubics
-from pkm_post.geometry import hermite_lengths, norm
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import forward
-from pkm_post.model import Machine, Trajectory
-from pkm_post.model.certificate import Tolerances
+from pkm_post.geometry import Array, hermite_lengths, norm
+from pkm_post.machine import forward
+from pkm_post.model import Machine, Tolerances, Trajectory
 
 _LOOKS = 4
 """Sampled instants of each interval."""

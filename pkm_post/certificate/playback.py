@@ -17,8 +17,8 @@ from pkm_post.certificate.instants import Seen, look
 from pkm_post.certificate.joints import Passed
 from pkm_post.certificate.struts import cubics, extremes
 from pkm_post.certificate.tool_at import Task
-from pkm_post.geometry.vectors import Array
-from pkm_post.workers import workers
+from pkm_post.geometry import Array
+from pkm_post.system import workers
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
 """Sampled instants of each interval, including its two knots; then of intervals that may have the worst undetected:

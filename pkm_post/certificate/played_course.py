@@ -12,11 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import dot, hermite_accelerations, hermite_column_speeds, hermite_columns
-from pkm_post.geometry.torsion import untwisted
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import attitude_rates, follow, platform_rotation
-from pkm_post.kinematics.jacobian import jacobian_of_tip, solve_regular
+from pkm_post.geometry import Array, dot, hermite_accelerations, hermite_column_speeds, hermite_columns, untwisted
+from pkm_post.machine import attitude_rates, follow, jacobian_of_tip, platform_rotation, solve_regular
 from pkm_post.model import Machine, StrutMotion, Trajectory
 
 

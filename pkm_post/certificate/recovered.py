@@ -18,11 +18,9 @@ from pkm_post.certificate.matching import joint_times
 from pkm_post.certificate.played_course import PlayedCourse
 from pkm_post.certificate.spin_off import spin_off
 from pkm_post.certificate.structure import event_fault
-from pkm_post.geometry import norm
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import Way
-from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Trajectory
-from pkm_post.model.certificate import Tolerances
+from pkm_post.geometry import Array, norm
+from pkm_post.machine import Way
+from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory
 
 Findings = tuple[Diagnostic, ...]
 

@@ -16,9 +16,8 @@ import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.played_course import PlayedCourse
-from pkm_post.geometry import norm
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics.jacobian import jacobian_of_tip
+from pkm_post.geometry import Array, norm
+from pkm_post.machine import jacobian_of_tip
 from pkm_post.model import Machine, Trajectory
 
 _LOOKS = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])

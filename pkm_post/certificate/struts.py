@@ -10,10 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.certificate.knots import Knots
-from pkm_post.geometry import hermite_accelerations
-from pkm_post.geometry.vectors import Array
-from pkm_post.model import StrutMotion
-from pkm_post.model.columns import in_pieces, pieces
+from pkm_post.geometry import Array, hermite_accelerations
+from pkm_post.model import StrutMotion, in_pieces, pieces
 
 _AT_ONCE = 4096
 """Knots in one pass: the working arrays of one pass stay in the processor's cache."""

@@ -17,10 +17,8 @@ from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.knots import Knots, inverses_at
 from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_course import ToolCourse
-from pkm_post.geometry import hermite_columns, hermite_lengths, hermite_speeds
-from pkm_post.geometry.vectors import Array, length_of
-from pkm_post.kinematics import NearPoses, carried, forward, near_poses
-from pkm_post.kinematics.jacobian import linearise
+from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds, length_of
+from pkm_post.machine import NearPoses, carried, forward, linearise, near_poses
 from pkm_post.model import Machine, Motion, StrutMotion
 
 _SPEED_MISSED = 2e-4

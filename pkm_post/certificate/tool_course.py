@@ -15,11 +15,16 @@ import numpy as np
 
 from pkm_post.certificate.knots import Knots
 from pkm_post.certificate.struts import cubics
-from pkm_post.geometry import hermite_accelerations, hermite_column_speeds, hermite_columns, hermite_lengths
-from pkm_post.geometry.vectors import Array, length_of
-from pkm_post.kinematics import NearPoses, attitude_rates, carried, moved, strut_lengths
-from pkm_post.model import Machine, Motion, StrutMotion
-from pkm_post.model.columns import pieces
+from pkm_post.geometry import (
+    Array,
+    hermite_accelerations,
+    hermite_column_speeds,
+    hermite_columns,
+    hermite_lengths,
+    length_of,
+)
+from pkm_post.machine import NearPoses, attitude_rates, carried, moved, strut_lengths
+from pkm_post.model import Machine, Motion, StrutMotion, pieces
 
 _LOOKS = np.array([[0.25], [0.5], [0.75]])
 """Shares of an interval at which the difference is measured."""

@@ -13,11 +13,9 @@ import numpy as np
 from pkm_post.certificate.between import bow
 from pkm_post.certificate.struts import cubics, mean_changes
 from pkm_post.certificate.tool_at import Task
-from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds
-from pkm_post.geometry.vectors import Array, cross, length_of
-from pkm_post.kinematics import forward
-from pkm_post.kinematics.tool_rates import tool_rates
-from pkm_post.model.columns import pieces
+from pkm_post.geometry import Array, cross, hermite_accelerations, hermite_lengths, hermite_speeds, length_of
+from pkm_post.machine import forward, tool_rates
+from pkm_post.model import pieces
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
 """Instants of an interval that is checked closely; each step halves the spacing."""

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import pkm_post
 from pkm_post.cli import machine, part_programs, pmac, post, reach, reach_map, verify
 from pkm_post.cli.inside_freecad import INTERRUPTED
-from pkm_post.out_of_memory import FAULTS, lack_of_memory
+from pkm_post.system import FAULTS, lack_of_memory
 
 __all__ = ["main"]
 

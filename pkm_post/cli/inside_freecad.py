@@ -46,7 +46,7 @@ def needs_freecad(files: Sequence[Path], solids: Sequence[str] = ()) -> bool:
         return False
     if any(file.suffix.lower() in _READ_BY_FREECAD for file in (*files, *map(Path, solids))):
         return True
-    from pkm_post.sources import is_part_program
+    from pkm_post.reading import is_part_program
 
     return not all(map(is_part_program, files))
 

@@ -27,16 +27,16 @@ def add_commands(commands: Any) -> None:
 
 
 def _list(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.machine_file import presets, templates
+    from pkm_post.machine import presets, templates
 
     print("\n".join([*presets(), *(f"{name} (template, to be copied and filled in)" for name in templates())]))
     return 0
 
 
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.machine_check import as_text, machine_faults, summary
-    from pkm_post.machine_file import machine_named
-    from pkm_post.model.diagnostics import errors
+    from pkm_post.machine import machine_named
+    from pkm_post.model import errors
+    from pkm_post.posting import as_text, machine_faults, summary
 
     machine, diagnostics = machine_named(namespace.file)
     if machine is not None:
@@ -51,7 +51,7 @@ def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _calibrate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.machine_calibration import calibrate_file
+    from pkm_post.machine import calibrate_file
 
     report, diagnostics = calibrate_file(namespace.file, namespace.measurements, namespace.out)
     for diagnostic in diagnostics:

@@ -34,7 +34,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _target(text: str) -> str:
-    from pkm_post.convert import TARGETS
+    from pkm_post.writing import TARGETS
 
     return one_of(TARGETS, text)
 
@@ -48,7 +48,7 @@ def _tell_misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> boo
 
 
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post import check
+    from pkm_post.reading import check
 
     if _tell_misplaced(namespace, namespace.files):
         return 2
@@ -58,8 +58,8 @@ def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _convert(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.convert import convert
-    from pkm_post.model.diagnostics import errors
+    from pkm_post.model import errors
+    from pkm_post.writing import convert
 
     if _tell_misplaced(namespace, [namespace.file]):
         return 2

@@ -16,15 +16,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pkm_post.argument_types import above_zero, between, count, positive, tool_length
 from pkm_post.cli import pmac_control, pmac_control_arguments, pmac_simulate
 from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, JobTarget, Target
 from pkm_post.cli.pmac_stream import ROTARY_WORDS
+from pkm_post.options import above_zero, between, count, positive, tool_length
 
 if TYPE_CHECKING:
+    from pkm_post.control import Port, Session
     from pkm_post.model import Diagnostic
-    from pkm_post.pmac_link.ports import Port
-    from pkm_post.pmac_link.session import Session
 
 Value = TypeVar("Value")
 
@@ -51,7 +50,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _add_port(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.pmac_link.links import PARITIES
+    from pkm_post.options import PARITIES
 
     forms = "serial:DEVICE, tcp:HOST[:PORT] or, for a Power PMAC, ssh:USER@HOST[:PORT]"
     parser.add_argument("--port", required=True, type=_port, metavar="PORT", help=forms)
@@ -70,7 +69,7 @@ def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
         rotary = "size of the rotary buffer, as it was defined (%(default)s)"
         parser.add_argument("--rotary", type=count, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
     if name in ("run", "stream"):
-        from pkm_post.pmac_link.near import NEAR_MM
+        from pkm_post.options import NEAR_MM
 
         near = "how far each strut and the tip may be from the first point (%(default)s)"
         parser.add_argument("--near", type=positive, default=NEAR_MM, metavar="MM", help=near)
@@ -87,7 +86,7 @@ def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
 
 
 def _port(text: str) -> Port:
-    from pkm_post.pmac_link.ports import port_named
+    from pkm_post.control import port_named
 
     try:
         return port_named(text)
@@ -96,7 +95,7 @@ def _port(text: str) -> Port:
 
 
 def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.pmac_link.faults import LinkLostError, PmacError
+    from pkm_post.control import LinkLostError, PmacError
 
     logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
     if namespace.port.is_power and namespace.name not in OF_POWER_PMAC:
@@ -126,7 +125,7 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 def _session(namespace: argparse.Namespace) -> Session:
     """Open a session on the given port."""
-    from pkm_post.pmac_link.session import Leftover, Session
+    from pkm_post.control import Leftover, Session
 
     port = replace(
         namespace.port,
@@ -141,9 +140,9 @@ def _session(namespace: argparse.Namespace) -> Session:
 
 def _target(namespace: argparse.Namespace) -> Target | None:
     """Resolve machine and program; None when they have faults, which are printed."""
-    from pkm_post.controllers import pmac, power_pmac
-    from pkm_post.loading import job_to_load
-    from pkm_post.machine_file import machine_named
+    from pkm_post.control import job_to_load
+    from pkm_post.machine import machine_named
+    from pkm_post.writing import pmac, power_pmac
 
     machine = _told(*machine_named(namespace.machine))
     if machine is None:

@@ -15,11 +15,9 @@ from pkm_post.cli.pmac_stop import abort, held_at_the_end, hold
 from pkm_post.cli.pmac_stream import stream
 
 if TYPE_CHECKING:
-    from pkm_post.controllers.pmac import Settings
+    from pkm_post.control import Job, Session, Status
     from pkm_post.model import Machine
-    from pkm_post.pmac_link.job import Job
-    from pkm_post.pmac_link.session import Session
-    from pkm_post.pmac_link.status import Status
+    from pkm_post.writing import PmacSettings
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
 
@@ -46,7 +44,7 @@ class Target:
     """
 
     machine: Machine
-    settings: Settings
+    settings: PmacSettings
 
 
 @dataclass(frozen=True)
@@ -62,8 +60,7 @@ class JobTarget(Target):
 
 def probe(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
     """Print the controller type; raise on settings that do not match the machine."""
-    from pkm_post.pmac_link.faults import RefusedError
-    from pkm_post.pmac_link.ready import check_setup
+    from pkm_post.control import RefusedError, check_setup
 
     is_power = namespace.port.is_power
     for query in _IDENTITY_OF_POWER_PMAC if is_power else _IDENTITY:
@@ -82,8 +79,7 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
 
 def _print_motion(session: Session, target: Target | None, is_power: bool) -> None:
     """Print whether the machine moves; approximate without a machine, as coordinate system and scale are unknown."""
-    from pkm_post.pmac_link.motion import is_busy, settled_status
-    from pkm_post.pmac_link.readout import activity_text
+    from pkm_post.control import activity_text, is_busy, settled_status
 
     if target is not None:
         print(activity_text(settled_status(session, target.settings)))
@@ -93,8 +89,7 @@ def _print_motion(session: Session, target: Target | None, is_power: bool) -> No
 
 def download(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Load the program, list it back and compare."""
-    from pkm_post.pmac_link.download import download
-    from pkm_post.pmac_link.ready import check_setup
+    from pkm_post.control import check_setup, download
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     loaded = download(session, target.job.program, _show_progress if sys.stderr.isatty() else _no_progress)
@@ -112,8 +107,7 @@ def _no_progress(done: int, lines: int) -> None:
 
 def start(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Start the program from its beginning."""
-    from pkm_post.pmac_link import operate
-    from pkm_post.pmac_link.ready import check_setup
+    from pkm_post.control import check_setup, operate
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
@@ -123,20 +117,20 @@ def start(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
 
 def resume(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Resume after a hold."""
-    from pkm_post.pmac_link import operate
+    from pkm_post.control import operate
 
     return _tell(operate.resume(session, target.settings))
 
 
 def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Print the state once."""
-    from pkm_post.pmac_link.status import read_status
+    from pkm_post.control import read_status
 
     return _tell(read_status(session, target.settings))
 
 
 def _tell(status: Status) -> int:
-    from pkm_post.pmac_link.readout import state_text
+    from pkm_post.control import state_text
 
     print(state_text(status))
     return 0
@@ -144,8 +138,7 @@ def _tell(status: Status) -> int:
 
 def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Print pose and state until the user interrupts."""
-    from pkm_post.pmac_link.readout import Readout, pose_text, state_text
-    from pkm_post.pmac_link.status import read_status
+    from pkm_post.control import Readout, pose_text, read_status, state_text
 
     length = namespace.tool_length
     readout = Readout(target.machine, target.machine.rest_tool_length if length is None else length)
@@ -164,8 +157,7 @@ def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> 
 
 def terminal(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
     """Send each line once; all but known queries and stops need the right to move the machine."""
-    from pkm_post.pmac_link.faults import NotOwnerError, PmacError
-    from pkm_post.pmac_link.ownership import take
+    from pkm_post.control import NotOwnerError, PmacError, take
 
     refused = False
     for line in sys.stdin:

@@ -15,11 +15,8 @@ from pkm_post.cli.pmac_stop import held_at_the_end
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_actions import Target
+    from pkm_post.control import Array, NumericalControl, Plan, Session, Status
     from pkm_post.model import Diagnostic
-    from pkm_post.numerical_control.control import NumericalControl
-    from pkm_post.numerical_control.plan import Plan
-    from pkm_post.pmac_link.session import Session
-    from pkm_post.pmac_link.status import Array, Status
 
 _SLOWEST_OVERRIDE = 0.05
 """A move may take as long as at this override, which an operator may set meanwhile."""
@@ -34,8 +31,7 @@ def control_of(session: Session, target: Target, namespace: argparse.Namespace) 
     Raises:
         NotReadyError: the program number for moves by hand is that of the jobs.
     """
-    from pkm_post.numerical_control.control import NumericalControl
-    from pkm_post.pmac_link.faults import NotReadyError
+    from pkm_post.control import NotReadyError, NumericalControl
 
     if namespace.number == target.settings.program:
         raise NotReadyError([f"program {namespace.number} is that of the jobs: choose another --number"])
@@ -53,9 +49,8 @@ def carry_out(
     near: float | None = None,
 ) -> int:
     """Print a plan, execute it, and print the position reached; ``near`` is as for ``execute``."""
-    from pkm_post.numerical_control.execute import off_target
-    from pkm_post.pmac_link.near import NEAR_MM
-    from pkm_post.pmac_link.readout import pose_text
+    from pkm_post.control import off_target, pose_text
+    from pkm_post.options import NEAR_MM
 
     for diagnostic in told:
         print(diagnostic, file=sys.stderr)
@@ -82,8 +77,8 @@ def wait_for_end(control: NumericalControl, seconds: float) -> Status:
 
 def ended_elsewhere(status: Status, lengths: Array) -> bool:
     """Whether a move ended away from its target lengths, which is printed."""
-    from pkm_post.numerical_control.execute import off_target
-    from pkm_post.pmac_link.near import NEAR_MM
+    from pkm_post.control import off_target
+    from pkm_post.options import NEAR_MM
 
     words = [_HELD] if status.held else list(status.words())
     if not words and off_target(status, lengths) > NEAR_MM:

@@ -18,8 +18,7 @@ from pkm_post.cli.pmac_stop import held_at_the_end
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_actions import JobTarget, Target
-    from pkm_post.numerical_control.moves import Jog
-    from pkm_post.pmac_link.session import Session
+    from pkm_post.control import Jog, Session
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
 
@@ -32,9 +31,7 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
     """Print which struts are homed; with a trigger, start the machine's homing and monitor it."""
     import time
 
-    from pkm_post.numerical_control.homing import Phase, missing_homes, start_homing
-    from pkm_post.pmac_link.ownership import owned
-    from pkm_post.pmac_link.status import read_status
+    from pkm_post.control import Phase, missing_homes, owned, read_status, start_homing
 
     if namespace.trigger is None:
         missing = missing_homes(read_status(session, target.settings))
@@ -59,7 +56,7 @@ def jog(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 
 def _jog_of(namespace: argparse.Namespace) -> Jog:
-    from pkm_post.numerical_control.moves import Cartesian, OneStrut
+    from pkm_post.control import Cartesian, OneStrut
 
     if namespace.strut is not None:
         return OneStrut(namespace.strut, namespace.by)
@@ -69,7 +66,7 @@ def _jog_of(namespace: argparse.Namespace) -> Jog:
 
 def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Execute a line of G-code."""
-    from pkm_post.numerical_control.mdi import Reading
+    from pkm_post.control import Reading
 
     control = control_of(session, target, namespace)
     plan, told = control.plan_line(namespace.line, Reading(namespace.work_offset, namespace.axis_words))
@@ -78,8 +75,7 @@ def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 def approach(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Move the tool to the start of a program."""
-    from pkm_post.numerical_control.execute import off_target
-    from pkm_post.pmac_link.status import read_status
+    from pkm_post.control import off_target, read_status
 
     if off_target(read_status(session, target.settings), target.job.first) <= _THERE_MM:
         print("the tool is at the start of the program")
@@ -91,8 +87,7 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
 
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Run a program line by line of its source; each line of the standard input starts one."""
-    from pkm_post.numerical_control.single_block import blocks_of_program
-    from pkm_post.pmac_link.faults import NotReadyError
+    from pkm_post.control import NotReadyError, blocks_of_program
 
     control = control_of(session, target, namespace)
     blocks, told = blocks_of_program(namespace.program, target.machine)
@@ -117,8 +112,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
 
 def go_on(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Continue after a stop (M0, M1) of the program."""
-    from pkm_post.numerical_control.stops import go_on
-    from pkm_post.pmac_link.readout import state_text
+    from pkm_post.control import go_on, state_text
 
     with held_at_the_end(session, target.settings):
         status = go_on(session, target.machine, target.settings, target.job, namespace.stop, namespace.near)
@@ -128,7 +122,7 @@ def go_on(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
 
 def override(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Set the time base of programs."""
-    from pkm_post.pmac_link import operate
+    from pkm_post.control import operate
 
     print(f"override {operate.override(session, target.settings, namespace.percent).override:g} %")
     return 0
@@ -156,7 +150,7 @@ def tell_emergency(name: str, connected: bool) -> None:
         name: of the action.
         connected: whether the controller had answered before.
     """
-    from pkm_post.numerical_control.emergency import STEPS
+    from pkm_post.control import STEPS
 
     if name in _OF_WHAT_RUNS or (connected and name in _STARTING):
         print(*STEPS, sep="\n", file=sys.stderr)

@@ -6,8 +6,8 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 
-from pkm_post.argument_types import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 from pkm_post.cli.reading import NO_AXIS_WORDS, axis_words
+from pkm_post.options import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 
 _HIGHEST_PROGRAM = 999
 """Numbers from 1000 on are the subprograms of the codes."""
@@ -50,7 +50,7 @@ def _add_mdi(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_approach(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.numerical_control.defaults import APPROACH_MM_S
+    from pkm_post.options import APPROACH_MM_S
 
     told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
     parser.add_argument("--feed", type=positive, default=60 * APPROACH_MM_S, metavar="MM/MIN", help=told)
@@ -64,7 +64,7 @@ def _add_by_hand(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_step(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.pmac_link.near import NEAR_MM
+    from pkm_post.options import NEAR_MM
 
     parser.add_argument("--block", type=count, default=1, metavar="N", help="begin at this block (%(default)s)")
     near = "how far each strut and the tip may be from where the first block begins (%(default)s)"
@@ -74,7 +74,7 @@ def _add_step(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_continue(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.pmac_link.near import NEAR_MM
+    from pkm_post.options import NEAR_MM
 
     told = "which stop of the program it stands at, from 1"
     parser.add_argument("--stop", type=count, required=True, metavar="N", help=told)
@@ -83,7 +83,7 @@ def _add_continue(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_number(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.numerical_control.defaults import OWN_PROGRAM
+    from pkm_post.options import OWN_PROGRAM
 
     told = "number of the program in the controller that is used for it (%(default)s)"
     parser.add_argument("--number", type=whole(1, _HIGHEST_PROGRAM), default=OWN_PROGRAM, metavar="PROG", help=told)
@@ -94,7 +94,7 @@ def _add_override(parser: argparse.ArgumentParser) -> None:
 
 
 def _trigger(text: str) -> str:
-    from pkm_post.numerical_control.homing import check_trigger
+    from pkm_post.control import check_trigger
 
     try:
         check_trigger(text)

@@ -9,10 +9,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.argument_types import between, whole, whole_from
+from pkm_post.options import between, whole, whole_from
 
 if TYPE_CHECKING:
-    from pkm_post.pmac_simulator import Controller, Server
+    from pkm_post.control import Controller, Server
 
 LOWEST_SPEED, HIGHEST_SPEED = 0.01, 100.0
 HIGHEST_PORT = 65_535
@@ -38,15 +38,17 @@ def add_action(actions: Any) -> None:
 
 
 def _words(text: str) -> int:
-    from pkm_post.pmac_simulator.settings import LEAST_MEMORY
+    from pkm_post.control import LEAST_MEMORY
 
     return whole_from(LEAST_MEMORY, f"{LEAST_MEMORY} words or more")(text)
 
 
 def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.pmac_simulator import Controller, Server, Settings
+    from pkm_post.control import Controller, Server, SimulatorSettings
 
-    controller = Controller(Settings(memory_words=namespace.memory) if namespace.memory else Settings())
+    controller = Controller(
+        SimulatorSettings(memory_words=namespace.memory) if namespace.memory else SimulatorSettings()
+    )
     if namespace.setup and not _set_up(controller, namespace.setup):
         return 1
     server = None
@@ -78,10 +80,9 @@ def _set_up(controller: Controller, file: Path) -> bool:
 
     A set-up from a posting is refused if it has changed since. Without a manifest it may be any other file of lines.
     """
-    from pkm_post import manifest
-    from pkm_post.controllers import read_text
-    from pkm_post.model.diagnostics import errors
-    from pkm_post.pmac_simulator import MEANINGS, Line
+    from pkm_post.control import MEANINGS, Line
+    from pkm_post.model import errors
+    from pkm_post.writing import manifest, read_text
 
     content, faults = read_text(file)
     faults = (*faults, *errors(manifest.check(file)[1]))

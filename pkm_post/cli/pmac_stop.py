@@ -18,9 +18,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_actions import Target
-    from pkm_post.controllers.pmac import Settings
-    from pkm_post.pmac_link.session import Session
-    from pkm_post.pmac_link.status import Status
+    from pkm_post.control import Session, Status
+    from pkm_post.writing import PmacSettings
 
 _SIGNALS = ("SIGTERM", "SIGHUP", "SIGBREAK")
 """Termination of the process, of its terminal, and of its console on Windows; a system defines some of them."""
@@ -28,7 +27,7 @@ _SIGNALS = ("SIGTERM", "SIGHUP", "SIGBREAK")
 
 def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Decelerate the program to rest on its path."""
-    from pkm_post.pmac_link import stopping
+    from pkm_post.control import stopping
 
     with advised():
         status = stopping.hold(session, target.settings)
@@ -37,7 +36,7 @@ def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int
 
 def abort(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Abort the program."""
-    from pkm_post.pmac_link import stopping
+    from pkm_post.control import stopping
 
     with advised():
         status = stopping.abort(session, target.settings, namespace.at_once)
@@ -45,7 +44,7 @@ def abort(session: Session, target: Target, namespace: argparse.Namespace) -> in
 
 
 def _print(session: Session, status: Status) -> int:
-    from pkm_post.pmac_link.readout import state_text
+    from pkm_post.control import state_text
 
     print(state_text(status))
     return 0
@@ -54,7 +53,7 @@ def _print(session: Session, status: Status) -> int:
 @contextmanager
 def advised() -> Iterator[None]:
     """Print advice for the operator if the stop inside has not ended in time."""
-    from pkm_post.numerical_control.emergency import ADVICE_S
+    from pkm_post.control import ADVICE_S
 
     timer = threading.Timer(ADVICE_S, _advise)
     timer.daemon = True
@@ -66,13 +65,13 @@ def advised() -> Iterator[None]:
 
 
 def _advise() -> None:
-    from pkm_post.numerical_control.emergency import NOT_AT_REST
+    from pkm_post.control import NOT_AT_REST
 
     print(*NOT_AT_REST, sep="\n", file=sys.stderr, flush=True)
 
 
 @contextmanager
-def held_at_the_end(session: Session, settings: Settings) -> Iterator[None]:
+def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
     """Hold the machine when the command that moves it ends: by Ctrl-C, a signal, a closed terminal, any fault.
 
     A fault of the link or of the controller propagates unchanged: it has its own advice.
@@ -80,7 +79,7 @@ def held_at_the_end(session: Session, settings: Settings) -> Iterator[None]:
     Raises:
         CancelledError: it was interrupted; the machine is held.
     """
-    from pkm_post.pmac_link.faults import CancelledError, PmacError
+    from pkm_post.control import CancelledError, PmacError
 
     with signals_interrupt():
         try:
@@ -94,8 +93,8 @@ def held_at_the_end(session: Session, settings: Settings) -> Iterator[None]:
             raise
 
 
-def _hold(session: Session, settings: Settings) -> None:
-    from pkm_post.pmac_link import stopping
+def _hold(session: Session, settings: PmacSettings) -> None:
+    from pkm_post.control import stopping
 
     with advised():
         stopping.hold(session, settings)

@@ -19,7 +19,7 @@ from pkm_post.cli.pmac_stop import signals_interrupt
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_actions import JobTarget
-    from pkm_post.pmac_link.session import Session
+    from pkm_post.control import Session
 
 ROTARY_WORDS = 2600
 """Default size of the rotary buffer: 200 lines of 13 words."""
@@ -27,8 +27,7 @@ ROTARY_WORDS = 2600
 
 def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Run the program from the rotary buffer."""
-    from pkm_post.pmac_link.ready import check_setup
-    from pkm_post.pmac_link.stream import stream
+    from pkm_post.control import check_setup, stream
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job

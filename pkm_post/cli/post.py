@@ -14,18 +14,29 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.argument_types import count, whole_from
 from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside, told
 from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, misplaced, reading_from
-from pkm_post.document_file import Damaged, Job, read_document
-from pkm_post.options import Source, add_options, fitting, given_in, solid_files, source_of
-from pkm_post.out_of_memory import memory_or_refused
-from pkm_post.result_names import Item, job_stem, lost_results, lost_sources, missing_results
+from pkm_post.options import (
+    Item,
+    Source,
+    add_options,
+    count,
+    fitting,
+    given_in,
+    job_stem,
+    lost_results,
+    lost_sources,
+    missing_results,
+    solid_files,
+    source_of,
+    whole_from,
+)
+from pkm_post.system import Damaged, Job, memory_or_refused, read_document
 
 if TYPE_CHECKING:
-    from pkm_post.pipeline import Posted
+    from pkm_post.posting import Posted
 
 _DOCUMENT = ".fcstd"
 _ONLY = "--only"
@@ -121,7 +132,7 @@ def _post_in_processes(files: Sequence[Path], solids: Sequence[str], arguments: 
 def _post_one(file: Path, namespace: argparse.Namespace) -> int:
     """Post a file, print the results or the faults, and return the exit code."""
     from pkm_post.model import Refused
-    from pkm_post.sources import is_part_program
+    from pkm_post.reading import is_part_program
 
     post, line = _part_program if is_part_program(file) else _document, ProgressLine(file.name)
     try:
@@ -136,7 +147,7 @@ def _post_one(file: Path, namespace: argparse.Namespace) -> int:
 
 
 def _part_program(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> tuple[Posted, ...]:
-    from pkm_post.post_file import post_file
+    from pkm_post.posting import post_file
 
     posted = post_file(
         file,

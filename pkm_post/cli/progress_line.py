@@ -31,7 +31,7 @@ class ProgressLine:
         self.clear()
 
     def show(self, step: str, share: float) -> None:
-        """Show the step and its completed share, 0 to 1; as ``pipeline.Progress``."""
+        """Show the step and its completed share, 0 to 1; as ``posting.Progress``."""
         self._write(f"{_CLEAR}{self._subject}: {step} {share:.0%}" if step else _CLEAR)
 
     def print(self, line: str) -> None:

@@ -16,7 +16,7 @@ from pkm_post.options import add_options, fitting, given_in, solid_files, source
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
-    from pkm_post.pipeline import Prepared
+    from pkm_post.posting import Prepared
 
 
 def add_commands(commands: Any) -> None:
@@ -52,9 +52,8 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         return 2
     if needs_freecad(namespace.files, solid_files(namespace)):
         return run_inside(arguments)
-    from pkm_post.model import Refused
-    from pkm_post.model.diagnostics import errors
-    from pkm_post.reach_study import study
+    from pkm_post.model import Refused, errors
+    from pkm_post.posting import study
 
     failed, found = False, []
     for file in namespace.files:
@@ -80,8 +79,8 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]:
     """Yield the programs of a file: that of a part program, or those of the jobs of a document."""
-    from pkm_post.post_file import prepared_file
-    from pkm_post.sources import is_part_program
+    from pkm_post.posting import prepared_file
+    from pkm_post.reading import is_part_program
 
     given = fitting(given_in(namespace), source_of(file))
     if is_part_program(file):

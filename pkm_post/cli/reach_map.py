@@ -12,9 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from pkm_post.argument_types import fitting, number, offset, positive, tool_length
+from pkm_post.options import accepting, number, offset, positive, tool_length
 
-_angle = fitting(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
+_angle = accepting(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
 
 _MOST_PLACES = 1_000_000
 """A file with this many is some tens of megabytes."""
@@ -48,11 +48,9 @@ def _range(text: str) -> list[float]:
 def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     import numpy as np
 
-    from pkm_post.files import staged
-    from pkm_post.machine_file import machine_named
-    from pkm_post.position import reach_map
-    from pkm_post.report.reach_plot import draw_reach
-    from pkm_post.unwritten import unwritten
+    from pkm_post.machine import machine_named, reach_map
+    from pkm_post.report import draw_reach
+    from pkm_post.system import staged, unwritten
 
     if math.prod(map(len, (namespace.x, namespace.y, namespace.z))) > _MOST_PLACES:
         print(f"expected --x, --y and --z with at most {_MOST_PLACES} places together", file=sys.stderr)

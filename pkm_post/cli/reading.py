@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from pkm_post.options import given_in, misfits, part_program_from, source_of
 
 if TYPE_CHECKING:
-    from pkm_post.sources import Reading
+    from pkm_post.reading import Reading
 
 NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
@@ -60,7 +60,7 @@ def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]
 
 def part_program(text: str) -> Path:
     """Path of an existing part program."""
-    from pkm_post.sources import SUFFIXES, is_part_program
+    from pkm_post.reading import SUFFIXES, is_part_program
 
     file = Path(text)
     if not os.path.isfile(file):  # before Python 3.12 Path.is_file raises where a name is too long
@@ -81,6 +81,6 @@ def axis_words(text: str) -> str:
     """Tool axis notation, for ``argparse``, which also converts a default, possibly without NumPy."""
     if text == NO_AXIS_WORDS:
         return text
-    from pkm_post.sources import AXIS_WORDS
+    from pkm_post.reading import AXIS_WORDS
 
     return one_of(AXIS_WORDS, text)

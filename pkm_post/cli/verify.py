@@ -24,9 +24,9 @@ def add_commands(commands: Any) -> None:
 
 
 def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.machine_file import machine_named
+    from pkm_post.machine import machine_named
     from pkm_post.model import Refused
-    from pkm_post.verify import verify
+    from pkm_post.posting import verify
 
     machine, faults = machine_named(namespace.machine)
     for fault in faults:

@@ -15,9 +15,9 @@ from typing import Any
 import Path.Preferences
 
 from pkm_post.freecad_app.job import document_name
-from pkm_post.gcode import Form
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import Given, Source, TextParser, given_in, misfits, text_parser, typed
+from pkm_post.writing import Form
 
 PMAC, TRAJECTORY, LINUXCNC, GCODE = "hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"
 

@@ -15,11 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.compensation import Cutter, tip_from_contact
-from pkm_post.geometry import angle_between, dot, norm
-from pkm_post.geometry.vectors import cross
+from pkm_post.geometry import angle_between, cross, dot, norm
 from pkm_post.model import Diagnostic, Kind, Program
-from pkm_post.surface_path.tool_axis import AxisRule, tool_axes
+from pkm_post.toolpath import AxisRule, Cutter, tip_from_contact, tool_axes
 
 Array = np.ndarray[Any, np.dtype[Any]]
 

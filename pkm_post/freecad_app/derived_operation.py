@@ -20,7 +20,7 @@ from pkm_post.freecad_app.object_properties import Row
 from pkm_post.freecad_app.property_proxy import PropertyProxy
 from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.model import Diagnostic, Program, Refused
-from pkm_post.placement import transform
+from pkm_post.toolpath import transform
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 

@@ -12,8 +12,8 @@ from functools import lru_cache
 from pathlib import Path as FilePath
 from typing import Any
 
-from pkm_post.document_file import Damaged, DocumentContent, read_document
 from pkm_post.model import Diagnostic, Place, Refused
+from pkm_post.system import Damaged, DocumentContent, read_document
 
 
 def intact(file: FilePath) -> DocumentContent:

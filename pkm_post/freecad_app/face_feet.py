@@ -17,10 +17,7 @@ import FreeCAD as App
 import numpy as np
 import Part
 
-from pkm_post.geometry import elementary
-from pkm_post.geometry.nurbs import NurbsSurface
-from pkm_post.geometry.nurbs_nearest import Closed, nearest
-from pkm_post.geometry.vectors import Array, cross, norm
+from pkm_post.geometry import Array, Closed, NurbsSurface, cross, elementary, nearest, norm
 
 _SINGULAR = 1e-9
 """Sine of the angle between both derivatives, times their lengths in mm: below this a surface has no normal."""

@@ -14,10 +14,8 @@ from typing import Any
 import numpy as np
 
 from pkm_post.freecad_app.face_feet import nurbs_of
-from pkm_post.geometry import dot, norm
-from pkm_post.geometry.vectors import cross
-from pkm_post.surface_path import Span, Surface
-from pkm_post.surface_path.surface import Array
+from pkm_post.geometry import cross, dot, norm
+from pkm_post.toolpath import Array, Span, Surface
 
 _SAME = 1e-6
 """mm within which both ends of a range coincide: the surface is closed."""

@@ -13,8 +13,7 @@ import numpy as np
 import Part
 
 from pkm_post.freecad_app.face_feet import Feet
-from pkm_post.geometry.outline import within
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array, within
 
 _CHORDS = 32
 """Number of chords that approximate an edge in the parameter plane."""

@@ -8,7 +8,7 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 
 
 def matrix_of(placement: Any) -> Array:

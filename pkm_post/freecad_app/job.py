@@ -22,10 +22,8 @@ from pkm_post.freecad_app.document_damage import file_faults
 from pkm_post.freecad_app.operation_state import state_faults
 from pkm_post.freecad_app.selection import EVERYTHING, Selection
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
-from pkm_post.model import Diagnostic, Event, EventKind, Place, Program, Tool
-from pkm_post.model.diagnostics import errors
-from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS
-from pkm_post.placement import transform
+from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Event, EventKind, Place, Program, Tool, errors
+from pkm_post.toolpath import transform
 
 __all__ = ["document_name", "read_job", "set_gauge_length"]
 

@@ -12,13 +12,11 @@ from typing import Any
 
 import FreeCAD as App
 
-from pkm_post import pipeline
-from pkm_post.collisions import placed_part
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.prepared_job import prepared_job
-from pkm_post.kinematics import Part
-from pkm_post.model import Machine, Trajectory
-from pkm_post.model.certificate import Tolerances
+from pkm_post.machine import Part, placed_part
+from pkm_post.model import Machine, Tolerances, Trajectory
+from pkm_post.posting import known_setup
 
 
 @dataclass(frozen=True)
@@ -54,5 +52,5 @@ def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
             App.Console.PrintWarning(f"{each}\n")
     trajectory, _ = read.placed()
     program, machine = read.sound
-    setup, _ = pipeline.known_setup(read.options, program)
+    setup, _ = known_setup(read.options, program)
     return JobOnMachine(trajectory, machine, placed_part(setup, trajectory), read.options.tolerances)

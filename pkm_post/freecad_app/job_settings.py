@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 from typing import Any
 
-from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.job import document_name
 from pkm_post.freecad_app.selection import EVERYTHING, Selection
@@ -24,6 +23,7 @@ from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     NOTHING_GIVEN,
     Given,
+    Options,
     Override,
     Source,
     flag_of,
@@ -54,7 +54,7 @@ class JobSettings:
     """
 
     machine: str
-    options: pipeline.Options
+    options: Options
     tool_lengths: Mapping[int, float]
     arguments: argparse.Namespace
     selection: Selection
@@ -64,7 +64,7 @@ class JobSettings:
 def settings_of(
     job: Any,
     given: Given = NOTHING_GIVEN,
-    options: pipeline.Options | None = None,
+    options: Options | None = None,
     post_processor: str = "",
     selection: Selection = EVERYTHING,
     beside: Sequence[Any] = (),
@@ -74,7 +74,7 @@ def settings_of(
     Args:
         job: the CAM job.
         given: options that override those of the job, one by one.
-        options: replace everything that ``pipeline.Options`` holds.
+        options: replace everything that ``Options`` holds.
         post_processor: post-processor of the job's arguments, if the job's own property does not state it.
         selection: the part of the job to use.
         beside: other jobs to which the given options also apply.
@@ -102,7 +102,7 @@ def settings_of(
     )
 
 
-def _at_fixture(options: pipeline.Options, job: Any, selection: Selection) -> pipeline.Options:
+def _at_fixture(options: Options, job: Any, selection: Selection) -> Options:
     """The options, with the fixture of the job as the work offset if none was chosen."""
     if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
         return replace(options, work_offset=_fixture(job, selection))
@@ -137,7 +137,7 @@ def _without_meaning(job: Any, given: Given) -> Iterator[Diagnostic]:
 
 
 def _replaced(
-    job: Any, own: Given, given: Given, options: pipeline.Options | None, selection: Selection
+    job: Any, own: Given, given: Given, options: Options | None, selection: Selection
 ) -> Iterator[Diagnostic]:
     """Yield J125 for each option that changes a setting of the job; a job always states a work offset."""
     place, fixture = Place(document_name(job.Document), job.Label), _fixture(job, selection)

@@ -16,7 +16,7 @@ from Path.Main.Stock import StockType
 
 from pkm_post.freecad_app.part_mesh import mesh_of
 from pkm_post.freecad_app.tools import millimetres
-from pkm_post.model.setup import Mesh, Setup, Shank
+from pkm_post.model import Mesh, Setup, Shank
 
 
 def job_setup(job: Any) -> Setup:

@@ -18,17 +18,15 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
-from pkm_post import pipeline
 from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.object_properties import EDITABLE, READ_ONLY, Row
 from pkm_post.freecad_app.property_proxy import PropertyProxy
 from pkm_post.freecad_app.refusals import briefly_refused
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import Way, reach_findings, reach_margins, strut_lengths
-from pkm_post.kinematics.way import Pose
-from pkm_post.machine_file import machine_named
+from pkm_post.geometry import Array
+from pkm_post.machine import Pose, Way, machine_named, reach_findings, reach_margins, strut_lengths
 from pkm_post.model import Machine, Refused
+from pkm_post.posting import work_offset
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
@@ -156,7 +154,7 @@ def _take_work_offset(obj: Any, machine: Machine) -> None:
     obj.setEditorMode("WorkOffset", EDITABLE if obj.Job is None else READ_ONLY)
     if obj.Job is None:
         return
-    offset, faults = pipeline.work_offset(machine, settings_of(obj.Job).options)
+    offset, faults = work_offset(machine, settings_of(obj.Job).options)
     if offset is None:
         raise Refused(faults)
     obj.WorkOffset = placement_of(offset)

@@ -13,13 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post import pipeline
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.tools import read_tools
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics import reach_margins
-from pkm_post.machine_file import machine_named
+from pkm_post.geometry import Array
+from pkm_post.machine import machine_named, reach_margins
 from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.posting import work_offset
 
 _TILTS = np.radians(np.arange(0.0, 80.5, 0.5))
 _DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
@@ -48,7 +47,7 @@ def machine_tilt(
     tools, tool_faults = read_tools([controller], settings.tool_lengths, place.file)
     if machine is None or not tools:
         return None, (*machine_faults, *tool_faults)
-    offset, faults = pipeline.work_offset(machine, settings.options)
+    offset, faults = work_offset(machine, settings.options)
     if offset is None:
         return None, faults
     tilt = _largest(machine, offset, tools[int(controller.ToolNumber)].length, *box)

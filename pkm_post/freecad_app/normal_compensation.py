@@ -19,7 +19,6 @@ import numpy as np
 from Path.Base.Util import toolControllerForOp
 from PathScripts import PathUtils
 
-from pkm_post.compensation import Cutter
 from pkm_post.freecad_app.contact_faces import Contacts, NamedFace, contacts, nearest_face
 from pkm_post.freecad_app.contact_guides import guides
 from pkm_post.freecad_app.contact_moves import Compensation, compensated
@@ -27,9 +26,9 @@ from pkm_post.freecad_app.derived_operation import BASE_AND_ACTIVE, DerivedOpera
 from pkm_post.freecad_app.model_faces import model_faces
 from pkm_post.freecad_app.object_properties import Row
 from pkm_post.freecad_app.tool_cutter import read_cutter
-from pkm_post.gcode.chords import with_chords
 from pkm_post.model import Diagnostic, Kind, Place, Program
-from pkm_post.surface_path.tool_axis import AxisRule
+from pkm_post.reading import with_chords
+from pkm_post.toolpath import AxisRule, Cutter
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 
 _DEVIATION = 0.1
 """Largest deviation of the triangles from the faces, mm; clearances of spindles and holders are far larger."""

@@ -14,7 +14,6 @@ from typing import Any
 
 import FreeCAD as App
 
-from pkm_post import pipeline
 from pkm_post.freecad_app.arguments import given_by
 from pkm_post.freecad_app.document_damage import check_read, intact
 from pkm_post.freecad_app.job import NO_LENGTHS, document_name
@@ -22,28 +21,28 @@ from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.kinds import is_job
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.model import Diagnostic, Place, Refused
-from pkm_post.options import READING, Given
-from pkm_post.result_names import Item, job_stem, lost_results
+from pkm_post.options import READING, Given, Item, Options, job_stem, lost_results
+from pkm_post.posting import SUFFIX, Log, Posted, Prepared, Progress, quiet, unwatched
 
 
 def post_job(
     job: Any,
     machine: str | FilePath | None = None,
     out: str | FilePath = ".",
-    options: pipeline.Options | None = None,
+    options: Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
-    log: pipeline.Log = pipeline.quiet,
-    progress: pipeline.Progress = pipeline.unwatched,
+    log: Log = quiet,
+    progress: Progress = unwatched,
     arguments: str | Given = "",
     beside: Sequence[Any] = (),
-) -> pipeline.Posted:
+) -> Posted:
     """Post a CAM job. Unspecified settings are those of the job; replaced ones are reported as J125.
 
     Args:
         job: the job, a document object; its document is recomputed.
         machine: name of a machine included in PKM Post, or path of a machine file.
         out: folder for the results, which take the name of the document as their stem.
-        options: replace everything that ``pipeline.Options`` holds; a work offset ``"job"`` is the fixture of the job.
+        options: replace everything that ``Options`` holds; a work offset ``"job"`` is the fixture of the job.
         tool_lengths: gauge lengths by tool number that override those of the tool controllers, mm.
         log: callback for a line per step.
         progress: callback at the start of each step; if it raises, the work ends and nothing is written.
@@ -67,7 +66,7 @@ def _said(machine: str | FilePath | None, tool_lengths: Mapping[int, float]) -> 
     return lengths | ({} if machine is None else {"machine": str(machine)})
 
 
-def post_as_the_job_says(job: Any, out: str | FilePath, log: pipeline.Log = pipeline.quiet) -> pipeline.Posted:
+def post_as_the_job_says(job: Any, out: str | FilePath, log: Log = quiet) -> Posted:
     """Post a CAM job with its own arguments for a post-processor of PKM Post, and no others.
 
     Raises:
@@ -80,13 +79,13 @@ def post_document(
     file: str | FilePath,
     machine: str | FilePath | None = None,
     out: str | FilePath = ".",
-    options: pipeline.Options | None = None,
+    options: Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     job_name: str | None = None,
-    log: pipeline.Log = pipeline.quiet,
-    progress: pipeline.Progress = pipeline.unwatched,
+    log: Log = quiet,
+    progress: Progress = unwatched,
     arguments: str | Given = "",
-) -> tuple[pipeline.Posted, ...]:
+) -> tuple[Posted, ...]:
     """Post one job of a saved document, or all of them.
 
     Args:
@@ -108,7 +107,7 @@ def post_document(
         return tuple(post_job(job, machine, out, options, tool_lengths, log, progress, arguments, jobs) for job in jobs)
 
 
-def read_document(file: str | FilePath, given: Given, job_name: str | None = None) -> tuple[pipeline.Prepared, ...]:
+def read_document(file: str | FilePath, given: Given, job_name: str | None = None) -> tuple[Prepared, ...]:
     """Read the jobs of a saved document.
 
     Args:
@@ -160,9 +159,9 @@ def post_to(
     program_path: FilePath,
     job: Any,
     settings: JobSettings,
-    log: pipeline.Log = pipeline.quiet,
-    progress: pipeline.Progress = pipeline.unwatched,
-) -> pipeline.Posted:
+    log: Log = quiet,
+    progress: Progress = unwatched,
+) -> Posted:
     """Post a CAM job to a motion program with this path; the other files take its stem.
 
     Raises:
@@ -185,7 +184,7 @@ def file_name(job: Any) -> str:
     lost = lost_results(list(items.values()))
     if lost:
         raise Refused([Diagnostic("F105", Place(document_name(document)), each) for each in lost])
-    return items[job.Name].stem + pipeline.SUFFIX
+    return items[job.Name].stem + SUFFIX
 
 
 @contextlib.contextmanager

@@ -14,20 +14,17 @@ from typing import Any, TypeVar
 
 import FreeCAD as App
 
-from pkm_post import manifest, outputs, pipeline, trajectory_file
-from pkm_post.collisions import find_collisions
-from pkm_post.files import staged
 from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings
 from pkm_post.freecad_app.post_job import post_to
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.gcode import Form, write
-from pkm_post.model import Diagnostic, Refused, Trajectory
-from pkm_post.model.diagnostics import errors
-from pkm_post.reach import reach
-from pkm_post.unwritten import unwritten
+from pkm_post.machine import find_collisions, reach
+from pkm_post.model import Diagnostic, Refused, Trajectory, errors
+from pkm_post.posting import known_setup, step_names
+from pkm_post.system import staged, unwritten
+from pkm_post.writing import Form, manifest, outputs, trajectory_file, write
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
@@ -43,7 +40,7 @@ def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
     CAM accepts several texts, but inserts its own number into every name after the first: a part would get a name that
     no reader of the program expects. The other parts are therefore not passed to CAM.
     """
-    steps = len(pipeline.step_names(settings.options)) + _MORE_STEPS
+    steps = len(step_names(settings.options)) + _MORE_STEPS
     with Progress(App.Qt.translate("Progress", "Post"), steps) as bar:
         posted = post_to(path, job, settings, print, lambda step, share: bar.step())
     if len(posted.parts) > 1:
@@ -109,7 +106,7 @@ def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     read = prepared_job(job, settings)
     trajectory, found = _value(read.placed())
     program, machine = read.sound
-    setup, told = _value(pipeline.known_setup(read.options, program), found)
+    setup, told = _value(known_setup(read.options, program), found)
     collisions = find_collisions(trajectory, machine, setup, read.options.tolerances)
     return _value((trajectory, (*reach(trajectory, machine).faults(), *collisions.faults)), told)
 

@@ -60,7 +60,7 @@ class HexapodPost(PostProcessor):
         from pkm_post.freecad_app.post_outputs import OUTPUTS
         from pkm_post.freecad_app.progress import Stopped
         from pkm_post.model import Refused
-        from pkm_post.out_of_memory import memory_or_refused
+        from pkm_post.system import memory_or_refused
 
         try:
             with memory_or_refused(self._job.Label):

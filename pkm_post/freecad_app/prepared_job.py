@@ -13,21 +13,21 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post import pipeline
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.job import document_name, read_job
 from pkm_post.freecad_app.job_settings import JobSettings
 from pkm_post.freecad_app.job_setup import job_setup
 from pkm_post.freecad_app.machine_object import machine_of
-from pkm_post.machine_file import find_machine, machine_named
+from pkm_post.machine import find_machine, machine_named
 from pkm_post.model import Diagnostic, Machine, Place
-from pkm_post.options import Override, flag_of, said_by, shown
+from pkm_post.options import Options, Override, flag_of, said_by, shown
+from pkm_post.posting import Prepared, work_offset
 
 _SAME_PLACE = 1e-6
 """mm and directions: FreeCAD rounds placements when it stores them."""
 
 
-def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) -> pipeline.Prepared:
+def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) -> Prepared:
     """Read a job and its machine; the faults of both are collected together.
 
     Args:
@@ -46,18 +46,18 @@ def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) ->
         options = replace(options, work_offset=matrix_of(machine_object.Frame.inverse()))
         found = tuple(_elsewhere(job, settings, machine_object, machine, options))
     program, told = read_job(job, settings.tool_lengths, settings.selection)
-    return pipeline.Prepared(program, machine, options, (*found, *settings.found, *told))
+    return Prepared(program, machine, options, (*found, *settings.found, *told))
 
 
 def _elsewhere(
-    job: Any, settings: JobSettings, machine_object: Any, machine: Machine, options: pipeline.Options
+    job: Any, settings: JobSettings, machine_object: Any, machine: Machine, options: Options
 ) -> Iterator[Diagnostic]:
     """Yield J125 where the machine object has another machine or placement than the job is posted for."""
     place = Place(document_name(job.Document), machine_object.Label)
     if find_machine(machine_object.MachineFile) != find_machine(settings.machine):
         told = Override(flag_of("machine"), settings.machine, machine_object.MachineFile)
         yield Diagnostic("J125", place, str(told))
-    offset, _ = pipeline.work_offset(machine, settings.options)
+    offset, _ = work_offset(machine, settings.options)
     if offset is not None and not np.allclose(offset, options.work_offset, atol=_SAME_PLACE):
         said = (shown("work_offset", said_by(each)["work_offset"]) for each in (settings.options, options))
         yield Diagnostic("J125", place, str(Override(flag_of("work_offset"), *said)))

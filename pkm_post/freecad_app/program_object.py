@@ -19,15 +19,23 @@ import numpy as np
 import Path
 import Path.Op.Custom
 
-from pkm_post.cldata import CONTOUR_DATA, DIALECTS, UNITS
-from pkm_post.compensation import OffsetOptions, compensate
 from pkm_post.freecad_app.commands import commands_of
 from pkm_post.freecad_app.object_properties import Row
 from pkm_post.freecad_app.property_proxy import PropertyProxy
 from pkm_post.freecad_app.tool_controller import answered
-from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
-from pkm_post.model.diagnostics import Severity
-from pkm_post.sources import AXIS_WORDS, DWELL_UNITS, SUFFIXES, Reading, is_part_program, read_part_program
+from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused, Severity
+from pkm_post.reading import (
+    AXIS_WORDS,
+    CONTOUR_DATA,
+    DIALECTS,
+    DWELL_UNITS,
+    SUFFIXES,
+    UNITS,
+    Reading,
+    is_part_program,
+    read_part_program,
+)
+from pkm_post.toolpath import OffsetOptions, compensate
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 

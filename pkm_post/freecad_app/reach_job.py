@@ -13,7 +13,7 @@ from pkm_post.freecad_app.arguments import POST_PROCESSORS, rewritten
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.model import Refused
-from pkm_post.reach_study import Study, study, told_offset
+from pkm_post.posting import Study, study, told_offset
 
 
 def study_job(job: Any, free: str = "") -> Study:

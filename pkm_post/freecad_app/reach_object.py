@@ -21,10 +21,9 @@ from pkm_post.freecad_app.object_properties import HIDDEN, NO_RECOMPUTE, READ_ON
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.property_proxy import PropertyProxy
 from pkm_post.freecad_app.refusals import briefly_refused
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics.findings import SHOWN
-from pkm_post.model.diagnostics import errors
-from pkm_post.reach import Reach, reach
+from pkm_post.geometry import Array
+from pkm_post.machine import SHOWN, Reach, reach
+from pkm_post.model import errors
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 

@@ -13,7 +13,7 @@ from functools import wraps
 from typing import Any
 
 from pkm_post.model import Refused
-from pkm_post.out_of_memory import memory_or_refused
+from pkm_post.system import memory_or_refused
 
 Execute = Callable[[Any, Any], Any]
 """The method of a proxy that computes its object."""

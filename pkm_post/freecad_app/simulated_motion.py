@@ -13,9 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds, unit
-from pkm_post.geometry.vectors import Array
-from pkm_post.kinematics.way import Pose
+from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, unit
+from pkm_post.machine import Pose
 from pkm_post.model import EventKind, Machine, Motion, Place, StrutMotion, Tool, Trajectory
 
 _AT_ONCE = 16384

@@ -13,15 +13,13 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
-from pkm_post import planning
 from pkm_post.freecad_app.job_on_machine import JobOnMachine, job_on_machine
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.simulated_motion import Problem, Simulation
-from pkm_post.geometry.vectors import norm
-from pkm_post.kinematics import ReachFinding
-from pkm_post.model import RULES, Refused
-from pkm_post.model.diagnostics import Severity
-from pkm_post.reach import Reach, reach
+from pkm_post.geometry import norm
+from pkm_post.machine import Reach, ReachFinding, reach
+from pkm_post.model import RULES, Refused, Severity
+from pkm_post.planning import motion as planning
 
 translate = App.Qt.translate
 

@@ -14,8 +14,8 @@ from pkm_post.freecad_app.import_hook import when_imported
 
 
 def install() -> None:
-    """Let ``pkm_post.mesh_file`` read STEP as soon as it is imported."""
-    when_imported("pkm_post.mesh_file", _register)
+    """Let ``pkm_post.reading.mesh_file`` read STEP as soon as it is imported."""
+    when_imported("pkm_post.reading.mesh_file", _register)
 
 
 def _register(mesh_file: ModuleType) -> None:
@@ -27,8 +27,8 @@ def read_step(path: Path, name: str) -> Any:
     import Part
 
     from pkm_post.freecad_app.part_mesh import mesh_of
-    from pkm_post.mesh_file import mesh_of_triangles
     from pkm_post.model import Diagnostic, Place
+    from pkm_post.reading import mesh_of_triangles
 
     shape = Part.Shape()
     try:

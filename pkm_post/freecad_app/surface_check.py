@@ -16,13 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.compensation import Cutter
-from pkm_post.compensation.envelope import stock_left
-from pkm_post.compensation.sweep import Sweep
 from pkm_post.freecad_app.face_surface import face_surface
-from pkm_post.geometry import norm
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array, norm
 from pkm_post.model import Program
+from pkm_post.toolpath import Cutter, Sweep, stock_left
 
 _FEWEST = 3
 _SPREAD = (0.7548776662466927, 0.5698402909980532)

@@ -19,7 +19,6 @@ import FreeCAD as App
 import Path
 import Path.Op.Base
 
-from pkm_post.compensation import Cutter
 from pkm_post.freecad_app.commands import commands_of
 from pkm_post.freecad_app.contact_faces import NamedFace
 from pkm_post.freecad_app.face_surface import face_surface
@@ -32,7 +31,7 @@ from pkm_post.freecad_app.surface_finish_inputs import read_inputs
 from pkm_post.freecad_app.surface_finish_settings import add_missing_properties
 from pkm_post.freecad_app.tool_controller import answered
 from pkm_post.model import Diagnostic, Place, Program, Refused
-from pkm_post.surface_path import Poses, Settings, cover, program_of
+from pkm_post.toolpath import Cutter, Poses, Settings, cover, program_of
 
 _VIEW = "pkm_post.freecad_gui.surface_finish_view"
 """The view is in a higher layer: referenced by name, not imported, as in saved documents."""

@@ -12,15 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.compensation import Cutter
 from pkm_post.freecad_app.contact_faces import NamedFace
 from pkm_post.freecad_app.machine_tilt import machine_tilt, upright
 from pkm_post.freecad_app.model_faces import model_faces
 from pkm_post.freecad_app.surface_finish_settings import read_settings
 from pkm_post.freecad_app.tool_cutter import read_cutter
-from pkm_post.model import Diagnostic, Place
-from pkm_post.model.diagnostics import errors
-from pkm_post.surface_path import Settings
+from pkm_post.model import Diagnostic, Place, errors
+from pkm_post.toolpath import Cutter, Settings
 
 Inputs = tuple[tuple[NamedFace, ...], Cutter, Settings]
 """Faces, cutter and settings."""

@@ -15,7 +15,7 @@ import FreeCAD as App
 
 from pkm_post.freecad_app.object_properties import READ_ONLY, Row, add_missing
 from pkm_post.model import Diagnostic, Place
-from pkm_post.surface_path import AxisRule, CutMode, LeadMove, Lines, Order, Settings, Stepover, Tolerances
+from pkm_post.toolpath import AxisRule, CutMode, LeadMove, Lines, Order, Settings, Stepover, Tolerances
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 

@@ -21,9 +21,9 @@ from pkm_post.freecad_app.derived_operation import DerivedOperation
 from pkm_post.freecad_app.symmetry_properties import MIRROR, MIRROR_RESULTS, ROTATION, ROTATION_RESULTS
 from pkm_post.freecad_app.symmetry_reference import axis_of, plane_of
 from pkm_post.freecad_app.symmetry_report import report
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Place, Program
-from pkm_post.placement import joined, mirror, reversed_passes, rotation, transform
+from pkm_post.toolpath import joined, mirror, reversed_passes, rotation, transform
 
 _VIEW = "pkm_post.freecad_gui.symmetry_view"
 """The view is in a higher layer: referenced by name, not imported, as in saved documents."""

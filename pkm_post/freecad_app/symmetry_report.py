@@ -17,9 +17,9 @@ from PathScripts import PathUtils
 
 from pkm_post.freecad_app.derived_operation import program_of
 from pkm_post.freecad_app.material_side import base_side, is_symmetric, spindle_sense_of
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 from pkm_post.model import Kind, Program
-from pkm_post.placement import (
+from pkm_post.toolpath import (
     Coverage,
     Joint,
     beside_plane,

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from pkm_post.compensation import Cutter
 from pkm_post.freecad_app.tools import read_tools
 from pkm_post.model import Diagnostic, Place
+from pkm_post.toolpath import Cutter
 
 _KNOWN_SHAPES = ("endmill", "ballend", "bullnose")
 """Shapes with a flat bottom and an upright side. ``read_tools`` does not return the angle of a tapered one."""

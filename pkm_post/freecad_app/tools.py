@@ -14,8 +14,7 @@ from typing import Any
 
 import FreeCAD as App
 
-from pkm_post.model import Diagnostic, Place, Tool
-from pkm_post.model.tool import corner_reach
+from pkm_post.model import Diagnostic, Place, Tool, corner_reach
 
 GAUGE_LENGTH = "GaugeLength"
 

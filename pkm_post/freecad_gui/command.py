@@ -16,7 +16,7 @@ from PySide import QtWidgets
 
 from pkm_post.freecad_app.transaction import transaction
 from pkm_post.freecad_gui.workbench import ICONS
-from pkm_post.out_of_memory import FAULTS, lack_of_memory
+from pkm_post.system import FAULTS, lack_of_memory
 
 translate = FreeCAD.Qt.translate
 

@@ -17,7 +17,7 @@ import numpy as np
 from PySide import QtWidgets
 
 from pkm_post.freecad_app.progress import Progress, Stopped
-from pkm_post.report.animated_png import animate
+from pkm_post.report import animate
 
 translate = FreeCAD.Qt.translate
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from pivy import coin
 
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 
 Colour = tuple[float, float, float]
 """Red, green and blue from 0 to 1."""

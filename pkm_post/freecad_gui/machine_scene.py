@@ -12,9 +12,8 @@ from pivy import coin
 
 from pkm_post.freecad_gui import lathe
 from pkm_post.freecad_gui.lathe import Colour
-from pkm_post.geometry.vectors import Array, norm
-from pkm_post.kinematics import platform_joints, platform_rotation, reach_margins
-from pkm_post.kinematics.way import Pose
+from pkm_post.geometry import Array, norm
+from pkm_post.machine import Pose, platform_joints, platform_rotation, reach_margins
 from pkm_post.model import Box, Machine
 
 STEEL: Colour = (0.62, 0.65, 0.7)

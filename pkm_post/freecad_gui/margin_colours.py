@@ -10,7 +10,7 @@ import numpy as np
 from pivy import coin
 
 from pkm_post.freecad_gui.marks import OUT
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 
 _NEAR, _FAR = np.array([1.0, 0.65, 0.0]), np.array([0.1, 0.65, 0.2])
 _BAR = (-0.96, -0.92, -0.55, 0.15)

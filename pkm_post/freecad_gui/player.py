@@ -26,7 +26,7 @@ from pkm_post.freecad_gui.player_text import told
 from pkm_post.freecad_gui.recompute_watch import RecomputeWatch
 from pkm_post.freecad_gui.stage import Stage
 from pkm_post.model import Place, Refused
-from pkm_post.out_of_memory import memory_or_refused
+from pkm_post.system import memory_or_refused
 
 translate = FreeCAD.Qt.translate
 

@@ -22,8 +22,7 @@ from pkm_post.freecad_gui.post_fields import (
     show_quantity,
     with_button,
 )
-from pkm_post.machine_file.named import machine_named
-from pkm_post.machine_file.presets import presets
+from pkm_post.machine import machine_named, presets
 from pkm_post.model import Place, Refused
 from pkm_post.options import ALSO, FIXTURE_OF_THE_JOB, HEADED, SPIN_WORDS
 

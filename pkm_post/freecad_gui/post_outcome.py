@@ -12,9 +12,8 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.model import Diagnostic
-from pkm_post.model.diagnostics import RULES, Severity
-from pkm_post.pipeline import Posted
+from pkm_post.model import RULES, Diagnostic, Severity
+from pkm_post.posting import Posted
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP

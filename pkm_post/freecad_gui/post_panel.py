@@ -26,8 +26,8 @@ from pkm_post.freecad_gui.task import Task
 from pkm_post.freecad_gui.workbench import ICONS
 from pkm_post.model import Refused
 from pkm_post.options import READING
-from pkm_post.out_of_memory import memory_or_refused
-from pkm_post.pipeline import Prepared
+from pkm_post.posting import Prepared
+from pkm_post.system import memory_or_refused
 
 translate = FreeCAD.Qt.translate
 

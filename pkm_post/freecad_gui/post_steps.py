@@ -22,7 +22,7 @@ STEPS = {
     "also linuxcnc": QT_TRANSLATE_NOOP("PostSteps", "G-code for LinuxCNC"),
     "": QT_TRANSLATE_NOOP("PostSteps", "Moving the files to their folder"),
 }
-"""Displayed name of each step, by its name in ``pkm_post.pipeline`` and ``pkm_post.options``."""
+"""Displayed name of each step, by its name in ``pkm_post.posting`` and ``pkm_post.options``."""
 
 
 def step_text(step: str) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.simulated_motion import Simulation
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 
 translate = FreeCAD.Qt.translate
 

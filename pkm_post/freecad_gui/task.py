@@ -13,7 +13,7 @@ from typing import Any
 from PySide import QtCore
 
 from pkm_post.freecad_app.progress import Stopped
-from pkm_post.out_of_memory import memory_or_refused
+from pkm_post.system import memory_or_refused
 
 
 class Task(QtCore.QThread):
@@ -32,7 +32,7 @@ class Task(QtCore.QThread):
         QtCore.QCoreApplication.instance().aboutToQuit.connect(self.finish)
 
     def tell(self, step: str, share: float) -> None:
-        """Called in the other thread, as ``pipeline.Progress``.
+        """Called in the other thread, as ``posting.Progress``.
 
         Raises:
             Stopped: the window requested a stop.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arguments: the table of user options, and the parsed values as options in mm and rad.
 
-Input: an argparse parser, which gets the arguments. Output: ``pipeline.Options``. No degrees beyond this module.
+Input: an argparse parser, which gets the arguments. Output: ``Options``. No degrees beyond this module.
 """
 
 from __future__ import annotations
@@ -11,16 +11,15 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.argument_types import above_zero, between, number, numbered, offset, tool_length
+from pkm_post.options.argument_types import above_zero, between, number, numbered, offset, tool_length
 from pkm_post.options.layers import NOTHING, add_noted
 
 if TYPE_CHECKING:
-    from pkm_post.model import Tool
-    from pkm_post.model.certificate import Tolerances
-    from pkm_post.pipeline import Options
-    from pkm_post.sources import Reading
-    from pkm_post.spin import Policy
-    from pkm_post.surface_speed import SurfaceSpeed
+    from pkm_post.machine import Policy
+    from pkm_post.model import Tolerances, Tool
+    from pkm_post.options.choices import Options
+    from pkm_post.reading import Reading
+    from pkm_post.toolpath import SurfaceSpeed
 
 FIXTURE_OF_THE_JOB = "job"
 """Name of the work offset that stands for the fixture of the CAM job."""
@@ -281,15 +280,15 @@ def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
 
 def tolerances_from(namespace: argparse.Namespace) -> Tolerances:
     """The tolerances of a parsed command line, in mm and rad."""
-    from pkm_post.model.certificate import Tolerances
+    from pkm_post.model import Tolerances
 
     return Tolerances(namespace.tip_tolerance, math.radians(namespace.axis_tolerance))
 
 
 def options_from(namespace: argparse.Namespace) -> Options:
     """The options of a parsed command line, in mm and rad."""
-    from pkm_post.compensation import OffsetOptions
-    from pkm_post.pipeline import MeshFiles, Options
+    from pkm_post.options.choices import MeshFiles, Options
+    from pkm_post.toolpath import OffsetOptions
 
     offset, tolerances = namespace.work_offset, tolerances_from(namespace)
     return Options(
@@ -313,7 +312,7 @@ def solid_files(namespace: argparse.Namespace) -> list[str]:
 
 def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading:
     """Reading options of a part program, beside the tool axis notation of its G-code."""
-    from pkm_post.sources import Reading
+    from pkm_post.reading import Reading
 
     return Reading(
         axis_words,
@@ -349,7 +348,7 @@ def tool_lengths_from(namespace: argparse.Namespace) -> dict[int, float]:
 
 def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
     """The (4, 4) pose of {C} in {M}: an origin and a rotation about z."""
-    from pkm_post.placement import rotation
+    from pkm_post.toolpath import rotation
 
     pose = rotation((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.radians(turn_deg))
     pose[:3, 3] = x, y, z
@@ -357,12 +356,12 @@ def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
 
 
 def _surface_speed(metres_per_minute: float | None, keep_chip_load: bool) -> SurfaceSpeed | None:
-    from pkm_post.surface_speed import SurfaceSpeed
+    from pkm_post.toolpath import SurfaceSpeed
 
     return None if metres_per_minute is None else SurfaceSpeed(metres_per_minute * 1000 / 60, keep_chip_load)
 
 
 def _policy(rule: str, heading_deg: float, objective: str) -> Policy:
-    from pkm_post.spin import Policy, Rule
+    from pkm_post.machine import Policy, Rule
 
     return Policy(Rule(rule), heading=math.radians(heading_deg), objective=objective)

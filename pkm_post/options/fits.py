@@ -39,7 +39,7 @@ _FOR: dict[str, tuple[Source, ...]] = {
 
 def source_of(file: Path) -> Source:
     """Kind of a file by its suffix; anything but a part program is a document with jobs."""
-    from pkm_post.sources import SUFFIXES, is_part_program
+    from pkm_post.reading import SUFFIXES, is_part_program
 
     if not is_part_program(file):
         return Source.JOB

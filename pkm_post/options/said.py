@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Said: options in mm and rad as they would be typed, to compare them with those of a job.
 
-The inverse of ``options_from``. Input: ``pipeline.Options``. Output: values as from argparse.
+The inverse of ``options_from``. Input: ``Options``. Output: values as from argparse.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pkm_post.options.layers import Given
 
 if TYPE_CHECKING:
     from pkm_post.model import Tool
-    from pkm_post.pipeline import Options
+    from pkm_post.options.choices import Options
 
 
 def said_by(options: Options) -> Given:

@@ -14,9 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array
-from pkm_post.model import Diagnostic, Kind, Machine, Motion, Place, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Tolerances
+from pkm_post.geometry import Array
+from pkm_post.model import Certificate, Diagnostic, Kind, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory
 
 _MATPLOTLIB = ("matplotlib.backends.backend_agg", "matplotlib.figure", "mpl_toolkits.mplot3d")
 """Required modules; the last provides 3D axes."""

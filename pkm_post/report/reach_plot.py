@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic
 from pkm_post.report.plots import missing_matplotlib, save
 

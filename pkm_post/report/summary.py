@@ -15,9 +15,21 @@ from typing import Any
 import numpy as np
 
 import pkm_post
-from pkm_post.geometry.vectors import Array
-from pkm_post.model import EventKind, Kind, Machine, Motion, StrutMotion, Trajectory
-from pkm_post.model.certificate import Certificate, Coverage, Figure, Finding, Tolerances, meaning
+from pkm_post.geometry import Array
+from pkm_post.model import (
+    Certificate,
+    Coverage,
+    EventKind,
+    Figure,
+    Finding,
+    Kind,
+    Machine,
+    Motion,
+    StrutMotion,
+    Tolerances,
+    Trajectory,
+    meaning,
+)
 
 _FORMAT = 1
 """Version of the report's layout, for programs that parse it."""

@@ -6,10 +6,10 @@ import pytest
 from programs import ON_PALLET, TOOLS, cone, program
 
 from pkm_post.certificate.coverage import coverage
-from pkm_post.machine_file import find_machine, read_machine
+from pkm_post.machine.description import find_machine, read_machine
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Extent, Topic, meaning
-from pkm_post.placement import place
+from pkm_post.toolpath.placement import place
 
 TRAJECTORY = place(cone(9), machines.example(), ON_PALLET)[0]
 

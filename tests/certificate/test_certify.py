@@ -7,13 +7,13 @@ import pytest
 from machines import example
 from programs import ON_PALLET, cone, program, steep_helices
 
-from pkm_post import planning
 from pkm_post.certificate import certify
 from pkm_post.certificate.certify import _SWING
 from pkm_post.geometry import hermite_speeds
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
-from pkm_post.placement.place import place
+from pkm_post.planning import motion as planning
+from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 

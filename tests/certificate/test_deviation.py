@@ -8,11 +8,11 @@ from machines import example
 from programs import ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.feed import ToolPath
 from pkm_post.geometry import norm, unit
 from pkm_post.model import Kind
 from pkm_post.model.certificate import Tolerances
-from pkm_post.placement.place import place
+from pkm_post.planning.tool_path import ToolPath
+from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 

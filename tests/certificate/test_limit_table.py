@@ -8,7 +8,7 @@ from posted_jobs import NARROW, of, preset
 from programs import random_job
 
 from pkm_post.certificate.limit_table import CERTIFIED, CHECKED_ELSEWHERE
-from pkm_post.machine_file.fields import FIELDS
+from pkm_post.machine.description.fields import FIELDS
 
 NO_LIMITS = {
     "name", "description", "units.length", "units.angle", "units.time", "base.joints", "platform.joints",

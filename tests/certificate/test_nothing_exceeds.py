@@ -9,16 +9,16 @@ import pytest
 from machines import example
 from programs import ON_PALLET, cone, random_job, square_with_arc
 
-from pkm_post import planning
 from pkm_post.certificate import certify, joints
 from pkm_post.certificate import instants as instants_module
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
-from pkm_post.kinematics import forward
-from pkm_post.kinematics.jacobian import linearise
+from pkm_post.machine.kinematics import forward
+from pkm_post.machine.kinematics.jacobian import linearise
 from pkm_post.model import StrutMotion
 from pkm_post.model.certificate import Tolerances
-from pkm_post.placement.place import place
+from pkm_post.planning import motion as planning
+from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 DENSE = 1001

@@ -7,7 +7,6 @@ import pytest
 from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
-from pkm_post import planning
 from pkm_post.certificate import joints, playback, tool_course
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.instants import look
@@ -17,10 +16,11 @@ from pkm_post.certificate.playback import play
 from pkm_post.certificate.struts import off_plan
 from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
-from pkm_post.kinematics import strut_rates
+from pkm_post.machine.kinematics import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
-from pkm_post.placement.place import place
+from pkm_post.planning import motion as planning
+from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 FEED = 30.0

@@ -9,13 +9,13 @@ import pytest
 from posted_jobs import NARROW, UNEQUAL, WIDE, offset, preset
 from programs import ON_PALLET, cone, program, random_job, square_with_arc, steep_helices
 
-from pkm_post import planning
 from pkm_post.certificate import certify, recovered
-from pkm_post.kinematics import reach_faults, strut_lengths
+from pkm_post.machine.kinematics import reach_faults, strut_lengths
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
-from pkm_post.placement.place import place
+from pkm_post.planning import motion as planning
+from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 

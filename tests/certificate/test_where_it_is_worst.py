@@ -9,8 +9,8 @@ from test_nothing_exceeds import TOLERANCES, certified
 
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
-from pkm_post.kinematics import forward
-from pkm_post.kinematics.jacobian import linearise
+from pkm_post.machine.kinematics import forward
+from pkm_post.machine.kinematics.jacobian import linearise
 
 MOMENT = 1e-9
 """s: times are computed in seconds, those of the program are whole milliseconds."""

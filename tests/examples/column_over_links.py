@@ -20,21 +20,22 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import numpy as np
 from best_segment import deviation_from_any
 
-from pkm_post import planning, trajectory_file
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.controllers.pmac import settings_of
+from pkm_post.control.link import operate
+from pkm_post.control.link.download import download
+from pkm_post.control.link.job import read_job
+from pkm_post.control.link.ports import port_named
+from pkm_post.control.link.ready import check_setup
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import read_status
+from pkm_post.control.simulator import Controller, Line, Server
+from pkm_post.control.simulator.moves import Cubic
 from pkm_post.geometry import hermite_lengths
-from pkm_post.kinematics import forward
-from pkm_post.machine_file import machine_named
-from pkm_post.pmac_link import operate
-from pkm_post.pmac_link.download import download
-from pkm_post.pmac_link.job import read_job
-from pkm_post.pmac_link.ports import port_named
-from pkm_post.pmac_link.ready import check_setup
-from pkm_post.pmac_link.session import Session
-from pkm_post.pmac_link.status import read_status
-from pkm_post.pmac_simulator import Controller, Line, Server
-from pkm_post.pmac_simulator.moves import Cubic
+from pkm_post.machine.description import machine_named
+from pkm_post.machine.kinematics import forward
+from pkm_post.planning import motion as planning
+from pkm_post.writing import trajectory_file
+from pkm_post.writing.controllers.pmac import settings_of
 
 MACHINE = "example_6tps"
 SPEED = 8.0

@@ -12,10 +12,10 @@ import pytest
 from Path.Post.Processor import PostProcessorFactory
 
 import pkm_post
-from pkm_post import trajectory_file
-from pkm_post.controllers import pmac
-from pkm_post.machine_file import find_machine, read_machine
+from pkm_post.machine.description import find_machine, read_machine
 from pkm_post.model import Kind
+from pkm_post.writing import trajectory_file
+from pkm_post.writing.controllers import pmac
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "tapered_column"
 
@@ -77,7 +77,7 @@ def test_quadrants_in_mirror_have_the_same_struts_in_another_order(posted):
     # The machine is mirror-symmetric about x-z: what quadrants 1 and 4 need of the struts is the same.
     machine, _ = read_machine(find_machine("example_6tps"))
     text = (posted[0] / "tapered_column.pmc").read_text()
-    struts, _ = pmac.read_program(text, pmac.Settings.of(machine.controller), "tapered_column.pmc")
+    struts, _ = pmac.read_program(text, pmac.PmacSettings.of(machine.controller), "tapered_column.pmc")
     quarter = np.array_split(np.sort(struts.length, axis=1), 4)
     longest = [part.max() for part in quarter]
     assert longest[0] == pytest.approx(longest[1], abs=0.1)

@@ -7,7 +7,7 @@ import Part
 from cam_jobs import moves
 
 from pkm_post.freecad_app.surface_finish import create_surface_finish
-from pkm_post.pipeline import Options
+from pkm_post.options.choices import Options
 
 MICRON = 1e-3
 SIX_DECIMALS = 1e-6

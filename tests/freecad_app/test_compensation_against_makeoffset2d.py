@@ -6,8 +6,8 @@ import numpy as np
 import Part
 import pytest
 
-from pkm_post.compensation import OffsetOptions, offset_contours
 from pkm_post.model import Kind, Program, Tool
+from pkm_post.toolpath.compensation import OffsetOptions, offset_contours
 
 MICRON = 1e-3
 ARC_CORNERS, MITRED_CORNERS = 0, 2

@@ -18,7 +18,6 @@ from option_examples import ADDED, FLAGS, words
 from Path.Post.Processor import PostProcessorFactory
 
 import pkm_post
-from pkm_post import pipeline
 from pkm_post.cli import main
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_on_machine import job_on_machine
@@ -27,9 +26,10 @@ from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.post_job import post_as_the_job_says
 from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.freecad_app.reach_job import study_job
-from pkm_post.machine_file import find_machine, machine_named
+from pkm_post.machine.description import find_machine, machine_named
 from pkm_post.model import Refused
 from pkm_post.options import given_in, options_from, tool_lengths_from, typed
+from pkm_post.posting import post
 
 CUT = ["G0 X0 Y0 Z30 I0 J0 K1", "G1 X0 Y0 Z25 I0 J0.28 K0.96 F20", "G1 X4 Y2 Z25 I0.28 J0 K0.96 F25", "G0 Z30 I0 J0 K1"]
 ALWAYS = {"--work-offset": "--work-offset=0,0,250", "--surface-speed": "--surface-speed=100"}
@@ -77,7 +77,7 @@ def by_pipeline(job, arguments, folder):
     program, _ = read_job(job, tool_lengths_from(chosen))
     machine, _ = machine_named(chosen.machine)
     options = replace(options_from(chosen), setup=prepared_job(job, settings_of(job)).options.setup)
-    pipeline.post(program, machine, folder / "part.pmc", options)
+    post(program, machine, folder / "part.pmc", options)
     return contents(folder)
 
 

@@ -13,7 +13,7 @@ from pkm_post.freecad_app.job import read_job, set_gauge_length
 from pkm_post.freecad_app.post_job import post_job
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.model import EventKind, Kind
-from pkm_post.pipeline import Options
+from pkm_post.options.choices import Options
 
 CENTRES = [(10.0, 10.0), (30.0, 10.0), (30.0, 30.0)]
 WAYS = {

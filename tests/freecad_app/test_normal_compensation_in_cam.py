@@ -18,7 +18,7 @@ from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.normal_compensation import NormalCompensation, create_normal_compensation
 from pkm_post.freecad_app.post_job import post_job
 from pkm_post.freecad_app.symmetry import create_mirror
-from pkm_post.pipeline import Options
+from pkm_post.options.choices import Options
 
 
 @pytest.fixture

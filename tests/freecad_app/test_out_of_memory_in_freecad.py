@@ -10,14 +10,14 @@ from pkm_post.freecad_app.reach_object import create_reach
 from pkm_post.model import Refused
 
 WHAT = "Unable to allocate 7 GiB"
-PLACED = "pkm_post.pipeline.placed.place"
+PLACED = "pkm_post.posting.placed.place"
 CALLS = (
     "pkm_post.freecad_app.post_processor.program_path",
     "pkm_post.freecad_app.prepared_job.machine_named",
     "pkm_post.freecad_app.prepared_job.read_job",
     PLACED,
-    "pkm_post.trajectory_file.writer.blocks",
-    "pkm_post.trajectory_file.reader.bytes_of",
+    "pkm_post.writing.trajectory_file.writer.blocks",
+    "pkm_post.writing.trajectory_file.reader.bytes_of",
 )
 """What posting calls, in its order."""
 

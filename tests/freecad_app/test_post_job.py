@@ -14,16 +14,16 @@ from Path.Post.Processor import PostProcessorFactory
 from Path.Post.Utils import FilenameGenerator
 
 import pkm_post
-from pkm_post import manifest
 from pkm_post.cli import main
-from pkm_post.document_file import read_document
 from pkm_post.freecad_app.arguments import job_arguments
 from pkm_post.freecad_app.post_job import find_job, post_as_the_job_says, post_document, post_job
 from pkm_post.freecad_app.progress import Progress, Stopped
 from pkm_post.freecad_app.symmetry import create_mirror
-from pkm_post.machine_file import find_machine
+from pkm_post.machine.description import find_machine
 from pkm_post.model import Refused
-from pkm_post.pipeline import Options
+from pkm_post.options.choices import Options
+from pkm_post.system.document_file import read_document
+from pkm_post.writing import manifest
 
 MACHINE = "example_6tps"
 AT_FIXTURE = Options(work_offset="job")

@@ -8,9 +8,9 @@ import Path
 import pytest
 
 from pkm_post.freecad_app.commands import read_commands
-from pkm_post.gcode import ReadOptions
-from pkm_post.gcode import read as read_gcode
 from pkm_post.model import EventKind, Kind
+from pkm_post.reading.gcode import ReadOptions
+from pkm_post.reading.gcode import read as read_gcode
 
 FIRST = "G0 X0 Y0 Z20"
 BOTTOM_UP = (Kind.RAPID, Kind.LINE, Kind.RAPID)

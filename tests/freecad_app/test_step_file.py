@@ -10,7 +10,7 @@ import pytest
 
 from pkm_post.cli import main
 from pkm_post.geometry.triangles import is_closed, volume
-from pkm_post.mesh_file import read_mesh
+from pkm_post.reading.mesh_file import read_mesh
 
 MICRON = 1e-3
 WALL = Part.makeBox(80, 20, 105, App.Vector(-40, 30, 10))

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from cam_jobs import add_operation
 
-from pkm_post import cldata, gcode
 from pkm_post.freecad_app.job import read_job
 from pkm_post.model import Tool
+from pkm_post.reading import cldata, gcode
 
 SIX_DECIMALS = 1e-6
 

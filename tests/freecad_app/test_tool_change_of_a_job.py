@@ -15,7 +15,7 @@ from machines import tool_change_file  # noqa: E402
 from pkm_post.freecad_app.post_job import post_job  # noqa: E402
 from pkm_post.freecad_app.simulation import simulate_job  # noqa: E402
 from pkm_post.model import EventKind  # noqa: E402
-from pkm_post.pipeline import Options  # noqa: E402
+from pkm_post.options.choices import Options  # noqa: E402
 
 MICRON = 1e-3
 ON_TABLE = Options(work_offset=np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 200], [0, 0, 0, 1]]))

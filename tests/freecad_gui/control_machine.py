@@ -76,8 +76,8 @@ def press_in_box(choice):
 
 def program_file(name, *events):
     """All struts out, to rest, back, to rest: one second each."""
-    from pkm_post.controllers.pmac import program_text
     from pkm_post.model import StrutMotion
+    from pkm_post.writing.controllers.pmac import program_text
 
     settings = the_panel().console.connection.target.settings
     share = np.arange(PER_BLOCK + 1) / PER_BLOCK
@@ -93,7 +93,7 @@ def program_file(name, *events):
 
 def posted_file(name, *lines):
     """A part program that was posted for the machine of the panel."""
-    from pkm_post.post_file import post_file
+    from pkm_post.posting.post_file import post_file
 
     source = FOLDER / name
     source.write_text("\n".join(("G21 G90 G54", *lines, "M30", "")), encoding="ascii")

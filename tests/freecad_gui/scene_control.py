@@ -11,11 +11,11 @@ from PySide import QtCore, QtGui, QtWidgets
 
 @step
 def words_are_those_of_the_rooms_below():
+    from pkm_post.control.link.status import MotorBits, SystemBits
+    from pkm_post.control.numerical_control.emergency import STEPS
+    from pkm_post.control.numerical_control.homing import Phase
+    from pkm_post.control.numerical_control.permissions import Why
     from pkm_post.freecad_gui.control_panel import words
-    from pkm_post.numerical_control.emergency import STEPS
-    from pkm_post.numerical_control.homing import Phase
-    from pkm_post.numerical_control.permissions import Why
-    from pkm_post.pmac_link.status import MotorBits, SystemBits
 
     return {
         "why": {why: why.value for why in Why} == words.WHY,
@@ -59,7 +59,7 @@ def names_that_are_wrong_are_told():
 
 @step
 def a_simulated_machine_is_connected_to_and_homed():
-    from pkm_post.numerical_control.homing import Phase
+    from pkm_post.control.numerical_control.homing import Phase
 
     panel = the_panel()
     face = panel.face

@@ -123,7 +123,7 @@ def posting_shows_the_certificate():
 
 @step
 def job_keeps_what_was_chosen():
-    from pkm_post import manifest
+    from pkm_post.writing import manifest
 
     document = FreeCAD.getDocument("gui")
     job, folder = document.getObject("Job"), FOLDER / "gui"
@@ -162,8 +162,8 @@ def lacking(*_, **__):
 
 @step
 def lack_of_memory_is_told_and_leaves_nothing():
-    from pkm_post import planning
     from pkm_post.freecad_gui import command, post_panel
+    from pkm_post.planning import motion as planning
 
     document, folder = saved("lacking")
     panel, told, boxes = open_panel(document), [], []

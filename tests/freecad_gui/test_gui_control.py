@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.numerical_control.emergency import STEPS
+from pkm_post.control.numerical_control.emergency import STEPS
 
 NEAR_MM = 1e-4
 """What struts that stand a count of 0.1 um off, and certified to a micron, make of the tip."""

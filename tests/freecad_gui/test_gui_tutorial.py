@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from verified_reports import certificates_agree
 
-from pkm_post import trajectory_file
-from pkm_post.machine_file import machine_named
-from pkm_post.verify import verify
+from pkm_post.machine.description import machine_named
+from pkm_post.posting.verify import verify
+from pkm_post.writing import trajectory_file
 
 PAGE = Path(__file__).parents[2] / "docs" / "tutorial.md"
 MICRON, MILLIDEGREE = 1e-3, 1e-3

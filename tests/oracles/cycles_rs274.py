@@ -61,7 +61,7 @@ def theirs(text):
 
 def ours(text):
     """The same of the reader, or None; and its diagnostics."""
-    from pkm_post.gcode import read
+    from pkm_post.reading.gcode import read
 
     given, faults = read(text, "part.ngc", options())
     return None if given is None else rows_of(given), faults

@@ -111,8 +111,8 @@ def after_a_move(block):
 
 
 def options():
-    from pkm_post.gcode.options import ReadOptions
     from pkm_post.model import Tool
+    from pkm_post.reading.gcode.options import ReadOptions
 
     nothing = (0.0, 0.0, 0.0)
     offsets = {f"G{system}": (*nothing, 0.0) for system in (54, 55, 56, 57, 58, 59, 59.1, 59.2, 59.3)}
@@ -128,8 +128,8 @@ def options():
 
 def ours(text):
     """The same of the reader, or the diagnostics."""
-    from pkm_post.gcode.resolve import resolve
-    from pkm_post.gcode.scan import scan
+    from pkm_post.reading.gcode.resolve import resolve
+    from pkm_post.reading.gcode.scan import scan
 
     blocks, faults = scan(text, "part.ngc")
     if blocks is not None:

@@ -17,7 +17,7 @@ from dls_pmaclib.dls_pmacremote import PmacEthernetInterface
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT)]
 
-from pkm_post.pmac_simulator import Controller, Server  # noqa: E402
+from pkm_post.control.simulator import Controller, Server  # noqa: E402
 
 SPEED = 5.0
 SHOWN = 160

@@ -68,9 +68,9 @@ def program(seed):
 
 def compensated(text):
     """What the product makes of it: the moves as rs274 has them, or None, and the diagnostics."""
-    from pkm_post.compensation import OffsetOptions, offset_contours
-    from pkm_post.gcode import ReadOptions, read
     from pkm_post.model import Tool
+    from pkm_post.reading.gcode import ReadOptions, read
+    from pkm_post.toolpath.compensation import OffsetOptions, offset_contours
 
     nothing = (0.0, 0.0, 0.0)
     options = ReadOptions(default_tool=Tool(0, "", 0.0, 0.0, 0.0), work_offsets={"G54": (*nothing, 0.0)})

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from programs import cone
 
-from pkm_post.machine_file import machine_named
-from pkm_post.pipeline import post
+from pkm_post.machine.description import machine_named
+from pkm_post.posting.steps import post
 from pkm_post.report.plots import _only, shown
 from pkm_post.report.reach_plot import draw_reach
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from pkm_post.freecad_app.commands.faults import Faults
 from pkm_post.freecad_app.commands.words import CYCLES, MOVES, Array, Words, in_force, latest
-from pkm_post.gcode.cycles import Series, Strokes, fault_of, strokes
 from pkm_post.model import Kind
+from pkm_post.reading import Series, Strokes, fault_of, strokes
 
 _CODES = {Kind.RAPID: "G0", Kind.LINE: "G1"}
 _AXES = (0, 1, 2)

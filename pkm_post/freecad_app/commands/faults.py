@@ -13,10 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.freecad_app.commands.words import COMMENT, CYCLES, LETTERS, Array, Words, latest
-from pkm_post.gcode.codes import IN_STEP_WITH_SPINDLE
-from pkm_post.gcode.dwells import LONG
-from pkm_post.model import Diagnostic, Place
-from pkm_post.model.diagnostics import errors
+from pkm_post.model import Diagnostic, Place, errors
+from pkm_post.reading import IN_STEP_WITH_SPINDLE, LONG
 
 _ROTARY = "ABC"
 _NEEDED = {"G4": "P", "M3": "S", "M4": "S", "M6": "T"}

@@ -20,8 +20,7 @@ from pkm_post.freecad_app.commands.drilling import without_cycles
 from pkm_post.freecad_app.commands.faults import Faults, check_words, not_text
 from pkm_post.freecad_app.commands.words import MOVES, Array, Words, in_force, latest
 from pkm_post.geometry import norm
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Program
-from pkm_post.model.columns import uniform
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Program, uniform
 
 _RADIUS_TOLERANCE = 5e-3
 """Largest difference of the radii at both ends of an arc, mm."""

@@ -14,9 +14,9 @@ import numpy as np
 import Path
 
 from pkm_post.freecad_app.commands.words import Array
-from pkm_post.gcode.chords import with_chords
 from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind, Kind, Program
+from pkm_post.reading import with_chords
 
 _EXACT = 1e-12
 """Largest difference of two unit vectors that count as equal."""

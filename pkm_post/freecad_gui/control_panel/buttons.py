@@ -8,8 +8,8 @@ from typing import Any
 
 from PySide import QtWidgets
 
+from pkm_post.control import Order, Why, refusal
 from pkm_post.freecad_gui.control_panel.words import why_text
-from pkm_post.numerical_control.permissions import Order, Why, refusal
 
 
 class OrderButton(QtWidgets.QPushButton):

@@ -11,15 +11,12 @@ from collections.abc import Callable
 import FreeCAD
 from PySide import QtWidgets
 
+from pkm_post.control import State, Why, target_of
 from pkm_post.freecad_gui.control_panel.buttons import plain_button, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.post_fields import editable_box, quantity_field, show_quantity, with_button
 from pkm_post.freecad_gui.preferences import GROUP
-from pkm_post.machine_file.named import machine_named
-from pkm_post.machine_file.presets import presets
-from pkm_post.numerical_control.connection import target_of
-from pkm_post.numerical_control.control import State
-from pkm_post.numerical_control.permissions import Why
+from pkm_post.machine import machine_named, presets
 
 translate = FreeCAD.Qt.translate
 

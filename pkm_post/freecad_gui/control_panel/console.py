@@ -15,15 +15,22 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore
 
+from pkm_post.control import (
+    Connection,
+    Desk,
+    Job,
+    NumericalControl,
+    Plan,
+    PmacError,
+    State,
+    Target,
+    Why,
+    connect,
+    facts,
+    stops_of,
+)
 from pkm_post.freecad_gui.control_panel.beside import Beside, Then
 from pkm_post.model import Diagnostic, Refused
-from pkm_post.numerical_control.connection import Connection, Target, connect
-from pkm_post.numerical_control.control import NumericalControl, State
-from pkm_post.numerical_control.permissions import Desk, Why, facts
-from pkm_post.numerical_control.plan import Plan
-from pkm_post.numerical_control.stops import stops_of
-from pkm_post.pmac_link.faults import PmacError
-from pkm_post.pmac_link.job import Job
 
 translate = FreeCAD.Qt.translate
 

@@ -13,9 +13,9 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtWidgets
 
+from pkm_post.control import may_move
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.face import Face
-from pkm_post.numerical_control.permissions import may_move
 
 translate = FreeCAD.Qt.translate
 

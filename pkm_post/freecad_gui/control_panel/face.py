@@ -9,6 +9,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.control import Connection, State
 from pkm_post.freecad_gui.control_panel.connect_page import ConnectPage
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.follower import Follower
@@ -19,9 +20,7 @@ from pkm_post.freecad_gui.control_panel.program_page import ProgramPage
 from pkm_post.freecad_gui.control_panel.readout import PoseReadout, StrutTable
 from pkm_post.freecad_gui.control_panel.stop_bar import StopBar
 from pkm_post.freecad_gui.control_panel.words import activity_text, emergency_text
-from pkm_post.geometry.vectors import Array
-from pkm_post.numerical_control.connection import Connection
-from pkm_post.numerical_control.control import State
+from pkm_post.geometry import Array
 
 translate = FreeCAD.Qt.translate
 

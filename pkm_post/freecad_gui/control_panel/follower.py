@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from pkm_post.control import Pose
 from pkm_post.freecad_gui.deletion_watch import DeletionWatch
-from pkm_post.geometry.vectors import Array
-from pkm_post.machine_file import machine_named
+from pkm_post.geometry import Array
+from pkm_post.machine import machine_named
 from pkm_post.model import Machine
-from pkm_post.pmac_link.readout import Pose
 
 _SEEN = 1e-5
 """mm, rad: smaller changes are not visible."""

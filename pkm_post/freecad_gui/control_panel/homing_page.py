@@ -9,14 +9,11 @@ from __future__ import annotations
 import FreeCAD
 from PySide import QtWidgets
 
+from pkm_post.control import HOMING, Order, State, Why, check_trigger, refusal
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.words import homing_text
 from pkm_post.freecad_gui.preferences import GROUP
-from pkm_post.numerical_control.control import State
-from pkm_post.numerical_control.homing import check_trigger
-from pkm_post.numerical_control.permissions import Order, Why, refusal
-from pkm_post.numerical_control.training import HOMING
 
 translate = FreeCAD.Qt.translate
 

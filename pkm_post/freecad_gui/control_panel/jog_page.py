@@ -12,13 +12,10 @@ from collections.abc import Callable
 import FreeCAD
 from PySide import QtWidgets
 
+from pkm_post.control import Cartesian, Jog, OneStrut, Order, Plan, State, Why
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
-from pkm_post.numerical_control.control import State
-from pkm_post.numerical_control.moves import Cartesian, Jog, OneStrut
-from pkm_post.numerical_control.permissions import Order, Why
-from pkm_post.numerical_control.plan import Plan
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP

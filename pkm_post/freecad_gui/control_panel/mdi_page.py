@@ -11,14 +11,11 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
+from pkm_post.control import Order, Plan, Reading, State, Why, refusal
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.readout import angle_text, length_text
-from pkm_post.numerical_control.control import State
-from pkm_post.numerical_control.mdi import Reading
-from pkm_post.numerical_control.permissions import Order, Why, refusal
-from pkm_post.numerical_control.plan import Plan
-from pkm_post.sources import AXIS_WORDS
+from pkm_post.reading import AXIS_WORDS
 
 translate = FreeCAD.Qt.translate
 

@@ -11,15 +11,10 @@ from pathlib import Path
 import FreeCAD
 from PySide import QtWidgets
 
+from pkm_post.control import Blocks, Job, Order, Plan, State, Why, blocks_of_program, job_to_load
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.loading import job_to_load
 from pkm_post.model import Diagnostic
-from pkm_post.numerical_control.control import State
-from pkm_post.numerical_control.permissions import Order, Why
-from pkm_post.numerical_control.plan import Plan
-from pkm_post.numerical_control.single_block import Blocks, blocks_of_program
-from pkm_post.pmac_link.job import Job
 
 translate = FreeCAD.Qt.translate
 

@@ -13,10 +13,9 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.control import Pose, Status
 from pkm_post.freecad_gui.control_panel.words import strut_text
-from pkm_post.geometry.vectors import Array
-from pkm_post.pmac_link.readout import Pose
-from pkm_post.pmac_link.status import Status
+from pkm_post.geometry import Array
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP

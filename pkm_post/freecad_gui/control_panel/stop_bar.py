@@ -9,10 +9,9 @@ from functools import partial
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
+from pkm_post.control import Order, State, Why, refusal
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.numerical_control.control import State
-from pkm_post.numerical_control.permissions import Order, Why, refusal
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP

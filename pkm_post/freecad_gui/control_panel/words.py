@@ -9,11 +9,7 @@ from __future__ import annotations
 
 import FreeCAD
 
-from pkm_post.numerical_control.control import State
-from pkm_post.numerical_control.homing import Homing, Phase
-from pkm_post.numerical_control.permissions import Why
-from pkm_post.numerical_control.single_block import Shown
-from pkm_post.pmac_link.status import Bits, Status
+from pkm_post.control import Bits, Homing, Phase, Shown, State, Status, Why
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP

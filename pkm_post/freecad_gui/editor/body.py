@@ -23,8 +23,7 @@ from pkm_post.freecad_gui.editor.reading_fields import ReadingFields
 from pkm_post.freecad_gui.editor.shown_block import ShownBlock
 from pkm_post.freecad_gui.editor.text_view import TextView
 from pkm_post.model import Program
-from pkm_post.program_text import CheckedText, Language, language_of, renumbered, ways_of_line
-from pkm_post.sources import Reading
+from pkm_post.reading import CheckedText, Language, Reading, language_of, renumbered, ways_of_line
 
 translate = FreeCAD.Qt.translate
 

@@ -10,8 +10,7 @@ from PySide import QtCore
 
 from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Refused
-from pkm_post.program_text import check_text
-from pkm_post.sources import Reading
+from pkm_post.reading import Reading, check_text
 
 PAUSE_MS = 300
 """Pause in typing before a text is read."""

@@ -13,7 +13,6 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtWidgets
 
-from pkm_post.files import staged
 from pkm_post.freecad_app.kinds import is_program
 from pkm_post.freecad_gui.editor import linked
 from pkm_post.freecad_gui.editor.body import Body
@@ -21,9 +20,8 @@ from pkm_post.freecad_gui.editor.file_drop import FileDrop
 from pkm_post.freecad_gui.editor.posting import Posting
 from pkm_post.freecad_gui.editor.tool_bar import tool_bar
 from pkm_post.model import Refused
-from pkm_post.out_of_memory import memory_or_refused
-from pkm_post.program_text import Content
-from pkm_post.sources import SUFFIXES, is_part_program
+from pkm_post.reading import SUFFIXES, Content, is_part_program
+from pkm_post.system import memory_or_refused, staged
 
 translate = FreeCAD.Qt.translate
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from PySide import QtCore, QtWidgets
 
-from pkm_post.sources import is_part_program
+from pkm_post.reading import is_part_program
 
 _DRAGGED = (QtCore.QEvent.Type.DragEnter, QtCore.QEvent.Type.DragMove)
 

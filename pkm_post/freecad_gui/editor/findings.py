@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_gui.editor.text_view import Mark
-from pkm_post.model import Diagnostic
-from pkm_post.model.diagnostics import RULES, Severity
-from pkm_post.program_text import Language, extent
+from pkm_post.model import RULES, Diagnostic, Severity
+from pkm_post.reading import Language, extent
 
 
 class Findings(QtWidgets.QListWidget):

@@ -15,7 +15,7 @@ from PySide import QtWidgets
 from pkm_post.freecad_app.kinds import is_job, is_program
 from pkm_post.freecad_app.program_object import create_program, decode, set_reading
 from pkm_post.freecad_app.transaction import transaction
-from pkm_post.sources import Reading
+from pkm_post.reading import Reading
 
 translate = FreeCAD.Qt.translate
 

@@ -23,8 +23,8 @@ from pkm_post.freecad_gui.preferences import GROUP, default_arguments
 from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Place, Refused
 from pkm_post.options import given_in, part_program_from
-from pkm_post.post_file import post_file
-from pkm_post.sources import Reading
+from pkm_post.posting import post_file
+from pkm_post.reading import Reading
 
 translate = FreeCAD.Qt.translate
 

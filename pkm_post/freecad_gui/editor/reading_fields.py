@@ -10,9 +10,7 @@ from __future__ import annotations
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.cldata import DIALECTS, UNITS
-from pkm_post.program_text import Language
-from pkm_post.sources import AXIS_WORDS, DWELL_UNITS, Reading
+from pkm_post.reading import AXIS_WORDS, DIALECTS, DWELL_UNITS, UNITS, Language, Reading
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP

@@ -11,7 +11,7 @@ from typing import Any
 
 from pivy import coin
 
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry import Array
 
 _COLOUR = 1.0, 0.45, 0.0
 

@@ -14,7 +14,7 @@ from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_gui.editor.long_edits import LongEdits
 from pkm_post.freecad_gui.editor.margin import Margin
-from pkm_post.program_text import Colour, Language, spans
+from pkm_post.reading import Colour, Language, spans
 
 LIGHT: dict[Colour, str] = {
     Colour.COMMENT: "#5c6b5c",

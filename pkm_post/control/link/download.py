@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Download: load a program into the controller and verify its listing.
+
+First the existing program of that number is deleted, and the controller must show that it is gone. Then the lines are
+sent, the buffer is closed, and the program is listed and compared. If the link fails in between, the controller's
+listing decides: if it consists of complete lines from the first on, the download continues after them, else it starts
+again. Every exception leaves nothing under the number, or states that this could not be verified.
+
+Enters: a session and a program. Leaves: a record of what was loaded.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from pkm_post.control.link.faults import CancelledError, DownloadError, LinkLostError, PmacError, RefusedError
+from pkm_post.control.link.free_words import free_words
+from pkm_post.control.link.listing import Comparison, Program, compare
+from pkm_post.control.link.ownership import owned
+from pkm_post.control.link.session import Session
+
+ATTEMPTS = 5
+"""How often a download is tried before it is given up."""
+CLEAR_S = 20.0
+CLEAR_ROUNDS = 12
+"""Seconds, and attempts, to clear a program number."""
+_NO_SUCH_PROGRAM = (3, 5, 15)
+_LINES_IN_VIEW = 200
+_log = logging.getLogger(__name__)
+
+Progress = Callable[[int, int], None]
+"""Called with the number of lines in the controller and the total."""
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """A program whose listing matched what was sent.
+
+    Attributes:
+        program: its number.
+        lines: number of lines.
+        digest: SHA-256 of its lines.
+        resumptions: how often the download continued or restarted after a failure.
+    """
+
+    program: int
+    lines: int
+    digest: str
+    resumptions: int
+
+
+def listing_of(session: Session, program: Program) -> Comparison:
+    """Compare the controller's listing of a program with the program."""
+    most = 3 * sum(map(len, program.lines)) + (1 << 16)
+    try:
+        listed = session.ask(f"LIST PROG {program.number}", most)
+    except RefusedError as refused:
+        if refused.number not in _NO_SUCH_PROGRAM:
+            raise
+        listed = ()
+    return compare(program.lines, listed)
+
+
+def download(
+    session: Session,
+    program: Program,
+    progress: Progress = lambda done, all_lines: None,
+    is_cancelled: Callable[[], bool] = lambda: False,
+) -> Loaded:
+    """Load a program into the controller.
+
+    Args:
+        session: an open session.
+        program: what to load.
+        progress: called with the lines loaded and the total.
+        is_cancelled: polled between lines.
+
+    Raises:
+        RefusedError: the buffer could not be opened, as a program runs or another buffer is open; nothing changed.
+        DownloadError: it failed; states whether anything is left under the number.
+        CancelledError: it was cancelled, and nothing is left under the number.
+        NotOwnerError: another client owns the machine; nothing changed.
+    """
+    with owned(session, "download"):
+        return _download(session, program, progress, is_cancelled)
+
+
+def _download(session: Session, program: Program, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
+    try:
+        _open(session, program.number)
+    except LinkLostError as lost:
+        _log.warning("the link failed: %s", lost)
+    try:
+        clear(session, program.number)
+        _check_room(session, program)
+        resumptions = _fill(session, program, progress, is_cancelled)
+    except (PmacError, KeyboardInterrupt) as fault:
+        left = _clear_away(session, program.number)
+        if isinstance(fault, CancelledError | KeyboardInterrupt) and left:
+            raise CancelledError(f"the download was stopped; nothing is left under program {program.number}") from fault
+        raise DownloadError(str(fault) or "the download was stopped", left) from fault
+    except BaseException:
+        _clear_away(session, program.number)
+        raise
+    _log.info("program %d: %d lines, SHA-256 %s, listed back", program.number, len(program.lines), program.digest)
+    return Loaded(program.number, len(program.lines), program.digest, resumptions)
+
+
+def clear(session: Session, number: int) -> None:
+    """Delete the program of a number and verify that; retried when the link fails.
+
+    Raises:
+        PmacError: the controller refuses, or is unreachable.
+    """
+    until = session.now() + CLEAR_S
+    for _ in range(CLEAR_ROUNDS):
+        # Each attempt starts with a closed buffer and ends with a check, so a retry is safe.
+        try:
+            if _cleared(session, number):
+                return
+        except PmacError as failed:
+            fault = failed
+        else:
+            fault = PmacError(f"program {number} is still there after CLEAR")
+        if session.now() >= until:
+            break
+    raise fault
+
+
+def _cleared(session: Session, number: int) -> bool:
+    _open(session, number)
+    session.order("CLEAR")
+    session.order("CLOSE")
+    # Checked twice: a missing program shows as a refusal, which a corrupted byte causes as well.
+    return free_words(session) >= 0 and all(listing_of(session, Program(number, ())).same for _ in range(2))
+
+
+def _open(session: Session, number: int) -> None:
+    for line in ("CLOSE", "DELETE GATHER", f"OPEN PROG {number}"):
+        session.order(line)
+
+
+def _clear_away(session: Session, number: int) -> bool:
+    try:
+        clear(session, number)
+    except PmacError as fault:
+        _log.error("program %d could not be cleared: %s", number, fault)
+        return False
+    return True
+
+
+def _check_room(session: Session, program: Program) -> None:
+    """Compare the program's size with the free memory, while nothing is under its number.
+
+    Raises:
+        PmacError: it is too large.
+    """
+    free = free_words(session)
+    if free < program.words:
+        raise PmacError(f"the program takes about {program.words} words, the controller has {free}")
+
+
+def _fill(session: Session, program: Program, progress: Progress, is_cancelled: Callable[[], bool]) -> int:
+    """Send the lines until the listing matches; return how often the link failed or the listing differed."""
+    held = 0
+    for attempt in range(ATTEMPTS):
+        try:
+            _send(session, program, held, progress, is_cancelled)
+        except LinkLostError as lost:
+            _log.warning("the link failed: %s", lost)
+        is_closed = free_words(session) >= 0
+        there = listing_of(session, program)  # asked last, so that it reveals a reset in between
+        if there.same and is_closed:
+            return attempt
+        _log.warning("the listing differs, or the buffer is still open: %s", there.difference)
+        held = there.lines if there.nothing_else else 0
+    raise PmacError(f"sent {ATTEMPTS} times and still not there; {there.difference}")
+
+
+def _send(session: Session, program: Program, held: int, progress: Progress, is_cancelled: Callable[[], bool]) -> None:
+    """Send the lines after those that the controller holds."""
+    lines = program.lines
+    _open(session, program.number)
+    if not held:
+        session.order("CLEAR")
+    while held < len(lines):
+        if is_cancelled():
+            raise CancelledError("the download was stopped")
+        held += session.load(lines[held : held + _LINES_IN_VIEW])
+        progress(held, len(lines))
+    session.order("CLOSE")

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Gpascii conversation: commands to a Power PMAC, in the shell of its ssh server.
+
+The shell starts ``gpascii -2``, which reports ``STDIN Open for ASCII Input`` and ACK when it is ready. ``echo 7``
+reduces its answers to values. From then on each line sent, terminated by one LF, returns as
+
+    answer   = { CR | LF | ACK } command CR LF { data CR LF } ACK CR LF
+    refusal  = the same with ``stdin:LINE:COLUMN: error #NUMBER: MEANING: text`` among the data
+
+The terminal's echo of the command proves that the answer belongs to it. Remains of the previous answer, such as a late
+CR LF, precede it and are skipped. Whether ACK follows a refusal is not known for every firmware: after the silence it
+is no longer waited for. [gpascii]
+
+ssh neither loses nor corrupts data, so there are no checksums; invalid data ends with ``Lost``, and the caller
+reconnects.
+
+Enters: commands, bytes and times. Leaves: bytes and events.
+"""
+
+from __future__ import annotations
+
+import re
+
+from pkm_post.control.link.bytewise import BytewiseConversation
+from pkm_post.control.link.exchange import Answer, Command, Kind, Lost, Refusal
+
+START, LISTENS, VALUES_ALONE = "gpascii -2", "STDIN Open for ASCII Input", "echo 7"
+START_S = 10.0
+"""Seconds without a byte after which the shell is not that of a controller."""
+LONGEST_LINE = 255
+"""Characters of a command; longer ones are not documented to work."""
+MEANINGS = {
+    20: "illegal command",
+    21: "wrong parameter",
+    22: "the program is not in the buffer",
+    23: "a number is out of range",
+    31: "invalid data",
+    33: "the buffer is in use",
+    34: "the buffer is full",
+    38: "a program runs",
+    39: "not ready to run",
+    42: "the coordinate system has no motors",
+    43: "a motor is not in closed loop",
+    45: "a motor is not active",
+    46: "motors are not where the program was stopped",
+}
+"""Error numbers of a Power PMAC."""
+
+_ACK, _LF = 0x06, 0x0A
+_ERROR = re.compile(r"\w+:\d+:\d+: error #(\d+): *(.*)")
+
+
+class GpasciiConversation(BytewiseConversation):
+    """A conversation with gpascii.
+
+    Attributes:
+        deadline: when ``expire`` is due.
+        handshake: empty: starting gpascii is enough.
+    """
+
+    handshake = ""
+
+    def __init__(self, silence: float = 0.5) -> None:
+        """Create a conversation; as ``BytewiseConversation``."""
+        super().__init__(silence)
+        self._lines: list[str] = []
+        self._refusal: Refusal | None = None
+
+    def begin(self, command: Command, now: float) -> None:
+        """As ``exchange.Conversation``."""
+        if "\n" in command.text:
+            raise ValueError(f"command: expected one line, got {command.text[:40]!r}")
+        self._take_up(command, LONGEST_LINE)
+        self._send(now)
+
+    def reset(self, now: float, control: int | None = None) -> None:
+        """Start gpascii in a new shell.
+
+        Raises:
+            ValueError: a control character was given; gpascii accepts none.
+        """
+        if control is not None:
+            raise ValueError(f"control: expected none over gpascii, got {control}")
+        self._begin_with(Command(START, Kind.SET, START_S))
+        self._out += f"{START}\n".encode("ascii")
+        self._wait_patiently(self._greeted, now)
+
+    def _greeted(self, byte: int, now: float) -> None:
+        """Ignore what the shell prints before gpascii is ready."""
+        if byte == _ACK and LISTENS in self._collected.decode("latin-1"):
+            self._begin_with(Command(VALUES_ALONE, Kind.SET, START_S))
+            self._send(now)
+            return
+        self._collected.append(byte)
+        self.deadline = now + self._command.patience
+
+    def _send(self, now: float) -> None:
+        self._lines, self._refusal = [], None
+        self._collected.clear()
+        self._out += f"{self._command.text}\n".encode("ascii")
+        self._wait_patiently(self._echoed, now)
+
+    def _echoed(self, byte: int, now: float) -> None:
+        """Wait for the echo of the command."""
+        self._wait_patiently(self._echoed, now)
+        line = self._line_with(byte)
+        if line is None:
+            return
+        if line == self._command.text:
+            self._wait_patiently(self._answered, now)
+        elif line:
+            self._end(Lost(f"{line[:60]!r} in place of the echo of {self._command.text[:60]!r}"))
+
+    def _answered(self, byte: int, now: float) -> None:
+        if self._refusal is None:
+            self._wait_patiently(self._answered, now)
+        else:
+            self.deadline = now + self._silence
+        if byte == _ACK:
+            self._acknowledged(now)
+            return
+        line = self._line_with(byte)
+        if line is None:
+            return
+        found = _ERROR.match(line)
+        if found:
+            number = int(found[1])
+            self._refusal = Refusal(number, words=f"error #{number}, {MEANINGS.get(number, found[2])}: {line}")
+            self._wait(self._answered, self._acknowledged, now + self._silence)
+        elif line:
+            self._lines.append(line)
+
+    def _acknowledged(self, now: float) -> None:
+        if self._collected.strip():
+            self._end(Lost(f"ACK within a line: {self._collected[:60].decode('latin-1')!r}"))
+            return
+        self._end(self._refusal or Answer(tuple(self._lines)))
+
+    def _line_with(self, byte: int) -> str | None:
+        """The line that a byte completes, without remains of the previous answer in front of it."""
+        if byte != _LF:
+            self._collected.append(byte)
+            return None
+        line = self._collected.decode("latin-1").strip("\r\x06")
+        self._collected.clear()
+        return line

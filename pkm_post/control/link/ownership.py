@@ -1,0 +1,355 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Ownership: one client at a time may move a machine or load its controller; all others may monitor and stop it.
+
+Two clients that load or start at the same time close each other's buffers, or move the struts where neither wants them.
+So a client first claims ownership: with a lock file among the clients of this computer, and with five P-variables of
+the controller among those of all computers. They record the owner, its operation, its start time, and a heartbeat
+count.
+
+One assignment in the controller claims it atomically: it changes the variable only if that still has the value read
+before, so of two simultaneous clients one finds the other. A killed owner leaves its number behind; it is overridden if
+it shows no sign of life for a while and the machine rests. An owner that was silent for long verifies that it still is
+the owner before it sends anything.
+
+Enters: a session and the intended operation. Leaves: ownership for the duration of a block, or ``NotOwnerError``.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import logging
+import os
+import random
+import socket
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from pkm_post.control.link.faults import DiagnosedError, LinkLostError, NotOwnerError, PmacError, RefusedError
+from pkm_post.control.link.free_words import free_words
+from pkm_post.control.link.motion import is_busy
+from pkm_post.control.link.session import Session
+from pkm_post.model import Diagnostic, Place
+from pkm_post.system import Lock, Words, locked, words_of
+
+VARIABLES = range(8187, 8192)
+"""Numbers of the P-variables: owner, count, address of its computer, time since 1970 in s, operation."""
+OWNER, COUNT, *_ = VARIABLES
+RECORD = f"P{VARIABLES[0]}..{VARIABLES[-1]}"
+
+BEAT_S = 1.0
+"""Heartbeat period of the owner, s."""
+SILENCE_S = 5.0
+"""Seconds without a sign of life after which an owner is overridden."""
+LOOK_S = 0.5
+ATTEMPTS = 3
+WHAT = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal")
+"""Operations of an owner; the controller stores the index in this list, from 1. Append new ones at its end."""
+RESUMED_BY_ALL = ("stream",)
+"""A stream has no resume command: after a hold any client may resume it."""
+_ERR_NOT_OPEN = 5
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Record:
+    """The contents of the controller's variables.
+
+    Attributes:
+        owner: a unique number; 0 if there is none.
+        count: heartbeat.
+        address: of its computer, IPv4 as a number; 0 if it has none.
+        since: seconds since 1970.
+        what: index in ``WHAT``, from 1.
+    """
+
+    owner: int
+    count: int
+    address: int
+    since: int
+    what: int
+
+    @property
+    def action(self) -> str:
+        """The owner's operation; empty if unknown."""
+        return WHAT[self.what - 1] if 0 < self.what <= len(WHAT) else ""
+
+    def __str__(self) -> str:
+        if not self.what:
+            return "a client that does not say who it is"
+        where = f"at {ipaddress.IPv4Address(self.address)}" if 0 < self.address < 1 << 32 else "without an address"
+        return f"a client {where}, {self.action or 'something'}, since {_moment(self.since)}"
+
+
+class Ownership:
+    """The right to move a machine and to load its controller."""
+
+    def __init__(self, session: Session, lock: Lock | None, owner: int) -> None:
+        """Represent ownership that has been claimed.
+
+        Args:
+            session: through which it was claimed.
+            lock: on this computer; None for a port that no other process can use.
+            owner: the number in the controller; 0 if the controller keeps none.
+        """
+        self._session, self._lock, self._owner = session, lock, owner
+        self._seen, self._connections, self._is_asking = session.now(), session.connections, False
+
+    def answered(self) -> None:
+        """Send a due heartbeat, unless a program buffer is open: the assignment would become a line of it."""
+        if self._is_asking or not self._owner or self._session.has_open_buffer or not self._is_older_than(BEAT_S):
+            return
+        self._is_asking = True
+        try:
+            self._session.ask(f"P{COUNT}=P{COUNT}+1")
+            self._see()
+        except (LinkLostError, RefusedError) as fault:  # retried after the next answer; others wait much longer
+            _log.warning("the right to move the machine could not be renewed: %s", fault)
+        finally:
+            self._is_asking = False
+
+    def check(self) -> None:
+        """Verify ownership, if it was not seen recently or the link was lost meanwhile.
+
+        Raises:
+            NotOwnerError: another client has taken it.
+            LinkLostError: it cannot be verified.
+        """
+        if self._is_asking or not self._owner or self.is_sure():
+            return
+        self._is_asking = True
+        try:
+            self._see()
+        finally:
+            self._is_asking = False
+
+    def is_sure(self) -> bool:
+        """Whether ownership was seen so recently that no other client can have taken it since."""
+        is_same_link = self._connections == self._session.connections
+        return is_same_link and not self._is_older_than(SILENCE_S / 2)
+
+    def release(self) -> None:
+        """Release ownership; if the controller is unreachable, its record expires later."""
+        self._session.keeper = None
+        try:
+            if self._owner and not self._session.has_open_buffer:
+                with self._session.in_a_hurry():
+                    self._session.ask(_swap(self._owner, 0))
+        except PmacError as fault:
+            _log.warning("the right to move the machine could not be given back: %s", fault)
+        finally:
+            if self._lock is not None:
+                self._lock.release()
+
+    def _see(self) -> None:
+        there = read_record(self._session)
+        if not there.owner and not there.since and free_words(self._session) >= 0:
+            self._session.ask(_swap(0, self._owner))  # a controller that was reset has lost all of it
+            there = read_record(self._session)
+        if there.owner != self._owner:
+            raise NotOwnerError(_diagnostic(self._session, "C211", str(there)), there.action)
+        self._seen, self._connections = self._session.now(), self._session.connections
+
+    def _is_older_than(self, seconds: float) -> bool:
+        return self._session.now() - self._seen > seconds
+
+
+@contextmanager
+def owned(session: Session, what: str, beside: tuple[str, ...] = ()) -> Iterator[None]:
+    """Hold ownership for a block; a session that already has it keeps it.
+
+    Args:
+        session: an open session.
+        what: the operation, one of ``WHAT``.
+        beside: operations of another client that are allowed meanwhile; any other silent client's program may continue.
+
+    Raises:
+        NotOwnerError: another client has it.
+        PmacError: as ``take``.
+    """
+    if session.keeper is not None:
+        yield
+        return
+    try:
+        taken: Ownership | None = take(session, what, beside)
+    except NotOwnerError as fault:
+        if fault.what not in beside:
+            raise
+        taken = None
+    try:
+        yield
+    finally:
+        if taken is not None:
+            taken.release()
+
+
+def take(session: Session, what: str, beside: tuple[str, ...] = ()) -> Ownership:
+    """Claim ownership; clear and close a program buffer that is no longer being filled.
+
+    Args:
+        session: an open session without ownership.
+        what: the operation, one of ``WHAT``.
+        beside: as ``owned``.
+
+    Raises:
+        NotOwnerError: another client has it, or its operation still moves the machine.
+        DiagnosedError: the lock file cannot be kept.
+        LinkLostError: the controller cannot be queried.
+        CancelledError: a stop came first.
+    """
+    lock = _locked(session, what) if session.port_name else None
+    try:
+        owner = _taken_in_controller(session, what, beside) if session.has_handshake else 0
+    except BaseException:
+        if lock is not None:
+            lock.release()
+        raise
+    session.keeper = ownership = Ownership(session, lock, owner)
+    return ownership
+
+
+def read_record(session: Session) -> Record:
+    """Read the owner's record from the controller.
+
+    Raises:
+        DiagnosedError: the variables hold values that no client writes.
+        LinkLostError: the answer makes no sense.
+    """
+    told = session.ask(RECORD)
+    try:
+        values = [float(line) for line in told]
+        if len(values) != len(VARIABLES):
+            raise ValueError(f"expected {len(VARIABLES)} lines, got {len(values)}")
+    except ValueError as fault:
+        raise LinkLostError(f"{RECORD}: {fault}") from None
+    if not all(value.is_integer() and value >= 0 for value in values):
+        raise DiagnosedError(_diagnostic(session, "C213", f"{RECORD} is {' '.join(told)}"))
+    return Record(*map(int, values))
+
+
+def lock_path(port: str) -> Path:
+    """Path of a port's lock file: the same for all users, and for all names of a serial line."""
+    kind, _, address = port.partition(":")
+    name = f"{kind}:{os.path.realpath(address) if kind == 'serial' else address.lower()}"
+    return Path(tempfile.gettempdir()) / f"pkm-post-{sha256(name.encode()).hexdigest()[:16]}.lock"
+
+
+def _locked(session: Session, what: str) -> Lock:
+    path = lock_path(session.port_name)
+    try:
+        lock = locked(path)
+    except OSError as fault:
+        raise DiagnosedError(_diagnostic(session, "C212", f"{path}: {fault.strerror}")) from fault
+    if lock is None:
+        said = words_of(path)
+        raise NotOwnerError(_diagnostic(session, "C210", _process(said)), str(said.get("what", "")))
+    lock.say({"user": _user(), "process": os.getpid(), "what": what, "since": int(time.time())})
+    return lock
+
+
+def _taken_in_controller(session: Session, what: str, beside: tuple[str, ...]) -> int:
+    """Claim ownership in the controller; return the number of this client."""
+    before = read_record(session)
+    is_open = free_words(session) < 0
+    if before.owner or is_open:
+        _see_silence(session, before, beside)
+    if is_open:
+        _close_leftover(session)
+    owner, seen = random.SystemRandom().randrange(1, 1 << 30), before.owner
+    for _ in range(ATTEMPTS):
+        session.ask(_swap(seen, owner))  # safe to repeat: it may arrive twice
+        there = read_record(session)
+        if there.owner not in (0, seen):
+            break
+        seen = there.owner  # a controller that was reset has lost it
+    if there.owner != owner:
+        raise NotOwnerError(_diagnostic(session, "C210", str(there)), there.action)
+    words = (1, _own_address(session.port_name), int(time.time()), WHAT.index(what) + 1)
+    session.ask(" ".join(f"P{number}={word}" for number, word in zip(VARIABLES[1:], words, strict=True)))
+    return owner
+
+
+def _swap(old: int, new: int) -> str:
+    """Replace the owner if it is the expected one: INT is 1 then, and else 0."""
+    return f"P{OWNER}=P{OWNER}+({new}-{old})*INT(1/(ABS(P{OWNER}-{old})+1))"
+
+
+def _see_silence(session: Session, record: Record, beside: tuple[str, ...]) -> None:
+    """Wait until an owner has shown no sign of life for so long that it counts as gone.
+
+    An owner whose machine moves or is held may be busy with a buffer, so it keeps ownership. A client that resumes such
+    a program checks its count alone, which would grow while a program runs, except for programs it may continue beside.
+
+    Raises:
+        NotOwnerError: it shows a sign of life, or the machine is busy.
+    """
+    known = str(record)
+    signs, until = _signs(session, record), session.now() + SILENCE_S
+    while True:
+        is_left_alone = record.action in beside or (not beside and is_busy(session))
+        if is_left_alone or _signs(session, read_record(session)) != signs:
+            raise NotOwnerError(_diagnostic(session, "C210", known), record.action if record.owner else "")
+        if session.now() >= until:
+            break
+        session.give_way()
+        session.sleep(LOOK_S)
+    if record.owner:
+        _log.warning("nothing was seen of %s for %g s: it is passed over", known, SILENCE_S)
+
+
+def _signs(session: Session, record: Record) -> tuple[object, ...]:
+    """Signs of life of an owner: its count, free memory while it loads, lines ahead while it streams."""
+    return record.owner, record.count, session.ask("SIZE"), session.ask("PR")
+
+
+def _close_leftover(session: Session) -> None:
+    """Clear and close a program buffer that is no longer being filled."""
+    try:
+        session.order("CLEAR")
+    except RefusedError as refused:  # it belongs to another port; the check below shows whether CLOSE works
+        if refused.number != _ERR_NOT_OPEN:
+            raise
+    session.order("CLOSE")
+    if free_words(session) < 0:
+        raise DiagnosedError(_diagnostic(session, "C214", "SIZE is below zero after CLOSE"))
+    _log.warning("a program buffer was open, the rest of a download that was cut: it was made empty")
+
+
+def _diagnostic(session: Session, code: str, found: str) -> Diagnostic:
+    return Diagnostic(code, Place(session.port_name or "controller"), found)
+
+
+def _process(said: Words) -> str:
+    """The process that holds the lock on this computer, in plain text."""
+    if not {"user", "process", "what", "since"} <= said.keys():
+        return "a process of this computer that does not say who it is"
+    return f"process {said['process']} of {said['user']}, {said['what']}, since {_moment(said['since'])}"
+
+
+def _moment(seconds: object) -> str:
+    try:
+        return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(str(seconds))))
+    except (ValueError, OverflowError, OSError):
+        return "an unknown time"
+
+
+def _user() -> str:
+    return os.environ.get("USER") or os.environ.get("USERNAME") or "an unknown user"
+
+
+def _own_address(port: str) -> int:
+    """This computer's address towards a controller; 0 if there is none. Nothing is sent."""
+    kind, _, address = port.partition(":")
+    host, _, number = address.rpartition(":")
+    if kind != "tcp":
+        return 0
+    try:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+            asked.connect((host, int(number)))
+            return int(ipaddress.IPv4Address(asked.getsockname()[0]))
+    except OSError:
+        return 0  # an IPv6 address does not fit into a variable

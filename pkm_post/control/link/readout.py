@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Readout: DRO of the tool pose, from the six strut lengths that the controller reports.
+
+Enters: a machine, the gauge length of its tool, states of the controller. Leaves: tip in mm, axis and spin by forward
+kinematics, each warm-started from the previous pose, and lines of text.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.control.link.status import MOTORS, Array, Status
+from pkm_post.machine import follow, newton, platform_rotation, strut_lengths
+from pkm_post.model import Machine
+
+_STEPS_FROM_HOME = 128
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A tool pose.
+
+    Attributes:
+        tip: (3,) in {M}, mm.
+        axis: (3,) unit tool axis in {M}, from the tip towards the spindle.
+        spin: rotation of the platform about it, rad.
+    """
+
+    tip: Array
+    axis: Array
+    spin: float
+
+
+class Readout:
+    """Computes poses in sequence."""
+
+    def __init__(self, machine: Machine, tool_length: float) -> None:
+        """Start at the home of the machine.
+
+        Args:
+            machine: the geometry.
+            tool_length: gauge length of the tool in the spindle, mm.
+        """
+        self._machine, self._tool = machine, np.array([tool_length])
+        self._home = self._tip, self._rotation = (
+            np.array([machine.home_tip]),
+            platform_rotation(np.array([machine.home_axis]), np.array([machine.home_spin])),
+        )
+
+    def pose(self, status: Status) -> Pose | None:
+        """The pose of the actual lengths nearest to the previous one; None if there is none nearby."""
+        for tip, rotation in ((self._tip, self._rotation), self._home):
+            found = newton(self._machine, status.length[None], self._tool, tip, rotation)
+            if found.converged[0]:
+                self._tip, self._rotation = found.tip, found.rotation
+                return Pose(found.tip[0], found.axis[0], float(spin_of(found.rotation)[0]))
+        return None
+
+
+def spin_of(rotation: Array) -> Array:
+    """Spins about the tool axis, (N,) rad, of rotations R_T (N, 3, 3)."""
+    unspun = platform_rotation(rotation[:, :, 2], np.zeros(len(rotation)))
+    spun: Array = np.arctan2(*(np.einsum("ni,ni->n", unspun[:, :, side], rotation[:, :, 0]) for side in (1, 0)))
+    return spun
+
+
+def standing_pose(machine: Machine, length: Array, tool_length: float) -> Pose | None:
+    """The pose for strut lengths, given only that the machine reached them from its home.
+
+    A single Newton solve may converge to another pose with the same lengths. So the lengths are stepped from home in
+    small increments: the result is the pose that the platform can reach without being taken apart.
+
+    Args:
+        machine: the geometry.
+        length: (6,) strut lengths, mm.
+        tool_length: gauge length of the tool in the spindle, mm.
+    """
+    tool = np.full(_STEPS_FROM_HOME, tool_length)
+    home = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin])
+    share = np.linspace(0.0, 1.0, _STEPS_FROM_HOME)[:, None]
+    way = (1 - share) * strut_lengths(machine, *home, tool[:1]) + share * length
+    found = follow(machine, way, tool, home[0][0], platform_rotation(*home[1:])[0])
+    if not found.converged[-1]:
+        return None
+    return Pose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
+
+
+def pose_text(pose: Pose | None) -> str:
+    """The tool pose, for a terminal."""
+    if pose is None:
+        return "tool: no pose has these strut lengths"
+    tilt = np.degrees(np.arccos(np.clip(pose.axis[2], -1, 1)))
+    x, y, z = pose.tip
+    i, j, k = pose.axis
+    told = f"tip X{x:.3f} Y{y:.3f} Z{z:.3f} mm, axis I{i:.5f} J{j:.5f} K{k:.5f}, {tilt:.3f} deg from upright"
+    return f"{told}, spin {np.degrees(pose.spin):.3f} deg"
+
+
+def state_text(status: Status) -> str:
+    """Struts, program and faults, for a terminal."""
+    rows = [
+        f"strut {motor}: {length:10.4f} mm, following error {error:8.4f} mm{'' if bits.has('homed') else ', NOT HOMED'}"
+        for motor, length, error, bits in zip(MOTORS, status.length, status.following_error, status.motors, strict=True)
+    ]
+    return "\n".join([*rows, activity_text(status), *status.words()])
+
+
+def activity_text(status: Status) -> str:
+    """Activity of program and struts, for a terminal."""
+    return f"{_activity(status)}, override {status.override:g} %"
+
+
+def _activity(status: Status) -> str:
+    if not status.running:
+        return "no program runs" if status.standing else "no program runs, BUT THE MACHINE MOVES"
+    return "a program is held" if status.held else "a program runs"

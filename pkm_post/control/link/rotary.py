@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rotary: segments are sent through the rotary buffer and released by R, one after the other.
+
+The number of released lines is known; the controller reports how many it has not begun (``rotary_buffer``). Whatever
+the answer to a command, these numbers show whether it was executed.
+
+Enters: a session, segments, the size of the buffer. Leaves: a machine at rest, and where it rests.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from itertools import accumulate
+
+from pkm_post.control.link import stopping
+from pkm_post.control.link.faults import CancelledError, LinkLostError, PmacError, RefusedError
+from pkm_post.control.link.gates import Segment
+from pkm_post.control.link.ready import check_start
+from pkm_post.control.link.rotary_buffer import ATTEMPTS, RotaryBuffer
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import Array, Status, read_status
+from pkm_post.writing import PmacSettings
+
+_NOT_OPEN, _NO_ROOM = 5, 6
+_POLL_S = 0.05
+_QUIET_POLLS = 20
+"""Consecutive readings that must show the machine at rest where it should not be."""
+_log = logging.getLogger(__name__)
+
+Progress = Callable[[int, int, int], None]
+"""Called with the numbers of program lines released, loaded, and in total."""
+
+
+class RotaryStream:
+    """A program being streamed.
+
+    Attributes:
+        segments: of the program.
+        rest: (6,) strut lengths where the machine rests once all released lines are done, mm.
+        line: of the program after which that is.
+        resumptions: how often the stream was resumed.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        settings: PmacSettings,
+        segments: tuple[Segment, ...],
+        words: int,
+        near: float,
+    ) -> None:
+        self.segments, self.resumptions, self.line = segments, 0, 0
+        self.rest: Array = segments[0].rest
+        self._session, self._settings, self._near = session, settings, near
+        self._ends = list(accumulate(len(segment.lines) for segment in segments))
+        self._buffer = RotaryBuffer(session, settings, [line for each in segments for line in each.lines], words)
+        self._let_go = 0  # lines
+
+    def open(self) -> None:
+        """Open an empty rotary buffer and point the coordinate system to it."""
+        self._buffer.open()
+
+    def run(self, progress: Progress, is_cancelled: Callable[[], bool]) -> None:
+        """Send and release the segments in order."""
+        total = self.segments[-1].last
+
+        def check() -> None:
+            progress(self.line, self._sent(), total)
+            if is_cancelled():
+                raise CancelledError("the stream was stopped")
+
+        for segment, end in zip(self.segments, self._ends, strict=True):
+            self._fill(end, check)
+            self._wait(check)
+            self._release(segment, end)
+        self._check(self._wait(check))
+        self._check_done()
+        progress(total, total, total)
+
+    def end(self, at_once: bool) -> bool:
+        """Come to rest, empty the buffer and close it; return whether the controller has confirmed both."""
+        try:
+            self._come_to_rest(at_once)
+            return self._buffer.empty()
+        except (PmacError, KeyboardInterrupt) as fault:
+            _log.error("the rotary buffer could not be emptied: %s", fault)
+            return False
+
+    def _come_to_rest(self, at_once: bool) -> None:
+        """Wait for rest; an interrupt meanwhile holds and aborts the program."""
+        try:
+            if not at_once:
+                self._wait(lambda: None)
+                return
+        except KeyboardInterrupt:
+            pass  # the user wants it to end now
+        stopping.abort(self._session, self._settings)
+        self._wait(lambda: None)
+
+    def _sent(self) -> int:
+        """Program lines in the controller, in whole segments."""
+        there = [each.last for each, end in zip(self.segments, self._ends, strict=True) if end <= self._buffer.loaded]
+        return max(there, default=0)
+
+    def _fill(self, end: int, check: Callable[[], None]) -> None:
+        """Load the lines up to ``end`` into the buffer, as room becomes free."""
+        failures = 0
+        while self._buffer.loaded < end:
+            check()
+            try:
+                if not self._buffer.send(end):
+                    self._session.sleep(_POLL_S)
+            except (LinkLostError, RefusedError) as fault:
+                failures += 1
+                passes = isinstance(fault, LinkLostError) or fault.number in (_NOT_OPEN, _NO_ROOM)
+                if not passes or failures > ATTEMPTS:
+                    raise
+                _log.warning("the stream was interrupted: %s", fault)
+                self._settle(check)
+
+    def _wait(self, check: Callable[[], None]) -> Status:
+        """Wait until the controller has finished the released lines, or was stopped, and the struts stand."""
+        quiet = 0
+        while True:
+            status = read_status(self._session, self._settings)
+            quiet = 0 if status.running or not status.standing else quiet + 1
+            # The state may show R with a delay.
+            if quiet and (quiet >= _QUIET_POLLS or self._is_done()):
+                return status
+            check()
+            self._session.sleep(_POLL_S)
+
+    def _is_done(self) -> bool:
+        left = self._buffer.loaded - self._let_go
+        return left <= self._buffer.ahead() <= left + self._buffer.unsure
+
+    def _check_done(self) -> None:
+        if not self._is_done():
+            ahead = self._buffer.ahead()
+            raise PmacError(f"the program was stopped with {ahead} lines of the rotary buffer ahead of it")
+
+    def _settle(self, check: Callable[[], None]) -> None:
+        """Recover from a failure: wait for rest, count the loaded lines, and reopen the buffer.
+
+        Raises:
+            PmacError: the controller's count is inconsistent.
+        """
+        self._check(self._wait(check))
+        self._buffer.recount(self._let_go)
+        self.resumptions += 1
+
+    def _release(self, segment: Segment, end: int) -> None:
+        """Send R; if its answer is lost, the lines ahead show whether it was executed."""
+        self._check_done()
+        for attempt in range(ATTEMPTS):
+            self._check(read_status(self._session, self._settings))
+            rest, line, before = self.rest, self.line, self._let_go
+            # From here on the machine may move as far as this, whatever the answer.
+            self.rest, self.line, self._let_go = segment.rest, segment.last, end
+            try:
+                self._session.order(f"&{self._settings.coordinate_system}R")
+                return
+            except (LinkLostError, RefusedError) as fault:
+                if isinstance(fault, LinkLostError) and self._goes(before):
+                    self.resumptions += 1
+                    return
+                self.rest, self.line, self._let_go = rest, line, before
+                if isinstance(fault, RefusedError) or attempt == ATTEMPTS - 1:
+                    raise
+        raise AssertionError("unreachable")
+
+    def _goes(self, before: int) -> bool:
+        """Whether lines after the first ``before`` have begun."""
+        return read_status(self._session, self._settings).running or self._buffer.loaded - self._buffer.ahead() > before
+
+    def _check(self, status: Status) -> None:
+        check_start(status, self.rest, self._near)

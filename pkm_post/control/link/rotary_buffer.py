@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rotary buffer: sends lines into it and tracks its contents.
+
+Lines are counted from the first one sent: some are certainly in the controller, some after them may be. The controller
+reports how many it has not begun, which shows how many of the last ones arrived.
+
+Enters: a session, the lines, the size of the buffer in 48-bit words. Leaves: lines in the buffer.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Sequence
+from itertools import accumulate
+
+from pkm_post.control.link.faults import LinkLostError, PmacError
+from pkm_post.control.link.listing import words_of
+from pkm_post.control.link.session import Session
+from pkm_post.writing import PmacSettings, rotary_opening
+
+ATTEMPTS = 5
+"""How often an operation is tried before it is given up."""
+_MARGIN = 2
+"""Lines no longer ahead that may still occupy the buffer: the running one, and the one after it."""
+_log = logging.getLogger(__name__)
+
+
+class RotaryBuffer:
+    """Tracks the contents of the buffer.
+
+    Attributes:
+        loaded: lines that certainly arrived, executed or not.
+        unsure: lines after those that may have arrived.
+    """
+
+    def __init__(self, session: Session, settings: PmacSettings, lines: Sequence[str], words: int) -> None:
+        self.loaded = self.unsure = 0
+        self._session, self._lines, self._system = session, lines, f"&{settings.coordinate_system}"
+        self._opening = rotary_opening(settings)
+        self._filled = [0, *accumulate(map(words_of, lines))]
+        self._words, self._room = words, words
+        self._connections = session.connections
+
+    def open(self) -> None:
+        """Open it empty and point the coordinate system to it."""
+        # A retry of the whole sequence is safe: nothing has been released.
+        if ahead := self._ordered(*self._opening):
+            raise PmacError(f"{ahead} lines are in the rotary buffer after CLEAR")
+
+    def empty(self) -> bool:
+        """Empty and close it; return whether the controller confirms that."""
+        return self._ordered("CLOSE", self._system, "OPEN ROT", "CLEAR", "CLOSE") == 0
+
+    def ahead(self) -> int:
+        """Lines in it that have not begun."""
+        told = self._session.ask(f"{self._system}PR")
+        if len(told) != 1 or not re.fullmatch(r"\d{1,9}", told[0].strip()):
+            raise LinkLostError(f"PR: expected a number of lines, got {told}")
+        return int(told[0])
+
+    def send(self, end: int) -> bool:
+        """Send as many of the lines up to ``end`` as fit; return whether any did.
+
+        Raises:
+            RefusedError: a line was refused; those before it may be in the buffer.
+            LinkLostError: the link failed, or has reconnected; ``recount`` must come next.
+        """
+        batch = self._lines[self.loaded : self.loaded + self._fitting(end)]
+        if not self._is_still_open():
+            raise LinkLostError("the link was called back, which closed the rotary buffer")
+        if not batch:
+            return False
+        self.unsure = min(len(batch), self._session.lines_at_once(batch))
+        done = self._session.load(batch)
+        self._room -= self._filled[self.loaded + done] - self._filled[self.loaded]
+        self.loaded, self.unsure = self.loaded + done, 0
+        return True
+
+    def recount(self, begun: int) -> None:
+        """After a failure, at rest after line ``begun``: count the loaded lines and reopen the buffer.
+
+        Raises:
+            PmacError: the controller's count is inconsistent.
+        """
+        there = begun + self._ordered("CLOSE", self._system, "OPEN ROT")
+        if not self.loaded <= there <= self.loaded + self.unsure:
+            raise PmacError(f"the controller has {there} lines, {self.loaded} to {self.loaded + self.unsure} were sent")
+        self.loaded, self.unsure, self._room = there, 0, 0
+
+    def _ordered(self, *lines: str) -> int:
+        """Execute lines, all again when the link fails; return how many lines lie ahead then."""
+        for attempt in range(ATTEMPTS):
+            self._connections = self._session.connections
+            try:
+                for line in lines:
+                    self._session.order(line)
+                ahead = self.ahead()
+            except LinkLostError as lost:
+                _log.warning("the link failed: %s", lost)
+                if attempt == ATTEMPTS - 1:
+                    raise
+            else:
+                if self._is_still_open():
+                    return ahead
+        raise LinkLostError("the link fails again and again")
+
+    def _is_still_open(self) -> bool:
+        """Whether it is still open: a reconnect closes it, and a line would then be executed at once, not stored."""
+        return self._connections == self._session.connections
+
+    def _fitting(self, end: int) -> int:
+        """How many of the next lines fit."""
+        if self._filled[self.loaded + 1] - self._filled[self.loaded] > self._room:
+            oldest = max(self.loaded - self.ahead() - _MARGIN, 0)
+            self._room = self._words - (self._filled[self.loaded] - self._filled[oldest])
+        count = self.loaded
+        while count < end and self._filled[count + 1] - self._filled[self.loaded] <= self._room:
+            count += 1
+        return count - self.loaded

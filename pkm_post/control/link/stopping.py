@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stopping: a hold or an abort, resent until the machine is seen at rest.
+
+A stop never gives up. It is a ladder: a hold slows the program down along its path; an abort stops each strut on its
+own ramp; a control character aborts everything in the controller and does not depend on a line arriving intact; the
+last one cuts motor power. Each rung has a timeout. A failing link does not stop the climb, except for the last rung:
+struts without power may sink, so power is cut only while they are seen to move after everything else was sent.
+
+Enters: a session, settings. Leaves: the state of a machine at rest. Only another waiting stop ends it earlier.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from pkm_post.control.link.faults import CancelledError, NoAccessError, PmacError
+from pkm_post.control.link.ownership import read_record
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import MOTORS, Status, read_status
+from pkm_post.writing import PmacSettings, PowerPmacSettings
+
+AnySettings = PmacSettings | PowerPmacSettings
+
+SHOWN_S = 0.5
+"""Seconds for the state to show that a stop was accepted; then it is resent."""
+POLL_S = 0.02
+NEXT_SEGMENT_S = 1.0
+"""Seconds within which a stream with a working link releases its next segment."""
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One rung of the ladder.
+
+    Attributes:
+        name: in plain text.
+        send: sends it.
+        is_taken: whether a state shows that the controller obeys it.
+        unseen_s: seconds for which it is resent while no state shows that.
+        rest_s: seconds for the struts to come to rest once a state has shown it.
+        blindly: whether it is sent even if the machine is not known to move.
+    """
+
+    name: str
+    send: Callable[[Session, AnySettings], object]
+    is_taken: Callable[[Status], bool]
+    unseen_s: float
+    rest_s: float
+    blindly: bool = True
+
+
+def _order(text: str) -> Callable[[Session, AnySettings], object]:
+    return lambda session, settings: session.order(f"&{settings.coordinate_system}{text}")
+
+
+def _control(code: int) -> Callable[[Session, AnySettings], object]:
+    return lambda session, settings: session.interrupt(code)
+
+
+def _kill_each(session: Session, settings: AnySettings) -> None:
+    session.order(" ".join(f"#{motor}k" for motor in MOTORS))
+
+
+def _is_held(status: Status) -> bool:
+    return status.held
+
+
+def _is_held_or_ended(status: Status) -> bool:
+    """Held means that the time base is at 0: during deceleration, struts that reverse stand for a moment."""
+    return not status.running or (status.held and (status.override == 0 or not status.slows_in_a_hold))
+
+
+def _is_ended(status: Status) -> bool:
+    return not status.running
+
+
+def _never(status: Status) -> bool:
+    return False
+
+
+HOLD = Rung("hold", _order("H"), _is_held, unseen_s=1.0, rest_s=5.0)
+ABORT = Rung("abort", _order("A"), _is_ended, unseen_s=1.0, rest_s=2.0)
+ABORT_ALL = Rung("abort of everything (^A)", _control(0x01), _is_ended, unseen_s=1.0, rest_s=2.0)
+KILL_ALL = Rung("power off all motors (^K)", _control(0x0B), _never, unseen_s=1.0, rest_s=0.0, blindly=False)
+KILL_EACH = Rung("power off all motors", _kill_each, _never, unseen_s=1.0, rest_s=0.0, blindly=False)
+"""^A and ^K are control characters of a Turbo PMAC [TurboPMAC, <CTRL-A>, <CTRL-K>]; gpascii accepts none."""
+
+TURBO_LADDER = (HOLD, ABORT, ABORT_ALL, KILL_ALL)
+POWER_LADDER = (HOLD, ABORT, KILL_EACH)
+
+
+def hold(session: Session, settings: AnySettings) -> Status:
+    """Slow the program down to rest on its path; if it does not obey, the rungs above stop it.
+
+    Raises:
+        CancelledError: another stop waits.
+        NoAccessError: the controller's computer denies this user access.
+    """
+    return _climb(session, settings, _ladder(settings), _is_held_or_ended)
+
+
+def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Status:
+    """End a program: with a hold first, so that the struts stay on the path, then an abort.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        at_once: skip the hold: each strut stops on its own ramp, off the path.
+
+    Raises:
+        CancelledError: another stop waits; the abort was sent.
+        NoAccessError: the controller's computer denies this user access.
+    """
+    _, *rungs = _ladder(settings)
+    if not at_once:
+        try:
+            with session.in_a_hurry():
+                _try(session, settings, HOLD, _is_held_or_ended)
+        except CancelledError:
+            _log.warning("aborted without coming to rest before: another stop waits")
+    return _climb(session, settings, tuple(rungs), _is_ended)
+
+
+def _ladder(settings: AnySettings) -> tuple[Rung, ...]:
+    return POWER_LADDER if isinstance(settings, PowerPmacSettings) else TURBO_LADDER
+
+
+def _climb(
+    session: Session, settings: AnySettings, rungs: tuple[Rung, ...], is_stopped: Callable[[Status], bool]
+) -> Status:
+    """Climb until a state shows the machine at rest; from the top on, repeat the upper two rungs."""
+    seen: Status | None = None
+    with session.in_a_hurry():
+        for rung in _without_end(rungs):
+            if not rung.blindly and (seen is None or seen.standing):
+                continue
+            seen = _try(session, settings, rung, is_stopped)
+            if seen is not None and _rests(seen, is_stopped) and _goes_on(session, settings, seen):
+                seen = _try(session, settings, rungs[0], is_stopped)
+            if seen is not None and _rests(seen, is_stopped):
+                return seen
+            _log.warning("the machine is not seen at rest after: %s", rung.name)
+    raise AssertionError("the ladder has no end")
+
+
+def _goes_on(session: Session, settings: AnySettings, status: Status) -> bool:
+    """Whether another client's stream releases its next segment: between segments the machine rests by itself."""
+    if status.held or session.keeper is not None or not _is_streamed(session):
+        return False
+    until = session.now() + NEXT_SEGMENT_S
+    while session.now() < until:
+        seen = _read(session, settings)
+        if seen is not None and seen.running:
+            return True
+        session.give_way()
+        session.sleep(POLL_S)
+    return False
+
+
+def _is_streamed(session: Session) -> bool:
+    """Whether a stream owns the machine, or the owner is unknown."""
+    if not session.has_handshake:
+        return False
+    try:
+        record = read_record(session)
+    except (CancelledError, NoAccessError):
+        raise
+    except PmacError as fault:
+        _log.warning("whether a program is streamed is not known: %s", fault)
+        return True
+    return bool(record.owner) and record.action == "stream"
+
+
+def _without_end(rungs: tuple[Rung, ...]) -> Iterator[Rung]:
+    yield from rungs
+    while True:
+        yield from rungs[-2:]
+
+
+def _rests(status: Status, is_stopped: Callable[[Status], bool]) -> bool:
+    """Motors without power follow no program, whatever its state."""
+    return status.standing and (is_stopped(status) or not status.powered)
+
+
+def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callable[[Status], bool]) -> Status | None:
+    """Send one rung until it shows, and wait for rest; return the last state read, None if none could be read."""
+    until, is_taken, seen = session.now() + rung.unseen_s, False, None
+    while session.now() < until:
+        _send(session, settings, rung)
+        again = session.now() + SHOWN_S
+        while session.now() < (until if is_taken else min(again, until)):
+            seen = _read(session, settings)
+            if seen is not None and _rests(seen, is_stopped):
+                return seen
+            if seen is not None and not is_taken and rung.is_taken(seen):
+                is_taken, until = True, session.now() + rung.rest_s
+            session.give_way()
+            session.sleep(POLL_S)
+    return seen
+
+
+def _send(session: Session, settings: AnySettings, rung: Rung) -> None:
+    """Send it; the state shows whether it arrived."""
+    try:
+        rung.send(session, settings)
+    except (CancelledError, NoAccessError):
+        raise
+    except PmacError as fault:
+        _log.warning("%s: %s", rung.name, fault)
+
+
+def _read(session: Session, settings: AnySettings) -> Status | None:
+    try:
+        return read_status(session, settings)
+    except (CancelledError, NoAccessError):
+        raise
+    except PmacError:
+        return None

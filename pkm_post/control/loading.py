@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Loading: read a program file for the controller if its exact bytes are certified for this machine.
+
+Enters: the file of a program, or of one of its parts, and a machine. Leaves: the job for the controller, or the reasons
+against it. Bytes are certified if the heading of the program, its report, its manifest and the trajectory file agree on
+their SHA-256 and on the machine file; else if ``verify`` passes now. Command line, panel and macros load programs
+through this module.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pkm_post.control.link.job import Job, read_job
+from pkm_post.model import Diagnostic, Machine, Place, Refused
+from pkm_post.posting import verify_texts
+from pkm_post.writing import PmacSettings, controller_of, manifest, program_seal, read_text, read_texts
+
+Findings = tuple[Diagnostic, ...]
+
+_log = logging.getLogger(__name__)
+_MOST_BYTES = 1 << 28
+"""Largest report that is read."""
+
+
+@dataclass(frozen=True)
+class Certified:
+    """The bytes of a program file that are certified for a machine.
+
+    Attributes:
+        text: text of the file, with LF line ends.
+        digest: SHA-256 of the text.
+        verified_now: whether it was verified just now, as the accompanying files did not agree.
+    """
+
+    text: str
+    digest: str
+    verified_now: bool
+
+
+def certified(program: Path, machine: Machine) -> tuple[Certified | None, Findings]:
+    """Check whether a program file is certified for a machine.
+
+    Args:
+        program: the file of a motion program, or of one of its parts; its other files are in the same folder.
+        machine: the machine to run it on.
+
+    Returns:
+        Its bytes, or None and the reasons why they are not certified.
+    """
+    text, faults = read_text(program)
+    return (None, faults) if text is None else _certified(program, text, machine)
+
+
+def job_to_load(
+    program: Path, machine: Machine, settings: PmacSettings, uncertified: bool = False
+) -> tuple[Job | None, Findings]:
+    """Convert a program file to a job for a Turbo PMAC.
+
+    Args:
+        program: the file of a motion program, or of one of its parts.
+        machine: the machine to run it on.
+        settings: settings of its controller.
+        uncertified: accept it without proof of certification; this is logged with the reasons.
+    """
+    text, faults = read_text(program)
+    if text is None:
+        return None, faults
+    found, faults = _certified(program, text, machine)
+    digest = program_seal.digest(text)
+    if found is None and not uncertified:
+        return None, faults
+    if found is None:
+        _log.warning("UNCERTIFIED: %s, SHA-256 %s, is taken although\n%s", program.name, digest, _lines(faults))
+    elif found.verified_now:
+        _log.info("%s, SHA-256 %s, was verified now", program.name, digest)
+    return read_job(text, settings, program.name)
+
+
+def _lines(faults: Findings) -> str:
+    return "\n".join(map(str, faults))
+
+
+def _certified(program: Path, text: str, machine: Machine) -> tuple[Certified | None, Findings]:
+    controller, faults = controller_of(machine)
+    if controller is None:
+        return None, faults
+    number, count = controller.stated_part(text)
+    first = _first_part(program, number)
+    reasons = list(_reasons(program, text, machine, first, (number, count)))
+    digest = program_seal.digest(text)
+    if not reasons:
+        return Certified(text, digest, False), ()
+    doubts = (Diagnostic("C110", Place(str(program)), "; ".join(reasons)),)
+    trajectory = first.with_suffix(".pkmt")
+    if not trajectory.is_file():
+        return None, doubts
+    texts, faults = read_texts(first, controller)
+    if texts is None:
+        return None, (*doubts, *faults)
+    if (program.name, text) not in texts:
+        found = f"{first.name} and its parts do not include this file"
+        return None, (*doubts, Diagnostic("C105", Place(str(program)), found))
+    try:
+        verify_texts(texts, first, trajectory, machine)
+    except Refused as refused:
+        return None, (*doubts, *refused.diagnostics)
+    return Certified(text, digest, True), ()
+
+
+def _first_part(program: Path, number: int) -> Path:
+    """The file of the first part, which names the other parts and the accompanying files."""
+    stem = program.stem.removesuffix(f"-part{number}") if number > 1 else program.stem
+    return program.with_name(stem + program.suffix)
+
+
+def _reasons(program: Path, text: str, machine: Machine, first: Path, part: tuple[int, int]) -> Iterator[str]:
+    """Reasons why the files alone do not prove that a program is certified."""
+    seal = program_seal.has_its_seal(text)
+    if not seal:
+        yield "its heading states no SHA-256" if seal is None else "its heading states another SHA-256"
+    if not program_seal.states(text, "machine", machine.fingerprint):
+        yield f"its heading does not name the machine file of {machine.name}"
+    listed, faults = manifest.check(program)
+    if listed is None:
+        yield from (f"{fault.code} {fault.found}" for fault in faults)
+        return
+    trajectory = listed.fingerprint_of(first.with_suffix(".pkmt").name) or ""
+    if not program_seal.states(text, "trajectory", trajectory):
+        yield "its heading does not name the trajectory file beside it"
+    report = first.with_name(f"{first.stem}-report.json")
+    if listed.fingerprint_of(report.name) is None:
+        yield f"the manifest lists no {report.name}"
+        return
+    yield from _reasons_of_report(report, program_seal.digest(text), trajectory, machine, part)
+
+
+def _reasons_of_report(
+    report: Path, digest: str, trajectory: str, machine: Machine, part: tuple[int, int]
+) -> Iterator[str]:
+    content = _json(report)
+    number, count = part
+    programs = _entry(content, "files", "programs_sha256")
+    if not isinstance(programs, list) or len(programs) != count or programs[number - 1 : number] != [digest]:
+        yield f"{report.name} is about another program"
+    if _entry(content, "files", "trajectory_sha256") != trajectory:
+        yield f"{report.name} is about another trajectory file"
+    if _entry(content, "machine", "sha256") != machine.fingerprint:
+        yield f"{report.name} is about another machine file"
+    if _entry(content, "certificate", "holds") is not True:
+        yield f"{report.name} does not say that the certificate holds"
+
+
+def _json(file: Path) -> Any:
+    """The content of a JSON file; None if it cannot be read."""
+    try:
+        with file.open("rb") as stream:
+            return json.loads(stream.read(_MOST_BYTES))
+    except (OSError, ValueError, RecursionError):
+        return None
+
+
+def _entry(content: Any, *names: str) -> Any:
+    """The value under these names in nested tables; None if there is none."""
+    for name in names:
+        content = content.get(name) if isinstance(content, dict) else None
+    return content

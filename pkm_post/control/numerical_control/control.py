@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Control: one machine behind one session, for the command line and for a panel.
+
+Every method talks to the controller, returns within its deadlines, and must be called from one thread; ``worker``
+provides a dedicated one. Plans are made first and executed later: a move that fails its checks never becomes a plan.
+
+Enters: a session, a machine and its gauge length. Leaves: states and plans, frozen.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from pkm_post.control.link import operate, stopping
+from pkm_post.control.link.download import Loaded, Progress, download
+from pkm_post.control.link.faults import CancelledError, LinkLostError, NotOwnerError, NotReadyError, PmacError
+from pkm_post.control.link.job import Job
+from pkm_post.control.link.motion import settled_status
+from pkm_post.control.link.ownership import take
+from pkm_post.control.link.readout import Pose, Readout, standing_pose
+from pkm_post.control.link.ready import check_setup
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import Status, read_status
+from pkm_post.control.numerical_control import execute as execution
+from pkm_post.control.numerical_control import mdi, moves, stops
+from pkm_post.control.numerical_control.emergency import emergency_text
+from pkm_post.control.numerical_control.homing import (
+    Homing,
+    HomingWatch,
+    Phase,
+    check_trigger,
+    missing_homes,
+    start_homing,
+)
+from pkm_post.control.numerical_control.plan import Plan, planned
+from pkm_post.control.numerical_control.single_block import Blocks, Shown
+from pkm_post.control.numerical_control.watchdog import Watchdog
+from pkm_post.model import Diagnostic, Machine, Tolerances, Trajectory
+from pkm_post.options import APPROACH_MM_S, NEAR_MM, OWN_PROGRAM
+from pkm_post.writing import PmacSettings
+
+Findings = tuple[Diagnostic, ...]
+
+Done = TypeVar("Done")
+_log = logging.getLogger(__name__)
+
+TOLERANCES = Tolerances(1e-3, math.radians(1e-3))
+"""Tolerances of manual moves: the posting defaults."""
+
+
+@dataclass(frozen=True)
+class State:
+    """A snapshot for display.
+
+    Attributes:
+        status: of struts and program; the last one read when the link is lost, None before the first reading.
+        pose: of the tool at the actual strut lengths; None if no pose fits, or before the first reading.
+        lost: why the link is lost; empty while it is up.
+        emergency: instructions for the operator when the link was lost while the machine may move.
+        homing: of a homing started here; None otherwise.
+        block: the next block; None outside single block mode.
+    """
+
+    status: Status | None
+    pose: Pose | None
+    lost: str = ""
+    emergency: tuple[str, ...] = ()
+    homing: Homing | None = None
+    block: Shown | None = None
+
+
+class NumericalControl:
+    """Monitors and operates a machine."""
+
+    def __init__(
+        self,
+        session: Session,
+        machine: Machine,
+        settings: PmacSettings,
+        tool_length: float,
+        number: int = OWN_PROGRAM,
+    ) -> None:
+        """Create the control; the session connects on first use if it is not open.
+
+        Args:
+            session: to the controller.
+            machine: the machine.
+            settings: of its controller.
+            tool_length: gauge length of the tool in the spindle, mm; ``tool_length`` can be set at any time.
+            number: program number of manual moves and single blocks, and number of the P-variable of their watchdogs.
+        """
+        self._session, self._machine, self._settings, self._number = session, machine, settings, number
+        self._watch: HomingWatch | None = None
+        self._blocks: tuple[Blocks, int] | None = None
+        self._block: Shown | None = None
+        self._last = State(None, None)
+        self._may_move = False
+        self._watchdog: Watchdog | None = None
+        self._is_attended: Callable[[], bool] = lambda: True
+        self.tool_length = tool_length
+
+    def give_way_when(self, is_waited_for: Callable[[], bool]) -> None:
+        """Abandon long operations and start none while ``is_waited_for`` reports a waiting stop."""
+        self._session.give_way_when(is_waited_for)
+
+    def attended_while(self, is_attended: Callable[[], bool]) -> None:
+        """Renew the watchdog of a jog only while ``is_attended`` reports that the operator is watching."""
+        self._is_attended = is_attended
+
+    @property
+    def tool_length(self) -> float:
+        """Gauge length of the tool in the spindle, mm."""
+        return self._tool_length
+
+    @tool_length.setter
+    def tool_length(self, length: float) -> None:
+        if not (math.isfinite(length) and length > 0):
+            raise ValueError(f"tool_length: expected a length above zero, got {length}")
+        self._tool_length = length
+        self._readout = Readout(self._machine, length)
+
+    def poll(self) -> State:
+        """Read the state once and renew the watchdog of a jog; a lost link is a state, not an error."""
+        try:
+            status = read_status(self._session, self._settings)
+            self._end_watch(status)
+            self.renew()
+        except CancelledError:
+            return self._last  # a stop has priority; the next reading catches up
+        except NotOwnerError as fault:
+            _log.warning("%s", fault)
+            if self._session.keeper is not None:
+                self._session.keeper.release()
+            return self._last
+        except PmacError as fault:
+            self._last = State(
+                self._last.status, self._last.pose, str(fault), self._emergency(), self._last.homing, self._block
+            )
+            return self._last
+        self._may_move = False
+        self._give_back(status)
+        homing = None if self._watch is None else self._watch.see(status, self._session.now())
+        if homing is not None and homing.phase is not Phase.SEARCHING:
+            self._watch = None
+        elif homing is None:
+            homing = self._last.homing
+        self._last = State(status, self._readout.pose(status), homing=homing, block=self._block)
+        return self._last
+
+    def plan_jog(self, jog: moves.Jog, feed: float) -> tuple[Plan | None, Findings]:
+        """Plan a jog from the current pose; ``feed`` in mm/s, for a turn in place in degrees per second.
+
+        Raises:
+            NotReadyError: the tool pose is unknown, or the machine moves.
+        """
+        here = self._here()
+        plan, told = self._planned(*moves.trajectory_of(jog, self._machine, here, self.tool_length, feed))
+        return (None if plan is None else replace(plan, is_jog=True)), told
+
+    def plan_line(self, line: str, reading: mdi.Reading | None = None) -> tuple[Plan | None, Findings]:
+        """Plan a line of G-code from the current pose.
+
+        Raises:
+            NotReadyError: the tool pose is unknown, or the machine moves.
+        """
+        return self._planned(*mdi.line_trajectory(line, self._machine, self._here(), self.tool_length, reading))
+
+    def plan_approach(self, job: Job, feed: float = APPROACH_MM_S) -> tuple[Plan | None, Findings]:
+        """Plan the approach from the current pose to the start of a program; as ``moves.approach``.
+
+        Raises:
+            NotReadyError: the tool pose is unknown, the machine moves, or the start has no pose.
+        """
+        here, start = self._here(), standing_pose(self._machine, job.first, self.tool_length)
+        if start is None:
+            raise NotReadyError(["no pose of the platform that small steps from home lead to is that of the start"])
+        return self._planned(*moves.approach(self._machine, here, start, self.tool_length, feed))
+
+    def execute(self, plan: Plan, near: float = NEAR_MM) -> Status:
+        """Load a plan, verify its listing and start it; as ``execute.execute``.
+
+        The controller holds a jog by itself once ``poll``, ``renew`` and ``wait_for_rest`` are no longer called.
+        """
+        order = self._session, self._machine, self._settings, plan.job
+        if plan.is_jog:
+            status, self._watchdog = self._owning("jog", lambda: execution.execute_watched(*order))
+        else:
+            status = self._owning("run", lambda: execution.execute(*order, near))
+        if plan.block and self._blocks is not None:
+            self._take_block(self._blocks[0], plan.block + 1)
+        return status
+
+    @property
+    def silence_s(self) -> float | None:
+        """Longest time from silence to standstill at 100 %, s; None when no jog is active."""
+        return None if self._watchdog is None else self._watchdog.silence_s
+
+    def renew(self) -> None:
+        """Renew the watchdog of an active jog while the operator is watching; call several times a second."""
+        if self._watchdog is not None and self._is_attended():
+            self._watchdog.renew(self._session)
+
+    def wait_for_rest(self, seconds: float) -> Status:
+        """Poll until the machine rests, and renew the watchdog of a jog; as ``execute.wait_for_rest``."""
+        status = execution.wait_for_rest(self._session, self._settings, seconds, self.renew)
+        self._end_watch(status)
+        return status
+
+    def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
+        """Check the controller's setup, load a program and verify its listing; as ``download.download``.
+
+        A waiting stop ends the download as ``is_cancelled`` does.
+        """
+        check_setup(self._session, self._settings, self._machine.strut_stroke)
+        return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.is_waited_for())
+
+    def start(self, job: Job, near: float = NEAR_MM) -> Status:
+        """Start a loaded program from its beginning; as ``operate.run``."""
+        order = self._session, self._settings, job.program, job.first, near, self._machine
+        return self._owning("run", lambda: operate.run(*order))
+
+    def go_on(self, job: Job, stop: int, near: float = NEAR_MM) -> Status:
+        """Continue a program after the stop (M0, M1) at which it stands, numbered from 1; as ``stops.go_on``."""
+        return self._owning("run", lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
+
+    def open_blocks(self, blocks: Blocks, at: int = 1) -> int:
+        """Open a program in single block mode; return its number of blocks.
+
+        Args:
+            blocks: of the program.
+            at: the next block, from 1.
+
+        Raises:
+            ValueError: there is no such block.
+        """
+        if not 1 <= at <= len(blocks):
+            raise ValueError(f"at: expected a block from 1 to {len(blocks)}, got {at}")
+        self._take_block(blocks, at)
+        return len(blocks)
+
+    def plan_step(self) -> tuple[Plan | None, Findings]:
+        """Plan the next block from its start; executing it advances to the block after it.
+
+        Raises:
+            ValueError: no program is open in single block mode, or all its blocks have run.
+        """
+        if self._blocks is None or self._blocks[1] > len(self._blocks[0]):
+            raise ValueError("plan_step: expected a block that comes next, got none")
+        blocks, number = self._blocks
+        block = blocks.block(number)
+        plan, told = self._planned(block, (), block.tolerances or TOLERANCES)
+        return (None if plan is None else replace(plan, block=number)), told
+
+    def hold(self) -> Status:
+        """Feed hold: slow down to rest on the path."""
+        return stopping.hold(self._session, self._settings)
+
+    def resume(self) -> Status:
+        """Resume after a hold; a jog held by its watchdog resumes as well."""
+        self.renew()
+        return self._moving(lambda: operate.resume(self._session, self._settings))
+
+    def abort(self, at_once: bool = False) -> Status:
+        """Abort the program, after a hold unless ``at_once``, and stop watching a homing."""
+        self._watch, self._last = None, replace(self._last, homing=None)
+        return stopping.abort(self._session, self._settings, at_once)
+
+    def override(self, percent: float) -> Status:
+        """Set the feed override, above 0 and up to 100 %."""
+        return operate.override(self._session, self._settings, percent, self.renew)
+
+    def home(self, trigger: str) -> None:
+        """Send the line that starts the homing of the machine; ``poll`` then watches it."""
+        check_trigger(trigger)
+        self._watch = self._owning("home", lambda: start_homing(self._session, self._settings, trigger))
+
+    def _end_watch(self, status: Status) -> None:
+        """Drop the watchdog of a program that has ended."""
+        if not status.running:
+            self._watchdog = None
+
+    def _take_block(self, blocks: Blocks, number: int) -> None:
+        """Make a block the next one."""
+        self._blocks, self._block = (blocks, number), blocks.shown(number)
+
+    def _emergency(self) -> tuple[str, ...]:
+        """Instructions after the link is lost; none if it was never up."""
+        if self._may_move:
+            return emergency_text(None)
+        return () if self._last.status is None else emergency_text(self._last.status)
+
+    def _owning(self, what: str, order: Callable[[], Done]) -> Done:
+        """Execute an order that moves the machine; keep ownership until the machine is seen at rest."""
+        keeper = self._session.keeper or take(self._session, what)
+        try:
+            return self._moving(order)
+        except LinkLostError:
+            raise  # the machine may move
+        except BaseException:
+            keeper.release()
+            raise
+
+    def _give_back(self, status: Status) -> None:
+        """Release ownership once the machine rests."""
+        if self._session.keeper is not None and self._watch is None and status.standing and not status.running:
+            self._session.keeper.release()
+
+    def _moving(self, order: Callable[[], Done]) -> Done:
+        """Execute an order that may move the machine; until the next reading it may be moving."""
+        try:
+            done = order()
+        except LinkLostError:
+            self._may_move = True
+            raise
+        self._may_move = True
+        return done
+
+    def _here(self) -> Pose:
+        """The commanded pose of a machine at standstill."""
+        status = settled_status(self._session, self._settings)
+        reasons = [f"strut {strut}: not homed" for strut in missing_homes(status)]
+        reasons += ["a program runs, or is held"] if status.running else []
+        reasons += [] if status.standing else ["a strut moves"]
+        if reasons:
+            raise NotReadyError(reasons)
+        pose = standing_pose(self._machine, status.commanded, self.tool_length)
+        if pose is None:
+            raise NotReadyError(["no pose of the platform that small steps from home lead to has these strut lengths"])
+        return pose
+
+    def _planned(
+        self, trajectory: Trajectory | None, told: Findings, tolerances: Tolerances = TOLERANCES
+    ) -> tuple[Plan | None, Findings]:
+        if trajectory is None:
+            return None, told
+        plan, faults = planned(trajectory, self._machine, self._settings, tolerances, self._number)
+        return plan, told + faults

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Homing: triggered here, carried out by the machine, monitored here.
+
+Only the machine builder knows in which order the struts may search for their homes, and how far each may travel with
+the platform attached. Homing is therefore a program in the controller, usually a PLC program. This module sends the
+line that the builder specifies, if it has one of the forms below, and then watches the home-complete bits of all six
+struts, with a deadline.
+
+Enters: the line, states of the controller and the time in s. Leaves: the progress of the homing.
+"""
+
+from __future__ import annotations
+
+import enum
+import re
+from dataclasses import dataclass
+
+from pkm_post.control.link.faults import NotReadyError
+from pkm_post.control.link.motion import settled_status
+from pkm_post.control.link.ownership import owned
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import MOTORS, Status
+from pkm_post.writing import PmacSettings
+
+_FORMS = {
+    "ENABLE PLC n": re.compile(r"ENA(?:BLE)? ?PLC ?\d{1,2}", re.IGNORECASE),
+    "Pn=value or Mn=value": re.compile(r"[PM]\d{1,4}=-?\d+(?:\.\d+)?", re.IGNORECASE),
+    "&nBnR": re.compile(r"&\d{1,2} ?B\d{1,5} ?R", re.IGNORECASE),
+    "#nHM": re.compile(r"#[1-6](?:HM|HOME)(?: #[1-6](?:HM|HOME))*", re.IGNORECASE),
+}
+"""What may start a homing: a PLC program, a variable that one polls, a motion program, motors."""
+HOMING_S = 600.0
+"""Seconds within which all struts must find their homes."""
+_NOTHING_S = 5.0
+"""Seconds within which the homing must show in the state."""
+_QUIET_S = 2.0
+"""Seconds of rest that count as the end: a PLC program may pause between struts."""
+_STOPS_IT = ("amplifier_fault", "fatal_following_error")
+
+
+class Phase(enum.Enum):
+    """Phase of a homing."""
+
+    SEARCHING = "the struts look for their homes"
+    DONE = "all struts have found their homes"
+    NOTHING = "the controller shows no homing"
+    FAILED = "the homing has failed"
+    LATE = "the homing takes too long"
+
+
+@dataclass(frozen=True)
+class Homing:
+    """Observed state of a homing.
+
+    Attributes:
+        phase: its phase.
+        missing: struts that are not homed yet, from 1.
+        words: faults in plain text.
+    """
+
+    phase: Phase
+    missing: tuple[int, ...]
+    words: tuple[str, ...]
+
+    def __str__(self) -> str:
+        struts = f"; no home yet: strut {', '.join(map(str, self.missing))}" if self.missing else ""
+        return "\n".join([self.phase.value + struts, *self.words])
+
+
+def check_trigger(trigger: str) -> None:
+    """Check that a line has a form that may start a homing.
+
+    Raises:
+        ValueError: it has none of these forms.
+    """
+    if not any(form.fullmatch(trigger) for form in _FORMS.values()):
+        raise ValueError(f"trigger: expected {' or '.join(_FORMS)}, got {trigger!r}")
+
+
+def start_homing(session: Session, settings: PmacSettings, trigger: str) -> HomingWatch:
+    """Send the line that starts the homing of the machine.
+
+    Raises:
+        ValueError: the line has none of the accepted forms.
+        NotReadyError: a program runs, a strut moves, or a motor has a fault; nothing was sent.
+        OutcomeUnknownError: the controller may or may not have executed it; the machine may move.
+        NotOwnerError: another client owns the machine; nothing was sent.
+    """
+    check_trigger(trigger)
+    with owned(session, "home"):
+        _check_rest(settled_status(session, settings))
+        session.order(trigger)
+    return HomingWatch(session.now())
+
+
+def _check_rest(status: Status) -> None:
+    reasons = [*_faults(status)]
+    if status.running:
+        reasons.append("a program runs, or is held")
+    if not status.standing:
+        reasons.append("a strut moves")
+    if reasons:
+        raise NotReadyError(reasons)
+
+
+def missing_homes(status: Status) -> tuple[int, ...]:
+    """The struts that are not homed, from 1."""
+    return tuple(motor for motor, homed in zip(MOTORS, status.homed, strict=True) if not homed)
+
+
+class HomingWatch:
+    """Monitors a homing."""
+
+    def __init__(self, began: float, seconds: float = HOMING_S) -> None:
+        """Start monitoring.
+
+        Args:
+            began: time of the trigger, s.
+            seconds: timeout.
+        """
+        self._began, self._until = began, began + seconds
+        self._seen = False
+        self._quiet_since: float | None = None
+
+    def see(self, status: Status, now: float) -> Homing:
+        """Evaluate a state read at time ``now``."""
+        missing = missing_homes(status)
+        searching = any(motor.has("homing") for motor in status.motors)
+        busy = searching or not status.standing or status.running
+        self._seen = self._seen or busy or bool(missing)
+        self._quiet_since = None if busy or missing else now if self._quiet_since is None else self._quiet_since
+        return Homing(self._phase(status, busy, now), missing, status.words())
+
+    def _phase(self, status: Status, busy: bool, now: float) -> Phase:
+        if any(_faults(status)):
+            return Phase.FAILED
+        if self._seen and self._quiet_since is not None and now - self._quiet_since >= _QUIET_S:
+            return Phase.DONE
+        if not self._seen and now - self._began >= _NOTHING_S:
+            return Phase.NOTHING
+        return Phase.LATE if now >= self._until else Phase.SEARCHING
+
+
+def _faults(status: Status) -> tuple[str, ...]:
+    """Faults that end a homing; limits are not among them, as homes may lie there."""
+    return tuple(
+        f"strut {number}: {motor.TOLD[name]}"
+        for number, motor in zip(MOTORS, status.motors, strict=True)
+        for name in _STOPS_IT
+        if motor.has(name)
+    )

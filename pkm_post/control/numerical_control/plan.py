@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plan: turn the trajectory of a manual move into a certified program whose end pose is verified.
+
+The steps are those of posting, in the same order, without files: feed planning with the reach checks, interpolation,
+program text, reading back, certificate. Then a second check from the strut lengths alone: forward kinematics follows
+the program's cubics from the current pose, and the resulting poses pass the reach checks again. Only the result may be
+sent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.certificate import certify
+from pkm_post.control.link.job import Job, read_job
+from pkm_post.control.link.readout import Pose, spin_of
+from pkm_post.geometry import Array, hermite_lengths
+from pkm_post.machine import Solution, Way, faults_of, follow, platform_rotation, reach_findings
+from pkm_post.model import Certificate, Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, errors
+from pkm_post.options import OWN_PROGRAM
+from pkm_post.planning import motion as planning
+from pkm_post.report import heading
+from pkm_post.writing import pmac
+
+Findings = tuple[Diagnostic, ...]
+
+_SHARES = np.linspace(0.0, 1.0, 9)[1:]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A move that is cleared to be sent.
+
+    Attributes:
+        job: its program and motion, as read back.
+        certificate: its measurements.
+        end: final pose of the tool, by forward kinematics of the last lengths.
+        is_jog: whether it may continue only while the operator is watching.
+        block: number of its block in a program, from 1; 0 for other moves.
+    """
+
+    job: Job
+    certificate: Certificate
+    end: Pose
+    is_jog: bool = False
+    block: int = 0
+
+    @property
+    def lengths(self) -> Array:
+        """(6,) final strut lengths, mm."""
+        return self.job.motion.length[-1]
+
+    @property
+    def seconds(self) -> float:
+        """Duration at 100 %."""
+        return self.certificate.duration
+
+
+def planned(
+    trajectory: Trajectory,
+    machine: Machine,
+    settings: pmac.PmacSettings,
+    tolerances: Tolerances,
+    number: int = OWN_PROGRAM,
+) -> tuple[Plan | None, Findings]:
+    """Plan a trajectory, or return every obstacle.
+
+    Args:
+        trajectory: from the current pose.
+        machine: its geometry and limits.
+        settings: of its controller.
+        tolerances: limits for the certificate.
+        number: of the program.
+
+    Raises:
+        ValueError: the number belongs to the jobs, or is no program number.
+    """
+    if number == settings.program:
+        raise ValueError(f"number: expected another one than that of the jobs, got {number}")
+    settings = replace(settings, program=number)
+    text, motion, told = _program(trajectory, machine, settings, tolerances)
+    if text is None or motion is None:
+        return None, told
+    name = trajectory.source
+    job, faults = read_job(text, settings, name)
+    if job is None:
+        return None, told + faults
+    certificate, faults = certify(job.motion, name, trajectory, machine, motion, tolerances)
+    told += faults
+    end, faults = _followed(job.motion, trajectory, machine)
+    told += faults
+    if certificate is None or end is None or errors(told):
+        return None, told
+    return Plan(job, certificate, end), told
+
+
+def _program(
+    trajectory: Trajectory, machine: Machine, settings: pmac.PmacSettings, tolerances: Tolerances
+) -> tuple[str | None, Motion | None, Findings]:
+    path = planning.tool_path(trajectory, tolerances)
+    schedule, told = planning.plan_feed(path, trajectory, machine)
+    if schedule is None or errors(told):
+        return None, None, told
+    motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
+    struts = planning.strut_motion(motion, machine)
+    told += pmac.faults(struts, settings, trajectory.source)
+    if errors(told):
+        return None, None, told
+    parts = pmac.program_parts(struts, settings, heading(trajectory))
+    if len(parts) > 1:
+        found = f"{len(parts)} programs of {settings.memory_words} words"
+        return None, None, (*told, Diagnostic("C204", Place(trajectory.source), found))
+    return parts[0], motion, told
+
+
+def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[Pose | None, Findings]:
+    """The end pose of the lengths, followed from the start pose, if the whole path is within reach."""
+    lengths = _lengths(played)
+    tool = np.full(len(lengths), trajectory.tool_length()[0])
+    rotation = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
+    found = follow(machine, lengths, tool, trajectory.start_tip, rotation)
+    if not found.converged.all():
+        second = float(np.argmin(found.converged)) / len(lengths) * played.time_ms[-1] / 1000
+        told = f"from about {second:.3f} s on the poses of the lengths do not hang together"
+        return None, (Diagnostic("V107", Place(trajectory.source), told),)
+    end = Pose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
+    return end, _reach_faults(found, tool, trajectory, machine)
+
+
+def _lengths(played: StrutMotion) -> Array:
+    """Strut lengths at the knots and at instants between them, in order, (N, 6)."""
+    cubics = played.cubics(np.arange(len(played) - 1))
+    return np.vstack([played.length[:1], hermite_lengths(*cubics, _SHARES).reshape(-1, 6)])
+
+
+def _reach_faults(found: Solution, tool: Array, trajectory: Trajectory, machine: Machine) -> Findings:
+    way = Way.straight(found.tip, found.axis, spin_of(found.rotation), tool)
+    segment = np.zeros(len(tool), dtype=np.int64)
+    return faults_of(reach_findings(machine, way), trajectory, segment)

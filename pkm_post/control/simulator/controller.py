@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Controller: a Turbo PMAC with six motors, whose time is advanced by its owner.
+
+Enters: commands through ports, and milliseconds. Leaves: motor positions in counts, and the output of ports. It reads
+no clock: the same commands at the same times give the same positions.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from pkm_post.control.simulator import guards
+from pkm_post.control.simulator.coordinate_system import CoordinateSystem
+from pkm_post.control.simulator.errors import CommandError
+from pkm_post.control.simulator.memory import Memory
+from pkm_post.control.simulator.motors import Motors
+from pkm_post.control.simulator.online import Session, execute
+from pkm_post.control.simulator.settings import SimulatorSettings
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, Variables
+
+Listener = Callable[[str | CommandError], None]
+
+
+class Controller:
+    """The state of a controller.
+
+    Attributes:
+        settings: its configuration.
+        time: ms since creation.
+        variables: I, P, Q and M.
+        memory: its program buffers.
+        motors: the six simulated motors.
+        systems: coordinate systems, from 1.
+        unlocked: whether the password was entered.
+        listeners: ports that receive the output of programs.
+    """
+
+    def __init__(self, settings: SimulatorSettings | None = None) -> None:
+        self.settings = settings or SimulatorSettings()
+        self.time, self._owed_ms = 0.0, 0.0
+        self.listeners: list[Listener] = []
+        self.initialize()
+
+    def initialize(self) -> None:
+        """Reset to factory defaults: ``$$$***``."""
+        self._start(Variables(), Memory(self.settings.memory_words))
+        self.unlocked = True
+        self.load(self.settings.machine_codes)
+        self.unlocked = False
+        self.save()
+
+    def save(self) -> None:
+        """Save variables, programs and axis definitions for the next reset: ``SAVE``."""
+        definitions = [dict(system.axes.definitions) for system in self.systems]
+        self._kept = copy.deepcopy((self.variables, self.memory.programs, definitions))
+
+    def reset(self) -> None:
+        """Reset to the saved state: ``$$$``. Motors lose their positions, and rotary buffers are deleted."""
+        variables, programs, definitions = copy.deepcopy(self._kept)
+        memory = Memory(self.settings.memory_words)
+        memory.programs = programs
+        self._start(variables, memory)
+        for system, kept in zip(self.systems, definitions, strict=True):
+            system.axes.definitions = kept
+
+    def load(self, lines: list[str] | tuple[str, ...]) -> None:
+        """Execute lines as if they came in through a port.
+
+        Raises:
+            CommandError: a line is refused; those before it were executed.
+        """
+        session = Session(self)
+        for line in lines:
+            execute(session, line)
+
+    def advance(self, ms: float) -> None:
+        """Advance time in whole ticks; the remainder is kept for the next call."""
+        tick = self.settings.tick_ms
+        self._owed_ms += ms
+        count = math.floor(self._owed_ms / tick + 1e-9)
+        self._owed_ms -= count * tick
+        for _ in range(count):
+            self._tick(tick)
+
+    def system_of(self, motor: int) -> CoordinateSystem | None:
+        """The coordinate system of a motor."""
+        return next((system for system in self.systems if motor in system.axes.definitions), None)
+
+    def runs_program(self) -> bool:
+        """Whether a program runs in any coordinate system."""
+        return any(system.running for system in self.systems)
+
+    def rotary_full(self, system: int) -> bool:
+        """Whether a rotary buffer requests no more lines: from I17 lines ahead until fewer than I16 are left."""
+        self._watch_rotaries()
+        return self._full[system - 1]
+
+    def forget_pointers(self) -> None:
+        """Clear all program pointers, as a fixed buffer was opened."""
+        for system in self.systems:
+            system.interpreter.point(None)
+
+    def kill(self, index: int) -> None:
+        """Kill a motor and the program of its coordinate system."""
+        system = self.system_of(index + 1)
+        if system is not None:
+            system.forget()
+        self.motors.kill(index)
+
+    def kill_all(self) -> None:
+        """^K."""
+        for index in range(SIMULATED_MOTORS):
+            self.kill(index)
+
+    def _start(self, variables: Variables, memory: Memory) -> None:
+        self.variables, self.memory, self.unlocked = variables, memory, False
+        self.motors = Motors(variables, self.settings.lag_ms, self.settings.home_flag)
+        self.systems = [
+            CoordinateSystem(number, memory, variables, self.motors, self._said_by(number))
+            for number in range(1, SYSTEMS + 1)
+        ]
+        self._full = [False] * SYSTEMS
+
+    def _said_by(self, number: int) -> Callable[[str, str], None]:
+        """A callback for what a program of this coordinate system sends to ports, or commands as if by a port."""
+        return partial(self._say, Session(self, system=number))  # no closure: it is copied along with the controller
+
+    def _say(self, session: Session, kind: str, text: str) -> None:
+        try:
+            said: list[str | CommandError] = [text] if kind == "SEND" else [*execute(session, text)]
+        except CommandError as error:
+            said = [error]
+        for item in said:
+            for listen in self.listeners:
+                listen(item)
+
+    def _tick(self, ms: float) -> None:
+        commanded = np.full(SIMULATED_MOTORS, np.nan)
+        for system in self.systems:
+            if system.axes.definitions:
+                system.advance(ms)
+                commanded = np.where(np.isnan(commanded), system.commanded(), commanded)
+        self.motors.advance(ms, commanded)
+        self._guard()
+        self._watch_rotaries()
+        self.time += ms
+
+    def _guard(self) -> None:
+        """Stop motors that have failed, and all motors that move together with them."""
+        self.motors.fatal |= guards.exceeded(self.motors)
+        tripped = self.motors.closed & (self.motors.fatal | self.motors.amplifier_fault)
+        for index in np.flatnonzero(tripped).tolist():
+            system = self.system_of(index + 1)
+            for other in system.axes.indices() if system is not None else [index]:
+                self.kill(other)
+        for index in np.flatnonzero(guards.beyond_limits(self.motors) & ~self.motors.stopped_on_limit).tolist():
+            system = self.system_of(index + 1)
+            if system is not None and system.running:
+                system.abort()
+            else:
+                self.motors.abort(index)
+            self.motors.stopped_on_limit[index] = True
+
+    def _watch_rotaries(self) -> None:
+        fewest, most = self.variables.setting(16), self.variables.setting(17)
+        for number, rotary in self.memory.rotaries.items():
+            ahead = len(rotary.lines)
+            self._full[number - 1] = ahead >= most or (self._full[number - 1] and ahead >= fewest)

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Expressions: constants, variables, operators and functions of programs and on-line commands.
+
+Enters: a scanner. Leaves: an expression with its text for a listing, its size, and its value in a given coordinate
+system. ``* / % &`` bind tighter than ``+ - | ^``. Angles are in degrees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from pkm_post.control.simulator.errors import DATA, CommandError
+from pkm_post.control.simulator.numerals import number_of, printed
+from pkm_post.control.simulator.operators import (
+    CLOSE_OPERATORS,
+    COMPARISONS,
+    FUNCTIONS,
+    LOOSE_OPERATORS,
+    Binary,
+    Comparison,
+    safely,
+)
+from pkm_post.control.simulator.scanner import CONSTANT, Scanner
+
+DEEPEST_NESTING = 15
+
+
+class Scope(Protocol):
+    """Read and write access to variables."""
+
+    def read(self, letter: str, number: int) -> float:
+        """The value of a variable."""
+
+    def write(self, letter: str, number: int, value: float) -> None:
+        """Assign a value to a variable."""
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A value that may depend on variables.
+
+    Attributes:
+        text: as listed.
+        words: size in the controller's memory.
+        value: the value in a scope.
+        constant: whether it is a single number.
+    """
+
+    text: str
+    words: int
+    value: Callable[[Scope], float]
+    constant: bool = False
+
+    def bracketed(self) -> str:
+        """The text after a letter: a constant as it is, anything else in brackets."""
+        return self.text if self.constant else f"({self.text})"
+
+
+def expression(scanner: Scanner, depth: int = 0) -> Expression:
+    """Read an expression.
+
+    Raises:
+        CommandError: the line has no expression here, or one that is nested too deeply.
+    """
+    if depth > DEEPEST_NESTING:
+        raise CommandError(DATA)
+    left = _chain(scanner, depth)
+    while match := scanner.take(r"(?P<sign>[+\-|^])(?!=)"):
+        left = _joined(left, match["sign"], LOOSE_OPERATORS, _chain(scanner, depth))
+    return left
+
+
+def argument(scanner: Scanner) -> Expression:
+    """Read what follows the letter of a word: a signed or unsigned number, or an expression in brackets."""
+    if scanner.take(r"\("):
+        return _closed(scanner, 0)
+    return constant(scanner.expect(rf"(?P<number>[+-]?(?:{CONSTANT}))")["number"])
+
+
+def constant(text: str) -> Expression:
+    """The expression of a single number."""
+    sign = -1.0 if text.startswith("-") else 1.0
+    number = sign * number_of(text.lstrip("+-"))
+    return Expression(printed(number), 1, lambda scope: number, constant=True)
+
+
+def condition(scanner: Scanner) -> Expression:
+    """Read a condition, without its brackets; its value is 1 or 0."""
+    left = _comparison(scanner)
+    while match := scanner.take(r"(?P<word>AND|OR)\b"):
+        word, right = match["word"].upper(), _comparison(scanner)
+        left = _either(left, right, " OR ", max) if word == "OR" else _either(left, right, " AND ", min)
+    return left
+
+
+def _comparison(scanner: Scanner) -> Expression:
+    left = expression(scanner)
+    match = scanner.expect(r"(?P<sign>!=|!>|!<|=|>|<)")
+    return _joined(left, match["sign"], COMPARISONS, expression(scanner))
+
+
+def _either(left: Expression, right: Expression, word: str, choose: Binary) -> Expression:
+    def value(scope: Scope) -> float:
+        return choose(left.value(scope), right.value(scope))
+
+    return Expression(left.text + word + right.text, left.words + right.words + 1, value)
+
+
+def _chain(scanner: Scanner, depth: int) -> Expression:
+    left = _factor(scanner, depth)
+    while match := scanner.take(r"(?P<sign>[*/%&])(?!=)"):
+        left = _joined(left, match["sign"], CLOSE_OPERATORS, _factor(scanner, depth))
+    return left
+
+
+def _factor(scanner: Scanner, depth: int) -> Expression:
+    if match := scanner.take(rf"(?P<number>{CONSTANT})"):
+        return constant(match["number"])
+    if scanner.take(r"\("):
+        inner = _closed(scanner, depth)
+        return Expression(f"({inner.text})", inner.words + 1, inner.value)
+    if match := scanner.take(rf"(?P<name>{'|'.join(FUNCTIONS)})\("):
+        return _applied(match["name"].upper(), _closed(scanner, depth))
+    if scanner.take("-"):
+        inner = expression_factor(scanner, depth)
+        return Expression(f"-{inner.text}", inner.words, lambda scope: -inner.value(scope), inner.constant)
+    return _variable(scanner, depth)
+
+
+def expression_factor(scanner: Scanner, depth: int) -> Expression:
+    """Read the operand of a minus sign."""
+    if depth >= DEEPEST_NESTING:
+        raise CommandError(DATA)
+    return _factor(scanner, depth + 1)
+
+
+def _closed(scanner: Scanner, depth: int) -> Expression:
+    inner = expression(scanner, depth + 1)
+    scanner.expect(r"\)")
+    return inner
+
+
+def _variable(scanner: Scanner, depth: int) -> Expression:
+    letter = scanner.expect(r"(?P<letter>[IPQM])(?=[0-9(])")["letter"].upper()
+    index = variable_number(scanner, depth)
+    return Expression(
+        letter + index.bracketed(), index.words, lambda scope: scope.read(letter, int(index.value(scope)))
+    )
+
+
+def variable_number(scanner: Scanner, depth: int = 0) -> Expression:
+    """Read the number after a variable's letter: digits, or an expression in brackets."""
+    if scanner.take(r"\("):
+        return _closed(scanner, depth)
+    return constant(scanner.expect(r"(?P<digits>[0-9]{1,5})")["digits"])
+
+
+def _joined(
+    left: Expression, sign: str, table: dict[str, Binary] | dict[str, Comparison], right: Expression
+) -> Expression:
+    operation = table[sign]
+
+    def value(scope: Scope) -> float:
+        return safely(lambda: operation(left.value(scope), right.value(scope)))
+
+    return Expression(left.text + sign + right.text, left.words + right.words + 1, value)
+
+
+def _applied(name: str, inner: Expression) -> Expression:
+    function = FUNCTIONS[name]
+    return Expression(
+        f"{name}({inner.text})", inner.words + 1, lambda scope: safely(lambda: function(inner.value(scope)))
+    )

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Line: bytes of a serial port to commands, and answers to bytes.
+
+Enters and leaves: bytes, in pieces of any size. I3 selects the framing of answers, I4 enables checksums, I6 selects the
+error format [TurboPMAC, I3, I4, I6]. Control characters act at once, even inside a line.
+"""
+
+from __future__ import annotations
+
+from pkm_post.control.simulator.control import CONTROLS
+from pkm_post.control.simulator.controller import Controller
+from pkm_post.control.simulator.errors import CHARACTER, DATA, CommandError
+from pkm_post.control.simulator.online import Session, execute
+
+ACK, BEL, CR, LF, MARK = b"\x06", b"\x07", b"\r", b"\n", b"\x02"
+BACKSPACE, CHECK, CANCEL = 0x08, 0x0E, 0x18
+LAST_CHARACTER = 127
+
+
+class Line:
+    """One port: the line received so far, and the addresses for its commands.
+
+    A controller's port does not detect a disconnect: a buffer stays open, a motor addressed.
+    """
+
+    def __init__(self, controller: Controller) -> None:
+        self.controller = controller
+        self.session = Session(controller)
+        self._text = bytearray()
+        self._error = 0
+        self._unasked = bytearray()
+
+    def attend(self) -> None:
+        """Also receive the output of programs (SEND), for ``receive`` to return."""
+        self.controller.listeners.append(self._listen)
+
+    def receive(self, data: bytes) -> bytes:
+        """Take received bytes; return the output of programs since the last call, then the answers."""
+        answer = self.said()
+        for code in data:
+            answer += self._take(code)
+        return answer + self.said()
+
+    def said(self) -> bytes:
+        """The output of programs since the last call."""
+        said, self._unasked = bytes(self._unasked), bytearray()
+        return said
+
+    def command(self, text: str) -> bytes:
+        """Execute a line and frame its answer."""
+        try:
+            return self._framed(self._carry_out(text), text)
+        except CommandError as error:
+            return self.refused(error.number)
+
+    def refusal(self, text: str) -> int:
+        """Execute a line without its answer; return the number of its error, or 0."""
+        try:
+            self._carry_out(text)
+        except CommandError as error:
+            return error.number
+        return 0
+
+    def refused(self, number: int) -> bytes:
+        """The framed report of an error."""
+        return self._error_text(number, BEL)
+
+    def control(self, code: int) -> bytes:
+        """Execute a control character; queries are answered like a line."""
+        act = CONTROLS.get(code)
+        if act is None:
+            return b""
+        try:
+            told = act(self.session)
+        except CommandError as error:
+            return self.refused(error.number)
+        return b"" if told is None else self._framed(told, "")
+
+    def _carry_out(self, text: str) -> list[str]:
+        if len(text) > self.controller.settings.line_limit:
+            raise CommandError(DATA)
+        return execute(self.session, text)
+
+    def _take(self, code: int) -> bytes:
+        if code == CR[0]:
+            return self._end_of_line()
+        if code == BACKSPACE:
+            del self._text[-1:]
+        elif code == CHECK:
+            return bytes([sum(self._text) & 0xFF])
+        elif code == CANCEL:
+            return self._cancel()
+        elif code < 0x20:
+            return self.control(code)  # LF has no action
+        elif code > LAST_CHARACTER:
+            self._error = CHARACTER
+        elif len(self._text) >= self.controller.settings.line_limit:
+            self._error = self._error or DATA
+        else:
+            self._text.append(code)
+        return b""
+
+    def _end_of_line(self) -> bytes:
+        """A line with a faulty character is not executed, whenever I4 would have the error reported."""
+        text, error = self._text.decode("ascii"), self._error
+        self._text, self._error = bytearray(), 0
+        return self.refused(error) if error else self.command(text)
+
+    def _cancel(self) -> bytes:
+        self._text, self._error = bytearray(), 0
+        return bytes([CANCEL]) if self.controller.variables.setting(63) else b""
+
+    def _framed(self, told: list[str], command: str) -> bytes:
+        handshake, sums = self.controller.variables.setting(3), self.controller.variables.setting(4)
+        answer = bytearray()
+        for text in told:
+            data = (LF if handshake in (1, 3) else b"") + text.encode("ascii") + CR
+            answer += data + (_sum(data) if sums else b"")
+        mark = (b"", LF, ACK, ACK)[handshake]
+        return bytes(answer + mark + (_sum(command.encode("ascii")) if sums and mark else b""))
+
+    def _error_text(self, number: int, bell: bytes) -> bytes:
+        handshake, form = self.controller.variables.setting(3), self.controller.variables.setting(6)
+        if form in (0, 2):
+            return bell
+        feed = LF if handshake in (1, 3) else b""
+        return bell + (CR if form == 3 else b"") + feed + f"ERR{number:03d}".encode("ascii") + CR
+
+    def _listen(self, said: str | CommandError) -> None:
+        """Queue unsolicited output: I64 marks it; I6 = 2 suppresses errors of programs."""
+        variables = self.controller.variables
+        if isinstance(said, CommandError):
+            if variables.setting(6) != 2:
+                self._unasked += self._error_text(said.number, MARK if variables.setting(64) else BEL)
+            return
+        feed = LF if variables.setting(3) in (1, 3) else b""
+        self._unasked += (MARK if variables.setting(64) else b"") + feed + said.encode("ascii", "replace") + CR
+
+
+def _sum(data: bytes) -> bytes:
+    return bytes([sum(data) & 0xFF])

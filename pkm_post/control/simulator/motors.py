@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Motors: six simulated motors in columns, with their servo loops, limits, jogs and homing moves.
+
+Enters: commanded positions in counts, and elapsed time in ms. Leaves: actual positions and faults. The actual position
+follows the commanded one with a first-order lag, so at constant speed the following error is speed times ``lag_ms``. An
+open-loop motor stands still, and its commanded position with it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.control.simulator.profiles import Profile, endless, go_to, stop
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, Array, Variables
+
+SLOWEST = 1e-6
+"""counts/ms or counts/ms^2: lower bound of I-variables; at zero a move would never end."""
+
+
+@dataclass
+class Jog:
+    """A move of a single motor and its elapsed time; a homing move continues after its profile."""
+
+    profile: Profile
+    time: float = 0.0
+    homing: bool = False
+
+
+class Motors:
+    """The state of all motors; columns are (6,), motor n is index n - 1.
+
+    Attributes:
+        variables: the controller's.
+        commanded: counts.
+        actual: counts.
+        speed: of the commanded position, counts/ms.
+        closed: whether the servo loop is closed.
+        enabled: whether the amplifier is enabled.
+        homed: whether the motor is homed.
+        stopped_on_limit: whether a limit stopped it.
+        fatal: whether it tripped on its following error.
+        amplifier_fault: set by the test or simulation.
+        low_switch, high_switch: overtravel switches, set likewise.
+        jammed: whether the motor is blocked, set likewise.
+        jogs: for each motor its current jog.
+        before_jog: position that ``J=`` returns to, counts.
+    """
+
+    def __init__(self, variables: Variables, lag_ms: float, home_flag: float) -> None:
+        self.variables, self._lag_ms = variables, lag_ms
+        self.commanded = np.zeros(SIMULATED_MOTORS)
+        self.actual, self.speed, self.before_jog = (np.zeros(SIMULATED_MOTORS) for _ in range(3))
+        self.closed, self.enabled, self.homed = (np.zeros(SIMULATED_MOTORS, dtype=bool) for _ in range(3))
+        self.stopped_on_limit, self.fatal, self.amplifier_fault = (np.zeros(SIMULATED_MOTORS, bool) for _ in range(3))
+        self.low_switch, self.high_switch, self.jammed = (np.zeros(SIMULATED_MOTORS, dtype=bool) for _ in range(3))
+        self.jogs: list[Jog | None] = [None] * SIMULATED_MOTORS
+        self.home_flag = np.full(SIMULATED_MOTORS, home_flag)
+
+    @property
+    def following_error(self) -> Array:
+        """Commanded minus actual position, counts."""
+        return self.commanded - self.actual
+
+    @property
+    def activated(self) -> Array:
+        """Ixx00, (6,)."""
+        return self.variables.column(0) != 0
+
+    def moving(self) -> Array:
+        """Which motors have a commanded speed or a jog."""
+        return (self.speed != 0) | np.array([jog is not None for jog in self.jogs])
+
+    def jog_to(self, index: int, goal: float) -> None:
+        """Jog one motor to a position in counts."""
+        self._begin(index, go_to(*self._state(index), goal, self._jog_speed(index), self._jog_acceleration(index)))
+
+    def jog_on(self, index: int, sign: int) -> None:
+        """Jog one motor indefinitely in a direction."""
+        wanted = sign * self._jog_speed(index)
+        self._begin(index, endless(*self._state(index), wanted, self._jog_acceleration(index)))
+
+    def jog_stop(self, index: int) -> None:
+        """Stop one motor and close its loop."""
+        self._begin(index, stop(*self._state(index), self._jog_acceleration(index)))
+
+    def abort(self, index: int) -> None:
+        """Stop one motor at deceleration Ixx15 and close its loop."""
+        self._begin(index, stop(*self._state(index), max(self._value(index, 15), SLOWEST)))
+
+    def home(self, index: int) -> None:
+        """Start the homing move of one motor."""
+        self.homed[index] = False
+        wanted = self._value(index, 23)
+        profile = endless(*self._state(index), wanted, self._jog_acceleration(index))
+        self._begin(index, profile)
+        self.jogs[index] = Jog(profile, homing=True)
+
+    def home_here(self, index: int) -> None:
+        """Make the motor's current position its home."""
+        self._shift(index, self.commanded[index] - self._value(index, 26) / 16)
+        self.homed[index] = True
+
+    def kill(self, index: int) -> None:
+        """Open the loop of one motor and disable its amplifier."""
+        self.closed[index] = self.enabled[index] = False
+        self.jogs[index] = None
+
+    def open_loop(self, index: int) -> None:
+        """Open the loop of one motor with its amplifier enabled."""
+        self.kill(index)
+        self.enabled[index] = True
+
+    def advance(self, ms: float, commanded: Array) -> None:
+        """Advance time.
+
+        Args:
+            ms: elapsed time.
+            commanded: (6,) positions commanded by programs at its end, counts; NaN for a motor without a program.
+        """
+        wanted = np.where(np.isnan(commanded), self.commanded, commanded)
+        for index, jog in enumerate(self.jogs):
+            if jog is not None:
+                wanted[index] = self._jogged(index, jog, ms)
+        wanted = np.where(self.closed, wanted, self.actual)
+        # Where homing has shifted the zero, wanted and commanded have shifted together.
+        self.speed = np.where(self.closed, (wanted - self.commanded) / ms, 0.0)
+        # First-order lag behind a ramp: e' = speed - e / lag.
+        fading = math.exp(-ms / self._lag_ms)
+        error = self.following_error * fading + self.speed * self._lag_ms * (1.0 - fading)
+        self.commanded = wanted
+        self.actual = np.where(self.jammed | ~self.closed, self.actual, wanted - error)
+
+    def _jogged(self, index: int, jog: Jog, ms: float) -> float:
+        jog.time += ms
+        position = jog.profile.at(jog.time)
+        if jog.homing and jog.profile.goal is None:
+            position = self._searched(index, jog, position)
+        elif jog.profile.ended(jog.time):
+            self.jogs[index] = None
+            self.homed[index] |= jog.homing
+        return position
+
+    def _searched(self, index: int, jog: Jog, position: float) -> float:
+        """The flag sets the zero; after it the motor turns back to its home."""
+        flag, before = self.home_flag[index], self.commanded[index]
+        if position == before or (before - flag) * (position - flag) > 0:
+            return position  # the flag was not passed
+        speed = float(self.speed[index])
+        self._shift(index, flag)
+        position -= flag
+        goal = self._value(index, 26) / 16
+        jog.profile = go_to(position, speed, goal, self._jog_speed(index), self._jog_acceleration(index))
+        jog.time = 0.0
+        return position
+
+    def _shift(self, index: int, zero: float) -> None:
+        for column in (self.commanded, self.actual, self.before_jog, self.home_flag):
+            column[index] -= zero
+
+    def _begin(self, index: int, profile: Profile) -> None:
+        if self.jogs[index] is None:
+            self.before_jog[index] = self.commanded[index]
+        self.closed[index] = self.enabled[index] = True
+        self.fatal[index] = self.stopped_on_limit[index] = False
+        self.jogs[index] = None if profile.ended(0.0) else Jog(profile)
+
+    def _state(self, index: int) -> tuple[float, float]:
+        return float(self.commanded[index]), float(self.speed[index])
+
+    def _value(self, index: int, which: int) -> float:
+        return self.variables.of_motor(index + 1, which)
+
+    def _jog_speed(self, index: int) -> float:
+        return max(abs(self._value(index, 22)), SLOWEST)
+
+    def _jog_acceleration(self, index: int) -> float:
+        """The acceleration of the ramp Ixx20 and Ixx21, within Ixx19; the S-curve is not simulated."""
+        ramp = max(self._value(index, 20), 2 * self._value(index, 21))
+        highest = max(self._value(index, 19), SLOWEST)
+        return min(self._jog_speed(index) / ramp, highest) if ramp > 0 else highest

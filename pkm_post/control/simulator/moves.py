@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Moves: the axis positions of a coordinate system over the time of a move.
+
+Enters: end points of moves in axis units, program times in ms. Leaves: positions of the nine axes. Blended moves
+overlap: each adds its own displacement, and the contributions sum.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Protocol
+
+from pkm_post.control.simulator.variables import Array
+
+
+class Move(Protocol):
+    """A move in program time.
+
+    Attributes:
+        start: start time, ms.
+        end: arrival time, ms.
+        target: end position, (9,).
+    """
+
+    @property
+    def start(self) -> float:
+        """Start time, ms."""
+
+    @property
+    def end(self) -> float:
+        """Arrival time, ms."""
+
+    @property
+    def target(self) -> Array:
+        """End position, (9,)."""
+
+    def missing(self, time: float) -> Array:
+        """Remaining distance at a time, (9,)."""
+
+
+@dataclass(frozen=True)
+class Cubic:
+    """A PVT move: the cubic given by the positions and speeds at its ends.
+
+    p(t) = p0 + v0 t + c2 t^2 + c3 t^3 with c2 = (3 d - (2 v0 + v1) T) / T^2 and c3 = ((v0 + v1) T - 2 d) / T^3 where
+    d = p1 - p0 [TurboPMAC, PVT mode].
+
+    Attributes:
+        start: ms.
+        duration: ms, T.
+        origin: position at the start, p0.
+        target: position at the end, p1.
+        first_speed: speed at the start in axis units per ms, v0.
+        last_speed: speed at the end, v1.
+    """
+
+    start: float
+    duration: float
+    origin: Array
+    target: Array
+    first_speed: Array
+    last_speed: Array
+
+    @property
+    def end(self) -> float:
+        """Arrival time, ms."""
+        return self.start + self.duration
+
+    def missing(self, time: float) -> Array:
+        """Remaining distance at a time, (9,)."""
+        span = self.duration
+        t = min(max(time - self.start, 0.0), span)
+        distance = self.target - self.origin
+        square = (3 * distance - (2 * self.first_speed + self.last_speed) * span) / span**2
+        cube = ((self.first_speed + self.last_speed) * span - 2 * distance) / span**3
+        return distance - t * (self.first_speed + t * (square + t * cube))
+
+
+@dataclass(frozen=True)
+class Blended:
+    """A LINEAR or RAPID move: constant speed, with ramps at both ends that blend with those of its neighbours.
+
+    The speed profile is a box as wide as the move takes at full speed, convolved with boxes as wide as the ramps: one
+    for a linear ramp, two for an S-curve. Where the ramps of two moves overlap, their sum rounds the corner.
+
+    Attributes:
+        start: ms.
+        duration: ms, distance over speed.
+        ramps: lengths of the ramps, ms.
+        distance: from the end of the previous move, (9,).
+        target: position at the end.
+        blends: whether a LINEAR move may begin before this one ends.
+    """
+
+    start: float
+    duration: float
+    ramps: tuple[float, ...]
+    distance: Array
+    target: Array
+    blends: bool
+
+    @property
+    def end(self) -> float:
+        """Arrival time, ms."""
+        return self.start + self.duration + sum(self.ramps)
+
+    @property
+    def hand_over(self) -> float:
+        """Start time of a move that blends with this one, ms."""
+        return self.start + self.duration
+
+    def missing(self, time: float) -> Array:
+        """Remaining distance at a time, (9,)."""
+        return self.distance * (1.0 - share(time - self.start, (self.duration, *self.ramps)))
+
+
+@dataclass(frozen=True)
+class Rest:
+    """A dwell.
+
+    Attributes:
+        start: ms.
+        end: ms.
+        target: where the axes rest.
+        fixed: whether its duration ignores the override, and nothing is computed ahead meanwhile.
+    """
+
+    start: float
+    end: float
+    target: Array
+    fixed: bool
+
+    def missing(self, time: float) -> Array:
+        """Remaining distance: zero, (9,)."""
+        return 0.0 * self.target
+
+
+def share(time: float, boxes: tuple[float, ...]) -> float:
+    """Fraction of a distance covered when the speed profile is a convolution of boxes.
+
+    The integral of the convolution of n boxes of widths w is the sum over all subsets S of
+    (-1)^|S| max(t - sum of S, 0)^n / (n! product of w).
+
+    Args:
+        time: since the start.
+        boxes: widths; a box of width zero has no effect.
+    """
+    widths = sorted(width for width in boxes if width > 0)
+    whole, ramps = sum(widths), sum(widths[:-1])
+    if time <= 0:
+        return 0.0
+    if time >= whole:
+        return 1.0
+    if ramps <= time <= whole - ramps:  # at full speed; the sum below would lose precision here
+        return (time - ramps / 2) / widths[-1]
+    if time > whole / 2:
+        return 1.0 - share(whole - time, boxes)
+    count = len(widths)
+    total = math.fsum(
+        (-1) ** size * max(time - math.fsum(subset), 0.0) ** count
+        for size in range(count + 1)
+        for subset in combinations(widths, size)
+    )
+    return total / (math.factorial(count) * math.prod(widths))
+
+
+def ramps_of(ramp: float, curve: float) -> tuple[float, ...]:
+    """Boxes that smooth the speed: a ramp of ``ramp`` ms with S-curves of ``curve`` ms at both ends."""
+    whole = max(ramp, 2 * curve)
+    return (whole - curve, curve) if curve > 0 else (whole,)

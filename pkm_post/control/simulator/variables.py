@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Variables: I, P, Q and M with their values after a reset.
+
+I-variables of motor xx are Ixx00 to Ixx99, those of coordinate system x are I(50+x)00 to I(50+x)99. Defaults and units
+follow the manual [TurboPMAC]; those that the simulator does not use start at 0. An M-variable has no address behind it:
+it stores what is written to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pkm_post.control.simulator.errors import DATA, CommandError
+from pkm_post.control.simulator.numerals import kept
+
+Array = NDArray[Any]
+
+MOTORS, SYSTEMS, HIGHEST = 32, 16, 8191
+SIMULATED_MOTORS = 6
+
+GLOBAL_DEFAULTS: dict[int, float] = {
+    3: 1, 4: 0, 6: 1, 9: 2, 10: 3_713_707, 15: 0, 16: 5, 17: 10, 42: 0, 63: 0, 64: 0, 68: 15,
+}  # fmt: skip
+
+MOTOR_DEFAULTS: dict[int, float] = {
+    11: 32_000,  # fatal following error, 1/16 count
+    12: 16_000,  # warning following error, 1/16 count
+    13: 0,  # positive limit, counts; 0 is none
+    14: 0,  # positive limit, counts; 0 means none
+    15: 0.25,  # deceleration of an abort, counts/ms^2
+    16: 32,  # highest speed in a program, counts/ms
+    17: 0.5,  # highest acceleration in a program, counts/ms^2
+    19: 0.15625,  # highest acceleration of a jog
+    20: 0,  # time to reach the jog speed, ms
+    21: 50,  # half of the S-curve of a jog, ms
+    22: 32,  # speed of a jog, counts/ms
+    23: 32,  # speed and direction of the homing move
+    26: 0,  # home offset from the flag, 1/16 count
+    28: 160,  # in-position band, 1/16 count
+}
+
+SYSTEM_DEFAULTS: dict[int, float] = {87: 0, 88: 50, 89: 1000, 90: 1000, 93: 0, 94: 1644, 95: 1644}
+
+CHOICES = {3: 3, 4: 3, 6: 3, 9: 3, 42: 1, 63: 1, 64: 1, 68: 15}
+"""Integers from 0 to this, by I-variable."""
+
+
+ADDRESSES_OF_MOTOR = {2, 3, 4, 5, 10, 24, 25, 81, 82, 83, 84, 91, 95}
+MACRO_ADDRESSES = range(20, 24)
+
+
+def holds_address(number: int) -> bool:
+    """Whether an I-variable is an address or a bit field, which I9 = 2 and 3 report in hexadecimal."""
+    return number in MACRO_ADDRESSES or (100 <= number < 100 * (MOTORS + 1) and number % 100 in ADDRESSES_OF_MOTOR)
+
+
+def _defaults() -> dict[int, float]:
+    values = dict(GLOBAL_DEFAULTS)
+    for motor in range(1, MOTORS + 1):
+        values |= {100 * motor + which: value for which, value in MOTOR_DEFAULTS.items()}
+        values[100 * motor] = float(motor <= SIMULATED_MOTORS)
+    for system in range(1, SYSTEMS + 1):
+        values |= {100 * (50 + system) + which: value for which, value in SYSTEM_DEFAULTS.items()}
+    return values
+
+
+class Variables:
+    """All variables of a controller. Those never written are zero, or the default.
+
+    Attributes:
+        definitions: text after ``Mn->``, by number.
+    """
+
+    def __init__(self) -> None:
+        self._values: dict[str, dict[int, float]] = {"I": _defaults(), "P": {}, "M": {}}
+        self._q: list[dict[int, float]] = [{} for _ in range(SYSTEMS)]
+        self._columns: dict[int, Array] = {}
+        self.definitions: dict[int, str] = {}
+
+    def read(self, letter: str, number: int, system: int = 1) -> float:
+        """The value of a variable.
+
+        Raises:
+            CommandError: the variable does not exist.
+        """
+        return self._table(letter, number, system).get(number, 0.0)
+
+    def write(self, letter: str, number: int, value: float, system: int = 1) -> None:
+        """Assign a value to a variable.
+
+        Raises:
+            CommandError: the variable does not exist, or does not accept this value.
+        """
+        table = self._table(letter, number, system)
+        if letter == "I" and number in CHOICES and value not in range(CHOICES[number] + 1):
+            raise CommandError(DATA)
+        table[number] = kept(value)
+        if letter == "I":
+            self._columns.clear()
+
+    def setting(self, number: int) -> int:
+        """The value of an integer I-variable."""
+        return int(self._values["I"].get(number, 0))
+
+    def of_motor(self, motor: int, which: int) -> float:
+        """Ixx``which`` of a motor."""
+        return self._values["I"].get(100 * motor + which, 0.0)
+
+    def column(self, which: int) -> Array:
+        """Ixx``which`` of all simulated motors, (6,)."""
+        if which not in self._columns:
+            self._columns[which] = np.array([self.of_motor(motor, which) for motor in range(1, SIMULATED_MOTORS + 1)])
+        return self._columns[which]
+
+    def of_system(self, system: int, which: int) -> float:
+        """Isx``which`` of a coordinate system."""
+        return self._values["I"].get(100 * (50 + system) + which, 0.0)
+
+    def _table(self, letter: str, number: int, system: int) -> dict[int, float]:
+        if not 0 <= number <= HIGHEST:
+            raise CommandError(DATA)
+        return self._q[system - 1] if letter == "Q" else self._values[letter]
+
+
+@dataclass(frozen=True)
+class SystemScope:
+    """The variables as seen by one coordinate system: Q-variables belong to it."""
+
+    variables: Variables
+    system: int
+
+    def read(self, letter: str, number: int) -> float:
+        """The value of a variable."""
+        return self.variables.read(letter, number, self.system)
+
+    def write(self, letter: str, number: int, value: float) -> None:
+        """Assign a value to a variable."""
+        self.variables.write(letter, number, value, self.system)

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contacts: places on a path where a mover violates its clearance to a mesh; none is missed between two poses.
+
+A stretch of the path is checked in the pose at its middle. If c bounds the motion of every point of the body from
+there, and the mesh is farther away than c plus the clearance, the stretch is clear. Otherwise it is bisected. Long
+stretches use only the bounding spheres of the triangles; in short ones distances are exact. A stretch that is still
+unproven when c is below a hundredth of a millimetre counts as a contact. Units: mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array, Cylinders, nearest_of_triangle
+from pkm_post.machine.collisions.movers import Mover
+from pkm_post.machine.kinematics.checks import HUNDREDTH
+from pkm_post.machine.kinematics.part import Part, pairs_within
+from pkm_post.machine.kinematics.way import Pose, Way
+
+_FINE = 1.0
+"""mm of motion in a stretch, below which distances from triangles are computed."""
+_AT_ONCE = 1024
+"""Cylinders per pass."""
+ENOUGH = 40
+"""Contacts in one operation, after which its search ends."""
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Contacts found, in path order.
+
+    Attributes:
+        cell: (K,) cell of the path.
+        share: (K,) position within the cell, 0 to 1.
+        point: (K, 3) the contact point of the mesh.
+        distance: (K,) distance of the body from it; 0 where it is inside.
+    """
+
+    cell: Array
+    share: Array
+    point: Array
+    distance: Array
+
+    def __len__(self) -> int:
+        return len(self.cell)
+
+
+class _Stretches:
+    """Positions on the path combine cell and share in one number: cell i reaches from i - 1 to i."""
+
+    def __init__(self, way: Way, mover: Mover) -> None:
+        self.way, self.change, self.total = way, mover.change, np.cumsum(mover.change)
+        breaks = np.flatnonzero(np.diff(mover.cells) > 1) + 1
+        runs = np.split(mover.cells, breaks) if len(mover.cells) else []
+        self.start = np.array([run[0] - 1.0 for run in runs])
+        self.end = np.array([float(run[-1]) for run in runs])
+
+    def come(self, at: Array) -> Array:
+        """Lipschitz bound of the distance travelled by any point of the body since the start of the path."""
+        cell = np.ceil(at).astype(np.int64)
+        return self.total[cell] - (cell - at) * self.change[cell]
+
+    def pose(self, at: Array) -> Pose:
+        cell = np.maximum(np.ceil(at).astype(np.int64), 1)
+        return self.way.inside(cell, at - (cell - 1))
+
+
+def contacts(way: Way, mover: Mover, part: Part, clearance: float, operation: Array, enough: int = ENOUGH) -> Contacts:
+    """Contacts where a mover is closer to a part than its clearance.
+
+    Args:
+        way: pose path, including the motion between poses.
+        mover: the moving body.
+        part: the stationary body.
+        clearance: smallest allowed distance, mm, above 0.
+        operation: (N,) operation of each cell of the path; every operation with contacts yields some.
+        enough: contacts in an operation, after which its search ends.
+    """
+    stretches = _Stretches(way, mover)
+    start, end = stretches.start, stretches.end
+    found: list[tuple[Array, Array, Array]] = []
+    counted = np.zeros(int(operation.max(initial=0)) + 1, dtype=np.int64)
+    while len(start):
+        one_cell = end - start <= 1
+        middle = np.where(one_cell, (start + end) / 2, np.floor((start + end) / 2))
+        there = stretches.come(middle)
+        change = np.maximum(there - stretches.come(start), stretches.come(end) - there)
+        distance, point = _looked_at(stretches, mover, part, middle, change, clearance)
+        met = (distance < clearance) | ((distance < clearance + change) & (change < HUNDREDTH))
+        found.append((middle[met], point[met], distance[met]))
+        np.add.at(counted, operation[np.ceil(middle[met]).astype(np.int64)], 1)
+        more = (distance < clearance + change) & ~(met & one_cell)
+        first, last = operation[np.floor(start).astype(np.int64) + 1], operation[np.ceil(end).astype(np.int64)]
+        more &= (first != last) | (counted[first] < enough)
+        start, middle, end = start[more], middle[more], end[more]
+        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+    at, point, distance = (np.concatenate(columns) for columns in zip(*found, strict=True)) if found else _NONE
+    return _in_order(at, point, distance)
+
+
+def contacts_at_ends(way: Way, mover: Mover, part: Part, clearance: float) -> Contacts:
+    """Contacts at the ends of the mover's cells only; the motion between them is not checked."""
+    stretches = _Stretches(way, mover)
+    at = mover.cells.astype(np.float64)
+    distance, point = _looked_at(stretches, mover, part, at, np.zeros(len(at)), clearance)
+    met = distance < clearance
+    return _in_order(at[met], point[met], distance[met])
+
+
+def _in_order(at: Array, point: Array, distance: Array) -> Contacts:
+    order = np.argsort(at, kind="stable")
+    cell = np.maximum(np.ceil(at[order]).astype(np.int64), 1)
+    return Contacts(cell, at[order] - (cell - 1), point[order], distance[order])
+
+
+_NONE = np.empty(0), np.empty((0, 3)), np.empty(0)
+
+
+def _looked_at(
+    stretches: _Stretches, mover: Mover, part: Part, at: Array, change: Array, clearance: float
+) -> tuple[Array, Array]:
+    """Distances at positions (M,), and the contact points (M, 3).
+
+    A distance is infinite where it provably exceeds change plus clearance; on a long stretch without proof the
+    clearance is returned.
+    """
+    distance, point = np.full(len(at), np.inf), np.full((len(at), 3), np.nan)
+    for rows in _chunks(len(at), max(1, _AT_ONCE // len(mover.rounding))):
+        cylinders = mover.cylinders(stretches.pose(at[rows]))
+        allowed = np.repeat(change[rows] + clearance, len(mover.rounding))
+        rounding = np.tile(mover.rounding, len(allowed) // len(mover.rounding))
+        fine = np.repeat(change[rows] < _FINE, len(mover.rounding))
+        told, met = np.full(len(allowed), np.inf), np.full((len(allowed), 3), np.nan)
+        for level, of_level in _levels(part, change[rows], fine, len(mover.rounding)):
+            pose, _, _ = pairs_within(cylinders.take(of_level), part, (allowed + rounding)[of_level], level)
+            told[of_level[pose]] = clearance
+        exact = np.flatnonzero(fine)
+        told[exact], met[exact] = _exactly(cylinders.take(exact), part, allowed[exact], rounding[exact])
+        by_pose = told.reshape(-1, len(mover.rounding))
+        best = np.argmin(by_pose, axis=1)
+        picked = np.arange(len(best)) * len(mover.rounding) + best
+        distance[rows], point[rows] = told[picked], met[picked]
+    return distance, point
+
+
+def _levels(part: Part, change: Array, fine: Array, pieces: int) -> Iterator[tuple[int, Array]]:
+    """For long stretches, the level of spheres small compared with them, and the cylinders checked at that level."""
+    radii = np.array([np.median(radius) for _, radius in part.balls])
+    small_enough = radii[None, :] < change[:, None] / 2
+    level = np.where(small_enough.any(axis=1), small_enough.shape[1] - 1 - np.argmax(small_enough[:, ::-1], axis=1), 0)
+    level = np.repeat(level, pieces)
+    for one in np.unique(level[~fine]):
+        yield int(one), np.flatnonzero(~fine & (level == one))
+
+
+def _exactly(cylinders: Cylinders, part: Part, allowed: Array, rounding: Array) -> tuple[Array, Array]:
+    """Distances (M,), infinite where they are at least the allowed one; and the nearest points."""
+    distance, point = np.full(len(allowed), np.inf), np.full((len(allowed), 3), np.nan)
+    pose, triangle, bound = pairs_within(cylinders, part, allowed + rounding)
+    order = np.lexsort((bound, pose))
+    pose, triangle, bound = pose[order], triangle[order], bound[order]
+    # Where bodies overlap many spheres are inside, and a few of them decide.
+    rank = np.arange(len(pose)) - np.searchsorted(pose, pose)
+    for few in (rank < _FEW, rank >= _FEW):
+        open_yet = few & (bound < np.minimum(distance, allowed)[pose] + rounding[pose]) & (distance > 0)[pose]
+        rows, others = pose[open_yet], triangle[open_yet]
+        for some in _chunks(len(rows), _PAIRS):
+            found, where = nearest_of_triangle(cylinders.take(rows[some]), part.triangles[others[some]])
+            found = np.maximum(found - rounding[rows[some]], 0.0)
+            best = np.lexsort((found, rows[some]))
+            best = best[np.append(True, np.diff(rows[some][best]) > 0)]
+            nearer = found[best] < np.minimum(distance, allowed)[rows[some][best]]
+            taken = rows[some][best][nearer]
+            distance[taken], point[taken] = found[best][nearer], where[best][nearer]
+    return distance, point
+
+
+_FEW = 8
+_PAIRS = 8192
+
+
+def _chunks(count: int, size: int) -> Iterator[Array]:
+    return (np.arange(first, min(first + size, count)) for first in range(0, count, size))

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faults of a machine file, by entry, and the lines they are reported at.
+
+Input: the text, its ``tomllib`` document and faults by entry name. Output: diagnostics in text order. ``tomllib`` keeps
+no line numbers: they are found by searching for the keys.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from pkm_post.machine.description.fields import FIELDS, Name
+from pkm_post.model import Diagnostic, Place
+
+_PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
+_DOTTED = rf"{_PART}(?:\s*\.\s*{_PART})*"
+_SECTION = re.compile(rf"\s*\[{{1,2}}\s*({_DOTTED})\s*\]{{1,2}}\s*(?:#.*)?$")
+_KEY = re.compile(rf"\s*({_DOTTED})\s*=")
+_TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+
+MOST_SHOWN = 100
+"""Most faults shown per file; suggesting known names takes the most time."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault: rule code, entry name, and what was found there; for M105 that is the suggested name."""
+
+    code: str
+    name: Name
+    found: str = ""
+
+
+def _parts(dotted: str) -> Name:
+    return tuple(part.strip("\"'") for part in re.findall(_PART, dotted))
+
+
+def _stands(document: Any, name: Name) -> bool:
+    """Whether the document has such an entry: a row of numbers in brackets looks like a section header."""
+    for part in name:
+        if not isinstance(document, dict) or part not in document:
+            return False
+        document = document[part]
+    return True
+
+
+def entry_lines(text: str, document: dict[str, Any]) -> dict[Name, int]:
+    """Line, from 1, of every section and key that starts a line."""
+    lines: dict[Name, int] = {}
+    section: Name = ()
+    for number, line in enumerate(text.split("\n"), start=1):
+        head, key = _SECTION.match(line), _KEY.match(line)
+        name = _parts(head[1]) if head else (*section, *_parts(key[1])) if key else ()
+        if not name or not _stands(document, name):
+            continue
+        section = name if head else section
+        for length in range(1, len(name) + 1):
+            lines.setdefault(name[:length], number)
+    return lines
+
+
+def _line(name: Name, lines: dict[Name, int]) -> int:
+    """Line of the entry, or of the innermost section around it, or 0."""
+    return next((lines[name[:length]] for length in range(len(name), 0, -1) if name[:length] in lines), 0)
+
+
+def tell(faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]) -> tuple[Diagnostic, ...]:
+    """Convert faults to diagnostics in line order; beyond the limit, report only how many more."""
+    lines = entry_lines(text, document)
+    placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])
+    told = [
+        Diagnostic(
+            fault.code, Place(file, line=line), f"{'.'.join(fault.name)}: {fault.found or _suggestion(fault.name)}"
+        )
+        for line, fault in placed[:MOST_SHOWN]
+    ]
+    if len(placed) > MOST_SHOWN:
+        line, _ = placed[MOST_SHOWN]
+        told.append(Diagnostic("M208", Place(file, line=line), f"{len(placed) - MOST_SHOWN} more from here on"))
+    return tuple(told)
+
+
+def _suggestion(name: Name) -> str:
+    """Known name nearest to an unknown one."""
+    known = dict.fromkeys(".".join(field.name[:length]) for field in FIELDS for length in range(1, len(field.name) + 1))
+    nearest = difflib.get_close_matches(".".join(name), known, n=1)
+    return f"the nearest known entry is {nearest[0]}" if nearest else "no known entry is like it"
+
+
+def not_toml(fault: Exception, file: str, text: str) -> Diagnostic:
+    """Diagnostic of a text that is not TOML, at the position from the ``tomllib`` message."""
+    message = str(fault)
+    place = _TOML_PLACE.search(message)
+    if place is None:
+        return Diagnostic("M102", Place(file), message)
+    if place[1] is None:
+        return Diagnostic(
+            "M102", Place(file, line=text.rstrip("\n").count("\n") + 1), f"{message[: place.start()]} at the end"
+        )
+    return Diagnostic("M102", Place(file, line=int(place[1]), column=int(place[2])), message[: place.start()])

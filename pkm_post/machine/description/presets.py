@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Presets: machine files that ship with the program, found by name.
+
+Input: the user's machine argument, a preset name or a path. Output: the path of the file to read.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parents[2]
+_IN_A_WHEEL = _PACKAGE / "resources" / "machines"
+FOLDER = _IN_A_WHEEL if _IN_A_WHEEL.is_dir() else _PACKAGE.parent / "resources" / "machines"
+TEMPLATES = FOLDER / "templates"
+SUFFIX = ".toml"
+
+
+def presets() -> list[str]:
+    """Names of the complete machines that ship with the add-on, in alphabetical order."""
+    return _names(FOLDER)
+
+
+def templates() -> list[str]:
+    """Names of machines with too little known data: their files are to be copied and filled in."""
+    return _names(TEMPLATES)
+
+
+def find_machine(name_or_path: str) -> Path | None:
+    """Find the machine file.
+
+    Args:
+        name_or_path: the name of a preset or template, or a path: anything with a separator or the suffix ``.toml``.
+
+    Returns:
+        The path unchanged, whether or not the file exists; for a name the path of the preset or template,
+        None if unknown.
+    """
+    if "/" in name_or_path or "\\" in name_or_path or name_or_path.endswith(SUFFIX):
+        return Path(name_or_path)
+    folder = next((folder for folder in (FOLDER, TEMPLATES) if name_or_path in _names(folder)), None)
+    return folder and folder / f"{name_or_path}{SUFFIX}"
+
+
+def _names(folder: Path) -> list[str]:
+    return sorted(path.stem for path in folder.glob(f"*{SUFFIX}"))

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine file reader: from TOML text to a ``model.Machine`` in mm, rad and s.
+
+All faults are collected in one run: first the form of every entry by the table of fields, then contradictions among the
+well-formed entries. A file with a fault yields no machine, since a misread limit can damage one.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from pkm_post.machine.description.contradictions import contradictions
+from pkm_post.machine.description.faults import Fault, not_toml, tell
+from pkm_post.machine.description.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
+from pkm_post.machine.description.forms import NAME, PROSE, FormError, holds_unknown, shown
+from pkm_post.machine.description.rest_pose import rest_axes
+from pkm_post.machine.description.text_limits import MOST_BYTES, too_deep, too_large
+from pkm_post.machine.description.tool_change import tool_change
+from pkm_post.machine.description.units import Scale, stated_units
+from pkm_post.machine.description.work_offsets import offset_names, stated_poses, work_offsets
+from pkm_post.model import Diagnostic, Machine, Place
+
+CONTROLLER = "controller"
+_FREE_TEXTS = (NAME, PROSE)
+"""Forms in which "unknown" is an ordinary word."""
+
+
+def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+    """Read a machine file and check all of it.
+
+    Args:
+        path: the file, as the user named it; diagnostics show it unchanged.
+
+    Returns:
+        The machine, or None when the file has a fault; and every fault, in text order.
+    """
+    file = str(path)
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as fault:
+        return None, (Diagnostic("M101", Place(file), getattr(fault, "strerror", None) or str(fault)),)
+    return machine_of(content, file)
+
+
+def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+    """Read the content of a machine file, as ``read_machine``.
+
+    Args:
+        content: TOML in UTF-8.
+        file: name shown in diagnostics.
+    """
+    limit = too_large(content, file)
+    if limit:
+        return None, (limit,)
+    try:
+        text = content.decode("utf-8")
+    except ValueError as fault:
+        return None, (Diagnostic("M101", Place(file), str(fault)),)
+    limit = too_deep(text, file)
+    if limit:
+        return None, (limit,)
+    try:
+        document = tomllib.loads(text)
+    except ValueError as fault:
+        return None, (not_toml(fault, file, text),)
+    offsets = offset_names(document)
+    values, faults = _read_entries(document, offsets)
+    faults += stated_poses(offsets, document) + contradictions(values)
+    if faults:
+        return None, tell(faults, file, text, document)
+    return _machine(values, offsets, hashlib.sha256(content).hexdigest()), ()
+
+
+def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[str, Any], list[Fault]]:
+    """Convert every entry, by dotted name, with defaults for omitted ones; and collect the entry faults."""
+    units = stated_units(document)
+    optional = [field for field in FIELDS if field.default is not REQUIRED]
+    values = {entry: field.default for field in optional for entry in field.entries(offsets)}
+    faults: list[Fault] = []
+    present: set[Name] = set()
+    for name, known, value in _walk(document, section_tree(), ()):
+        present.add(name)
+        try:
+            if known is None:
+                faults.append(Fault("M105", name))
+            elif isinstance(known, Field) and known.form not in _FREE_TEXTS and holds_unknown(value):
+                values.pop(".".join(name), None)
+                faults.append(Fault("M107", name, f"expected {known.form.words}"))
+            elif isinstance(known, Field):
+                values[".".join(name)] = known.form.read(value, Scale.of(known.dimension, units))
+            else:
+                faults.append(Fault("M104", name, f"expected a table, got {shown(value)}"))
+        except FormError as wrong:
+            values.pop(".".join(name), None)
+            faults.append(Fault("M104", name, f"expected {known.form.words}, got {wrong}"))
+    return values, faults + _missing(present)
+
+
+def _walk(table: dict[str, Any], tree: dict[str, Any], above: Name) -> Iterator[tuple[Name, Any, Any]]:
+    """Yield each entry of the document: name, ``Field`` (a dict for a section, None if unknown) and value."""
+    for key, value in table.items():
+        known = tree.get(key, tree.get(ANY))
+        if isinstance(known, dict) and isinstance(value, dict):
+            yield from _walk(value, known, (*above, key))
+        else:
+            yield (*above, key), known, value
+
+
+def _missing(present: set[Name]) -> list[Fault]:
+    """Required entries that are absent; those in a malformed section are reported with it."""
+    return [
+        Fault("M103", field.name, f"expected {field.form.words}")
+        for field in FIELDS
+        if field.default is REQUIRED
+        and not any(field.name[:length] in present for length in range(1, len(field.name) + 1))
+    ]
+
+
+def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Machine:
+    base_rest, platform_rest = rest_axes(values)
+    attributes = {field.attribute: values[field.entry] for field in FIELDS if field.attribute}
+    return Machine(
+        fingerprint=fingerprint,
+        base_rest=base_rest,
+        platform_rest=platform_rest,
+        work_offsets=work_offsets(offsets, values),
+        controller=_controller(values),
+        tool_change=tool_change(values),
+        # omitted entries get the machine's own defaults
+        **{name: value for name, value in attributes.items() if value is not None},
+    )
+
+
+def _controller(values: dict[str, Any]) -> dict[str, Any]:
+    """Entries below ``controller``, nested as in the file, in mm and mm/s."""
+    settings: dict[str, Any] = {}
+    for field in FIELDS:
+        if field.name[0] == CONTROLLER:
+            _, *sections, key = field.name
+            section = settings
+            for part in sections:
+                section = section.setdefault(part, {})
+            section[key] = values[field.entry]
+    return settings

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Findings: check results along a path, by row, as data and as diagnostics with their source positions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.model import Diagnostic, Trajectory
+
+SHOWN: dict[str, tuple[str, float]] = {
+    "mm": ("mm", 1.0),
+    "rad": ("degrees", float(np.degrees(1.0))),
+    "mm/s": ("mm/s", 1.0),
+    "N/mm": ("N/mm", 1.0),
+    "": ("", 1.0),
+}
+"""Display unit and factor for each internal unit."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Subject of a check.
+
+    Attributes:
+        name: display name.
+        code: diagnostic code of a violation.
+        unit: of the margin, a key of ``SHOWN``.
+        parts: what may have the least margin: struts, pairs of bodies.
+        told: message template of a violation, with {part} and {by}.
+    """
+
+    name: str
+    code: str
+    unit: str
+    parts: tuple[str, ...]
+    told: str
+
+    def tell(self, part: int, margin: float) -> str:
+        """Format a violation."""
+        return self.told.format(part=self.parts[part], by=-margin * SHOWN[self.unit][1])
+
+
+@dataclass(frozen=True)
+class ReachFinding:
+    """Result of one check on a path of N rows.
+
+    Attributes:
+        subject: the checked subject.
+        margin: (N,) least margin found on the cell that ends at the row, its end included; negative is a violation.
+            A comfortable margin may be a lower bound, but is never the least.
+        part: (N,) index into ``subject.parts`` of what has this margin.
+        at_least: proven lower bound of the margin on the whole path, between the rows as well; minus infinity where
+            only the rows were checked.
+    """
+
+    subject: Subject = field(repr=False)
+    margin: Array
+    part: Array
+    at_least: float
+
+    @property
+    def worst_row(self) -> int:
+        """Row of the least margin."""
+        return int(np.argmin(self.margin))
+
+    @property
+    def first_bad_row(self) -> int | None:
+        """First row with a violation on its cell, or None."""
+        bad = self.margin < 0
+        return int(np.argmax(bad)) if bad.any() else None
+
+
+def faults_of(findings: Iterable[ReachFinding], trajectory: Trajectory, segment: Array) -> tuple[Diagnostic, ...]:
+    """Diagnostics of violations: one for each operation and check, at the worst row.
+
+    Args:
+        findings: of a path along the trajectory.
+        trajectory: source positions of the segments.
+        segment: (N,) segment of each row.
+    """
+    operation = trajectory.operation[segment]
+    faults = []
+    for finding in findings:
+        for number in np.unique(operation[finding.margin < 0]):
+            row = int(np.argmin(np.where(operation == number, finding.margin, np.inf)))
+            found = finding.subject.tell(int(finding.part[row]), float(finding.margin[row]))
+            faults.append(Diagnostic(finding.subject.code, trajectory.place(int(segment[row])), found))
+    return tuple(sorted(faults, key=lambda fault: (fault.place.operation, fault.place.line, fault.code)))

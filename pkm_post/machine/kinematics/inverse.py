@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Inverse kinematics: from tool poses to six strut lengths; unique and in closed form.
+
+r_T = q + L k, MT_i = r_T + R_T TT_i, d_i = |MT_i - MB_i| [paper eq. 1 to 5], where L is the distance from the tool
+tip to the platform origin: gauge length plus spindle nose. Strut vectors here run from the base to the platform; in the
+paper, the other way round. The controller counts d_i, corrected for the screw rotation, less the length offset; both
+are zero unless the machine file states them.
+
+Lengths alone need no strut vectors. With p from the middle of the base to the platform origin, a and b the joints in
+their frames, d^2 = |p|^2 + |a|^2 + |b|^2 + 2 a.(R^T p) - 2 b.p - 2 b^T R a: linear in 17 numbers of a pose, with
+machine constants as coefficients. Six squares are thus one matrix product, and a root. The terms cancel: the error is
+at most a few roundings of (|p| + |a| + |b|)^2 / 2 d. Measured from the middle of the base, |p| is at most the mean
+strut plus the offset of the middle of the platform joints, so the position of {M} does not matter.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import Array, fill_frame, length_of, norm
+from pkm_post.machine.kinematics.orientation import platform_rotation
+from pkm_post.machine.kinematics.screw import screw_correction
+from pkm_post.model import Machine
+
+_CHUNK = 8192
+"""Poses per pass: the 17 numbers of each fill about a megabyte, which stays in the processor's cache."""
+
+
+def platform_joints(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+    """Platform joints in {M}, (N, 6, 3).
+
+    Args:
+        machine: the geometry.
+        tip: (N, 3) tool tips in {M}, mm.
+        axis: (N, 3) unit tool axes in {M}.
+        spin: (N,) rad.
+        tool_length: (N,) gauge lengths, mm.
+
+    Raises:
+        ValueError: a tool axis points straight down, where the shortest rotation is not unique.
+    """
+    origin = tip + (machine.spindle_nose + tool_length)[:, None] * axis
+    rotation = platform_rotation(axis, spin)
+    return origin[:, None, :] + machine.platform_joints @ rotation.transpose(0, 2, 1)
+
+
+def strut_vectors(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+    """Strut vectors from base joint to platform joint in {M}, (N, 6, 3) in mm; arguments as above."""
+    return platform_joints(machine, tip, axis, spin, tool_length) - machine.base_joints
+
+
+def strut_lengths(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+    """Strut lengths as the controller counts them, (N, 6) in mm; arguments as above."""
+    lengths = np.empty((len(tip), 6))
+    form, middle = form_of_squares(machine)
+    space = np.empty((17, min(_CHUNK, len(tip))))
+    for first in range(0, len(tip), _CHUNK):
+        rows = slice(first, first + _CHUNK)
+        pose = tip[rows], axis[rows], spin[rows], tool_length[rows]
+        numbers = _fill(space[:, : len(pose[0])], machine, middle, *pose)
+        squares = np.matmul(numbers.T, form, out=lengths[rows])
+        np.sqrt(np.maximum(squares, 0.0, out=squares), out=squares)
+        squares += _counted_beyond_distance(machine, *pose)
+    return lengths
+
+
+def lengths_at_tips(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+    """Strut lengths at tips (N, 3) that share one axis (1, 3), one spin (1,) and one gauge length (1,).
+
+    Relative to the platform joints of a tip at 0, the base joints are fixed, so only point distances remain.
+    """
+    if machine.screw_lead != 0.0:
+        each = len(tip)
+        axes, spins, reaches = np.repeat(axis, each, axis=0), np.repeat(spin, each), np.repeat(tool_length, each)
+        return strut_lengths(machine, tip, axes, spins, reaches)
+    fixed = -strut_vectors(machine, np.zeros((1, 3)), axis, spin, tool_length)[0]
+    x, y, z = np.ascontiguousarray(tip.T)
+    distances = np.stack([length_of(x - u, y - v, z - w) for u, v, w in fixed], axis=0)
+    distances -= machine.length_offset[:, None]
+    return distances.T
+
+
+def counted_lengths(machine: Machine, distance: Array, direction: Array, rotation: Array) -> Array:
+    """Lengths that the controller counts for these joint distances, (N, 6) in mm.
+
+    Args:
+        machine: screw and length offsets.
+        distance: (N, 6) from joint centre to joint centre, mm.
+        direction: (N, 6, 3) unit strut vectors.
+        rotation: (N, 3, 3) rotations of the platform.
+    """
+    return distance + screw_correction(direction, rotation, machine) - machine.length_offset
+
+
+def _counted_beyond_distance(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+    if machine.screw_lead == 0.0:
+        return -machine.length_offset
+    struts = strut_vectors(machine, tip, axis, spin, tool_length)
+    direction = struts / norm(struts)[..., None]
+    return screw_correction(direction, platform_rotation(axis, spin), machine) - machine.length_offset
+
+
+def form_of_squares(machine: Machine) -> tuple[Array, Array]:
+    """Coefficients of the squared distances, (17, 6), and the middle of the base in {M}, (3,)."""
+    middle = machine.base_joints.mean(axis=0)
+    a, b = machine.platform_joints, machine.base_joints - middle
+    squares = np.sum(a * a, axis=1) + np.sum(b * b, axis=1)
+    turned = np.einsum("ij,ik->jki", a, b).reshape(9, 6)
+    return np.concatenate([-2 * b.T, 2 * a.T, np.ones((1, 6)), squares[None], -2 * turned]), middle
+
+
+def _fill(
+    numbers: Array, machine: Machine, middle: Array, tip: Array, axis: Array, spin: Array, tool_length: Array
+) -> Array:
+    """Write the 17 numbers of each pose, (17, N): p, R^T p, |p|^2, 1, and the columns of R in sequence."""
+    p, turned, x, y, k = numbers[0:3], numbers[3:6], numbers[8:11], numbers[11:14], numbers[14:17]
+    k[:] = axis.T
+    fill_frame(x, y, k, spin)
+    np.multiply(machine.spindle_nose + tool_length, k, out=p)
+    p += tip.T
+    p -= middle[:, None]
+    for product, column in zip(turned, (x, y, k), strict=True):
+        np.einsum("ij,ij->j", column, p, out=product)
+    np.einsum("ij,ij->j", p, p, out=numbers[6])
+    numbers[7] = 1.0
+    return numbers

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rates: first and second derivatives of the strut lengths along a moving tool pose, in closed form.
+
+The squared joint distance S is linear in 17 numbers of a pose (``inverse``), so its derivatives are the same product
+with the derivatives of these numbers: p' = q' + L k', the columns of R turn by c' = w x c and
+c'' = w' x c + w x c', and products follow the Leibniz rule. Then
+
+    l' = S' / 2l,    l'' = (S'' / 2 - l'^2) / l
+
+The rotation of a screw without a key is added with its own derivatives. The parameter is that of the poses: path length
+or time.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import Array, cross, fill_frame
+from pkm_post.machine.kinematics.inverse import form_of_squares, strut_vectors
+from pkm_post.machine.kinematics.orientation import angular_rates, platform_rotation
+from pkm_post.machine.kinematics.screw import screw_rates
+from pkm_post.model import Machine, Poses
+
+_CHUNK = 2048
+"""Poses per pass: the 51 numbers of each fill about a megabyte, which stays in the processor's cache."""
+
+
+def strut_rates(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
+    """Strut lengths as the controller counts them, with first and second derivatives, (N, 6) each.
+
+    Args:
+        machine: the geometry.
+        poses: tool poses with their derivatives.
+    """
+    result = np.empty((3, len(poses), 6))
+    form, middle = form_of_squares(machine)
+    for first in range(0, len(poses), _CHUNK):
+        rows = slice(first, first + _CHUNK)
+        axes = poses.axis[rows], poses.axis_1[rows], poses.axis_2[rows]
+        turn = angular_rates(*axes, poses.spin_1[rows], poses.spin_2[rows])
+        numbers = _numbers(machine, middle, poses, rows, turn)
+        length, speed, growth = (
+            np.matmul(of_order.T, form, out=out) for of_order, out in zip(numbers, result[:, rows], strict=True)
+        )
+        np.sqrt(np.maximum(length, 0.0, out=length), out=length)
+        speed /= 2 * length
+        growth /= 2
+        growth -= speed * speed
+        growth /= length
+        if machine.screw_lead != 0.0:
+            result[:, rows] += _of_screw(machine, poses, rows, turn, (length, speed, growth))
+        length -= machine.length_offset
+    return result[0], result[1], result[2]
+
+
+def _numbers(machine: Machine, middle: Array, poses: Poses, rows: slice, turn: tuple[Array, Array]) -> Array:
+    """The 17 numbers of each pose with their first and second derivatives, (3, 17, N), in the order of ``inverse``."""
+    reach = machine.spindle_nose + poses.tool_length[rows]
+    numbers = np.empty((3, 17, len(reach)))
+    p, turned, square, one = numbers[:, 0:3], numbers[:, 3:6], numbers[:, 6], numbers[:, 7]
+    x, y, k = numbers[:, 8:11], numbers[:, 11:14], numbers[:, 14:17]
+    tips, axes = (poses.tip, poses.tip_1, poses.tip_2), (poses.axis, poses.axis_1, poses.axis_2)
+    for order, (tip, axis) in enumerate(zip(tips, axes, strict=True)):
+        k[order] = axis[rows].T
+        np.multiply(reach, k[order], out=p[order])
+        p[order] += tip[rows].T
+    p[0] -= middle[:, None]
+    fill_frame(x[0], y[0], k[0], poses.spin[rows])
+    velocity, acceleration = (np.ascontiguousarray(rates.T) for rates in turn)
+    for column in (x, y):
+        column[1] = _cross(velocity, column[0])
+        column[2] = _cross(acceleration, column[0]) + _cross(velocity, column[1])
+    for number, column in enumerate((x, y, k)):
+        _fill_product(turned[:, number], column, p)
+    _fill_product(square, p, p)
+    one[0], one[1:] = 1.0, 0.0
+    return numbers
+
+
+def _fill_product(product: Array, left: Array, right: Array) -> None:
+    """Write scalar products with first and second derivatives, (3, N), of vectors with theirs, (3, 3, N)."""
+
+    def dot(order: int, other: int) -> Array:
+        return np.asarray(np.einsum("ij,ij->j", left[order], right[other]))
+
+    product[0] = dot(0, 0)
+    product[1] = dot(1, 0) + dot(0, 1)
+    product[2] = dot(2, 0) + 2 * dot(1, 1) + dot(0, 2)
+
+
+def _cross(left: Array, right: Array) -> Array:
+    """Vector products of (3, N) vectors."""
+    (x, y, z), (u, v, w) = left, right
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u])
+
+
+def _of_screw(
+    machine: Machine,
+    poses: Poses,
+    rows: slice,
+    turn: tuple[Array, Array],
+    distances: tuple[Array, Array, Array],
+) -> Array:
+    """The correction of a screw with its first and second derivative, (3, N, 6)."""
+    axis, spin = poses.axis[rows], poses.spin[rows]
+    reach = (machine.spindle_nose + poses.tool_length[rows])[:, None]
+    rotation = platform_rotation(axis, spin)
+    velocity, acceleration = (rates[:, None, :] for rates in turn)
+    arm = machine.platform_joints @ rotation.transpose(0, 2, 1)
+    turning = cross(velocity, arm)
+    joint_1 = (poses.tip_1[rows] + reach * poses.axis_1[rows])[:, None, :] + turning
+    joint_2 = (poses.tip_2[rows] + reach * poses.axis_2[rows])[:, None, :]
+    joint_2 = joint_2 + cross(acceleration, arm) + cross(velocity, turning)
+    distance, speed, growth = (values[..., None] for values in distances)
+    direction = strut_vectors(machine, poses.tip[rows], axis, spin, poses.tool_length[rows]) / distance
+    swing = (joint_1 - speed * direction) / distance
+    swing_1 = (joint_2 - growth * direction - 2 * speed * swing) / distance
+    return np.stack(screw_rates(machine, (direction, swing, swing_1), rotation, *turn))

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tool cubics: cubics of tip, axis and spin between two poses, and the drift of the strut cubics from them.
+
+The controller plays cubics of strut lengths. Between the same two poses the tool has cubics of its own, with the same
+positions and rates at both ends: the plan is compared with these, without kinematics. What remains is the drift, by
+which the strut cubics L take the tool off its own cubics. L is the cubic with the ends of l, the lengths along the
+tool cubics, so with x for the elapsed share of the duration and M for the maximum of |l''''| by x,
+
+    |L - l| <= 16 x^2 (1 - x)^2 M / 384
+
+While the attitude is constant, l is the distance of a cubic from a fixed point. With V, A, J for the maxima of the
+cubic's derivatives by x and d for the shortest strut, the fourth derivative of l^2 gives
+
+    M <= (3 A^2 + 4 V J) / d + 12 V^2 A / d^2 + 3 V^4 / d^3
+
+and the inverse Jacobian maps that to the tip: by at most 1 / s for a platform that comes no nearer to a singular pose
+than s, and by the lever of the tool. Where the attitude moves, the drift is measured in the middle, x = 1/2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from pkm_post.geometry import Array, hermite_powers, length_of
+from pkm_post.machine.kinematics.interpolation import Ends, Inside, fastest, steepest, stray
+from pkm_post.machine.kinematics.rate_bounds import nearest_joints
+from pkm_post.model import Machine
+
+ROUNDED_SHARE = 0.99
+"""Share of the tip acceleration available to cubics: rounding lengths to six decimals adds up to 0.7 % where an
+interval is 1 ms."""
+_MIDDLE = np.array([0.5])
+_ROOM = 1.1
+"""Allowance for a drift that deviates from x^2 (1 - x)^2."""
+_STEEPEST = 16 / np.sqrt(27)
+"""Highest slope of 16 x^2 (1 - x)^2."""
+_CURVED = 32.0
+"""Largest second derivative of 16 x^2 (1 - x)^2, at both ends."""
+
+
+@dataclass(frozen=True)
+class ToolCubics:
+    """N cubics by the elapsed share of the duration.
+
+    Attributes:
+        powers: (4, C, N) coefficients of the powers of the share. The first three of the C columns are the tip, mm;
+            where the attitude moves, axis (3) and spin follow.
+    """
+
+    powers: Array
+
+    @classmethod
+    def between(cls, first: Array, rate: Array, last: Array, last_rate: Array, duration: Array) -> ToolCubics:
+        """Build cubics from their ends: positions and rates by time, (C, N) each, and durations, (N,) s."""
+        return cls(hermite_powers(first, rate, last, last_rate, duration))
+
+    def __getitem__(self, rows: Array) -> ToolCubics:
+        return ToolCubics(np.take(self.powers, rows, axis=2))
+
+    def at(self, share: Array | float) -> Array:
+        """Positions at one share of each, (C, N)."""
+        place, begin, square, cube = self.powers
+        found = cube * share
+        for power in (square, begin):
+            found += power
+            found *= share
+        found += place
+        return np.asarray(found)
+
+    def sizes(self) -> tuple[Array, Array, Array]:
+        """Maxima of first, second and third derivative of the tip by the share, (N,) mm each."""
+        _, begin, square, cube = self.powers[:, :3]
+        middle, bend = begin + square, square + 3 * cube
+        return (
+            _fastest(begin, middle, middle + bend),
+            2 * np.maximum(length_of(*square), length_of(*bend)),
+            6 * length_of(*cube),
+        )
+
+    def turn(self) -> Array:
+        """Maximum of the first derivative of the tool axis by the share, (N,) rad; zero if the attitude is constant."""
+        if self.powers.shape[1] == 3:
+            return np.zeros(self.powers.shape[2])
+        _, begin, square, cube = self.powers[:, 3:6]
+        middle = begin + square
+        return _fastest(begin, middle, middle + square + 3 * cube)
+
+
+@dataclass(frozen=True)
+class Demand:
+    """Drift and dynamic load of strut cubics in N intervals.
+
+    Attributes:
+        tip: (N,) drift of the tip, mm.
+        axis: (N,) drift of the tool axis, rad.
+        tip_speed: (N,) highest speed of the tip, mm/s.
+        limits: (N,) highest share of a limit: speed and acceleration of a strut, acceleration of the tip, turning rate
+            of the tool axis.
+    """
+
+    tip: Array
+    axis: Array
+    tip_speed: Array
+    limits: Array
+
+    def but(self, rows: Array, other: Demand) -> Demand:
+        """Copy with another demand in some rows."""
+        columns = [getattr(self, field.name).copy() for field in fields(self)]
+        for column, field in zip(columns, fields(self), strict=True):
+            column[rows] = getattr(other, field.name)
+        return Demand(*columns)
+
+
+def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, duration: Array) -> Demand:
+    """Upper bound of the demand while the attitude is constant.
+
+    Infinite for a screw without a key, and without a shortest strut or a limit of singular poses.
+
+    Args:
+        machine: the geometry and the limits; the path keeps the allowed distance from singular poses.
+        tool_length: gauge length, mm.
+        cubics: N of them.
+        duration: (N,) s.
+    """
+    speed, bend, jerk = cubics.sizes()
+    shortest = nearest_joints(machine)
+    if machine.screw_lead != 0.0 or min(shortest, machine.least_singular_value) <= 0:
+        return Demand(*np.full((4, len(duration)), np.inf))
+    turn = speed / shortest
+    fourth = (3 * bend**2 + 4 * speed * jerk + 12 * bend * speed * turn) / shortest + 3 * speed * turn**3
+    lever = (machine.spindle_nose + tool_length) / machine.characteristic_length
+    gain = np.sqrt(6) * np.hypot(1.0, lever) / machine.least_singular_value
+    acceleration = (bend + speed * turn + fourth / 12) / duration**2
+    tip_acceleration = (bend + gain * fourth / 12) / duration**2
+    by_limit = (
+        speed / duration / machine.strut_speed,
+        acceleration / machine.strut_acceleration,
+        tip_acceleration / (ROUNDED_SHARE * machine.tip_acceleration),
+    )
+    drift = gain * fourth / 384
+    return Demand(drift, np.zeros(len(duration)), (speed + _STEEPEST * drift) / duration, np.maximum.reduce(by_limit))
+
+
+def measured_demand(
+    machine: Machine, first: Ends, last: Ends, cubics: ToolCubics, inside: Inside, duration: Array
+) -> Demand:
+    """The same, with the drift measured in the middle.
+
+    Args:
+        machine: the geometry and the limits.
+        first: N knots.
+        last: N knots.
+        cubics: N of them.
+        inside: their tool poses in the middle of their durations.
+        duration: (N,) s.
+    """
+    found = stray(machine, first, last, inside, duration, _MIDDLE)
+    tip, axis = _ROOM * found.tip[:, 0], _ROOM * found.axis[:, 0]
+    speed, bend, _ = cubics.sizes()
+    by_limit = (
+        fastest(first, last, duration) / machine.strut_speed,
+        steepest(first, last, duration) / machine.strut_acceleration,
+        (bend + _CURVED * tip) / duration**2 / (ROUNDED_SHARE * machine.tip_acceleration),
+        (cubics.turn() + _STEEPEST * axis) / duration / machine.axis_speed,
+    )
+    return Demand(tip, axis, (speed + _STEEPEST * tip) / duration, np.maximum.reduce(by_limit))
+
+
+def _fastest(begin: Array, middle: Array, end: Array) -> Array:
+    """Maximum of a derivative with these Bezier coefficients, (N,).
+
+    Its square is a polynomial of degree four: at most its largest Bezier coefficient.
+    """
+    inner = (2 * _dot(middle, middle) + _dot(begin, end)) / 3
+    hull = _dot(begin, begin), _dot(begin, middle), inner, _dot(middle, end), _dot(end, end)
+    return np.asarray(np.sqrt(np.maximum.reduce(hull)))
+
+
+def _dot(left: Array, right: Array) -> Array:
+    return np.asarray(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])

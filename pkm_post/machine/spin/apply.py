@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Apply: the spin of a policy, applied to a trajectory.
+
+Takes a trajectory as placed, with the spin of the part program or none; returns it with another spin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.geometry import norm
+from pkm_post.machine.spin.optimise import optimise
+from pkm_post.machine.spin.policy import Policy, Rule
+from pkm_post.machine.spin.rules import spin_in_plane
+from pkm_post.model import Diagnostic, EventKind, Machine, Trajectory
+
+_SAME = 1e-6
+"""mm, and difference of unit axes: a tool this close to the tool-change pose is there."""
+
+
+def with_spin(
+    trajectory: Trajectory, machine: Machine, policy: Policy
+) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+    """The trajectory with the spin of a policy, or diagnostics where the policy leaves it undefined.
+
+    At the tool-change pose the spin is that of the machine file, whatever the policy.
+
+    Args:
+        trajectory: at least one segment.
+        machine: geometry and limits, for a search.
+        policy: rule of the spin and its parameters.
+    """
+    turned, told = _by_policy(trajectory, machine, policy)
+    return (None if turned is None else _as_tools_change(turned, machine)), told
+
+
+def _as_tools_change(trajectory: Trajectory, machine: Machine) -> Trajectory:
+    """The trajectory with the spin of the tool-change pose at tool changes."""
+    pose = machine.tool_change
+    if pose is None:
+        return trajectory
+    changes = [event.row for event in trajectory.events if event.kind is EventKind.TOOL_CHANGE and event.row > 0]
+    off = np.hypot(norm(trajectory.nose_before(changes) - pose.nose), norm(trajectory.axis_at(changes) - pose.axis))
+    spin = trajectory.spin.copy()
+    spin[np.array(changes, dtype=np.intp)[off < _SAME] - 1] = pose.spin
+    return replace(trajectory, spin=spin)
+
+
+def _by_policy(
+    trajectory: Trajectory, machine: Machine, policy: Policy
+) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+    if policy.rule is Rule.FILE:
+        return trajectory, ()
+    if policy.rule is Rule.OPTIMISED:
+        return optimise(replace(trajectory, spin=np.zeros(len(trajectory))), machine, policy), ()
+    if policy.rule is Rule.ZERO:
+        return replace(trajectory, spin=np.zeros(len(trajectory))), ()
+    spin = spin_in_plane(trajectory.axis, policy.heading, of_y=policy.rule is Rule.Y_IN_PLANE)
+    open_rows = np.flatnonzero(np.isnan(spin))
+    if len(open_rows):
+        found = f"spin {policy.rule.value}, {len(open_rows)} of {len(spin)} moves"
+        return None, (Diagnostic("K120", trajectory.place(int(open_rows[0])), found),)
+    return replace(trajectory, spin=spin), ()

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Optimise: the spin along a whole path with the largest margins.
+
+Takes a trajectory; returns it with another spin. The search first maximises the score at the worst place of the path,
+then minimises the change of spin that this needs. It starts coarse and is refined around its result. [Merlet2000]
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.machine.spin.course import best_course
+from pkm_post.machine.spin.policy import Policy
+from pkm_post.machine.spin.samples import Samples
+from pkm_post.machine.spin.shares import score, shares
+from pkm_post.model import Machine, Trajectory
+
+_REFINEMENT = 4
+"""Each search refines the step by this factor, within one step of the previous search."""
+_REFINEMENTS = 2
+_BLOCK = 1 << 16
+"""Poses per pass, samples times candidates: limits memory."""
+
+
+def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Trajectory:
+    """Search for the spin.
+
+    Args:
+        trajectory: at least one segment; its spin at the start stays.
+        machine: geometry and limits.
+        policy: objective, and range and rate of the spin.
+    """
+    samples, home = Samples.of(trajectory), trajectory.start_spin
+    node_s = samples.row_s[_nodes(samples.row_s, policy.step / policy.rate)]
+    extent = np.diff(node_s, prepend=0.0)
+    course = np.full(len(node_s), home)
+    step, count = policy.step, max(1, math.floor(policy.widest / policy.step))
+    for _ in range(1 + _REFINEMENTS):
+        candidates = course[:, None] + step * np.arange(-count, count + 1)
+        np.clip(candidates, home - policy.widest, home + policy.widest, out=candidates)
+        scores = _scores(samples, node_s, machine, policy, candidates)
+        best = best_course(candidates, scores, home, policy.rate * extent, extent)
+        course = candidates[np.arange(len(course)), best]
+        step, count = step / _REFINEMENT, _REFINEMENT
+    spin = np.interp(samples.row_s, np.append(0.0, node_s), np.append(home, course))
+    return replace(trajectory, spin=spin)
+
+
+def least_shares(trajectory: Trajectory, machine: Machine) -> Array:
+    """Least shares over a trajectory, (3,): stroke, joints, distance to singular poses."""
+    samples = Samples.of(trajectory)
+    left = shares(machine, samples.tip, samples.axis, samples.spin, samples.tool_length)
+    return np.asarray(left.min(axis=0))
+
+
+def _nodes(row_s: Array, least: float) -> list[int]:
+    """Segments whose ends are nodes: each the first far enough from the node before, and the last."""
+    nodes, at, last = [], 0.0, len(row_s) - 1
+    while at + least < row_s[-1]:
+        nodes.append(min(int(np.searchsorted(row_s, at + least)), last))
+        at = row_s[nodes[-1]]
+    if not nodes or nodes[-1] != last:
+        nodes[-1:] = [last]
+    return nodes
+
+
+def _scores(samples: Samples, node_s: Array, machine: Machine, policy: Policy, candidates: Array) -> Array:
+    """Score of each candidate at each node, (K, M): the worst of the samples nearest to the node."""
+    halfway = (np.append(0.0, node_s[:-1]) + node_s) / 2
+    # Samples nearest to the start of the path have the spin of the start.
+    chosen = np.flatnonzero(samples.s >= halfway[0])
+    node = np.searchsorted(halfway, samples.s[chosen], side="right") - 1
+    choices = candidates.shape[1]
+    scores = np.empty((len(chosen), choices))
+    block = max(1, _BLOCK // choices)
+    for first in range(0, len(chosen), block):
+        rows = chosen[first : first + block]
+        tip, axis, length = (
+            np.repeat(column[rows], choices, axis=0) for column in (samples.tip, samples.axis, samples.tool_length)
+        )
+        left = shares(machine, tip, axis, candidates[node[first : first + block]].ravel(), length)
+        scores[first : first + block] = score(left, policy.weights).reshape(-1, choices)
+    return np.asarray(np.minimum.reduceat(scores, np.searchsorted(node, np.arange(len(node_s))), axis=0))

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options: the user's choices for a program, in mm and rad."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pkm_post.geometry import Array
+from pkm_post.machine import ZERO_TORSION, Policy
+from pkm_post.model import NOTHING_KNOWN, Setup, Tolerances, Tool
+from pkm_post.toolpath import OffsetOptions, SurfaceSpeed
+from pkm_post.writing import TABLES
+
+LINUXCNC = "linuxcnc"
+"""The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is not a table of the motion."""
+
+NO_MESH = "none"
+"""Instead of a file: the mesh is unknown, even if the job has one."""
+
+
+@dataclass(frozen=True)
+class MeshFiles:
+    """Files with meshes of the set-up; they replace the meshes of the job, and so does ``NO_MESH``.
+
+    Attributes:
+        part: mesh of the finished part; None to use that of the job.
+        stock: mesh of the stock before the first operation; None to use that of the job.
+        fixtures: meshes of the fixtures.
+    """
+
+    part: str | None = None
+    stock: str | None = None
+    fixtures: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Options:
+    """The user's choices.
+
+    Attributes:
+        work_offset: name of a work offset in the machine file, or the (4, 4) pose of {C} in {M}.
+        tip_tolerance: largest deviation of the tool tip from the programmed path, mm.
+        axis_tolerance: largest deviation of the tool axis from the programmed one, rad.
+        spin: how the platform turns about the tool axis.
+        contours: how 2D cutter compensation (G41, G42, CUTCOM) is applied.
+        actual_tools: by number, tools whose cutters differ from those the program was made for; a program with
+            surface normals is compensated for them.
+        surface_speed: cutting speed to keep; None leaves the spindle as programmed.
+        also: additional outputs: names of ``controllers.TABLES``, and ``LINUXCNC``.
+        mesh_files: mesh files of the bodies in the collision check.
+        setup: the set-up known without files, as from a CAM job.
+    """
+
+    work_offset: str | Array = "G54"
+    tip_tolerance: float = 1e-3
+    axis_tolerance: float = math.radians(1e-3)
+    spin: Policy = ZERO_TORSION
+    contours: OffsetOptions = OffsetOptions()
+    actual_tools: Mapping[int, Tool] = field(default_factory=dict)
+    surface_speed: SurfaceSpeed | None = None
+    also: tuple[str, ...] = ()
+    mesh_files: MeshFiles = MeshFiles()
+    setup: Setup = NOTHING_KNOWN
+
+    def __post_init__(self) -> None:
+        known = (*TABLES, LINUXCNC)
+        if not set(self.also) <= set(known):
+            raise ValueError(f"also: expected names out of {', '.join(known)}, got {', '.join(self.also)}")
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """Both tolerances."""
+        return Tolerances(self.tip_tolerance, self.axis_tolerance)

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Planning: from a trajectory to tool poses in time, and from those to strut motion.
+
+Machine limits are first computed as arrays along the path: the planner is independent of the machine, and kinematics
+is independent of the planner. This module connects the two.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.machine import Way, reach_faults, strut_rates
+from pkm_post.model import Diagnostic, Event, Machine, Motion, StrutMotion, Tolerances, Trajectory, in_pieces, locked
+from pkm_post.planning.cubics import Cubics, poses_at
+from pkm_post.planning.glimpse import glimpse_within
+from pkm_post.planning.jerk import Ceilings, for_jerk
+from pkm_post.planning.knots import even_marks, knots
+from pkm_post.planning.limits import limits, rough_limits
+from pkm_post.planning.pace import SLOWER, factors_of_crowds, slower_feed
+from pkm_post.planning.path_bounds import PathBounds
+from pkm_post.planning.profile import cell_times, speed_profile
+from pkm_post.planning.schedule import Schedule
+from pkm_post.planning.speed_limits import (
+    below_feed,
+    bent,
+    bounded_by,
+    feed_at,
+    limits_at,
+    rough_feed,
+    roughly_bounded,
+)
+from pkm_post.planning.stations import Stations, stations
+from pkm_post.planning.tool_path import ToolPath
+from pkm_post.system import workers
+
+_FOR_CORNERS = 0.4
+"""Share of the tolerances that rounding the corners may use."""
+_WINDOWS_MS = (4, 8, 16, 32, 64, 128)
+"""Averaging windows to try for a plan with a jerk limit; the one with the shortest motion is used."""
+LONGEST_MOTION = 7 * 86_400.0
+"""s: a week, which amounts to five million points and more."""
+_MOST_ROUNDS = 8
+"""Most rounds of slower planning for the controller; the certificate refuses what remains."""
+_STATIONS_AT_ONCE = 4096
+"""Stations in one pass: their working arrays stay in the processor's cache."""
+_KNOTS_AT_ONCE = 4096
+"""Knots in one pass: the derivatives of their poses take more memory than the result."""
+_MARKS_AT_ONCE = 512
+"""Marks in a stretch of the motion, about a minute, whose knots are determined separately."""
+
+
+def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
+    """The path with rounded corners that the tool follows."""
+    return ToolPath.of(trajectory, _for_corners(trajectory, tolerances.tip), _FOR_CORNERS * tolerances.axis)
+
+
+def _for_corners(trajectory: Trajectory, asked: float) -> Array:
+    """Corner tolerance of the tip on each segment, (N,) mm.
+
+    Where the program allows more than requested, corners get all of the excess: cubics and decimals keep to the
+    requested tolerance.
+    """
+    allowed = trajectory.tip_tolerances(asked)
+    tight = np.minimum(allowed, asked)
+    return _FOR_CORNERS * tight + (allowed - tight)
+
+
+def plan_feed(
+    path: ToolPath, trajectory: Trajectory, machine: Machine
+) -> tuple[Schedule | None, tuple[Diagnostic, ...]]:
+    """The schedule of a path, None if the motion takes too long; and diagnostics of unreachable poses.
+
+    Args:
+        path: the path with rounded corners.
+        trajectory: provides the places of faults.
+        machine: geometry and limits.
+    """
+    most = PathBounds.of(path)
+    faults = reach_faults(machine, trajectory, *_way(path, stations(path, bent(path, most))))
+    try:
+        return _schedule(path, machine, most), faults
+    except _TooLongError as fault:
+        found = f"{fault.seconds:.6g} s, at most {LONGEST_MOTION:g} s"
+        return None, (*faults, Diagnostic("K145", trajectory.place(fault.segment), found))
+
+
+class _TooLongError(Exception):
+    """A motion takes longer than can be planned: its duration, and the segment that takes longest."""
+
+    def __init__(self, seconds: float, segment: int) -> None:
+        self.seconds, self.segment = seconds, segment
+        super().__init__(f"{seconds} s")
+
+
+def _schedule(path: ToolPath, machine: Machine, most: PathBounds) -> Schedule:
+    """The schedule of a path with these bounds.
+
+    Raises:
+        _TooLongError: the motion needs more points than fit into memory.
+    """
+    if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
+        return _without_jumps(path, machine)
+    rough = rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
+    close = below_feed(path, *rough)
+    marks = stations(path, close)
+    profile = speed_profile(marks.s, *limits_at(path, marks, close, rough, machine))
+    _check_duration(marks.s, profile, marks)
+    return Schedule.of(marks, marks.s, marks.rest, profile, shortest_ms=machine.shortest_interval)
+
+
+def _check_duration(s: Array, square: Array, marks: Stations) -> None:
+    """Refuse a motion that takes too long, before arrays of its length are allocated."""
+    with np.errstate(divide="ignore", over="ignore"):  # a speed squared may underflow
+        times = cell_times(s, square)
+        seconds = float(times.sum())
+    if not seconds <= LONGEST_MOTION:
+        cell = int(np.argmax(times))
+        segment = marks.segment[min(int(np.searchsorted(marks.s, s[cell], side="right")), len(marks.segment) - 1)]
+        raise _TooLongError(seconds, int(segment))
+
+
+def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
+    """The pose path through stations, straight from one to the next; and their segments."""
+
+    def seen(rows: slice) -> tuple[Array, ...]:
+        found = glimpse_within(path, marks.segment[rows], marks.u[rows])
+        return found.tip, found.axis, found.spin, found.tool_length
+
+    return Way.straight(*in_pieces(len(marks.s), _STATIONS_AT_ONCE, seen)), marks.segment
+
+
+def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
+    """The schedule for a machine with jerk limits."""
+    marks = stations(path)
+    poses = path.within(marks.segment, marks.u)
+    bounded = bounded_by(machine, poses)
+    square, along = limits(feed_at(path, poses, marks.u), bounded)
+    square[marks.rest] = 0.0
+    ceilings = Ceilings(marks.s, marks.rest, square, along)
+    _, window_ms, course = min(
+        (_averaged(for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS), key=lambda tried: tried[0]
+    )
+    s, _, slowest = course
+    _check_duration(s, slowest, marks)
+    return Schedule.of(marks, *course, window_ms, machine.shortest_interval)
+
+
+def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Array, Array, Array]]:
+    """The duration of the motion under ceilings made for a window, s; the window; and the feed profile."""
+    square = speed_profile(ceilings.s, ceilings.square, ceilings.along)
+    runs = int(ceilings.rest.sum()) - 1
+    duration = float(cell_times(ceilings.s, square).sum()) + runs * window_ms / 1000
+    return duration, window_ms, (ceilings.s, ceilings.rest, square)
+
+
+def interpolate(
+    path: ToolPath, schedule: Schedule, events: tuple[Event, ...], machine: Machine, tolerances: Tolerances
+) -> Motion:
+    """Tool poses at the knots, the whole milliseconds at which the controller gets points.
+
+    Where points exceed the block rate of the controller, the motion is replanned with a lower feed.
+
+    Args:
+        path: the path with rounded corners.
+        schedule: position along the path by time.
+        events: auxiliary instructions by trajectory row.
+        machine: determines how far the controller's cubics deviate between two points.
+        tolerances: the requested tolerances.
+    """
+    motion, factor = _interpolated(path, schedule, events, machine, tolerances)
+    for _ in range(_MOST_ROUNDS):
+        if (factor == 1).all():
+            break
+        path = replace(path, feed=slower_feed(path.feed, path.segments.extent, schedule.joint_time, factor))
+        try:
+            schedule = _schedule(path, machine, PathBounds.of(path))
+        except _TooLongError:
+            break
+        motion, factor = _interpolated(path, schedule, events, machine, tolerances)
+    return motion
+
+
+def _interpolated(
+    path: ToolPath, schedule: Schedule, events: tuple[Event, ...], machine: Machine, tolerances: Tolerances
+) -> tuple[Motion, Array]:
+    """The motion of a schedule; and the speed factors of segments that the controller requires, (N,)."""
+    marks, shortest = even_marks(schedule.rests_ms), machine.shortest_interval
+    stretches = [marks[first : first + _MARKS_AT_ONCE + 1] for first in range(0, len(marks) - 1, _MARKS_AT_ONCE)]
+
+    def knots_of(stretch: Array) -> tuple[Array, Array]:
+        cubics = Cubics(path, schedule, machine, tolerances, stretch)
+        found = knots(stretch, schedule.edges_ms, cubics.error, shortest)
+        return found[:-1], _too_coarse(found, cubics, shortest)
+
+    times, coarse = zip(*workers().map(knots_of, stretches), strict=True)
+    time_ms = locked(np.concatenate([*times, marks[-1:]]))
+
+    def columns(rows: slice) -> tuple[Array, ...]:
+        poses = poses_at(path, schedule, time_ms[rows])
+        of_tool = poses.tip, poses.axis, poses.spin, poses.tip_1, poses.axis_1, poses.spin_1
+        return *of_tool, poses.tool_length, poses.segment.astype(np.int32)
+
+    tip, axis, spin, tip_rate, axis_rate, spin_rate, tool_length, segment = in_pieces(
+        len(time_ms), _KNOTS_AT_ONCE, columns
+    )
+    motion = Motion(
+        time_ms=time_ms,
+        tip=tip,
+        axis=axis,
+        spin=spin,
+        tip_rate=tip_rate,
+        axis_rate=axis_rate,
+        spin_rate=spin_rate,
+        tool_length=tool_length,
+        segment=segment,
+        joint_time=schedule.joint_time,
+        events=_by_knot(events, schedule, time_ms),
+    )
+    return motion, _slower(motion, np.concatenate(coarse, axis=1), machine.block_rate)
+
+
+def _too_coarse(found: Array, cubics: Cubics, shortest: int) -> Array:
+    """Starts and ends of intervals that cannot be cut for the controller but are out of tolerance, (2, R) ms.
+
+    Intervals of one millisecond are exempt, as nothing is shorter.
+    """
+    start, end = found[:-1], found[1:]
+    rows = np.flatnonzero((end - start < 2 * shortest) & (end - start > 1))
+    rows = rows[cubics.error(start[rows], end[rows]) > 1] if len(rows) else rows
+    return np.stack([start[rows], end[rows]])
+
+
+def _slower(motion: Motion, coarse: Array, block_rate: float) -> Array:
+    """Speed factors of segments for the controller, (N,)."""
+    factor = factors_of_crowds(motion.time_ms, motion.segment, block_rate, len(motion.joint_time))
+    begin, end = (np.searchsorted(motion.joint_time, ms / 1000) for ms in coarse)
+    for first, last in zip(begin, np.minimum(end, len(factor) - 1), strict=True):
+        factor[first : last + 1] = np.minimum(factor[first : last + 1], SLOWER)
+    return factor
+
+
+def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> tuple[Event, ...]:
+    """Events by knot, each at a rest, instead of by trajectory row."""
+    rest_of_row = np.searchsorted(schedule.rest_joints, [event.row for event in events])
+    knot = np.searchsorted(time_ms, schedule.rests_ms[rest_of_row])
+    return tuple(Event(int(row), event.kind, event.value) for row, event in zip(knot, events, strict=True))
+
+
+def strut_motion(motion: Motion, machine: Machine) -> StrutMotion:
+    """Strut lengths and speeds of a motion."""
+    length, speed = in_pieces(len(motion), _KNOTS_AT_ONCE, lambda rows: strut_rates(machine, motion.poses(rows))[:2])
+    return StrutMotion(motion.time_ms, length, speed, motion.events)

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Post file: from a part program, G-code or CL data, to a certified motion program.
+
+Enters: a file and its options. Leaves: the files of the pipeline. All faults of the file and of the machine file are
+collected before anything is refused. Tool lengths, which a part program rarely states, are required as options.
+"""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from pkm_post.machine import machine_named
+from pkm_post.model import Diagnostic, Place, Program, Refused
+from pkm_post.options import (
+    FIXTURE_OF_THE_JOB,
+    READING,
+    Given,
+    Options,
+    Override,
+    flag_of,
+    given_in,
+    layered,
+    misfits,
+    options_from,
+    part_program_from,
+    shown,
+    source_of,
+    tool_lengths_from,
+    typed,
+)
+from pkm_post.posting.frame import Posted
+from pkm_post.posting.prepared import Prepared
+from pkm_post.posting.run import Log, Progress, quiet, unwatched
+from pkm_post.posting.steps import SUFFIX
+from pkm_post.reading import AS_WRITTEN, Reading, read_part_program
+
+_ASKED_FOR = "L411"
+"""The warning that a gauge length defaulted to 0: posting requires one for each tool, and J113 requests it."""
+_NO_LENGTHS: Mapping[int, float] = {}
+
+
+def post_file(
+    file: str | Path,
+    machine: str | Path | None = None,
+    out: str | Path = ".",
+    options: Options | None = None,
+    tool_lengths: Mapping[int, float] = _NO_LENGTHS,
+    reading: Reading = AS_WRITTEN,
+    log: Log = quiet,
+    progress: Progress = unwatched,
+    arguments: str | Given = "",
+) -> Posted:
+    """Post a part program.
+
+    Args:
+        file: G-code or CL data, distinguished by the suffix.
+        machine: name of a machine that comes with PKM Post, or path of a machine file.
+        out: folder for the results, which take the stem of the file.
+        options: the user's choices; without them, or with the fixture of a job, the work offset is G54.
+        tool_lengths: gauge lengths by tool number that override those of the file, mm.
+        reading: what the file does not state itself.
+        log: receives a line for each step.
+        progress: called at the start of each step; an exception from it aborts the run, and nothing is written.
+        arguments: options as typed, or parsed.
+
+    Raises:
+        Refused: something in the file, the machine file or the folder does not allow it; nothing was written.
+        ValueError: the suffix of the file is not known, or there are both options and arguments.
+    """
+    progress(READING, 0.0)
+    prepared = prepared_file(file, machine, options, tool_lengths, reading, arguments)
+    return prepared.post(Path(out) / f"{Path(file).stem}{SUFFIX}", log, progress)
+
+
+def prepared_file(
+    file: str | Path,
+    machine: str | Path | None = None,
+    options: Options | None = None,
+    tool_lengths: Mapping[int, float] = _NO_LENGTHS,
+    reading: Reading = AS_WRITTEN,
+    arguments: str | Given = "",
+) -> Prepared:
+    """A part program with its machine and all inputs of posting, and their diagnostics; arguments as ``post_file``."""
+    if options is not None and arguments:
+        raise ValueError("expected options or arguments, got both")
+    given = _given(arguments, Path(file))
+    chosen = layered(typed(""), given)
+    lengths = tool_lengths_from(chosen) | dict(tool_lengths)
+    model, found = machine_named(chosen.machine if machine is None else machine)
+    program, told = read_part_program(Path(file), replace(_said(reading, chosen), lengths=lengths))
+    faults = [fault for fault in told if fault.code != _ASKED_FOR]
+    strangers = misfits(given, {source_of(Path(file))})
+    faults += [Diagnostic("L442", Place(str(file)), each) for each in strangers]
+    if program is not None:
+        faults += [*_replaced(program, lengths), *_unknown(program, lengths)]
+        program = _with_lengths(program, lengths)
+        faults += _missing_lengths(program)
+    return Prepared(program, model, _at_first_fixture(options or options_from(chosen)), (*found, *faults))
+
+
+def _given(arguments: str | Given, file: Path) -> Given:
+    """The options given as arguments.
+
+    Raises:
+        Refused: they cannot be parsed, J117.
+    """
+    try:
+        return given_in(typed(arguments)) if isinstance(arguments, str) else arguments
+    except ValueError as fault:
+        raise Refused([Diagnostic("J117", Place(str(file)), str(fault))]) from fault
+
+
+def _said(reading: Reading, chosen: Namespace) -> Reading:
+    """How to read a file; typed options override ``reading``."""
+    typed_ones = part_program_from(chosen, reading.axis_words)
+    return replace(reading, **{name: getattr(typed_ones, name) for name in given_in(chosen) if hasattr(reading, name)})
+
+
+def _with_lengths(program: Program, lengths: Mapping[int, float]) -> Program:
+    tools = {number: replace(tool, length=lengths.get(number, tool.length)) for number, tool in program.tools.items()}
+    return replace(program, tools=tools)
+
+
+def _replaced(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
+    """J125 for each gauge length of the file that is overridden."""
+    for number, tool in program.tools.items():
+        if tool.length > 0 and lengths.get(number, tool.length) != tool.length:
+            told = Override(flag_of("tool_length"), f"{tool.length:.12g} of T{number}", _shown(number, lengths))
+            yield Diagnostic("J125", Place(program.source), str(told))
+
+
+def _unknown(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
+    """J126 for each gauge length whose number the program uses neither as a tool nor as an offset."""
+    for number in sorted(set(lengths) - {*program.tools, *program.length_offsets}):
+        called = ", ".join(f"T{each}" for each in sorted(program.tools))
+        told = f"{flag_of('tool_length')} {_shown(number, lengths)}, the program has {called}"
+        yield Diagnostic("J126", Place(program.source), told)
+
+
+def _shown(number: int, lengths: Mapping[int, float]) -> str:
+    return shown("tool_length", (number, lengths[number]))
+
+
+def _missing_lengths(program: Program) -> Iterator[Diagnostic]:
+    for number, tool in program.tools.items():
+        if not tool.length > 0:
+            yield Diagnostic("J113", Place(program.source), f"T{number}")
+
+
+def _at_first_fixture(options: Options) -> Options:
+    """The options with G54 in place of the fixture of a job, as a part program has no job."""
+    if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
+        return replace(options, work_offset="G54")
+    return options

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reach study: whether a machine can follow a program, and the effect of another spin or workpiece position.
+
+Takes a program, a machine and the options of the user; returns the report of all checks, with the margins before and
+after each option. No file is written.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.machine import ZERO_TORSION, Reach, Rule, best_position, find_collisions, least_shares, placed_part, reach
+from pkm_post.model import Diagnostic, Machine, Program, errors
+from pkm_post.options import Options
+from pkm_post.posting.known_setup import known_setup
+from pkm_post.posting.placed import trajectory_of
+
+_LABELS = ("stroke", "joints", "from singular")
+
+
+@dataclass(frozen=True)
+class Study:
+    """Result of the study.
+
+    Attributes:
+        reach: all checks of the path as it would be driven.
+        stages: each option, in order, and the least shares (3,) after it.
+        machine_from_work: (4, 4) the work offset of the last stage.
+    """
+
+    reach: Reach
+    stages: tuple[tuple[str, Array], ...]
+    machine_from_work: Array
+
+    def as_dict(self) -> dict[str, Any]:
+        """The study for JSON."""
+        stages = [{"stage": name} | dict(zip(_LABELS, _rounded(left), strict=True)) for name, left in self.stages]
+        return self.reach.as_dict() | {"left": stages, "machine_from_work": self.machine_from_work.tolist()}
+
+    def text(self) -> str:
+        """The study as text."""
+        head = f"{'what is left (1 best, 0 at the limit)':<40}" + "".join(f"{label:>15}" for label in _LABELS)
+        rows = [f"{name:<40}" + "".join(f"{share:>15.3f}" for share in left) for name, left in self.stages]
+        return "\n".join([self.reach.text(), head, *rows, "", f"work offset: {told_offset(self.machine_from_work)}"])
+
+
+def study(
+    program: Program, machine: Machine, options: Options, free: str = ""
+) -> tuple[Study | None, tuple[Diagnostic, ...]]:
+    """Check a program on a machine.
+
+    Args:
+        program: cutter locations in {C}.
+        machine: geometry and limits.
+        options: work offset, spin and compensation, and the set-up.
+        free: letters of ``position.FREEDOMS`` in which the workpiece may be moved; empty for none.
+
+    Returns:
+        The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
+    """
+    untwisted = replace(options, spin=ZERO_TORSION)
+    placed, told = trajectory_of(program, machine, untwisted)
+    if placed is None:
+        return None, told
+    stages = [("as it is, zero torsion", least_shares(placed, machine))]
+    if free:
+        of_machine = placed.operation >= len(program.operations)  # the routes to tool changes and back
+        offset = best_position(placed, machine, free, fixed=of_machine).machine_from_work
+        untwisted, options = replace(untwisted, work_offset=offset), replace(options, work_offset=offset)
+        placed, told = trajectory_of(program, machine, untwisted)
+        if placed is None:
+            return None, told
+        stages.append((f"moved in {', '.join(free)}", least_shares(placed, machine)))
+    if options.spin.rule is not Rule.ZERO:
+        placed, told = trajectory_of(program, machine, options)
+        if placed is None:
+            return None, told
+        stages.append((f"spin {options.spin.rule.value}", least_shares(placed, machine)))
+    setup, faults = known_setup(options, program)
+    if errors(faults):
+        return None, (*told, *faults)
+    checked = reach(placed, machine, placed_part(setup, placed))
+    collisions = find_collisions(placed, machine, setup, options.tolerances)
+    both = (*checked.faults(), *(fault for fault in collisions.faults if fault.code not in _IN_REACH))
+    return Study(checked, tuple(stages), placed.machine_from_work), (*told, *both)
+
+
+_IN_REACH = ("K117", "K121")
+"""Diagnostics that reach also covers, by the margins of each pose."""
+
+
+def told_offset(machine_from_work: Array) -> str:
+    """A work offset as accepted by ``--work-offset``, or as a matrix if it rotates about other axes than z."""
+    x, y, z = machine_from_work[:3, 3]
+    if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
+        turn = np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0]))
+        return f"--work-offset={x:.3f},{y:.3f},{z:.3f},{turn:.4f}"
+    return np.array2string(machine_from_work, precision=6, suppress_small=True)
+
+
+def _rounded(left: Array) -> list[float]:
+    return [round(float(share), 6) for share in left]

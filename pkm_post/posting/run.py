@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Run: log, progress and diagnostics of one run.
+
+Log and progress are callbacks; warnings are collected, errors stop the run.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from pkm_post.model import Diagnostic, Refused, errors
+
+T = TypeVar("T")
+Findings = tuple[Diagnostic, ...]
+Log = Callable[[str], None]
+"""Receives a line."""
+Progress = Callable[[str, float], None]
+"""Receives the name of the step that begins, and the completed share of the work, 0 to 1; at the end an empty name and
+1. An exception from it stops the run, and no files remain."""
+
+
+def quiet(line: str) -> None:
+    """Log nothing."""
+
+
+def unwatched(step: str, share: float) -> None:
+    """Ignore progress, and never stop the run."""
+
+
+@dataclass
+class Run:
+    """One run through the pipeline: logs and times its steps, and stops at errors.
+
+    Attributes:
+        log: receives a line for each step.
+        progress: called at the start of each step.
+        shares: share of the work of each step, by name, in any unit.
+        warnings: warnings so far.
+        raised_outside: OSError from log or progress, which must not be mistaken for a fault of the written files.
+    """
+
+    log: Log
+    progress: Progress
+    shares: Mapping[str, float]
+    warnings: list[Diagnostic] = field(default_factory=list)
+    raised_outside: OSError | None = None
+
+    def accept(self, diagnostics: Findings) -> None:
+        """Collect warnings, stop at errors."""
+        if errors(diagnostics):
+            raise Refused((*self.warnings, *diagnostics))
+        self.warnings.extend(diagnostics)
+
+    def value(self, result: tuple[T | None, Findings]) -> T:
+        """The value of a step that may return diagnostics."""
+        value, diagnostics = result
+        self.accept(diagnostics)
+        if value is None:
+            raise ValueError("expected a value or an error, got neither")
+        return value
+
+    @contextlib.contextmanager
+    def step(self, name: str) -> Iterator[list[str]]:
+        """Report the start of a step; at its end log its time and the notes added to the list."""
+        give_back_memory()
+        self._tell(self.progress, name, self._done_before(name))
+        told: list[str] = []
+        begin = time.perf_counter()
+        try:
+            yield told
+        except MemoryError as fault:
+            fault.add_note(f"in the step {name}")
+            raise
+        self._tell(self.log, f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(told)}")
+
+    def print(self, lines: Iterable[str]) -> None:
+        """Log additional lines."""
+        for line in lines:
+            self._tell(self.log, line)
+
+    def end(self) -> None:
+        """Report that all steps are done."""
+        self._tell(self.progress, "", 1.0)
+
+    def _tell(self, call: Callable[..., None], *what: object) -> None:
+        try:
+            call(*what)
+        except OSError as fault:
+            self.raised_outside = fault
+            raise
+
+    def _done_before(self, name: str) -> float:
+        names = list(self.shares)
+        done = sum(self.shares[before] for before in names[: names.index(name)])
+        return done / sum(self.shares.values())
+
+
+def give_back_memory() -> None:
+    """Return free memory to the system: glibc keeps the gaps that columns of some megabytes leave between others."""
+    if sys.platform == "linux":
+        trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # other C libraries have none
+        if trim is not None:
+            trim(0)

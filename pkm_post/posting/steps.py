@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Steps: the order of the steps from a program to files, and the steps themselves.
+
+Enters: a program and a machine. Leaves: the files, all of them or none. A step takes the results of earlier steps, and
+the frame, which all steps share.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pkm_post.certificate import certify
+from pkm_post.machine import find_collisions, names_of
+from pkm_post.model import (
+    Certificate,
+    Coverage,
+    Diagnostic,
+    Machine,
+    Motion,
+    Place,
+    Program,
+    Refused,
+    Setup,
+    StrutMotion,
+    Trajectory,
+    errors,
+)
+from pkm_post.options import LINUXCNC, Options
+from pkm_post.planning import Schedule, ToolPath
+from pkm_post.planning import motion as planning
+from pkm_post.posting.frame import Frame, Posted
+from pkm_post.posting.known_setup import known_setup
+from pkm_post.posting.machine_check import home_faults
+from pkm_post.posting.placed import trajectory_of
+from pkm_post.posting.run import Findings, Log, Progress, Run, quiet, unwatched
+from pkm_post.report import plots, summary
+from pkm_post.system import memory_or_refused, staged, unwritten
+from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_seal, read_texts, trajectory_file
+
+SUFFIX = ".pmc"
+"""Suffix of a motion program."""
+_TRAJECTORY, _FEED_PLAN, _INTERPOLATION = "trajectory", "reach and feed plan", "interpolation"
+_COLLISIONS = "collisions"
+_PROGRAM, _CERTIFICATE, _REPORT = "motion program", "certificate", "report"
+_SHARES = {
+    _TRAJECTORY: 0.1, _FEED_PLAN: 1.0, _COLLISIONS: 1.0, _INTERPOLATION: 1.5, _PROGRAM: 0.1, _CERTIFICATE: 1.0,
+    _REPORT: 1.0,
+}  # fmt: skip
+"""The steps in order, with their approximate relative durations."""
+_SHARE_OF_ANOTHER = 0.2
+"""The same for an additional output."""
+
+
+def post(
+    program: Program | None,
+    machine: Machine | None,
+    program_path: Path,
+    options: Options | None = None,
+    log: Log = quiet,
+    found: Findings = (),
+    progress: Progress = unwatched,
+) -> Posted:
+    """Make a certified motion program, with its trajectory, set-up file and report beside it.
+
+    Args:
+        program: cutter locations in {C}; None if its source has errors.
+        machine: the machine to run it on; None if its file has errors.
+        program_path: path of the motion program; the other files take its stem.
+        options: the user's choices.
+        log: receives a line for each step.
+        found: diagnostics from reading these; returned with those found here.
+        progress: called at the start of each step; an exception from it aborts the run, and nothing is written.
+
+    Raises:
+        Refused: the input has an error, or the folder cannot be written; nothing was written.
+    """
+    options = options or Options()
+    setup, faults = known_setup(options, program)
+    found = (*found, *faults)
+    if program is None or machine is None or errors(found):
+        raise Refused(found)
+    run = Run(log, progress, _shares(options), list(found))
+    try:
+        results = staged(program_path.parent, manifest.manifest_name(program_path.stem))
+        with memory_or_refused(str(program_path)), results as folder:
+            parts, report = _all_steps(run, program, machine, folder / program_path.name, options, setup)
+            run.end()
+            manifest.write(folder, program_path.stem)
+            posted = _posted(run, program_path, sorted(os.listdir(folder)), parts, report)
+    except OSError as fault:
+        if fault is run.raised_outside:
+            raise
+        raise Refused([*run.warnings, unwritten(program_path, fault)]) from fault
+    gone = [path for path in posted.files if not path.is_file()]
+    run.accept(tuple(Diagnostic("F142", Place(str(path)), "it was written") for path in gone))
+    return posted
+
+
+def _posted(run: Run, program_path: Path, names: list[str], parts: list[str], report: dict[str, Any]) -> Posted:
+    """The result, made before the files appear, so that nothing can fail afterwards."""
+    earlier = manifest.listed(program_path.parent, program_path.stem)
+    run.accept(outputs.left_over(program_path, names, earlier))
+    files, programs = (tuple(program_path.parent / name for name in each) for each in (names, parts))
+    return Posted(program_path, files, report, tuple(run.warnings), programs)
+
+
+def step_names(options: Options | None = None) -> tuple[str, ...]:
+    """The steps of a run with these options, in order."""
+    return tuple(_shares(options or Options()))
+
+
+def _shares(options: Options) -> dict[str, float]:
+    return _SHARES | {_another(name): _SHARE_OF_ANOTHER for name in options.also}
+
+
+def _another(name: str) -> str:
+    return f"also {name}"
+
+
+def _all_steps(
+    run: Run, program: Program, machine: Machine, path: Path, options: Options, setup: Setup
+) -> tuple[list[str], dict[str, Any]]:
+    """Run the steps in order; return the names of the parts of the program, and the content of the report."""
+    frame = Frame(path, machine, *run.value(controller_settings(machine)), options)
+    trajectory = _stored_trajectory(run, frame, program)
+    motion, names, covered = _written_program(run, frame, trajectory, setup)
+    played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
+    report = _report(run, frame, trajectory, motion, played, certificate, program.reading, files)
+    for name in options.also:
+        _write_another(run, frame, name, trajectory, played)
+    return names, report
+
+
+def _trajectory_hash(frame: Frame) -> str:
+    return manifest.fingerprint_of_file(frame.beside(".pkmt"))
+
+
+def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
+    """The trajectory as read back from its file: the plan is made from the stored data."""
+    with run.step(_TRAJECTORY) as told:
+        trajectory = run.value(trajectory_file.read(_store(run, frame, program)))
+        told.append(f"{len(trajectory)} segments")
+    return trajectory
+
+
+def _store(run: Run, frame: Frame, program: Program) -> Path:
+    """Place a program and write its trajectory; return the path of the file."""
+    placed = run.value(trajectory_of(program, frame.machine, frame.options))
+    stored = frame.beside(".pkmt")
+    trajectory_file.write(replace(placed, tolerances=frame.tolerances), stored)
+    return stored
+
+
+def _written_program(
+    run: Run, frame: Frame, trajectory: Trajectory, setup: Setup
+) -> tuple[Motion, list[str], tuple[Coverage, ...]]:
+    """The plan, the names of the parts of the program, and the coverage.
+
+    Schedule and struts are freed before the program is read back: a long one needs the memory.
+    """
+    motion, struts, covered = _planned(run, frame, trajectory, setup)
+    return motion, _motion_program(run, frame, trajectory, struts), covered
+
+
+def _planned(
+    run: Run, frame: Frame, trajectory: Trajectory, setup: Setup
+) -> tuple[Motion, StrutMotion, tuple[Coverage, ...]]:
+    """Tool poses and strut lengths by time, and the coverage."""
+    tool_path, schedule = _feed_plan(run, frame, trajectory)
+    covered = _collisions(run, frame, trajectory, setup)
+    return *_interpolation(run, frame, trajectory, tool_path, schedule), covered
+
+
+def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath, Schedule]:
+    """The path with rounded corners, and its schedule."""
+    with run.step(_FEED_PLAN) as told:
+        tool_path = planning.tool_path(trajectory, frame.tolerances)
+        schedule, faults = planning.plan_feed(tool_path, trajectory, frame.machine)
+        if errors(faults):  # if home itself is out of reach, moving the part does not help
+            faults = (*home_faults(frame.machine, frame.machine.name), *faults)
+        schedule = run.value((schedule, faults))
+        told.append(f"{schedule.rests_ms[-1] / 1000:.1f} s of motion")
+    return tool_path, schedule
+
+
+def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) -> tuple[Coverage, ...]:
+    """Check collisions with part, stock and fixtures; return the coverage for the certificate."""
+    with run.step(_COLLISIONS) as told:
+        collisions = find_collisions(trajectory, frame.machine, setup, frame.tolerances)
+        run.accept(collisions.faults)
+        told.extend(names_of(setup) or ["part and stock are not known"])
+    return collisions.coverage
+
+
+def _interpolation(
+    run: Run, frame: Frame, trajectory: Trajectory, tool_path: ToolPath, schedule: Schedule
+) -> tuple[Motion, StrutMotion]:
+    """Tool poses and strut lengths by time, valid for the controller."""
+    with run.step(_INTERPOLATION) as told:
+        motion = planning.interpolate(tool_path, schedule, trajectory.events, frame.machine, frame.tolerances)
+        struts = planning.strut_motion(motion, frame.machine)
+        run.accept(frame.controller.faults(struts, frame.settings, frame.path.name))
+        told.append(f"{len(motion)} points")
+    return motion, struts
+
+
+def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
+    """Write the program and the set-up it relies on; return the names of its parts."""
+    with run.step(_PROGRAM) as told:
+        controller, settings, machine = frame.controller, frame.settings, frame.machine
+        records = program_seal.record_lines(_trajectory_hash(frame), machine.fingerprint)
+        heading = [*summary.heading(trajectory), *records]
+        parts = tuple(map(program_seal.sealed, controller.program_parts(struts, settings, heading)))
+        names = outputs.write_parts(frame.path, parts)
+        setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
+        if setup is not None:
+            outputs.write_parts(frame.beside(controller.SETUP_SUFFIX), (setup,))
+        told.append(f"{sum(map(len, parts)) / 1e6:.1f} MB" + f" in {len(parts)} parts" * (len(parts) > 1))
+    return names
+
+
+def _certificate(
+    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
+) -> tuple[StrutMotion, Certificate, dict[str, Any]]:
+    """The program read back from its text, its certificate, and the hashes of both files for the report."""
+    with run.step(_CERTIFICATE) as told:
+        played, digests = _read_back(run, frame)
+        measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
+        certificate = run.value(measured)
+        told.append(f"{certificate.instants} instants")
+        files = summary.hashes(digests, _trajectory_hash(frame))
+    return played, certificate, files
+
+
+def _read_back(run: Run, frame: Frame) -> tuple[StrutMotion, list[str]]:
+    """The motion of the program and the hashes of its parts; the texts are freed before it is measured."""
+    texts = run.value(read_texts(frame.path, frame.controller))
+    played = run.value(frame.controller.read_parts(texts, frame.settings))
+    return played, [program_seal.digest(text) for _, text in texts]
+
+
+def _report(
+    run: Run,
+    frame: Frame,
+    trajectory: Trajectory,
+    motion: Motion,
+    played: StrutMotion,
+    certificate: Certificate,
+    reading: tuple[str, ...],
+    files: dict[str, Any],
+) -> dict[str, Any]:
+    """Write the report as JSON and as a picture; return its content."""
+    with run.step(_REPORT) as told:
+        machine, tolerances = frame.machine, frame.tolerances
+        report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files)
+        summary.write(report, frame.beside("-report.json"))
+        picture = frame.beside("-report.png")
+        run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))
+        told.extend(summary.verdict(certificate))
+    run.print([*reading, *report["certificate"]["meaning"]])
+    return report
+
+
+def _write_another(run: Run, frame: Frame, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
+    """Write an additional output."""
+    with run.step(_another(name)) as told:
+        if name == LINUXCNC:
+            run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
+            return
+        found, faults = outputs.write_table(frame.path, TABLES[name], played, summary.origin(trajectory))
+        run.accept(faults)
+        told.append(found)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Verify: whether an existing motion program still follows its trajectory file.
+
+Enters: the text of a program, a trajectory file and a machine. Leaves: the report, as posting would have written it.
+Nothing is planned: the motion is reconstructed from the strut lengths and speeds of the program and compared with the
+trajectory, so the verdict does not depend on the planner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pkm_post.certificate import beyond_machine, certify, machine_fault, recovered
+from pkm_post.machine import reach_faults
+from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
+from pkm_post.report import summary
+from pkm_post.writing import controller_settings, manifest, program_seal, read_texts, trajectory_file
+
+Findings = tuple[Diagnostic, ...]
+Texts = Sequence[tuple[str, str]]
+
+
+def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
+    """Certify an existing program, and check that its files were posted together.
+
+    Args:
+        program: the motion program, or the first of its parts.
+        trajectory: the trajectory file it was made from; it states the requested tolerances.
+        machine: the machine it was made for.
+
+    Returns:
+        The report, whose certificate holds, and warnings.
+
+    Raises:
+        Refused: a file cannot be read or is faulty, the certificate does not hold, or files differ from their manifest
+            or from the heading of the program.
+    """
+    found, faults = controller_settings(machine)
+    if found is None:
+        raise Refused(faults)
+    texts, faults = read_texts(program, found[0])
+    if texts is None:
+        raise Refused(faults)
+    return verify_texts(texts, program, trajectory, machine)
+
+
+def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
+    """The same for the texts of all parts of a program, by file name, as read from its files."""
+    listed = tuple(dict.fromkeys(one for file in (program, trajectory) for one in manifest.check(file)[1]))
+    changed = tuple(
+        Diagnostic("C109", Place(name), "the lines give another one")
+        for name, text in texts
+        if program_seal.has_its_seal(text) is False
+    )
+    told = (*listed, *changed)
+    try:
+        report = _certified(texts, program, trajectory, machine)
+    except Refused as refused:
+        raise Refused((*told, *refused.diagnostics)) from None
+    if errors(told):
+        raise Refused(told)
+    return report, told
+
+
+def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
+    """The report on a program whose certificate holds."""
+    planned, faults = trajectory_file.read(trajectory)
+    if planned is None:
+        raise Refused(faults)
+    struts = _played(texts, machine)
+    tolerances = planned.tolerances
+    if tolerances is None:
+        raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
+    _refuse_for_machine(planned, machine, program.name)
+    found, faults = recovered(struts, program.name, planned, machine, tolerances)
+    if found is None:
+        raise Refused(faults)
+    certificate, faults = certify(
+        struts, program.name, planned, machine, found.motion, tolerances, spin_off=found.spin_off
+    )
+    faults = (*faults, *reach_faults(machine, planned, *found.way()))
+    if certificate is None or errors(faults):
+        raise Refused(faults)
+    files = summary.hashes([program_seal.digest(text) for _, text in texts], manifest.fingerprint_of_file(trajectory))
+    return summary.report(planned, machine, certificate, tolerances, struts, found.motion, files=files)
+
+
+def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> None:
+    """Refuse a trajectory of another machine, or one beyond the limits of the machine."""
+    another = machine_fault(planned, machine, name)
+    if another:
+        raise Refused([another])
+    beyond = [Diagnostic("T107", place, found) for place, found in beyond_machine(planned, machine)]
+    if beyond:
+        raise Refused(beyond)
+
+
+def _played(texts: Texts, machine: Machine) -> StrutMotion:
+    """The motion of all parts of a program."""
+    found, faults = controller_settings(machine)
+    if found is None:
+        raise Refused(faults)
+    controller, settings = found
+    struts, faults = controller.read_parts(texts, settings)
+    if struts is None:
+        raise Refused(faults)
+    return struts

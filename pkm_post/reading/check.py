@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Check: report the diagnostics and the size of part programs.
+
+Enters: files. Leaves: diagnostics and size of each, as readable text or as JSON. Lengths in mm.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pkm_post.geometry import across, arc_length, arc_points, arc_sweep, cross, dot, norm
+from pkm_post.model import Array, Diagnostic, Kind, Program, errors
+from pkm_post.reading.sources import AS_WRITTEN, Reading, read_part_program
+
+_LONGEST_LINE = 200
+"""Maximum number of characters shown of a line."""
+_BYTES = 4
+"""Maximum size of a UTF-8 character."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """Size of a program.
+
+    Attributes:
+        blocks: number of moves.
+        arcs: number of arcs among them.
+        length: distance travelled by the tool tip from the first point, mm.
+        lowest: (3,) lower corner of the bounding box of the tip path, mm.
+        highest: (3,) upper corner.
+    """
+
+    blocks: int
+    arcs: int
+    length: float
+    lowest: tuple[float, ...]
+    highest: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Result for one file; ``size`` is None when it could not be read, ``reading`` is as in ``model.Program``."""
+
+    file: Path
+    size: Size | None
+    diagnostics: tuple[Diagnostic, ...]
+    reading: tuple[str, ...] = ()
+
+    @property
+    def is_clean(self) -> bool:
+        """Whether the file has no faults."""
+        return not errors(self.diagnostics)
+
+
+def check(file: Path, reading: Reading = AS_WRITTEN) -> Checked:
+    """Read a part program and measure it.
+
+    Args:
+        file: the part program.
+        reading: settings that the file does not contain.
+
+    Raises:
+        ValueError: the suffix of the file is not known.
+    """
+    program, diagnostics = read_part_program(file, reading)
+    if program is None:
+        return Checked(file, None, diagnostics)
+    return Checked(file, size_of(program), diagnostics, program.reading)
+
+
+def size_of(program: Program) -> Size:
+    """Measure a program of at least one row."""
+    start, end = program.position[:-1], program.position[1:]
+    length = norm(end - start)
+    row = np.flatnonzero(program.kind[1:] == Kind.ARC)
+    centre, axis = program.arc_centre[1:][row], program.arc_axis[1:][row]
+    length[row] = arc_length(start[row], end[row], centre, axis)
+    places = np.concatenate([program.position, _summits(start[row], end[row], centre, axis)])
+    return Size(
+        blocks=len(program),
+        arcs=len(row),
+        length=float(length.sum()),
+        lowest=tuple(places.min(axis=0).tolist()),
+        highest=tuple(places.max(axis=0).tolist()),
+    )
+
+
+def _summits(start: Array, end: Array, centre: Array, axis: Array) -> Array:
+    """Extreme points of arcs along X, Y and Z, between their end points, (m, 3).
+
+    A coordinate of the point at angle t is a cos t + b sin t + const: extreme at atan2(b, a) and half a turn later.
+    """
+    radius = across(start - centre, axis)
+    angle = np.arctan2(cross(axis, radius), radius)
+    angle = np.mod(np.concatenate([angle, angle + np.pi], axis=1), 2 * np.pi)
+    sweep = arc_sweep(start, end, centre, axis)[:, None]
+    arc, _ = np.nonzero(angle < sweep)
+    turned = angle[angle < sweep]
+    rise = dot(end - start, axis)[arc] * turned / sweep[arc, 0]
+    return arc_points(start[arc], centre[arc], axis[arc], turned, rise)
+
+
+def as_text(results: Iterable[Checked]) -> str:
+    """Format diagnostics with their source lines and how files were interpreted, then one row per file."""
+    results = tuple(results)
+    told = [text for result in results for text in _told(result)]
+    return "\n".join([*told, *_rows(results)])
+
+
+def _told(result: Checked) -> list[str]:
+    lines = result.file.read_bytes().splitlines() if any(one.place.line for one in result.diagnostics) else []
+    told = [text for one in result.diagnostics for text in (str(one), *_with_caret(one, lines))]
+    return [*told, *(f"{result.file}: {line}" for line in result.reading)]
+
+
+def _with_caret(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
+    """The source line of a diagnostic, with a caret below its column."""
+    line, column = diagnostic.place.line, diagnostic.place.column
+    if not (column and line <= len(lines)):
+        return []
+    if len(lines[line - 1]) > _LONGEST_LINE * _BYTES:
+        return []
+    shown = lines[line - 1].decode("utf-8", "replace").replace("\t", " ")
+    if len(shown) > _LONGEST_LINE or not shown.isprintable():
+        return []
+    return ["    " + shown, "    " + " " * (column - 1) + "^"]
+
+
+_HEAD = ("file", "blocks", "arcs", "length mm", "lowest X Y Z", "highest X Y Z")
+
+
+def _rows(results: tuple[Checked, ...]) -> list[str]:
+    """A table with fitted column widths."""
+    cells = [_HEAD, *(_cells(result) for result in results)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+
+
+def _cells(result: Checked) -> tuple[str, ...]:
+    size = result.size
+    if size is None:
+        return (str(result.file), "-", "-", "-", "-", "-")
+    corners = (" ".join(f"{value:.3f}" for value in corner) for corner in (size.lowest, size.highest))
+    return (str(result.file), str(size.blocks), str(size.arcs), f"{size.length:.3f}", *corners)
+
+
+def as_json(results: Iterable[Checked]) -> str:
+    """Format the results as JSON: a list with one object per file."""
+    return json.dumps([_entry(result) for result in results], indent=1)
+
+
+def _entry(result: Checked) -> dict[str, Any]:
+    size = result.size
+    return {
+        "file": str(result.file),
+        "diagnostics": [
+            {
+                "code": one.code,
+                "severity": one.severity.value,
+                "line": one.place.line,
+                "column": one.place.column,
+                "found": one.found,
+                "text": str(one),
+            }
+            for one in result.diagnostics
+        ],
+        "reading": list(result.reading),
+        "size": None
+        if size is None
+        else {
+            "blocks": size.blocks,
+            "arcs": size.arcs,
+            "length_mm": size.length,
+            "lowest_mm": size.lowest,
+            "highest_mm": size.highest,
+        },
+    }

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Course: the state that the statements of a file set, in file order, during sequential reading.
+
+Each change is recorded with its statement row; the affected motions are found later, all at once. Lengths are in mm and
+times in s from here on; points stay as written until then.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pkm_post.model import Array, EventKind, Tool
+from pkm_post.reading.cldata.cycles import Cycle
+from pkm_post.reading.cldata.dialects import Dialect
+from pkm_post.reading.cldata.faults import Faults
+from pkm_post.reading.cldata.length_unit import LengthUnit
+from pkm_post.reading.cldata.options import UNITS, ReadOptions
+from pkm_post.reading.cldata.statements import Statements
+
+Vector = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Feed:
+    """A feed: mm/s, or 1/s for inverse time."""
+
+    value: float
+    inverse: bool = False
+
+
+@dataclass(frozen=True)
+class Arc:
+    """An arc that ends at the next point.
+
+    Attributes:
+        centre: as written.
+        axis: as written.
+        radius: as written, NaN if not given.
+        angle: sweep in rad, NaN if not given.
+        turns: full turns before the remaining sweep.
+        way: sense of rotation: 1 right-handed about its axis, -1 left-handed, 0 if not given.
+        seen_from_tool: the sense is about the tool axis, regardless of the direction of the arc axis.
+        shorter: the arc is less than half a turn.
+    """
+
+    centre: Vector
+    axis: Vector
+    radius: float = float("nan")
+    angle: float = float("nan")
+    turns: int = 0
+    way: float = 0.0
+    seen_from_tool: bool = False
+    shorter: bool = False
+
+
+@dataclass(frozen=True)
+class ArcData:
+    """A circle pending its motion, its row, and the rise or fall of the tool on it, as written."""
+
+    row: int
+    arc: Arc
+    rise: float
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane: its unit normal as written, and its distance from the origin along it, mm."""
+
+    normal: Vector
+    distance: float
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point not given by a plain GOTO.
+
+    Attributes:
+        position: as written.
+        axis: as written, None if absent.
+        start: it is the current tool position, not a target (FROM).
+    """
+
+    position: Vector
+    axis: Vector | None = None
+    start: bool = False
+
+
+@dataclass(frozen=True)
+class Said:
+    """Statement of the file about its points under CUTCOM: "centre" or "contour", its wording, and its row."""
+
+    points: str
+    words: str
+    row: int
+
+
+@dataclass(frozen=True)
+class Cutcom:
+    """A CUTCOM that begins, changes or ends compensation.
+
+    Attributes:
+        row: its statement.
+        side: 1 for LEFT, -1 for RIGHT, 0 for OFF.
+        plane: the coordinate normal to the named plane; None if no plane is named.
+        tool: tool number.
+        radius: tool radius, mm; 0 if unknown.
+        said: stated meaning of the points, None if the file states none.
+    """
+
+    row: int
+    side: float
+    plane: int | None
+    tool: int
+    radius: float
+    said: Said | None
+
+
+@dataclass
+class Course:
+    """State during reading, and recorded changes, each with its statement row.
+
+    ``goto_rows`` are the rows of plain GOTO statements, ``gotos_before`` is their count before each row; ``file_unit``
+    is the length unit stated in the file.
+    """
+
+    statements: Statements
+    dialect: Dialect
+    options: ReadOptions
+    faults: Faults
+    goto_rows: Array
+    gotos_before: Array
+    file_unit: LengthUnit
+
+    scale: float = 1.0
+    unit: str = ""
+    feed_word: str = "PERMIN"
+    feed_per_turn: float = 0.0
+    feed: Feed | None = None
+    speed: float = 0.0
+    turning: float = 0.0
+    tool: int = 0
+    insert: str = ""
+    tool_name: str = ""
+    tool_changed: int = -1
+    motions_settled: int = 0
+    motions_at_change: int = 0
+    diameter: float = 0.0
+    corner: float = 0.0
+    corner_known: bool = False
+    bottom_angle: float = 0.0
+    side_angle: float = 0.0
+    length: float = 0.0
+    points_said: Said | None = None
+    cycle_return: str = ""
+    cycle: Cycle | None = None
+    local: Array | None = None
+    shift: Array | None = None
+    work_from_given: Array | None = None
+    tangent: Vector | None = None
+    part_surface: Plane | None = None
+    slope: float = 0.0
+    arc_data: ArcData | None = None
+    ended: bool = False
+
+    tools: dict[int, Tool] = field(default_factory=dict)
+    operations: list[str] = field(default_factory=lambda: [""])
+    points: list[tuple[int, Point]] = field(default_factory=list)
+    rapids: list[int] = field(default_factory=list)
+    feeds: list[tuple[int, Feed]] = field(default_factory=list)
+    axes: list[tuple[int, Vector]] = field(default_factory=list)
+    scales: list[tuple[int, float]] = field(default_factory=list)
+    frames: list[tuple[int, Array]] = field(default_factory=list)
+    arcs: list[tuple[int, Arc]] = field(default_factory=list)
+    circles: list[tuple[int, Arc]] = field(default_factory=list)
+    cycles: list[tuple[int, Cycle | None]] = field(default_factory=list)
+    cycles_read: dict[str, list[int]] = field(default_factory=dict)
+    cutcoms: list[Cutcom] = field(default_factory=list)
+    starts: list[tuple[int, int]] = field(default_factory=list)
+    events: list[tuple[int, EventKind, float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.unit = self.options.units or self.file_unit.name or "mm"
+        self.scale = UNITS[self.unit]
+        self.scales.append((-1, self.scale))
+
+    def tell(self, code: str, row: int, found: str) -> None:
+        """Report a fault of a statement."""
+        self.faults.add(code, self.statements.place(row), found)
+
+    def set_feed(self, row: int, feed: Feed) -> None:
+        """Set the feed from here on."""
+        self.feed = feed
+        self.feeds.append((row, feed))

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options of reading CL data: settings that files omit or state wrongly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pkm_post.model import Tool
+from pkm_post.reading.cldata.dialects import DIALECTS
+
+UNITS: dict[str, float] = {"mm": 1.0, "inch": 25.4}
+"""mm per length unit."""
+
+POINT = ("x", "y", "z")
+AXIS = ("i", "j", "k")
+NORMAL = ("nx", "ny", "nz")
+CONTACT = ("px", "py", "pz")
+_VALUES = {*POINT, *AXIS, *NORMAL, *CONTACT}
+_HANDS = ("right", "left", "vote")
+_FRAMES = ("first", "absolute")
+CONTOUR_DATA = ("centre", "contour")
+"""Possible meanings of the points under CUTCOM."""
+CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell")
+"""Possible meanings of a number without a word in a CYCLE statement."""
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """Settings for reading CL data.
+
+    Attributes:
+        dialect: name in ``DIALECTS``; detected from the file if None.
+        units: key of ``UNITS``; overrides the file.
+        hand: "right", "left" or "vote": sense of rotation of arcs about their axis; overrides the dialect. "vote"
+            selects for the whole file the sense under which most arcs are shorter than half a turn.
+        goto_values: for GOTO with other than 3 or 6 values the meaning of each value: "x y z", "i j k" the tool axis,
+            "nx ny nz" the surface normal, "px py pz" the contact point, which is ignored.
+        cycle_values: meanings of the numbers that follow the kind of a CYCLE statement without words, in order, out of
+            ``CYCLE_VALUES``: depth down from the point, clearance and return height up from it.
+        frame: "first": the work frame is the first machining frame of the file; "absolute": the frame those are defined
+            in.
+        tools: by number; they override the tool data of the file, except for a name and a length that they lack.
+        contour_data: "centre" or "contour": meaning of the points under CUTCOM; overrides the file.
+        wear: mm by tool number, the path offset of CUTCOM in addition to the tool radius, or on its own where the
+            points are the tool centre; negative for a smaller cutter.
+        default_tool: supplies the gauge length of tools for which neither the file nor ``tools`` has one.
+        needs_end: whether the text is a complete file, which must end with FINI, or END-OF-PATH or similar.
+    """
+
+    dialect: str | None = None
+    units: str | None = None
+    hand: str | None = None
+    goto_values: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    cycle_values: tuple[str, ...] = ()
+    frame: str = "first"
+    tools: Mapping[int, Tool] = field(default_factory=dict)
+    contour_data: str | None = None
+    wear: Mapping[int, float] = field(default_factory=dict)
+    default_tool: Tool | None = None
+    needs_end: bool = False
+
+    def __post_init__(self) -> None:
+        tables: dict[str, tuple[str | None, ...]] = {
+            "dialect": (None, *DIALECTS),
+            "units": (None, *UNITS),
+            "hand": (None, *_HANDS),
+            "frame": _FRAMES,
+            "contour_data": (None, *CONTOUR_DATA),
+        }
+        for name, allowed in tables.items():
+            if getattr(self, name) not in allowed:
+                raise ValueError(f"{name}: expected one of {allowed}, got {getattr(self, name)!r}")
+        for number, wear in self.wear.items():
+            if not math.isfinite(wear):
+                raise ValueError(f"wear: expected finite lengths, got {wear} for tool {number}")
+        if len(set(self.cycle_values)) != len(self.cycle_values) or not {*self.cycle_values} <= {*CYCLE_VALUES}:
+            raise ValueError(f"cycle_values: expected different names out of {CYCLE_VALUES}, got {self.cycle_values!r}")
+        for count, names in self.goto_values.items():
+            if len(names) != count or len(set(names)) != count or not {*POINT} <= {*names} <= _VALUES:
+                raise ValueError(f"goto_values: expected {count} different names with x, y, z, got {names!r}")
+
+    def value_names(self, count: int) -> tuple[str, ...] | None:
+        """Meanings of the values of a GOTO, None if unknown."""
+        return self.goto_values.get(count, {3: POINT, 6: POINT + AXIS}.get(count))

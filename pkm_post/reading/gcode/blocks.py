@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Blocks: a G-code program as columns, one row per block, before interpretation.
+
+Enters: the result of the scan or of the execution. Leaves: the same, checked and read-only. Units: as programmed
+(inches or millimetres, degrees, F as written); the resolve step converts them.
+
+Only the words that the program uses have a column: a program of X, Y, Z and F takes 37 bytes per block.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import DTypeLike
+
+from pkm_post.model import Array, Place, uniform
+
+if TYPE_CHECKING:
+    from lark import Token, Tree
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Columns of N blocks with K G codes and L M codes in total. The arrays are not copied.
+
+    Attributes:
+        line: (N,) line in the file, from 1; strictly increasing in scanned blocks, in any order in executed ones.
+        words: by letter, or by name such as A3 or NX, the (N,) values of a word, NaN where absent; unused words and G,
+            M, N and O have no column.
+        g: (K,) G codes in tenths, 10 for G1, 434 for G43.4, in program order.
+        g_row: (K,) row of each G code, non-decreasing.
+        m: (L,) M codes, integers.
+        m_row: (L,) row of each M code, non-decreasing.
+        deleted: (N,) whether the block begins with the block delete character ``/``.
+        special: by row, the parsed block of rows whose values are known only at execution or that hold more than plain
+            words: parameters, expressions, assignments, O words. Such a row has no words and codes in the columns.
+        comments: line and text of operator messages and of tool descriptions.
+        source: name of the file.
+        closed: whether a percent sign closes the file.
+    """
+
+    line: Array
+    words: Mapping[str, Array]
+    g: Array
+    g_row: Array
+    m: Array
+    m_row: Array
+    deleted: Array
+    special: dict[int, Tree[Token]]
+    comments: tuple[tuple[int, str], ...]
+    source: str
+    closed: bool = False
+
+    def __post_init__(self) -> None:
+        rows = len(self.line)
+        for name, dtype, count in (
+            ("line", np.int32, rows),
+            ("deleted", np.bool_, rows),
+            ("g", np.int32, len(self.g)),
+            ("g_row", np.int32, len(self.g)),
+            ("m", np.int32, len(self.m)),
+            ("m_row", np.int32, len(self.m)),
+        ):
+            object.__setattr__(self, name, _taken(name, getattr(self, name), dtype, count))
+        words = {letter: _taken(f"words {letter}", self.words[letter], np.float64, rows) for letter in self.words}
+        object.__setattr__(self, "words", {letter: words[letter] for letter in sorted(words)})
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def word(self, letter: str) -> Array:
+        """The (N,) values of a word, NaN where absent."""
+        column = self.words.get(letter)
+        return uniform(np.nan, len(self)) if column is None else column
+
+    def has(self, letter: str) -> Array:
+        """Whether each block has a word, (N,)."""
+        column = self.words.get(letter)
+        return uniform(False, len(self)) if column is None else ~np.isnan(column)
+
+    def words_of(self, row: int) -> dict[str, float]:
+        """The words of a row, by letter."""
+        values = {letter: float(column[row]) for letter, column in self.words.items()}
+        return {letter: value for letter, value in values.items() if value == value}  # NaN is not itself
+
+    def g_of(self, row: int) -> Array:
+        """G codes of a row, in tenths, in block order."""
+        codes: Array = self.g[self.g_row.searchsorted(row) : self.g_row.searchsorted(row, "right")]
+        return codes
+
+    def m_of(self, row: int) -> Array:
+        """M codes of a row, in block order."""
+        codes: Array = self.m[self.m_row.searchsorted(row) : self.m_row.searchsorted(row, "right")]
+        return codes
+
+    def place(self, row: int) -> Place:
+        """Source location of a row."""
+        return Place(self.source, line=int(self.line[row]))
+
+    def first(self, count: int) -> Blocks:
+        """The first ``count`` blocks, which must be plain, as views."""
+        g, m = (int(rows.searchsorted(count)) for rows in (self.g_row, self.m_row))
+        return replace(
+            self,
+            line=self.line[:count],
+            words={letter: column[:count] for letter, column in self.words.items()},
+            g=self.g[:g],
+            g_row=self.g_row[:g],
+            m=self.m[:m],
+            m_row=self.m_row[:m],
+            deleted=self.deleted[:count],
+        )
+
+    def chosen(self, rows: Array) -> Blocks:
+        """Select rows, which must be plain, in any order and with repetition."""
+        g, g_row = codes_of(self.g, self.g_row, rows)
+        m, m_row = codes_of(self.m, self.m_row, rows)
+        return replace(
+            self,
+            line=self.line[rows],
+            words={letter: column[rows] for letter, column in self.words.items()},
+            g=g,
+            g_row=g_row,
+            m=m,
+            m_row=m_row,
+            deleted=self.deleted[rows],
+        )
+
+
+def _taken(name: str, values: Array, dtype: DTypeLike, count: int) -> Array:
+    """A read-only view of a column, not a copy: the columns dominate the memory use of a program."""
+    column = np.ascontiguousarray(values, dtype=dtype).view()
+    if column.shape != (count,):
+        raise ValueError(f"Blocks.{name}: expected {(count,)}, got {column.shape}")
+    column.flags.writeable = False
+    return column
+
+
+def codes_of(codes: Array, code_row: Array, rows: Array) -> tuple[Array, Array]:
+    """The codes of the selected rows, concatenated, and the index into the selection that each belongs to."""
+    if not len(codes):
+        return codes, code_row
+    begin, end = code_row.searchsorted(rows), code_row.searchsorted(rows, "right")
+    count = end - begin
+    row = np.repeat(np.arange(len(rows)), count)
+    place = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    return codes[begin[row] + place], row

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Checks: faults of a block that do not depend on the tool position.
+
+Enters: plain blocks and their modal codes. Leaves: faults: unsupported codes, mutually exclusive codes, words that no
+code of the block uses, and missing or invalid words.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.model import Array, by_row
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import (
+    ANY_BLOCK,
+    G_CODES,
+    IN_STEP_WITH_SPINDLE,
+    M_CODES,
+    NONE,
+    REFUSED,
+    Code,
+    Group,
+    name_of,
+)
+from pkm_post.reading.gcode.findings import Findings
+from pkm_post.reading.gcode.modal import Modal, is_cycle
+from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
+
+_WHOLE = "HLT"
+_NOT_NEGATIVE = "DFHLQST"
+_LIMIT = 1e9
+"""Upper bound of lengths, angles, times and numbers of a program; beyond it decimals are lost."""
+
+_Codes = tuple[str, Array, Array, dict[int, Code]]
+"""Letter, codes, their rows, and their definitions."""
+
+
+def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> None:
+    """Report the faults of individual blocks.
+
+    Args:
+        blocks: plain blocks.
+        modal: their modal codes.
+        options: read options.
+        faults: collects the faults.
+    """
+    _unknown_codes(blocks, faults)
+    _codes_of_one_group(blocks, faults)
+    _words_without_use(blocks, modal, options, faults)
+    _words_missing(blocks, modal, faults)
+    _values(blocks, modal, faults)
+    _axis_words(blocks, modal, faults)
+
+
+def _codes(blocks: Blocks) -> tuple[_Codes, _Codes]:
+    return ("G", blocks.g, blocks.g_row, G_CODES), ("M", blocks.m, blocks.m_row, M_CODES)
+
+
+def _marked(blocks: Blocks, rows: Array) -> Array:
+    """Mask of the given rows, (N,)."""
+    marked = np.zeros(len(blocks), dtype=np.bool_)
+    marked[rows] = True
+    return marked
+
+
+def _unknown_codes(blocks: Blocks, faults: Findings) -> None:
+    for letter, codes, rows, known in _codes(blocks):
+        for code in np.unique(codes).tolist():
+            if code in known:
+                continue
+            name = name_of(code, letter)
+            wrong = _marked(blocks, rows[codes == code])
+            if name in IN_STEP_WITH_SPINDLE:
+                faults.tell_all("G425", wrong, lambda _, name=name: name)  # type: ignore[misc]
+            elif name in REFUSED:
+                faults.tell_all("G402", wrong, lambda _, name=name: f"{name}: {REFUSED[name]}")  # type: ignore[misc]
+            else:
+                faults.tell_all("G401", wrong, lambda _, name=name: name)  # type: ignore[misc]
+
+
+def _codes_of_one_group(blocks: Blocks, faults: Findings) -> None:
+    groups = list(Group)
+    for letter, codes, rows, known in _codes(blocks):
+        with_next = np.append(rows[1:] == rows[:-1], False)[: len(rows)]
+        together = with_next | np.append(False, with_next[:-1])[: len(rows)]
+        used, which = np.unique(codes[together], return_inverse=True)
+        group = [groups.index(known[code].group) if code in known else NONE for code in used.tolist()]
+        group = [NONE if number == groups.index(Group.COOLANT) else number for number in group]
+        number = np.array(group, dtype=np.int64)[which]
+        pairs, count = np.unique((rows[together] * len(groups) + number)[number != NONE], return_counts=True)
+        for pair in pairs[count > 1].tolist():
+            row, of_group = divmod(pair, len(groups))
+            here = (blocks.g_of(row) if letter == "G" else blocks.m_of(row)).tolist()
+            names = [name_of(code, letter) for code in here if code in known and known[code].group is groups[of_group]]
+            faults.tell("G403", row, f"{' '.join(names)} ({groups[of_group].value})")
+
+
+def _words_without_use(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> None:
+    rotary = set("ABC") - set(axis_names(options.axis_words))
+    useless = {}
+    for letter in blocks.words:
+        if letter not in ANY_BLOCK and letter not in rotary:
+            unused = blocks.has(letter) & ~_used_by_motion(letter, modal, options)
+            if unused.any():
+                unused[_rows_that_use(letter, blocks)] = False
+                useless[letter] = unused
+    _tell_words("G414", {letter: blocks.has(letter) for letter in blocks.words if letter in rotary}, blocks, faults)
+    _tell_words("G404", useless, blocks, faults)
+
+
+def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
+    """Whether the motion of each block uses a word, (N,)."""
+    takes = np.zeros(max(G_CODES) + 1, dtype=np.bool_)
+    for code, meaning in G_CODES.items():
+        if meaning.group is Group.MOTION:
+            turns = letter in axis_names(options.axis_words)
+            takes[code] = code == 800 or letter in meaning.letters or turns or letter in NORMAL_WORDS
+            if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # on an arc they are its centre, or meaningless
+                takes[code] = letter in meaning.letters
+    return modal.moves & by_row(takes.__getitem__, modal.in_force[Group.MOTION])
+
+
+def _rows_that_use(letter: str, blocks: Blocks) -> Array:
+    """Rows with a non-motion code that uses a word; an unknown code may use any word."""
+    rows = []
+    for _, codes, row, known in _codes(blocks):
+        users = [
+            code
+            for code in np.unique(codes).tolist()
+            if code not in known or (known[code].group is not Group.MOTION and letter in known[code].letters)
+        ]
+        rows.append(row[np.isin(codes, users)])
+    return np.concatenate(rows)
+
+
+def _tell_words(code: str, wrong: dict[str, Array], blocks: Blocks, faults: Findings) -> None:
+    """Report invalid words, one fault per block."""
+    if wrong:
+        faults.tell_all(
+            code,
+            np.any(list(wrong.values()), axis=0),
+            lambda row: " ".join(_word(letter, blocks.words[letter][row]) for letter in wrong if wrong[letter][row]),
+        )
+
+
+def _word(name: str, value: float) -> str:
+    """A word as written: X1, A3=1."""
+    return f"{name}={value:g}" if name[-1].isdigit() else f"{name}{value:g}"
+
+
+def _words_missing(blocks: Blocks, modal: Modal, faults: Findings) -> None:
+    for code in np.unique(blocks.g).tolist():
+        for letter in G_CODES[code].needs if code in G_CODES else "":
+            missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
+            faults.tell_all("G405", missing, lambda _, c=code, w=letter: f"{name_of(c)} without {w}")  # type: ignore[misc]
+    spindle = modal.explicit[Group.SPINDLE]
+    turning = by_row(lambda codes: np.isin(codes, (3, 4)), spindle)
+    faults.tell_all("G405", turning & _before_first(blocks, "S"), lambda row: f"M{spindle[row]} without S")
+    change = modal.explicit[Group.CHANGE] == 6
+    faults.tell_all("G405", change & _before_first(blocks, "T"), lambda _: "M6 without T")
+
+
+def _before_first(blocks: Blocks, letter: str) -> Array:
+    """Whether each block precedes the first one with a word, (N,)."""
+    rows = np.flatnonzero(blocks.has(letter))
+    return np.arange(len(blocks)) < (rows[0] if len(rows) else len(blocks))
+
+
+def _values(blocks: Blocks, modal: Modal, faults: Findings) -> None:
+    for letter, value in blocks.words.items():
+        # Comparisons with NaN are false.
+        wrong = np.abs(value) > _LIMIT
+        if letter in _WHOLE:
+            wrong |= np.abs(value - np.round(value)) > 0
+        if letter in _NOT_NEGATIVE:
+            wrong |= value < 0
+        faults.tell_all("G406", wrong, lambda row, name=letter, value=value: _word(name, value[row]))  # type: ignore[misc]
+    rows = np.flatnonzero(by_row(lambda codes: np.isin(codes, (410, 420)), modal.explicit[Group.SIDE]))
+    diameter = blocks.word("D")[rows]
+    for row in rows[np.abs(diameter - np.round(diameter)) > 0].tolist():
+        faults.tell("G406", row, f"D{blocks.word('D')[row]:g}")
+    rows = blocks.g_row[blocks.g == 40]
+    for row in np.unique(rows[blocks.word("P")[rows] < 0]).tolist():
+        faults.tell("G406", row, f"P{blocks.word('P')[row]:g}")
+
+
+def _axis_words(blocks: Blocks, modal: Modal, faults: Findings) -> None:
+    """Report axis words that belong to no motion, or to two codes."""
+    explicit, motion = modal.explicit[Group.MOTION], modal.in_force[Group.MOTION]
+    faults.tell_all("G407", modal.moves & (motion == 800), lambda _: "axis words while no motion is in force (G80)")
+    both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)
+    faults.tell_all(
+        "G407", both, lambda row: f"{name_of(modal.takes_axes[row])} and {name_of(explicit[row])} in one block"
+    )
+    takers = blocks.g_row[np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.takes_axes])]
+    for row in np.unique(takers[1:][takers[1:] == takers[:-1]]).tolist():
+        faults.tell("G407", row, " ".join(name_of(code) for code in blocks.g_of(row).tolist()))
+    directly = modal.explicit[Group.ONCE] == 530
+    wrong = directly & (motion != 0) & (motion != 10)
+    faults.tell_all("G407", wrong, lambda row: f"G53 while {name_of(motion[row])} is in force")
+    inverse = modal.moves & is_cycle(motion) & (modal.in_force[Group.FEED_MODE] == 930)
+    faults.tell_all("G407", inverse, lambda row: f"{name_of(motion[row])} with inverse time feed (G93)")

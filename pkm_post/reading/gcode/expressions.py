@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Expressions: the values in a block, compiled once and evaluated at each execution of the block.
+
+Enters: subtrees of the parse tree of a block. Leaves: their values, in the units as written; angles of functions are in
+degrees, as in the program. An expression compiles to a list of stack operations, so Python's recursion depth does not
+depend on the program.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
+
+from pkm_post.reading.gcode.arithmetic import FUNCTIONS, OPERATORS, arc_tangent
+from pkm_post.reading.gcode.parameters import ExecutionFault, Name, Parameters, in_range
+
+if TYPE_CHECKING:
+    from lark import Token, Tree
+
+    Node = Tree[Token] | Token
+
+Step = Callable[[list[float], Parameters], None]
+_Result = TypeVar("_Result")
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A compiled value.
+
+    Attributes:
+        steps: stack operations, in order; they leave only the value on the stack.
+        column: where it begins in its block, from 1.
+    """
+
+    steps: tuple[Step, ...]
+    column: int
+
+    def value(self, parameters: Parameters) -> float:
+        """Evaluate the expression.
+
+        Args:
+            parameters: of the running program.
+
+        Raises:
+            ExecutionFault: the value cannot be computed.
+        """
+        stack: list[float] = []
+        for step in self.steps:
+            step(stack, parameters)
+        return stack[0]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A parameter as an assignment target: by name, or by a number that may have to be computed.
+
+    Attributes:
+        name: of a named parameter, or empty.
+        number: of a numbered one.
+        column: where it begins in its block, from 1.
+    """
+
+    name: str
+    number: Expression | None
+    column: int
+
+    def resolved(self, parameters: Parameters) -> Name:
+        """Resolve the parameter.
+
+        Raises:
+            ExecutionFault: there is no parameter of that number.
+        """
+        if self.number is None:
+            return self.name
+        return _told_at(self.column, in_range, self.number.value(parameters))
+
+
+def expression_of(node: Node) -> Expression:
+    """Compile a value.
+
+    Args:
+        node: a branch or leaf of the parse tree that represents a value.
+    """
+    steps: list[Step] = []
+    waiting = [node]
+    while waiting:  # a node precedes its operands, last operand first: this yields the steps in reverse
+        here = waiting.pop()
+        step, operands = _step_of(here)
+        steps.extend(step)
+        waiting.extend(operands)
+    return Expression(tuple(reversed(steps)), column_of_node(node))
+
+
+def target_of(parameter: Node) -> Target:
+    """Compile a parameter as an assignment target.
+
+    Args:
+        parameter: a ``parameter`` of the tree.
+    """
+    assert not isinstance(parameter, str)  # in the grammar a parameter is always a branch
+    (which,) = parameter.children
+    column = _column_of_sign(which)
+    if isinstance(which, str) and which.type == "NAME":
+        return Target(plain_name(which), None, column)
+    return Target("", expression_of(which), column)
+
+
+def plain_name(token: str) -> str:
+    """Normalise a name: strip brackets and blanks, fold case."""
+    return "".join(token[1:-1].split()).lower()
+
+
+def column_of_node(node: Node) -> int:
+    """Start column of a branch, from 1; 0 if unknown."""
+    while not isinstance(node, str):
+        if not node.children:
+            return 0
+        node = node.children[0]
+    return node.column or 0
+
+
+def _column_of_sign(which: Node) -> int:
+    """Column of the ``#`` before a parameter: the grammar omits the sign from the tree."""
+    return max(column_of_node(which) - 1, 0)
+
+
+def _step_of(node: Node) -> tuple[list[Step], list[Node]]:
+    """The stack operation of a node, and its operand nodes, in order."""
+    if isinstance(node, str):
+        return [_push(float(node))], []
+    if node.data == "signed":
+        return ([_apply(operator.neg, "-", node)] if node.children[0] == "-" else []), [node.children[1]]
+    if node.data == "parameter":
+        which = node.children[0]
+        if isinstance(which, str) and which.type == "NAME":
+            return [_named(plain_name(which), _column_of_sign(which))], []
+        return [_numbered(_column_of_sign(which))], [which]
+    if node.data == "binary":
+        left, sign, right = node.children
+        name = str(sign).lower()
+        return [_combine(OPERATORS[name], name, column_of_node(sign))], [left, right]
+    return _function_step(node)
+
+
+def _function_step(node: Tree[Token]) -> tuple[list[Step], list[Node]]:
+    name, *operands = node.children
+    assert isinstance(name, str)  # in the grammar a function starts with its name
+    if name.type == "ATAN":
+        return [_combine(arc_tangent, "atan", column_of_node(node))], operands
+    if name.type == "EXISTS":
+        return [_exists(target_of(operands[0]))], []
+    return [_apply(FUNCTIONS[name.lower()], name.lower(), node)], operands
+
+
+def _push(number: float) -> Step:
+    return lambda stack, _: stack.append(number)
+
+
+def _named(name: str, column: int) -> Step:
+    return lambda stack, parameters: stack.append(_told_at(column, parameters.value, name))
+
+
+def _numbered(column: int) -> Step:
+    def read(stack: list[float], parameters: Parameters) -> None:
+        number = stack[-1]
+        stack[-1] = _told_at(column, lambda: parameters.value(in_range(number)))
+
+    return read
+
+
+def _exists(target: Target) -> Step:
+    return lambda stack, parameters: stack.append(float(parameters.exists(target.resolved(parameters))))
+
+
+def _apply(function: Callable[[float], float], name: str, node: Node) -> Step:
+    column = column_of_node(node)
+
+    def apply(stack: list[float], _: Parameters) -> None:
+        stack[-1] = _finite(column, name, function, stack[-1])
+
+    return apply
+
+
+def _combine(function: Callable[[float, float], float], name: str, column: int) -> Step:
+    def combine(stack: list[float], _: Parameters) -> None:
+        right = stack.pop()
+        stack[-1] = _finite(column, name, function, stack[-1], right)
+
+    return combine
+
+
+def _finite(column: int, name: str, function: Callable[..., float], *operands: float) -> float:
+    """Apply a function and require a finite result."""
+    try:
+        value = float(function(*operands))
+    except ExecutionFault as fault:
+        raise ExecutionFault(fault.code, fault.found, column) from None
+    except (ValueError, OverflowError):
+        value = math.nan
+    if not math.isfinite(value):
+        raise ExecutionFault("G305", f"{name} of {', '.join(f'{operand:.10g}' for operand in operands)}", column)
+    return value
+
+
+def _told_at(column: int, function: Callable[..., _Result], *arguments: object) -> _Result:
+    """Call a function and add the column to its fault."""
+    try:
+        return function(*arguments)
+    except ExecutionFault as fault:
+        raise ExecutionFault(fault.code, fault.found, fault.column or column) from None

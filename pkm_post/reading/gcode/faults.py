@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faults of blocks: turn lark errors into readable diagnostics.
+
+Enters: the bytes of a line and lark's report of unexpected input. Leaves: a lexical fault (G1xx: an invalid character
+or number) or a syntax fault (G2xx), with its location, what was found and what was expected, in words.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from pkm_post.model import Diagnostic, Place
+from pkm_post.reading.gcode.row import Fault
+
+if TYPE_CHECKING:
+    from lark import UnexpectedInput, UnexpectedToken
+
+MOST_TOLD = 100
+"""Faults reported individually; the rest are only counted."""
+
+LONGEST_TO_TRY = 200
+"""Characters. To list the acceptable tokens, lark before 1.2 copies its parser state recursively."""
+
+EXPECTED: dict[str, tuple[str, ...]] = {
+    "a number": ("NUMBER",),
+    "a parameter": ("HASH",),
+    "a name in < >": ("NAME",),
+    "'['": ("LSQB",),
+    "a function": ("FUNCTION", "ATAN", "EXISTS"),
+    "a sign": ("SIGN",),
+    "an operator": ("PRODUCT", "POWER", "COMPARISON", "LOGIC"),
+    "']'": ("RSQB",),
+    "'='": ("EQUAL",),
+    "'/'": ("DELETE",),
+    "a word": ("LETTER", "NAMED", "SURFACE", "LN", "TRAORI", "TRAFOOF"),
+    "a line number": ("_N",),
+    "an O word": ("_O",),
+    "'%'": ("PERCENT",),
+    "a keyword such as sub, call, if or while": ("O_PLAIN", "O_CONDITION", "O_RESULT", "O_CALL"),
+    "the end of the block": ("$END", "<END-OF-FILE>"),
+}
+"""The terminals of the grammar in words, in reporting order."""
+
+_COMMENT = re.compile(r"\([^()]*\)|;.*")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
+_NUMERIC = "+-.0123456789"
+
+
+class Faults:
+    """The faults of a file, collected in line order."""
+
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self._told: list[Diagnostic] = []
+        self._count = 0
+
+    def add(self, number: int, line: bytes, unexpected: UnexpectedInput | Fault) -> None:
+        """Add the fault of a line.
+
+        Args:
+            number: line number in the file, from 1.
+            line: its bytes.
+            unexpected: its fault.
+        """
+        self._count += 1
+        if self._count > MOST_TOLD:
+            return
+        fault = unexpected if isinstance(unexpected, Fault) else fault_of(line.decode("latin-1"), unexpected)
+        self._told.append(
+            Diagnostic(fault.code, Place(self._file, line=number, column=_column(line, fault)), fault.found)
+        )
+
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of the file."""
+        untold = self._count - len(self._told)
+        more = [Diagnostic("G199", Place(self._file), f"and {untold} more")] if untold else []
+        return (*self._told, *more)
+
+
+def readable(text: bytes) -> str:
+    """Decode bytes as UTF-8, with Latin-1 as fallback."""
+    try:
+        return text.decode("utf-8")
+    except UnicodeDecodeError:
+        return text.decode("latin-1")
+
+
+def _column(line: bytes, fault: Fault) -> int:
+    """Column of a fault as counted by an editor."""
+    try:
+        line.decode("utf-8")
+    except UnicodeDecodeError:
+        return fault.offset + 1
+    return len(line[: fault.offset].decode("utf-8", "ignore")) + 1
+
+
+def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
+    """The fault that stopped lark.
+
+    Args:
+        text: the line, one character per byte.
+        unexpected: lark's report.
+    """
+    from lark import UnexpectedToken
+
+    if isinstance(unexpected, UnexpectedToken):
+        return _token_fault(_COMMENT.sub(lambda comment: " " * len(comment[0]), text), unexpected)
+    return _character_fault(text, unexpected.pos_in_stream or 0)
+
+
+def _character_fault(text: str, offset: int) -> Fault:
+    """The fault of a character that starts no terminal."""
+    character = text[offset]
+    if character == "(":
+        inner = re.search(r"[()]", text[offset + 1 :])
+        return Fault("G203", offset + 1 + inner.start(), "'('") if inner else Fault("G204", offset, "'('")
+    code = {")": "G207", "<": "G208", ".": "G102"}.get(character, "G101")
+    return Fault(code, offset, _shown(text, offset))
+
+
+def _shown(text: str, offset: int) -> str:
+    """The character at an offset, as a code point if it is not printable."""
+    following = text[offset : offset + 4]
+    character = following.encode("latin-1").decode("utf-8", "replace")[0].replace("\ufffd", following[0])
+    return f"'{character}'" if character.isprintable() else f"character {ord(character):#04x}"
+
+
+def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
+    """The fault of a terminal that cannot continue the block."""
+    at_end = unexpected.token.type == "$END"
+    offset = len(text.rstrip()) if at_end else unexpected.token.start_pos or 0
+    malformed = _malformed_number(text, offset)
+    if malformed is not None:
+        return malformed
+    if text.count("[") > text.count("]") and _open_brackets(text[:offset]):
+        return Fault("G205", _open_brackets(text[:offset])[-1], "'['")
+    accepted = _accepted(text, unexpected)
+    code, place = _code_and_place(text, offset, unexpected, accepted)
+    found = "the end of the block" if place == offset and at_end else f"'{text[place : place + 1]}'"
+    return Fault(code, place, f"{found}, expected {_in_words(accepted)}")
+
+
+def _accepted(text: str, unexpected: UnexpectedToken) -> set[str]:
+    """Terminals acceptable at this point; in a long block an over-approximation."""
+    if len("".join(text.split())) > LONGEST_TO_TRY:
+        return set(unexpected.expected)
+    return unexpected.accepts or set(unexpected.expected)
+
+
+def _code_and_place(text: str, offset: int, unexpected: UnexpectedToken, accepted: set[str]) -> tuple[str, int]:
+    """The code of a syntax fault, and the offset of its cause."""
+    from lark import Token
+
+    within_brackets = bool(_open_brackets(text[:offset]))
+    stack = unexpected.interactive_parser.parser_state.value_stack if unexpected.interactive_parser else []
+    before = stack[-1] if stack else None
+    kind = unexpected.token.type
+    if isinstance(before, Token) and before.type in ("LETTER", "SURFACE", "_N", "_O"):
+        return "G201", before.start_pos or 0
+    if kind == "RSQB" and not within_brackets:
+        return "G207", offset
+    if kind in ("_N", "_O", "LN", "SURFACE", "DELETE", "PERCENT") and not within_brackets:
+        return "G210", offset
+    if "HASH" in accepted and "LETTER" not in accepted:
+        return "G209", offset
+    return "G206", offset
+
+
+def _malformed_number(text: str, offset: int) -> Fault | None:
+    """The fault of a run of digits, points and signs at or just before an offset that is not a number."""
+    in_expression = bool(_open_brackets(text[:offset]))
+    for before in (text[:offset], text[:offset].rstrip()):
+        start = len(before.rstrip(_NUMERIC))
+        run = text[start:offset].rstrip() + (_leading_run(text[offset:]) if len(before) == offset else "")
+        operator = in_expression and not re.fullmatch(r"[.\d]{2}", text[offset - 1 : offset + 1])
+        if run and not operator and not _NUMBER.fullmatch(run):
+            return Fault("G102", start, f"'{run[:40]}'")
+    return None
+
+
+def _leading_run(text: str) -> str:
+    return text[: len(text) - len(text.lstrip(_NUMERIC))]
+
+
+def _open_brackets(text: str) -> list[int]:
+    """Offsets of unclosed brackets in the text."""
+    open_at: list[int] = []
+    for bracket in re.finditer(r"[][]", text):
+        if bracket[0] == "[":
+            open_at.append(bracket.start())
+        elif open_at:
+            open_at.pop()
+    return open_at
+
+
+def _in_words(terminals: set[str]) -> str:
+    """Terminals in words."""
+    words = [words for words, names in EXPECTED.items() if terminals.intersection(names)]
+    return " or ".join(filter(None, (", ".join(words[:-1]), words[-1])))

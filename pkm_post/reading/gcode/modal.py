@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Modal: the active code of each group in each block.
+
+Enters: blocks. Leaves: columns of codes, in tenths for G (434 is G43.4). A modal code stays active until another code
+of its group.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.model import Array, by_row, is_uniform, uniform
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import ARCS, CYCLES, G_CODES, M_CODES, NONE, Group
+
+_DEFAULTS: dict[Group, int] = {
+    Group.MOTION: 800,
+    Group.PLANE: 170,
+    Group.DISTANCE: 900,
+    Group.ARC_DISTANCE: 911,
+    Group.FEED_MODE: 940,
+    Group.UNIT: 210,
+    Group.SIDE: 400,
+    Group.LENGTH: 490,
+    Group.RETRACT: 980,
+    Group.PATH: 640,
+    Group.SYSTEM: 540,
+}
+"""Active codes at program start."""
+
+
+def carried(rows: Array, values: Array, before: float, count: int) -> Array:
+    """Forward-fill a column: the last value given up to each row, (count,).
+
+    Args:
+        rows: (k,) rows with a given value, non-decreasing.
+        values: (k,) the given values.
+        before: the value before the first one.
+        count: number of rows.
+    """
+    if len(rows) == count:
+        return values
+    first = values[0] if len(rows) and rows[0] == 0 else before
+    if (values == first).all():
+        return uniform(first, count, values.dtype)
+    filled: Array = np.repeat(np.append(values.dtype.type(before), values), np.diff(rows, prepend=0, append=count))
+    return filled
+
+
+def changes(column: Array, before: float) -> Array:
+    """Whether each row differs from the previous one, (n,); ``before`` precedes the first."""
+    if is_uniform(column) and (column[:1] == before).all():
+        return uniform(False, len(column))
+    changed: Array = np.append(before, column[:-1])[: len(column)] != column
+    return changed
+
+
+@dataclass(frozen=True)
+class Modal:
+    """Codes by block. A group that never changes from its initial code is a uniform column.
+
+    Attributes:
+        explicit: by group, (N,) the code in the block, ``NONE`` where absent; the last one of COOLANT.
+        in_force: by modal group, (N,) the active code in the block, including its own.
+        scale: (N,) mm per length unit.
+        moves: (N,) whether the block moves the tool by the active motion code.
+        takes_axes: (N,) the non-motion G code that consumes the axis words, ``NONE`` where absent.
+    """
+
+    explicit: dict[Group, Array]
+    in_force: dict[Group, Array]
+    scale: Array
+    moves: Array
+    takes_axes: Array
+
+    def in_mm(self, words: Array) -> Array:
+        """Convert (N,) lengths as written to mm."""
+        return words if is_uniform(self.scale) and (self.scale[:1] == 1).all() else words * self.scale
+
+
+def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str]) -> Modal:
+    """The active codes of every block.
+
+    Args:
+        blocks: plain blocks; codes missing from the tables are ignored.
+        unit: mm per length unit before G20 or G21.
+        axis_words: words that move the tool axis.
+    """
+    count = len(blocks)
+    said = _by_group(blocks)
+    in_force = {
+        group: carried(*said.get(group, _NOTHING), default, count) for group, default in _DEFAULTS.items()
+    }  # fmt: skip
+    rows, units = said.get(Group.UNIT, _NOTHING)
+    scale = carried(rows, np.where(units == 200, 25.4, 1.0), unit, count)
+    explicit = {group: _scattered(*said.get(group, _NOTHING), count) for group in Group}
+    takes = np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.takes_axes])
+    takes_axes = _scattered(blocks.g_row[takes], blocks.g[takes].astype(_CODE), count)
+    moves = _moves(blocks, explicit, in_force, axis_words) & (takes_axes == NONE)
+    return Modal(explicit, in_force, scale, moves, takes_axes)
+
+
+_CODE = np.int16
+"""Data type of known codes in columns."""
+_NOTHING = (np.empty(0, np.int32), np.empty(0, _CODE))
+
+
+def _by_group(blocks: Blocks) -> dict[Group, tuple[Array, Array]]:
+    """Rows and codes by group."""
+    said: dict[Group, tuple[Array, Array]] = {}
+    for codes, rows, table in ((blocks.g, blocks.g_row, G_CODES), (blocks.m, blocks.m_row, M_CODES)):
+        used = {table[code].group for code in np.unique(codes).tolist() if code in table}
+        for group in used:
+            of_group = np.isin(codes, [code for code, meaning in table.items() if meaning.group is group])
+            said[group] = rows[of_group], codes[of_group].astype(_CODE)
+    return said
+
+
+def _scattered(rows: Array, codes: Array, count: int) -> Array:
+    """Scatter codes into a column, ``NONE`` in all other rows."""
+    if not len(rows):
+        return uniform(NONE, count, _CODE)
+    column = np.full(count, NONE, _CODE)
+    column[rows] = codes
+    return column
+
+
+def is_arc(motion: Array) -> Array:
+    """Whether each motion is an arc, (n,)."""
+    return by_row(lambda codes: np.isin(codes, ARCS), motion)
+
+
+def is_cycle(motion: Array) -> Array:
+    """Whether each motion is a cycle, (n,)."""
+    return by_row(lambda codes: np.isin(codes, CYCLES), motion)
+
+
+def _moves(
+    blocks: Blocks, explicit: dict[Group, Array], in_force: dict[Group, Array], axis_words: Iterable[str]
+) -> Array:
+    """Whether each block has words that cause motion, (N,)."""
+    # On an arc the centre or the radius suffices; G1 I J K rotates the tool axis, but on an arc I J K are the centre.
+    moves = _has(blocks, ("X", "Y", "Z", *axis_words)) | (is_arc(in_force[Group.MOTION]) & _has(blocks, "IJKR"))
+    return moves | is_cycle(explicit[Group.MOTION])
+
+
+def _has(blocks: Blocks, letters: Iterable[str]) -> Array:
+    """Whether each block has any of the words, (N,)."""
+    given = np.zeros(len(blocks), dtype=np.bool_)
+    for letter in letters:
+        given |= blocks.has(letter)
+    return given

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Read: convert the text of a G-code program to motions, in three independent steps.
+
+Enters: the content of a file, in its own units. Leaves: a ``Program`` in mm, rad and mm/s, or all faults of the first
+step that fails: a block that cannot be parsed cannot be processed further.
+"""
+
+from __future__ import annotations
+
+from pkm_post.model import Diagnostic, Program
+from pkm_post.reading.gcode.execute import DEFAULT_LIMITS, ExecutionLimits, execute
+from pkm_post.reading.gcode.located import located
+from pkm_post.reading.gcode.options import ReadOptions
+from pkm_post.reading.gcode.resolve import resolve
+from pkm_post.reading.gcode.scan import scan
+
+DEFAULT_OPTIONS = ReadOptions()
+
+
+def read(
+    text: bytes | str,
+    file: str,
+    options: ReadOptions = DEFAULT_OPTIONS,
+    limits: ExecutionLimits = DEFAULT_LIMITS,
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """Read a G-code program.
+
+    Args:
+        text: content of the file; any bytes.
+        file: its name, for diagnostics.
+        options: read options.
+        limits: bounds of loops and calls.
+
+    Returns:
+        The program, or None if there are errors; and the diagnostics.
+
+    Raises:
+        ImportError: lark is not installed.
+    """
+    scanned, told = scan(text, file)
+    if scanned is None:
+        return None, told
+    executed, told_of_execution = execute(scanned, limits, options.block_delete)
+    if executed is None:
+        return None, told + told_of_execution
+    program, told_of_meaning = resolve(executed, options, text)
+    return program, told + told_of_execution + (located(told_of_meaning, text) if told_of_meaning else ())

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Resolve: convert plain blocks to a program.
+
+Enters: blocks in the units as written. Leaves: columns in mm, mm/s and unit vectors in {C}, every modal word resolved,
+cycles as moves, arcs with centre and axis; or the faults of the blocks. Moves before X, Y and Z are all known have no
+end point and are merged into the first one with a known end point. Text after M2 or M30 is ignored; without these or a
+percent sign a file may be truncated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.model import Array, Diagnostic, Kind, Program, Tool, by_row, is_uniform, locked, uniform
+from pkm_post.reading.gcode.arc_motions import arcs_of, known_ones, lengths, single_turns
+from pkm_post.reading.gcode.axes import check_cycles, spins, surface_normals, tool_axes
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.checks import check
+from pkm_post.reading.gcode.codes import ARCS, END_OF_CYCLES, NONE, Group
+from pkm_post.reading.gcode.dwells import check_dwells, dwell_words
+from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds
+from pkm_post.reading.gcode.findings import Findings
+from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
+from pkm_post.reading.gcode.happenings import ENDS, events, happenings
+from pkm_post.reading.gcode.magazine import side_offsets, spindle_speeds, tools_in_spindle
+from pkm_post.reading.gcode.modal import Modal, modal_state
+from pkm_post.reading.gcode.motions import Motions
+from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
+from pkm_post.reading.gcode.path_modes import path_modes
+from pkm_post.reading.gcode.walk import Walk
+
+_ALONG_AN_AXIS = 1 - 1e-9
+_KIND = np.zeros(31, np.uint8)
+_KIND[[0, 10, 20, 30]] = Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC
+"""Motion kind by G code."""
+
+
+def resolve(
+    blocks: Blocks, options: ReadOptions, text: bytes | str = ""
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """Convert plain blocks to a program.
+
+    Args:
+        blocks: blocks without parameters, expressions and O words, in execution order.
+        options: read options.
+        text: the source text, if available, for details that the columns do not contain.
+
+    Returns:
+        The program, or None if there are errors; and the diagnostics in line order.
+
+    Raises:
+        ValueError: the blocks are not plain.
+    """
+    if blocks.special:
+        raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
+    blocks, ended = _read(blocks, options)
+    blocks = _without_spent_ends(blocks)
+    faults = Findings(blocks)
+    modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words))
+    check(blocks, modal, options, faults)
+    check_dwells(blocks, modal, options, text, faults)
+    program = None if faults.stop() else _program(blocks, modal, options, faults)
+    if options.needs_end and not ended:
+        faults.tell("G430", len(blocks) - 1, "no M2, M30 or % behind it")
+    return None if faults.stop() else program, faults.in_order()
+
+
+def _read(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
+    """The blocks to execute, without deleted ones, up to the program end; and whether there is a program end."""
+    ends = blocks.m_row[np.isin(blocks.m, ENDS)]
+    if options.block_delete:
+        ends = ends[~blocks.deleted[ends]]
+    if len(ends):
+        blocks = blocks.first(int(ends[0]) + 1)
+    if options.block_delete and blocks.deleted.any():
+        blocks = blocks.chosen(np.flatnonzero(~blocks.deleted))
+    return blocks, blocks.closed or bool(len(ends))
+
+
+def _without_spent_ends(blocks: Blocks) -> Blocks:
+    """Drop G80 beside G0, G1, G2 or G3, which cancel a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
+    ends = np.flatnonzero(blocks.g == END_OF_CYCLES)
+    if not len(ends):
+        return blocks
+    spent = ends[np.isin(blocks.g_row[ends], blocks.g_row[np.isin(blocks.g, (0, 10, *ARCS))])]
+    return replace(blocks, g=np.delete(blocks.g, spent), g_row=np.delete(blocks.g_row, spent))
+
+
+@dataclass(frozen=True)
+class _Settings:
+    """State of each block beside positions and modes.
+
+    Attributes:
+        tools: (N,) number of the tool in the spindle.
+        spindle: (N,) signed spindle speed, 1/min.
+        sides: (N,) radius of the 2D compensation, mm.
+        axes: (N, 3) unit tool axis in program coordinates.
+        normals: (N, 3) unit surface normal likewise, or NaN.
+        spins: (N,) rotation of the platform about the tool axis, rad, or NaN.
+    """
+
+    tools: Array
+    spindle: Array
+    sides: Array
+    axes: Array
+    normals: Array
+    spins: Array
+
+
+def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> _Settings:
+    tools = tools_in_spindle(blocks, modal, options, faults)
+    axes = tool_axes(blocks, modal, options, faults)
+    check_cycles(modal, axes, faults)
+    return _Settings(
+        tools=tools,
+        spindle=spindle_speeds(blocks, modal),
+        sides=side_offsets(blocks, modal, tools, options, faults),
+        axes=axes,
+        normals=surface_normals(blocks, faults),
+        spins=spins(blocks, modal, options),
+    )
+
+
+def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Program | None:
+    settings = _settings(blocks, modal, options, faults)
+    modes = path_modes(blocks, modal, options.axis_words, faults)
+    dwells = dwell_words(blocks, options)
+    walk = Walk(blocks, modal, settings.tools, settings.spindle, dwells, options, faults)
+    motions = walk.motions()
+    centre, axis = arcs_of(blocks, modal, motions, faults)
+    if faults.stop():
+        return None
+    motions, centre, axis = single_turns(blocks, modal, motions, centre, axis)
+    way = _ways(modal, motions, centre, axis)
+    motions, (centre, axis, way) = known_ones(motions, [centre, axis, way])
+    if not len(motions):
+        faults.tell("G420", 0, f"{len(blocks)} blocks")
+        return None
+    columns = _directions(blocks, modal, settings, motions, axis, faults)
+    turns = _turns(modal, columns["tool_axis"])
+    columns |= {
+        "kind": _KIND[motions.motion],
+        "position": _frames(motions).points(motions.end),
+        "feed": feeds(blocks, modal, settings.spindle, motions, way, turns, faults),
+        "arc_centre": _frames(motions).points(centre),
+        "operation": uniform(0, len(motions), np.int32),
+        "line": motions.of_blocks(blocks.line),
+        **{name: motions.of_blocks(column) for name, column in modes.items()},
+    }
+    return Program(
+        **{name: locked(column) for name, column in columns.items()},
+        events=events(
+            happenings(blocks, modal, settings.tools, settings.spindle, dwells), motions.in_cycles, motions.block
+        ),
+        operations=("",),
+        tools=_tools(settings.tools, options),
+        source=blocks.source,
+        source_fingerprint="",
+        reading=(),
+        length_offsets=frozenset(walk.codes.length_offsets),
+    )
+
+
+def _frames(motions: Motions) -> RowFrames:
+    return RowFrames.of(motions.frames, motions.frame)
+
+
+def _directions(
+    blocks: Blocks, modal: Modal, settings: _Settings, motions: Motions, axis: Array, faults: Findings
+) -> dict[str, Array]:
+    """Program columns that frames rotate and mirror but do not translate."""
+    frames = _frames(motions)
+    side, plane = _compensation(blocks, modal, motions, frames, settings.sides, faults)
+    return {
+        "tool_axis": frames.directions(motions.of_blocks(settings.axes)),
+        "arc_axis": _turned(frames.hand(), frames.directions(axis)),
+        "side_offset": side,
+        "plane": plane,
+        "normal": frames.directions(motions.of_blocks(settings.normals)),
+        "spin": _handed(frames.hand(), motions.of_blocks(settings.spins)),
+    }
+
+
+def _ways(modal: Modal, motions: Motions, centre: Array, axis: Array) -> Array:
+    """Distances travelled by the tool tip, (n,), mm; zeros in a program without G93, where they are unused."""
+    if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
+        return lengths(motions, centre, axis)
+    return uniform(0.0, len(motions))
+
+
+def _turns(modal: Modal, axis: Array) -> Array:
+    """Whether the tool axis rotates, (n,); all true in a program without G93, where it is unused."""
+    if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
+        return np.append(True, np.any(axis[1:] != axis[:-1], axis=1))
+    return uniform(True, len(axis))
+
+
+def _handed(hand: Array, spin: Array) -> Array:
+    """Spins in {C}: a mirrored frame inverts their sign."""
+    return spin if is_uniform(spin) else hand * spin
+
+
+def _turned(hand: Array, axis: Array) -> Array:
+    """Arc axes in {C}, made right-handed again where the frame is mirrored."""
+    return axis if is_uniform(axis) or (hand > 0).all() else hand[:, None] * axis
+
+
+def _compensation(
+    blocks: Blocks, modal: Modal, motions: Motions, frames: RowFrames, sides: Array, faults: Findings
+) -> tuple[Array, Array]:
+    """Side offset and plane of each motion in {C}, (n,) each: a mirror changes the side."""
+    plane, along = frames.planes(by_row(normal_coordinate, motions.of_blocks(modal.in_force[Group.PLANE])))
+    side = motions.of_blocks(sides)
+    if not side.any():
+        return side, plane
+    oblique = np.zeros(len(blocks), dtype=np.bool_)
+    oblique[motions.block[(side != 0) & (np.abs(along) < _ALONG_AN_AXIS)]] = True
+    faults.tell_all("G419", oblique, lambda _: "the plane is turned out of X, Y and Z")
+    return side * np.sign(along) * frames.hand(), plane
+
+
+def _tools(numbers: Array, options: ReadOptions) -> dict[int, Tool]:
+    """The tools in use, by number."""
+    called = [number for number in np.unique(numbers).tolist() if number != NONE]
+    found = {number: replace(tool, number=number) for number in called if (tool := options.tool(number))}
+    standing = options.tool(0)
+    return {standing.number: standing} if standing and not found else found

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Statements: special blocks, compiled once and executed each time the program reaches them.
+
+Enters: the parse trees of the blocks. Leaves: for an O word its keyword, label and values; for every other block its
+words, codes and assignments as expressions. Words that switch a dialect mode on and off become the equivalent G codes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from pkm_post.reading.gcode.expressions import (
+    Expression,
+    Target,
+    column_of_node,
+    expression_of,
+    plain_name,
+    target_of,
+)
+from pkm_post.reading.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole
+from pkm_post.reading.gcode.row import LARGEST_CODE, dialect_codes
+
+if TYPE_CHECKING:
+    from lark import Token, Tree
+
+    Node = Tree[Token] | Token
+
+_NEAR_A_CODE = 1e-3
+"""Tolerance for accepting a value as a code, in units of its smallest step."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """The plain words of a block as executed.
+
+    Attributes:
+        values: by letter.
+        g: G codes in tenths.
+        m: M codes.
+    """
+
+    values: dict[str, float] = field(default_factory=dict)
+    g: tuple[int, ...] = ()
+    m: tuple[int, ...] = ()
+
+
+@dataclass
+class Words:
+    """A block of words, codes and assignments.
+
+    Attributes:
+        values: letter and value.
+        g: G codes as written, not in tenths.
+        m: M codes.
+        codes: G codes in tenths that replace words of other dialects.
+        assignments: carried out after all values of the block are computed.
+    """
+
+    values: list[tuple[str, Expression]] = field(default_factory=list)
+    g: list[Expression] = field(default_factory=list)
+    m: list[Expression] = field(default_factory=list)
+    codes: tuple[int, ...] = ()
+    assignments: list[tuple[Target, Expression]] = field(default_factory=list)
+
+    @property
+    def cost(self) -> int:
+        """How many operations it takes to execute the block."""
+        values = [*(value for _, value in self.values), *self.g, *self.m, *(value for _, value in self.assignments)]
+        targets = [target.number for target, _ in self.assignments if target.number is not None]
+        return sum(len(value.steps) for value in (*values, *targets))
+
+    def executed(self, parameters: Parameters) -> Row:
+        """Compute the block, then assign.
+
+        Args:
+            parameters: of the running program.
+
+        Raises:
+            ExecutionFault: a value cannot be computed or is invalid for its word.
+        """
+        values = {letter: value.value(parameters) for letter, value in self.values}
+        g = tuple([*self.codes, *[_code("G", code, 10, parameters) for code in self.g]])
+        m = tuple([_code("M", code, 1, parameters) for code in self.m])
+        computed = [(target.resolved(parameters), value.value(parameters)) for target, value in self.assignments]
+        for (name, value), (target, _) in zip(computed, self.assignments, strict=True):
+            try:
+                parameters.assign(name, value)
+            except ExecutionFault as fault:
+                raise ExecutionFault(fault.code, fault.found, target.column) from None
+        return Row(values, g, m)
+
+
+@dataclass(frozen=True)
+class OWord:
+    """A flow control block.
+
+    Attributes:
+        keyword: in lower case; ``program`` for a bare label.
+        label: number or name, or an expression that gives the number at execution.
+        values: operands after the keyword.
+    """
+
+    keyword: str
+    label: str | Expression
+    values: tuple[Expression, ...]
+
+    @property
+    def cost(self) -> int:
+        """How many operations it takes to execute the block."""
+        label = () if isinstance(self.label, str) else (self.label,)
+        return sum(len(value.steps) for value in (*label, *self.values))
+
+
+Statement = Words | OWord
+
+
+def statement_of(tree: Tree[Token]) -> Statement:
+    """Compile a block.
+
+    Args:
+        tree: parse tree of the block.
+
+    Raises:
+        ExecutionFault: the block is invalid.
+    """
+    words = Words()
+    for child in tree.children:
+        if isinstance(child, str):
+            words.codes += dialect_codes(child)
+        elif child.data == "o_word":
+            return _o_word_of(child)
+        elif child.data in _ADD:
+            _ADD[child.data](words, child)
+    return words
+
+
+def _add_word(words: Words, word: Tree[Token]) -> None:
+    name = "".join(str(word.children[0]).split()).upper()
+    value = expression_of(word.children[1])
+    if name == "G":
+        words.g.append(value)
+    elif name == "M":
+        words.m.append(value)
+    else:
+        words.values.append((name, value))
+
+
+def _add_assignment(words: Words, assignment: Tree[Token]) -> None:
+    parameter, value = assignment.children
+    words.assignments.append((target_of(parameter), expression_of(value)))
+
+
+_ADD: dict[str, Callable[[Words, Tree[Token]], None]] = {
+    "word": _add_word,
+    "named_word": _add_word,
+    "surface_word": _add_word,
+    "assignment": _add_assignment,
+}
+
+
+def _o_word_of(tree: Tree[Token]) -> OWord:
+    label, *rest = tree.children
+    keyword = str(rest.pop(0)).lower() if rest else "program"
+    if len(rest) > ARGUMENTS:
+        raise ExecutionFault("G315", f"{len(rest)} arguments", column_of_node(rest[ARGUMENTS]))
+    return OWord(keyword, _label_of(label), tuple(expression_of(node) for node in rest))
+
+
+def _label_of(node: Node) -> str | Expression:
+    if isinstance(node, str) and node.type == "NAME":
+        return plain_name(node)
+    if isinstance(node, str):
+        return label_of_number(float(node), column_of_node(node))
+    return expression_of(node)
+
+
+def label_of_number(number: float, column: int = 0) -> str:
+    """Convert a number to a label.
+
+    Args:
+        number: as written or computed.
+        column: of the number, from 1.
+
+    Raises:
+        ExecutionFault: the number is not a label.
+    """
+    label = whole(number)
+    if label is None or label < 0:
+        raise ExecutionFault("G311", f"O{number:.10g}", column)
+    return str(label)
+
+
+def _code(letter: str, code: Expression, parts: int, parameters: Parameters) -> int:
+    """Evaluate a G or M code as an integer multiple of 1 / ``parts``."""
+    number = code.value(parameters)
+    rounded = round(number * parts)
+    if abs(number * parts - rounded) > _NEAR_A_CODE or not 0 <= number <= LARGEST_CODE:
+        raise ExecutionFault("G306", f"{letter}{number:.10g}", code.column)
+    return rounded

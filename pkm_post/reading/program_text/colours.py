@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Colours: classify the parts of a line for syntax highlighting.
+
+Enters: a line. Leaves: classified spans. The tables list for each kind the corresponding terminals of the grammars of
+record (``gcode/block.lark``, ``cldata/statement.lark``). One regular expression splits a line instead of the grammar:
+an editor colours the visible lines at every keystroke, including faulty ones. Valid lines are coloured as the grammar
+reads them; tests keep the two consistent. One exception: where the word A has the value of a sine, cosine or tangent,
+as in Asin[30], asin is taken for the function.
+"""
+
+from __future__ import annotations
+
+import enum
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pkm_post.reading.program_text.languages import Language
+
+LONGEST = 10_000
+"""Maximum number of coloured characters of a line."""
+
+
+class Colour(enum.Enum):
+    """Kind of a part of a line."""
+
+    COMMENT = "comment"
+    KEYWORD = "keyword"
+    WORD = "word"
+    NUMBER = "number"
+    LINE_NUMBER = "line number"
+    FUNCTION = "function"
+    PARAMETER = "parameter"
+    OPERATOR = "operator"
+    TEXT = "text"
+
+
+@dataclass(frozen=True)
+class Span:
+    """A part of a line.
+
+    Attributes:
+        start: index of its first character.
+        end: index after its last character.
+        colour: its kind.
+    """
+
+    start: int
+    end: int
+    colour: Colour
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of a table of colours.
+
+    Attributes:
+        colour: what it is.
+        terminals: corresponding terminals of the grammar; none for text removed before parsing.
+        pattern: regular expression; a row takes precedence over the rows below it.
+        rest: kind of the rest of the line, if it is known.
+    """
+
+    colour: Colour
+    terminals: tuple[str, ...]
+    pattern: str
+    rest: Colour | None = None
+
+
+_FUNCTIONS = "abs|acos|asin|atan|cos|exists|exp|fix|fup|ln|round|sin|sqrt|tan"
+_FLOW = "break|call|continue|do|else|elseif|endif|endrepeat|endsub|endwhile|if|repeat|return|sub|while"  # O words
+
+GCODE: tuple[Row, ...] = (
+    Row(Colour.KEYWORD, ("TRAORI", "TRAFOOF"), r"TRAORI(?:\s*\(\s*\d*\s*\))?|TRAFOOF"),
+    Row(Colour.COMMENT, ("COMMENT",), r"\([^()]*\)?|;.*"),
+    Row(Colour.PARAMETER, ("HASH", "NAME"), r"\#|<[^<>]*>?"),
+    Row(Colour.FUNCTION, ("FUNCTION", "ATAN", "EXISTS"), rf"(?:{_FUNCTIONS})(?=[\s(]*\[)"),
+    Row(
+        Colour.KEYWORD,
+        ("O_CALL", "O_CONDITION", "O_RESULT", "O_PLAIN"),
+        rf"(?<![a-z])(?:{_FLOW})(?![a-z])",
+    ),
+    # G and L before a function look like these: gexp[1] is g exp[1], and ltan[1] is l tan[1]
+    Row(
+        Colour.OPERATOR,
+        ("LOGIC", "COMPARISON", "PRODUCT", "POWER"),
+        r"and|x?or|mod|(?:eq|ne|[gl][te])(?!xp|xists|an)|\*\*|[*/]",
+    ),
+    Row(Colour.KEYWORD, ("LN", "_O", "PERCENT"), r"LN|O|%"),
+    Row(Colour.OPERATOR, ("DELETE", "EQUAL", "LSQB", "RSQB"), r"[][/=]"),
+    Row(Colour.WORD, ("NAMED", "SURFACE", "LETTER"), r"[ABC]\s*3(?=\s*=)|[NT]\s*[XYZ]|[A-MP-Z]"),
+    Row(Colour.LINE_NUMBER, ("_N",), r"N(?:\s*\d+\.?\d*)?"),  # with its number
+    Row(Colour.NUMBER, ("NUMBER", "SIGN"), r"[+-]?(?:\d+\.?\d*|\.\d+)|[+-]"),
+)
+"""Colour table of G-code. Blanks have no colour."""
+
+_TEXT_WORDS = r"PARTNO|PPRINT|INSERT|LETTER|DISPLY|TPRINT|REMARK|MACHIN|TOOL[ \t]+PATH|OPERATION[ \t]+NAME"
+
+CLDATA: tuple[Row, ...] = (
+    Row(Colour.COMMENT, (), r"\$\$.*"),
+    Row(Colour.OPERATOR, (), r"\$(?=\s*$)"),  # continuation line
+    Row(Colour.KEYWORD, ("TEXT_WORD",), rf"^\s*(?:{_TEXT_WORDS})(?![\w.-])", rest=Colour.TEXT),
+    Row(Colour.TEXT, ("STRING", "TEXT"), r"'[^']*'?|\"[^\"]*\"?"),
+    Row(Colour.NUMBER, ("NUMBER",), r"(?<![\w.+-])[+-]?(?:\d+\.?\d*|\.\d+)(?:E[+-]?\d+)?(?![\w.+-])"),
+    Row(Colour.WORD, ("WORD",), r"[0-9]*[a-z_][a-z0-9_.]*(?:-[a-z0-9_.]+)*"),
+    Row(Colour.OPERATOR, ("COMMA", "SLASH", "EQUAL", "LPAR", "RPAR"), r"[,/=()]"),
+)
+"""Colour table of CL data."""
+
+TABLES: dict[Language, tuple[Row, ...]] = {Language.GCODE: GCODE, Language.CLDATA: CLDATA}
+
+_COMPILED = {
+    language: re.compile("|".join(f"(?P<r{number}>{row.pattern})" for number, row in enumerate(rows)), re.I | re.A)
+    for language, rows in TABLES.items()
+}
+
+
+def spans(line: str, language: Language) -> Iterator[Span]:
+    """The coloured parts of a line, left to right, without overlap.
+
+    Args:
+        line: without its end.
+        language: of the line.
+    """
+    rows, shown = TABLES[language], line[:LONGEST]
+    for match in _COMPILED[language].finditer(shown):
+        row = rows[int((match.lastgroup or "r0")[1:])]
+        yield Span(match.start(), match.end(), row.colour)
+        if row.rest is not None:
+            yield Span(match.end(), len(shown), row.rest)
+            return

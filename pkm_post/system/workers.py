@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Workers: one pool of compute threads, one per processor, kept for the life of the process.
+
+All threads start and compute once before any receives work. A thread that Python starts without memory can wait
+forever, and OpenBLAS, which NumPy uses, allocates memory at the first use in a thread and ends the process if there is
+none: half-written files would remain. Work in a worker must not submit work to the pool.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+_FOR_EACH = 112 << 20
+"""Bytes of address space that a thread may take: 64 MB to allocate in, 32 for OpenBLAS, and its stack."""
+_ROWS = 256
+"""Rows of a matrix that keeps a thread busy for a millisecond or more, so that all compute at once."""
+
+
+@functools.cache
+def workers() -> ThreadPoolExecutor:
+    """Thread pool.
+
+    Raises:
+        MemoryError: there is not enough memory for the threads.
+    """
+    import numpy as np
+
+    count = os.cpu_count() or 1
+    np.empty(count * _FOR_EACH, dtype=np.uint8)  # released at once: only tests whether there is room
+    together, pool = threading.Barrier(count), ThreadPoolExecutor(count, thread_name_prefix="pkm_post")
+
+    def compute(_: int) -> None:
+        together.wait()
+        np.linalg.inv(np.eye(_ROWS))
+
+    try:
+        list(pool.map(compute, range(count)))
+    except BaseException:
+        together.abort()
+        pool.shutdown()
+        raise
+    return pool

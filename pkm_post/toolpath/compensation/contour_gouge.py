@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contour gouge: places where the tool on the offset path cuts into the programmed contour.
+
+Takes the program, the compensated program and its source rows; returns diagnostics. Every row of a contour is checked
+against every cutting row of the same contour, not only its neighbours. Rows below the tip are not touched, and the path
+of a larger tool bounds no part. Where the path closes, rows before and after the closed part are leads, not walls. mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array, across, arc_points, arc_sweep, cross, dot, norm
+from pkm_post.model import Diagnostic, Kind, Program
+from pkm_post.toolpath.compensation.compensation_plane import PARALLEL
+from pkm_post.toolpath.compensation.contour import Elements, Role
+from pkm_post.toolpath.compensation.nearness import Segments, too_near
+from pkm_post.toolpath.compensation.walls import cutting, walls_of
+
+_CHORD_SHARE = 0.2
+"""Chord error of arcs as a share of the tolerance, for path and wall each."""
+
+
+@dataclass(frozen=True)
+class _View:
+    """View direction of each contour, by number of the contour.
+
+    Attributes:
+        normal: (C, 3) normal of the projection plane; zero where the axis turns along the contour.
+        upward: (C,) 1 where the tool is on the side of the normal, -1 on the other, 0 where neither.
+    """
+
+    normal: Array
+    upward: Array
+
+
+def gouges(
+    program: Program, elements: Elements, moved: Program, source: Array, leads: Array, tolerance: float
+) -> tuple[Diagnostic, ...]:
+    """Where the compensated path cuts into the programmed contour.
+
+    Args:
+        program: the program before compensation.
+        elements: its elements.
+        moved: the compensated program.
+        source: (K,) source row in the program of each of its rows.
+        leads: (K,) rows before the contour is cut, or after it.
+        tolerance: mm.
+    """
+    view = _view(program, elements)
+    contour, clearance = _by_row(program, elements)
+    rows = np.flatnonzero(contour[source] >= 0)
+    rows = rows[rows > 0]
+    # Where two offsets differ, points added by a joint lie between them.
+    added = np.append(source[1:] == source[:-1], False)
+    smaller = np.where(added, np.minimum(clearance[source], clearance[source - 1]), clearance[source])
+    paths, path_row = _segments(moved, rows, contour[source], smaller, view, tolerance)
+    walls, wall_row = _segments(program, elements.row[cutting(elements)], contour, clearance, view, tolerance)
+    path, wall, lacking = too_near(paths, walls, tolerance)
+    # Walls are computed only for contours with a pair that is too close, which is rare.
+    owner = np.searchsorted(elements.row, wall_row)
+    bounds = walls_of(elements, walls, owner, np.unique(walls.first[wall]))[owner[wall]]
+    bounds &= ~program.smaller_tool[wall_row[wall]]
+    path, wall, lacking = path_row[path[bounds]], wall_row[wall[bounds]], lacking[bounds]
+    found = []
+    for code, chosen in (("N204", ~leads[path]), ("N205", leads[path])):
+        found += _worst(code, program, contour, source[path[chosen]], wall[chosen], lacking[chosen])
+    return tuple(sorted(found, key=lambda item: item.place.line))
+
+
+def _worst(code: str, program: Program, contour: Array, path: Array, wall: Array, lacking: Array) -> list[Diagnostic]:
+    """One diagnostic per contour: its worst place and the number of rows."""
+    found = []
+    order = np.lexsort((path, -lacking, contour[path]))
+    of = contour[path[order]]
+    for begin in np.flatnonzero(np.append(True, of[1:] != of[:-1])[: len(of)]).tolist():
+        worst = order[begin]
+        count = len(np.unique(path[contour[path] == of[begin]]))
+        more = f", {count} blocks of this contour in all" if count > 1 else ""
+        text = f"by {lacking[worst]:.4g} mm at the block of line {program.line[wall[worst]]}{more}"
+        found.append(Diagnostic(code, program.place(int(path[worst])), text))
+    return found
+
+
+def _view(program: Program, elements: Elements) -> _View:
+    first = np.flatnonzero(elements.role == Role.START)
+    count = len(first)
+    normal = elements.normal[first, 1]
+    offset = ~np.stack([elements.role == Role.START, elements.role == Role.CANCEL], axis=1)
+    apart = norm(cross(elements.normal, normal[elements.contour][:, None])) > PARALLEL
+    turning = np.zeros(count, dtype=np.bool_)
+    turning[elements.contour[(apart & offset).any(axis=1)]] = True
+    along = dot(program.tool_axis[elements.row[first]], normal)
+    upward = np.where(turning | (np.abs(along) < PARALLEL), 0.0, np.sign(along))
+    return _View(np.where(turning[:, None], 0.0, normal), upward)
+
+
+def _by_row(program: Program, elements: Elements) -> tuple[Array, Array]:
+    """Contour number of each row, -1 outside, and the radius of its tool, (N,) each."""
+    contour = np.full(len(program), -1)
+    radius = np.zeros(len(program))
+    number = np.full(len(program), -1)
+    number[elements.row] = np.arange(len(elements))
+    latest = np.maximum.accumulate(number)
+    inside = latest >= 0
+    # Rows that stand still in the plane between two elements belong to the contour too.
+    ended = (elements.role[latest] == Role.CANCEL) & (number < 0)
+    inside &= ~ended
+    contour[inside] = elements.contour[latest[inside]]
+    radius[inside] = np.abs(elements.offset[latest[inside]])
+    return contour, radius
+
+
+def _segments(
+    program: Program, rows: Array, contour: Array, clearance: Array, view: _View, tolerance: float
+) -> tuple[Segments, Array]:
+    """Straight segments of rows in the planes of their contours, and the row of each segment."""
+    start, end, row = _chords(program, rows, _CHORD_SHARE * tolerance)
+    number = contour[row]
+    normal, upward = view.normal[number], view.upward[number]
+    heights = np.stack([dot(start, normal), dot(end, normal)]) * upward
+    segments = Segments(
+        start=across(start, normal),
+        end=across(end, normal),
+        low=np.min(heights, axis=0, initial=np.inf),
+        high=np.max(heights, axis=0, initial=-np.inf),
+        clearance=clearance[row],
+        first=number,
+        last=number,
+        within=np.zeros(len(row)),
+    )
+    return segments, row
+
+
+def _chords(program: Program, rows: Array, error: float) -> tuple[Array, Array, Array]:
+    """Start and end points of chords within an error of the rows, and the row of each."""
+    start, end = program.position[rows - 1], program.position[rows]
+    centre, axis = program.arc_centre[rows], program.arc_axis[rows]
+    arc = program.kind[rows] == Kind.ARC
+    count = np.ones(len(rows), dtype=np.int64)
+    sweep, rise = np.zeros(len(rows)), np.zeros(len(rows))
+    sweep[arc] = arc_sweep(start[arc], end[arc], centre[arc], axis[arc])
+    rise[arc] = dot(end[arc] - start[arc], axis[arc])
+    radius = norm(across(start[arc] - centre[arc], axis[arc]))
+    span = 2 * np.arccos(np.clip(1 - error / np.maximum(radius, error), 0.0, 1.0))
+    count[arc] = np.ceil(sweep[arc] / span).astype(np.int64)
+    of = np.repeat(np.arange(len(rows)), count)
+    part = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    # Where the radii at both ends differ slightly, the arc radius changes linearly between them.
+    drift = np.zeros((len(rows), 3))
+    drift[arc] = end[arc] - arc_points(start[arc], centre[arc], axis[arc], sweep[arc], rise[arc])
+    points = []
+    for share in (part / count[of], (part + 1) / count[of]):
+        point = start[of] + share[:, None] * (end - start)[of]
+        bent = np.flatnonzero(arc[of])
+        i = of[bent]
+        turned = arc_points(start[i], centre[i], axis[i], share[bent] * sweep[i], share[bent] * rise[i])
+        point[bent] = turned + share[bent, None] * drift[i]
+        points.append(point)
+    return points[0], points[1], rows[of]

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cutter: the shape of a rotating tool, by the APT parameters d, r, e, f, a, b, h.
+
+Takes a tool, or the seven APT parameters; returns a cutter. Its profile runs from the tip along the bottom, which rises
+by a, around the corner arc, and up the side, which leans outwards by b. Ball, bull nose, flat and tapered end mills and
+drills are such cutters. Revolved about the tool axis, the centre of the corner arc describes a circle, and the corner
+is the torus around it. Lengths in mm, angles in rad.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from pkm_post.model import Tool, angles_fit, corner_reach, largest_corner
+
+_TANGENT = 2e-3
+"""Tolerance in mm of a given e or f against the arc tangent to bottom and side: files round to three decimals."""
+
+
+@dataclass(frozen=True)
+class Cutter:
+    """The profile of a cutter.
+
+    Attributes:
+        corner_radius: r, radius of the corner arc; 0 for a sharp corner.
+        radial_offset: e, distance of the centre of the arc from the tool axis: 0 for a ball, negative for a lens,
+            whose arc has its centre beyond the axis.
+        axial_offset: f, height of the centre of the arc above the tool tip.
+        bottom_angle: a, rise of the bottom against the plane across the axis, 0 <= a < pi/2.
+        side_angle: b, angle of the side to the axis, -pi/2 < b < pi/2, positive where the cutter widens upwards.
+        height: h, height of the cutter above its tip; infinite when unknown.
+    """
+
+    corner_radius: float
+    radial_offset: float
+    axial_offset: float
+    bottom_angle: float = 0.0
+    side_angle: float = 0.0
+    height: float = math.inf
+
+    def __post_init__(self) -> None:
+        r, e, f = self.corner_radius, self.radial_offset, self.axial_offset
+        if not (all(map(math.isfinite, (r, e, f))) and r >= 0.0 and f >= 0.0):
+            raise ValueError(f"Cutter: expected r, e, f finite, and r and f not negative, got {(r, e, f)}")
+        if not r + e > 0.0:
+            raise ValueError(f"Cutter: expected a radius r + e above 0, got {r + e}")
+        _check_angles(self.bottom_angle, self.side_angle)
+        if not self.height > 0.0:
+            raise ValueError(f"Cutter: expected a height above 0, got {self.height}")
+
+    @classmethod
+    def apt(
+        cls,
+        d: float,
+        r: float = 0.0,
+        e: float | None = None,
+        f: float | None = None,
+        a: float = 0.0,
+        b: float = 0.0,
+        h: float = math.inf,
+    ) -> Cutter:
+        """The cutter of APT's seven parameters; e and f follow from the others.
+
+        The arc is tangent to bottom and side: (f - e tan a) cos a = r, (d/2 - e) cos b + (f - d/2 tan a) sin b = r.
+
+        Args:
+            d: diameter of the circle where the lines of bottom and side meet, mm.
+            r: corner radius, mm.
+            e: radial offset of the arc's centre, mm; None to derive it.
+            f: axial offset of the arc's centre, mm; None to derive it.
+            a: bottom angle, rad.
+            b: side angle, rad.
+            h: height, mm.
+
+        Raises:
+            ValueError: a value is out of its range, or a given e or f belongs to an arc that is not tangent.
+        """
+        if not (math.isfinite(d) and d > 0.0):
+            raise ValueError(f"Cutter: expected a diameter above 0, got {d}")
+        if not (math.isfinite(r) and r >= 0.0):
+            raise ValueError(f"Cutter: expected a corner radius not below 0, got {r}")
+        _check_angles(a, b)
+        touching_e = d / 2.0 - r * corner_reach(a, b)
+        touching_f = touching_e * math.tan(a) + r / math.cos(a)
+        for name, given, touching in (("e", e, touching_e), ("f", f, touching_f)):
+            if given is not None and not abs(given - touching) <= _TANGENT:
+                raise ValueError(f"Cutter: expected {name} = {touching:.6g}, where the corner touches, got {given:.6g}")
+        return cls(r, touching_e, touching_f, a, b, h)
+
+    @classmethod
+    def of(cls, tool: Tool) -> Cutter:
+        """The cutter of a tool.
+
+        Args:
+            tool: a tool of known diameter whose corner fits: its centre is not beyond the axis.
+
+        Raises:
+            ValueError: the diameter is not above 0, an angle is out of its range, or the corner does not fit.
+        """
+        radius = tool.diameter / 2.0
+        if not (math.isfinite(radius) and radius > 0.0):
+            raise ValueError(f"tool {tool.number}: expected a diameter above 0 mm, got {tool.diameter}")
+        _check_angles(tool.bottom_angle, tool.side_angle)
+        largest = largest_corner(tool.diameter, tool.bottom_angle, tool.side_angle)
+        if not 0.0 <= tool.corner_radius <= largest * (1.0 + 1e-9):
+            raise ValueError(
+                f"tool {tool.number}: expected a corner radius from 0 to {largest} mm, got {tool.corner_radius}"
+            )
+        corner = min(tool.corner_radius, largest)
+        return cls.apt(tool.diameter, corner, a=tool.bottom_angle, b=tool.side_angle)
+
+    @property
+    def radius(self) -> float:
+        """Half the nominal diameter d, mm: of the circle where the lines of bottom and side meet."""
+        return self.radial_offset + self.corner_radius * corner_reach(self.bottom_angle, self.side_angle)
+
+    @property
+    def corner_start(self) -> float:
+        """Angle in rad from the axis to the normal of the corner where it meets the bottom or, for a lens, the axis."""
+        if self.radial_offset >= 0.0:
+            return self.bottom_angle
+        return max(self.bottom_angle, math.asin(-self.radial_offset / self.corner_radius))
+
+    @property
+    def corner_end(self) -> float:
+        """Angle in rad from the axis to the normal of the corner where it meets the side."""
+        return math.pi / 2.0 - self.side_angle
+
+
+def _check_angles(a: float, b: float) -> None:
+    """Bottom and side must meet: they are parallel where a + b is a right angle."""
+    if not angles_fit(a, b):
+        raise ValueError(
+            "Cutter: expected a bottom angle from 0 and a side angle from -90 to less than 90 degrees, together less "
+            f"than 90, got {math.degrees(a):.6g} and {math.degrees(b):.6g}"
+        )

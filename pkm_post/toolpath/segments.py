@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Segments: the tool path before corner rounding, each segment parametrized by its own path length.
+
+Path length u is the distance travelled by the tip; where the tip (nearly) stands and only the axis turns, a degree
+counts as a millimetre, so that F in mm/min becomes degrees per minute, as on CNC controls. A segment can be evaluated
+beyond its ends, which the blends need. Units: mm, rad.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array, across, along_rates, cross, dot, norm, towards
+from pkm_post.model import Kind, Trajectory, both_by_row, by_row, is_uniform, rows_of
+
+_TURNING_IN_PLACE = 0.01
+"""mm of tip travel per degree of axis turn below which a segment counts as a turn in place."""
+
+
+@dataclass(frozen=True)
+class Arcs:
+    """Columns of A segments whose tip moves on an arc.
+
+    Attributes:
+        row: (A,) indices of the segments, ascending.
+        radius: (A, 3) perpendicular vector from the arc's axis to the start.
+        quarter: (A, 3) the radius turned by 90 degrees.
+        turn: (A,) angle of the arc by path length.
+        growth: (A,) relative growth of the radius by path length, to meet end points slightly off the circle.
+    """
+
+    row: Array
+    radius: Array
+    quarter: Array
+    turn: Array
+    growth: Array
+
+    @classmethod
+    def of(cls, trajectory: Trajectory, start: Array, extent: Array) -> Arcs:
+        """The arcs of a trajectory, given the starts and path lengths of all its segments."""
+        row = np.flatnonzero(trajectory.kind == Kind.ARC)
+        centre, turn_axis = trajectory.arc_centre[row], trajectory.arc_axis[row]
+        radius = across(start[row] - centre, turn_axis)
+        end_radius = norm(across(trajectory.tip[row] - centre, turn_axis))
+        return cls(
+            row=row,
+            radius=radius,
+            quarter=cross(turn_axis, radius),
+            turn=trajectory.sweep[row] / extent[row],
+            growth=(end_radius / norm(radius) - 1) / extent[row],
+        )
+
+    def among(self, segment: Array) -> tuple[Array, Array]:
+        """Which of the given segments, (M,), are arcs, and their rows here, (K,) each."""
+        if not len(self.row):
+            return self.row, self.row
+        at = np.minimum(np.searchsorted(self.row, segment), len(self.row) - 1)
+        named = np.flatnonzero(self.row[at] == segment)
+        return named, at[named]
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Columns of N segments, ready for evaluation; one row stands for N equal ones.
+
+    Attributes:
+        extent: (N,) path length.
+        start: (N, 3) tip at the start.
+        tangent: (N, 3) derivative of the tip on a line; on an arc only the component along its axis.
+        arcs: additional columns of the segments that are arcs.
+        axis: (N, 3) tool axis at the start.
+        axis_rate: (N, 3) tangent of its great circle there, rad by path length.
+        spin: (N,) spin at the start.
+        spin_rate: (N,) by path length.
+    """
+
+    extent: Array
+    start: Array
+    tangent: Array
+    arcs: Arcs
+    axis: Array
+    axis_rate: Array
+    spin: Array
+    spin_rate: Array
+
+    @classmethod
+    def of(cls, trajectory: Trajectory) -> Segments:
+        """The segments of a trajectory."""
+        start, axis, spin = trajectory.tip_before(), trajectory.axis_before(), trajectory.spin_before()
+        degrees = np.degrees(np.maximum(trajectory.angle, np.abs(trajectory.spin - spin)))
+        extent = np.where(trajectory.length > _TURNING_IN_PLACE * degrees, trajectory.length, degrees)
+        arcs = Arcs.of(trajectory, start, extent)
+        way = trajectory.tip - start
+        turn_axis = trajectory.arc_axis[arcs.row]
+        way[arcs.row] = dot(way[arcs.row], turn_axis)[:, None] * turn_axis
+        way /= extent[:, None]
+        return cls(
+            extent=extent,
+            start=start,
+            tangent=way,
+            arcs=arcs,
+            axis=axis,
+            axis_rate=_by_length(both_by_row(towards, axis, trajectory.axis), extent[:, None]),
+            spin=spin,
+            spin_rate=_by_length(both_by_row(np.subtract, trajectory.spin, spin), extent),
+        )
+
+    def __len__(self) -> int:
+        return len(self.extent)
+
+    def turn(self) -> Array:
+        """The larger rate of turn of tool axis or arc, by path length, (N,)."""
+        turn = np.array(by_row(norm, self.axis_rate))
+        turn[self.arcs.row] = np.maximum(turn[self.arcs.row], self.arcs.turn)
+        return turn
+
+    def tip_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
+        """Tip with first and second derivative, (M, 3) each, at path lengths u of the given segments."""
+        tangent = np.take(self.tangent, segment, axis=0)
+        tip = u[:, None] * tangent
+        tip += np.take(self.start, segment, axis=0)
+        first, second = tangent.copy(), np.zeros_like(tangent)
+        rows, arcs = self.arcs.among(segment)
+        if len(rows):
+            turned = self._turned(arcs, u[rows])
+            for value, addition in zip((tip, first, second), turned, strict=True):
+                value[rows] += addition
+        return tip, first, second
+
+    def _turned(self, arc: Array, u: Array) -> tuple[Array, Array, Array]:
+        """The contribution of the rotation about the arc's axis."""
+        arcs = self.arcs
+        radius, quarter = arcs.radius[arc], arcs.quarter[arc]
+        turn, growth = arcs.turn[arc][:, None], arcs.growth[arc][:, None]
+        angle, scale = turn * u[:, None], 1 + growth * u[:, None]
+        outward = np.cos(angle) * radius + np.sin(angle) * quarter
+        forward = turn * (np.cos(angle) * quarter - np.sin(angle) * radius)
+        return (
+            scale * outward - radius,
+            growth * outward + scale * forward,
+            2 * growth * forward - scale * turn**2 * outward,
+        )
+
+    def axis_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
+        """Tool axis with first and second derivative, (M, 3) each."""
+        axis, rate = rows_of(self.axis, segment), rows_of(self.axis_rate, segment)
+        if not rate.any():  # as in all three-axis work
+            return axis, rate, np.zeros_like(rate)
+        return along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))
+
+
+def _by_length(change: Array, extent: Array) -> Array:
+    """Changes over a segment by its path length; one row of zeros stands for all if there are none."""
+    return change if is_uniform(change) and not change.any() else change / extent

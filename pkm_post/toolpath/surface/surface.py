@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Surface: interface of a face for patterns of passes, whatever its source.
+
+Takes two functions of columns (u, v); returns points, normals and derivatives. Patterns treat a face of OpenCASCADE, a
+formula in a test and the same face with u and v exchanged alike. Units: mm; u and v have their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pkm_post.geometry import cross, dot, norm
+
+Array = np.ndarray[Any, np.dtype[Any]]
+
+_NO_LENGTH = 1e-9
+"""mm below which a line of the surface is a pole."""
+
+_DIFFERENCE = 1e-4
+"""Step of the finite difference of normals for a curvature, as a share of the range."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """The range of a parameter; if closed, its end coincides with its start."""
+
+    first: float
+    last: float
+    closed: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.first < self.last:
+            raise ValueError(f"Span: expected first < last, got {self.first} and {self.last}")
+
+    @property
+    def width(self) -> float:
+        """Difference of the last and the first value."""
+        return self.last - self.first
+
+    def within(self, values: Array) -> Array:
+        """The values brought into the range: wrapped if it is closed, else clamped."""
+        if self.closed:
+            return self.first + np.mod(values - self.first, self.width)
+        return np.clip(values, self.first, self.last)
+
+    def kept(self, values: Array) -> Array:
+        """The values, clamped to an open range; in a closed range they may make many turns."""
+        return values if self.closed else np.clip(values, self.first, self.last)
+
+
+@dataclass(frozen=True)
+class Patch:
+    """The surface at N pairs (u, v).
+
+    Attributes:
+        point: (N, 3) in mm.
+        normal: (N, 3) unit normals, out of the material.
+        along_u: (N, 3) derivatives of the point by u.
+        along_v: (N, 3) derivatives of the point by v.
+    """
+
+    point: Array
+    normal: Array
+    along_u: Array
+    along_v: Array
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A parametric surface, trimmed or not.
+
+    Attributes:
+        evaluate: from u (N,) and v (N,) to points, outward unit normals, derivatives by u and by v, (N, 3) each.
+        inside: from u (N,) and v (N,) to whether they belong to the face, (N,).
+        u: range of the first parameter.
+        v: range of the second one.
+    """
+
+    evaluate: Callable[[Array, Array], tuple[Array, Array, Array, Array]]
+    inside: Callable[[Array, Array], Array]
+    u: Span
+    v: Span
+
+    def at(self, u: Array, v: Array) -> Patch:
+        """The surface at columns of parameters; closed ones may exceed their range."""
+        return Patch(*self.evaluate(self.u.within(u), self.v.within(v)))
+
+    def holds(self, u: Array, v: Array) -> Array:
+        """Pairs that belong to the face, (N,)."""
+        found: Array = np.asarray(self.inside(self.u.within(u), self.v.within(v)), dtype=bool)
+        return found
+
+    def exchanged(self) -> Surface:
+        """The same surface with u and v exchanged; the normals stay."""
+
+        def evaluate(u: Array, v: Array) -> tuple[Array, Array, Array, Array]:
+            point, normal, along_u, along_v = self.evaluate(v, u)
+            return point, normal, along_v, along_u
+
+        return Surface(evaluate, lambda u, v: self.inside(v, u), self.v, self.u)
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The surface at all pairs of u and v: patch and mask are (M * N, ...), row by row of equal u.
+
+    Attributes:
+        u: (M,) evenly spaced over the range, both ends included.
+        v: (N,) likewise.
+        patch: the surface there.
+        inside: (M * N,) whether the point is on the face.
+    """
+
+    u: Array
+    v: Array
+    patch: Patch
+    inside: Array
+
+    @classmethod
+    def over(cls, surface: Surface, rows: int, columns: int) -> Grid:
+        """A grid of rows u and columns v."""
+        u = np.linspace(surface.u.first, surface.u.last, rows)
+        v = np.linspace(surface.v.first, surface.v.last, columns)
+        all_u, all_v = (each.ravel() for each in np.meshgrid(u, v, indexing="ij"))
+        return cls(u, v, surface.at(all_u, all_v), surface.holds(all_u, all_v))
+
+    def shaped(self, column: Array) -> Array:
+        """A column of values as an (M, N, ...) array."""
+        return column.reshape(len(self.u), len(self.v), *column.shape[1:])
+
+
+def unit_or_nan(vectors: Array) -> Array:
+    """Vectors scaled to unit length; NaN where one is zero."""
+    length = norm(vectors)[:, None]
+    scaled: Array = vectors / np.where(length > _NO_LENGTH, length, np.nan)
+    return scaled
+
+
+def normal_curvatures(surface: Surface, u: Array, v: Array, patch: Patch, direction: Array) -> Array:
+    """Curvatures of the surface in tangent directions, (N,) in 1/mm, positive where it is convex.
+
+    The normal is differenced along u and v; for a tangent d = a Su + b Sv the curvature is dn . d / (d . d).
+
+    Args:
+        surface: the surface.
+        u: (N,) parameters.
+        v: (N,) parameters.
+        patch: the surface there.
+        direction: (N, 3) tangent directions of any length; NaN gives NaN.
+    """
+    normal_u = _change_of_normal(surface.u, u, lambda moved: surface.at(moved, v).normal)
+    normal_v = _change_of_normal(surface.v, v, lambda moved: surface.at(u, moved).normal)
+    share_u, share_v = _components(patch, direction)
+    change = share_u[:, None] * normal_u + share_v[:, None] * normal_v
+    curvature: Array = dot(change, direction) / dot(direction, direction)
+    return curvature
+
+
+def _change_of_normal(span: Span, values: Array, normal_at: Callable[[Array], Array]) -> Array:
+    """Derivative of the normal by a parameter, by a central difference, or one-sided at an end."""
+    step = _DIFFERENCE * span.width
+    before, after = values - step, values + step
+    if not span.closed:
+        before, after = span.within(before), span.within(after)
+    change: Array = (normal_at(after) - normal_at(before)) / (after - before)[:, None]
+    return change
+
+
+def _components(patch: Patch, direction: Array) -> tuple[Array, Array]:
+    """Components a and b of direction = a Su + b Sv in the tangent plane; NaN at a pole."""
+    across = cross(patch.along_u, patch.along_v)
+    area = dot(across, across)
+    area = np.where(area > _NO_LENGTH**2, area, np.nan)
+    return (
+        dot(cross(direction, patch.along_v), across) / area,
+        dot(cross(patch.along_u, direction), across) / area,
+    )

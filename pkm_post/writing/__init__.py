@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Writing: trajectory files, controller programs, G-code and what stands beside them."""
+
+from pkm_post.writing import manifest, outputs, trajectory_file
+from pkm_post.writing.controllers import pmac, power_pmac, program_seal
+from pkm_post.writing.controllers.kinds import Controller, controller_of, controller_settings
+from pkm_post.writing.controllers.pmac import read_part
+from pkm_post.writing.controllers.pmac.program import program_text
+from pkm_post.writing.controllers.pmac.rotary import rotary_opening
+from pkm_post.writing.controllers.pmac.settings import PmacSettings
+from pkm_post.writing.controllers.pmac.setup import setup_text
+from pkm_post.writing.controllers.power_pmac.settings import PowerPmacSettings
+from pkm_post.writing.controllers.program_files import read_text, read_texts
+from pkm_post.writing.controllers.pvt.parts import parted
+from pkm_post.writing.controllers.tables import TABLES
+from pkm_post.writing.convert import TARGETS, convert
+from pkm_post.writing.gcode.writer import write
+from pkm_post.writing.gcode.writer_axes import Form
+
+__all__ = [
+    "TABLES",
+    "TARGETS",
+    "Controller",
+    "Form",
+    "PmacSettings",
+    "PowerPmacSettings",
+    "controller_of",
+    "controller_settings",
+    "convert",
+    "manifest",
+    "outputs",
+    "parted",
+    "pmac",
+    "power_pmac",
+    "program_seal",
+    "program_text",
+    "read_part",
+    "read_text",
+    "read_texts",
+    "rotary_opening",
+    "setup_text",
+    "trajectory_file",
+    "write",
+]

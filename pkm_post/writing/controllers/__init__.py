@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Controllers: convert strut motion to controller programs, and programs back to strut motion.
+
+A folder for each controller, a table of controllers by ``controller.kind``, and tables of the motion for other readers.
+"""
+
+from pkm_post.writing.controllers.kinds import (
+    CONTROLLERS,
+    Controller,
+    controller_of,
+    controller_settings,
+    part_names,
+    part_siblings,
+)
+from pkm_post.writing.controllers.program_files import read_text, read_texts, text_of
+from pkm_post.writing.controllers.tables import TABLES, Table
+
+__all__ = [
+    "CONTROLLERS",
+    "TABLES",
+    "Controller",
+    "Table",
+    "controller_of",
+    "controller_settings",
+    "part_names",
+    "part_siblings",
+    "read_text",
+    "read_texts",
+    "text_of",
+]

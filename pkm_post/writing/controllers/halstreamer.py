@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Halstreamer: strut lengths row by row at a fixed period, for LinuxCNC's ``halstreamer``.
+
+Enters: the cubics of a strut motion. Leaves: tables of six lengths in mm, one row for each period of 1 ms, and back.
+Dwells repeat a row. Other events need another program: a table ends there, at rest, and the next one begins. A drive
+that interpolates linearly between rows deviates from the cubic by no more than ``chord_error``.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import hermite_accelerations, hermite_lengths
+from pkm_post.model import Array, Diagnostic, Event, Place, StrutMotion, freeze
+from pkm_post.writing.controllers.stretches import Stretch, stretches
+
+SUFFIX = "-halstreamer.txt"
+PERIOD_MS = 1
+"""The servo period of LinuxCNC's own configurations."""
+DECIMALS = 6
+_HALF_DIGIT = 0.5001 * 10.0**-DECIMALS
+"""mm: rounding error, with margin for the arithmetic."""
+_ROWS_PER_CHUNK = 1 << 16
+
+_LENGTH = r"-?(?:0|[1-9][0-9]*)\.[0-9]+"
+_ROW = rf"{_LENGTH}(?: {_LENGTH}){{5}}\n"
+_PERIOD = r"# period (?P<ms>[1-9][0-9]{0,3}) ms\n"
+_PIECES = re.compile(rf"(?P<rows>(?>{_ROW})++)|(?P<period>{_PERIOD})|(?P<comment>#[ -~]*\n)")
+
+
+@dataclass(frozen=True)
+class Stream:
+    """One table.
+
+    Attributes:
+        period_ms: time between rows.
+        length: (M, 6) strut lengths in mm.
+    """
+
+    period_ms: int
+    length: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, len(self.length), {"length": (np.float64, (6,))})
+
+
+def lengths_at(motion: StrutMotion, time_ms: Array) -> Array:
+    """Strut lengths at times in ms, (M, 6), on the cubics of a motion."""
+    result = np.empty((len(time_ms), 6))
+    if len(motion) == 1:
+        result[:] = motion.length
+        return result
+    for start in range(0, len(time_ms), _ROWS_PER_CHUNK):
+        time = time_ms[start : start + _ROWS_PER_CHUNK]
+        knot = np.clip(np.searchsorted(motion.time_ms, time, side="right") - 1, 0, len(motion) - 2)
+        begin = motion.time_ms[knot]
+        share = (time - begin) / (motion.time_ms[knot + 1] - begin)
+        result[start : start + _ROWS_PER_CHUNK] = hermite_lengths(*motion.cubics(knot), share[:, None])[:, 0]
+    return result
+
+
+def chord_error(motion: StrutMotion) -> float:
+    """Largest deviation of the straight line between rows from the cubics, mm: T^2 / 8 max |p''|."""
+    if len(motion) == 1:
+        return 0.0
+    accelerations = hermite_accelerations(*motion.cubics(np.arange(len(motion) - 1)))
+    return float((PERIOD_MS / 1000) ** 2 / 8 * np.abs(np.stack(accelerations)).max())
+
+
+def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
+    """The tables of a motion as text.
+
+    Args:
+        motion: the cubics.
+        heading: lines of printable ASCII for the user.
+    """
+    made = stretches(motion)
+    error = chord_error(motion)
+    return tuple(
+        "".join([*_heading(heading, stretch, number, len(made), error), *_rows(motion, stretch), *_after(stretch)])
+        for number, stretch in enumerate(made, start=1)
+    )
+
+
+def _heading(heading: Sequence[str], stretch: Stretch, number: int, count: int, error: float) -> Iterator[str]:
+    told = [re.sub(r"[^ -~]", lambda sign: ascii(sign[0])[1:-1], line) for line in heading]
+    yield from (f"# {line}\n" for line in told)
+    yield f"# part {number} of {count}; strut lengths in mm, strut 1 first; cfg=ffffff\n"
+    yield f"# straight from row to row a strut is at most {error:.3g} mm from its cubic\n"
+    yield f"# before: {_happening(stretch.before)}\n"
+    yield f"# period {PERIOD_MS} ms\n"
+
+
+def _after(stretch: Stretch) -> Iterator[str]:
+    if stretch.after:
+        yield f"# after: {_happening(stretch.after)}\n"
+
+
+def _happening(events: Sequence[Event]) -> str:
+    return ", ".join(f"{event.kind.name.lower()} {event.value:.12g}" for event in events) or "nothing"
+
+
+def _rows(motion: StrutMotion, stretch: Stretch) -> Iterator[str]:
+    times = stretch.rows_ms(PERIOD_MS)
+    row = " ".join([f"%.{DECIMALS}f"] * 6) + "\n"
+    for start in range(0, len(times), _ROWS_PER_CHUNK):
+        length = np.round(lengths_at(motion, times[start : start + _ROWS_PER_CHUNK]), DECIMALS) + 0.0
+        yield (row * len(length)) % tuple(length.ravel().tolist())
+
+
+def read_stream(text: str, file: str) -> tuple[Stream | None, tuple[Diagnostic, ...]]:
+    """Read a table back.
+
+    Args:
+        text: the table.
+        file: its name, for the diagnostics.
+
+    Returns:
+        The table, or None and the first fault.
+    """
+    position, periods, rows = 0, [], []
+    while match := _PIECES.match(text, position):
+        position = match.end()
+        periods += [int(match["ms"])] if match["period"] else []
+        rows += [match["rows"]] if match["rows"] else []
+    if position < len(text) or len(periods) != 1 or not rows:
+        found = repr(text[position:].split("\n", 1)[0][:60]) if position < len(text) else "the end"
+        return None, (Diagnostic("C106", Place(file, line=text.count("\n", 0, position) + 1), found),)
+    length = np.fromstring("".join(rows), sep=" ").reshape(-1, 6)
+    if not np.isfinite(length).all():
+        return None, (Diagnostic("C106", Place(file), "a length that is too large"),)
+    return Stream(periods[0], length), ()
+
+
+def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
+    """Read the tables back and measure their deviation from the cubics, at their rows and half way between."""
+    limits = _HALF_DIGIT, chord_error(motion) + _HALF_DIGIT
+    worst, rows = 0.0, 0
+    made = stretches(motion)
+    if len(made) != len(texts):
+        return "", (Diagnostic("C107", Place(texts[0][0]), f"{len(texts)} tables, expected {len(made)}"),)
+    for (file, text), stretch in zip(texts, made, strict=True):
+        stream, faults = read_stream(text, file)
+        if stream is None:
+            return "", faults
+        apart = _apart(stream, stretch, motion)
+        for found, limit in zip(apart, limits, strict=True):
+            if found > limit:
+                return "", (Diagnostic("C107", Place(file), f"{found:.3g} mm apart, at most {limit:.3g} mm can be"),)
+        worst, rows = max(worst, apart[1]), rows + len(stream.length)
+    return f"{rows} rows, straight lines between them {worst:.3g} mm from the cubics", ()
+
+
+def _apart(stream: Stream, stretch: Stretch, motion: StrutMotion) -> tuple[float, float]:
+    """Deviation of a table from the cubics at its rows and between them, mm; infinite if the number of rows differs."""
+    times = stretch.rows_ms(stream.period_ms)
+    if len(times) != len(stream.length):
+        return math.inf, math.inf
+    half = stretch.time_at(stream.period_ms * (np.arange(len(times) - 1) + 0.5))
+    chord = (stream.length[:-1] + stream.length[1:]) / 2
+    at_rows, between = stream.length - lengths_at(motion, times), chord - lengths_at(motion, half)
+    return float(np.abs(at_rows).max()), float(np.abs(between).max(initial=0.0))

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Kinds: the controllers by the ``controller.kind`` of the machine file, and their interface.
+
+Enters: a machine. Leaves: the module of its controller, which takes motion in mm, mm/s and whole ms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import PurePath
+from typing import Any, Protocol
+
+from pkm_post.model import Diagnostic, Machine, Place, StrutMotion
+from pkm_post.writing.controllers import pmac, power_pmac
+
+Findings = tuple[Diagnostic, ...]
+
+
+class Controller(Protocol):
+    """The interface of a controller module. Settings are a class of its own.
+
+    Attributes:
+        SETUP_SUFFIX: suffix of the set-up file, appended to the name of the job.
+    """
+
+    SETUP_SUFFIX: str
+
+    def settings_of(self, machine: Machine) -> tuple[Any | None, Findings]:
+        """The settings of a machine's controller, or None with diagnostics."""
+
+    def faults(self, motion: StrutMotion, settings: Any, file: str) -> Findings:
+        """The reasons why a motion cannot be written, for the job of this name."""
+
+    def program_parts(self, motion: StrutMotion, settings: Any, heading: Sequence[str]) -> tuple[str, ...]:
+        """The program, as one text or as several that run in sequence."""
+
+    def stated_part(self, text: str) -> tuple[int, int]:
+        """The part number that a program states, and the number of parts."""
+
+    def read_parts(self, texts: Sequence[tuple[str, str]], settings: Any) -> tuple[StrutMotion | None, Findings]:
+        """The motion of a program, from file name and text of each of its parts."""
+
+    def setup_text(self, settings: Any, machine_name: str, stroke: tuple[float, float]) -> str | None:
+        """The set-up that programs rely on, None if there is none; the stroke in mm."""
+
+
+CONTROLLERS: dict[str, Controller] = {"turbo_pmac": pmac, "power_pmac": power_pmac}
+
+
+def controller_of(machine: Machine) -> tuple[Controller | None, Findings]:
+    """The controller of a machine, or None with diagnostics."""
+    kind = machine.controller.get("kind")
+    if kind in CONTROLLERS:
+        return CONTROLLERS[kind], ()
+    found = f"controller.kind: expected one of {', '.join(CONTROLLERS)}, got {kind!r}"
+    return None, (Diagnostic("M104", Place(machine.name), found),)
+
+
+def controller_settings(machine: Machine) -> tuple[tuple[Controller, Any] | None, Findings]:
+    """The controller of a machine and its settings, or None with diagnostics.
+
+    Posting and the machine file check share this function, so a file that passes the check can be posted for.
+    """
+    controller, faults = controller_of(machine)
+    if controller is None:
+        return None, faults
+    settings, faults = controller.settings_of(machine)
+    return (None if settings is None else (controller, settings)), faults
+
+
+def part_names(name: str, count: int) -> list[str]:
+    """The names of the parts of a file; the first, or only, part keeps the name."""
+    path = PurePath(name)
+    return [name, *(f"{path.stem}-part{number}{path.suffix}" for number in range(2, count + 1))]
+
+
+def part_siblings(controller: Controller, name: str, text: str) -> list[str]:
+    """The names of the other parts of a program, as stated by its first part."""
+    number, count = controller.stated_part(text)
+    return part_names(name, count)[1:] if number == 1 else []

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Program: strut motion written as a Turbo PMAC motion program.
+
+Enters: strut motion in mm, mm/s and whole ms. Leaves: the moves with the words and the frame of the Turbo PMAC, in one
+program or in as many parts as its memory requires.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pkm_post.model import StrutMotion
+from pkm_post.writing.controllers.pmac.memory import memory_cuts
+from pkm_post.writing.controllers.pmac.settings import PmacSettings
+from pkm_post.writing.controllers.pvt import parts, writer
+from pkm_post.writing.controllers.pvt.decimals import plain
+from pkm_post.writing.controllers.pvt.settings import APPROACH_RAMP_MS
+from pkm_post.writing.controllers.pvt.words import Words
+
+WORDS = Words(comment=";", linear="LINEAR", dwell="DWELL", interval="PVT", close="CLOSE")
+
+
+def program_text(motion: StrutMotion, settings: PmacSettings, heading: Sequence[str]) -> str:
+    """Write a motion as one motion program; as ``pvt.writer.program_text``."""
+    return writer.program_text(motion, settings, WORDS, _opening(settings), heading)
+
+
+def program_parts(motion: StrutMotion, settings: PmacSettings, heading: Sequence[str]) -> tuple[str, ...]:
+    """Write a motion as one program, or as several that each fit into the memory.
+
+    Args:
+        motion: as for ``program_text``.
+        settings: settings of the controller.
+        heading: lines of text for the comment on top of each part.
+
+    Raises:
+        ValueError: the motion cannot be written, or no rest is near enough; ``memory_faults`` reports this beforehand.
+    """
+    motions = parts.parted(motion, memory_cuts(motion, settings))
+    headings = parts.headings(heading, len(motions))
+    return tuple(program_text(part, settings, lines) for part, lines in zip(motions, headings, strict=True))
+
+
+def buffer_opening(settings: PmacSettings) -> str:
+    """The lines that open and clear the program buffer: all that precedes its modes and moves."""
+    return f"CLOSE\nDELETE GATHER\nOPEN PROG {settings.program}\nCLEAR\n"
+
+
+def _opening(settings: PmacSettings) -> str:
+    speed = plain(settings.approach_speed)
+    return (
+        f"{buffer_opening(settings)}"
+        f"ABS\nFRAX({','.join(settings.letters)})\nLINEAR\nTA{APPROACH_RAMP_MS} TS0 F{speed}\n"
+    )

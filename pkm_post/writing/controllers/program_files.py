@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Program files: read the bytes of a motion program, identically at every entry point.
+
+Enters: bytes, or the file of a program or of its first part. Leaves: text with LF line ends, or diagnostics. A program
+may have only printable ASCII, LF and CR LF: any other control character acts on the controller immediately, even within
+a comment, and some readers treat some of them as line ends.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import islice
+from pathlib import Path
+
+from pkm_post.model import Diagnostic, Place
+from pkm_post.writing.controllers.kinds import Controller, part_siblings
+
+Findings = tuple[Diagnostic, ...]
+Texts = list[tuple[str, str]]
+"""File name and text of each part, in order."""
+
+_FOREIGN = re.compile(rb"[^\n -~]")
+_MOST_FAULTS = 20
+_NAMES = {
+    0x00: "NUL", 0x09: "tab", 0x0B: "vertical tab", 0x0C: "form feed", 0x0D: "carriage return without line feed",
+    0x1A: "Ctrl-Z", 0x1B: "escape", 0x7F: "delete",
+}  # fmt: skip
+
+
+def text_of(content: bytes, file: str) -> tuple[str | None, Findings]:
+    """The text of a program, with LF line ends; or its first 20 illegal characters.
+
+    Args:
+        content: bytes of the file.
+        file: its name, for the diagnostics.
+    """
+    content = content.replace(b"\r\n", b"\n")
+    faults = tuple(_fault(content, found.start(), file) for found in islice(_FOREIGN.finditer(content), _MOST_FAULTS))
+    return (None, faults) if faults else (content.decode("ascii"), ())
+
+
+def _fault(content: bytes, position: int, file: str) -> Diagnostic:
+    line, column = content.count(b"\n", 0, position) + 1, position - content.rfind(b"\n", 0, position)
+    return Diagnostic("C108", Place(file, line=line, column=column), _named(content[position]))
+
+
+def _named(byte: int) -> str:
+    if byte > 0x7F:
+        return f"byte 0x{byte:02X}, which is not ASCII"
+    name = f", {_NAMES[byte]}" if byte in _NAMES else ""
+    return f"control character 0x{byte:02X}{name}"
+
+
+def read_text(file: Path) -> tuple[str | None, Findings]:
+    """The text of one file of a program."""
+    try:
+        return text_of(file.read_bytes(), file.name)
+    except OSError as fault:
+        return None, (Diagnostic("F103", Place(str(file)), str(fault)),)
+
+
+def read_texts(program: Path, controller: Controller) -> tuple[Texts | None, Findings]:
+    """The texts of all parts of a program, in the folder of its first part, which states their number."""
+    first, faults = read_text(program)
+    if first is None:
+        return None, faults
+    texts = [(program.name, first)]
+    for name in part_siblings(controller, program.name, first):
+        text, faults = read_text(program.with_name(name))
+        if text is None:
+            return None, faults
+        texts.append((name, text))
+    return texts, ()

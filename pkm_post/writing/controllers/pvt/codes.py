@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Codes: a machine's program text for its events, such as ``T3 M6`` for a tool change.
+
+Enters: an event and the machine's table of codes. Leaves: the program line that executes it. The table must be
+invertible: no text may stand for two events, so that a program can be read back and compared with its job. Values are
+in the units of the event, except the dwell: s inside, ms in the program. A code may call a subprogram of the machine
+(M, T, S words) or set an output with a synchronous assignment, ``M60==1 DWELL0``.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
+from pkm_post.writing.controllers.pvt.decimals import exact, plain
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """The effect of the code with one name.
+
+    Attributes:
+        kind: the kind of event.
+        value: the value of the event; None if the code states it.
+        sign: sign of the event's value relative to the number in the code.
+    """
+
+    kind: EventKind
+    value: float | None = None
+    sign: int = 1
+
+    def covers(self, event: Event) -> bool:
+        """Whether this is the code of ``event``."""
+        fits = event.value * self.sign >= 0 if self.value is None else event.value == self.value
+        return self.kind == event.kind and fits
+
+
+MEANINGS: dict[str, Meaning] = {
+    "tool_change": Meaning(EventKind.TOOL_CHANGE),
+    "spindle_stop": Meaning(EventKind.SPINDLE, 0.0),
+    "spindle_clockwise": Meaning(EventKind.SPINDLE),
+    "spindle_counterclockwise": Meaning(EventKind.SPINDLE, sign=-1),
+    "coolant_off": Meaning(EventKind.COOLANT, 0.0),
+    "coolant_flood": Meaning(EventKind.COOLANT, 1.0),
+    "coolant_mist": Meaning(EventKind.COOLANT, 2.0),
+    "stop": Meaning(EventKind.STOP, 0.0),
+    "optional_stop": Meaning(EventKind.STOP, 1.0),
+}
+"""The first entry that covers an event is its code: spindle stop comes before the two directions. The reader has
+its own definition of what each code does (``syntax.EFFECTS``)."""
+
+LONGEST_DWELL = 8388.607
+"""s; the controller truncates longer dwells to this."""
+
+FIELD = re.compile(r"\{value(?::(?P<form>d|\.[1-9]f))?\}")
+"""``{value}`` is the exact number, ``{value:d}`` a whole number, ``{value:.3f}`` one with three decimals."""
+
+_LITERAL = r"[ -:<-z|~]"
+_FIXED_CODE = re.compile(rf"{_LITERAL}+")
+_VALUE_CODE = re.compile(rf"(?:{_LITERAL}*(?![0-9.-]){_LITERAL})?{FIELD.pattern}(?:(?![0-9.-]){_LITERAL}+)?")
+_RESERVED = ("PVT", "DWELL", "LINEAR", "CLOSE")
+_COMMENTS = ("//", "/*")
+_MODES = re.compile(
+    r"(?<![A-Z])(PVT|LINEAR|RAPID|CIRCLE|SPLINE|INC|ABS|FRAX|NORMAL|OPEN|CLOSE|CLEAR|DELETE)(?![A-Z])", re.IGNORECASE
+)
+"""Words that change the interpretation of the following moves, or the program itself."""
+_SYNCHRONOUS = re.compile(r"[=&|^]=")
+_WITH_DWELL = re.compile(r".* DWELL *0", re.IGNORECASE)
+_OTHER_NUMBERS = ("7919", "7919.5")
+
+
+def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
+    """Check that a table of codes is complete, well formed and invertible, and moves no strut.
+
+    Args:
+        codes: text for each name of ``MEANINGS``, with one field if it states the value of the event.
+        letters: letters of the axes.
+
+    Raises:
+        ValueError: a name is missing or unknown, a text is malformed, changes modes or moves an axis, or some text
+            would stand for two events.
+    """
+    if set(codes) != set(MEANINGS):
+        raise ValueError(f"codes: expected the names {', '.join(MEANINGS)}, got {', '.join(codes)}")
+    for name, template in codes.items():
+        form, expected = (
+            (_VALUE_CODE, "text with one {value}, {value:d} or {value:.3f}, apart from other digits")
+            if MEANINGS[name].value is None
+            else (_FIXED_CODE, "text without ';' and braces")
+        )
+        reserved = template.upper().startswith(_RESERVED) or any(mark in template for mark in _COMMENTS)
+        if not form.fullmatch(template) or template != template.strip() or reserved:
+            besides = f"no comment, not beginning with {', '.join(_RESERVED)} or a space"
+            raise ValueError(f"codes.{name}: expected {expected}, {besides}, got {template!r}")
+        _check_synchronous(name, template)
+        _check_stands(name, template, letters)
+    _check_invertible(codes)
+
+
+def _check_synchronous(name: str, template: str) -> None:
+    """Require a dwell after a synchronous assignment: it waits for the next move or dwell, and might never execute."""
+    if _SYNCHRONOUS.search(template) and not _WITH_DWELL.fullmatch(template):
+        raise ValueError(f"codes.{name}: expected DWELL0 behind a synchronous assignment, got {template!r}")
+
+
+def _check_stands(name: str, template: str, letters: Sequence[str]) -> None:
+    """Refuse codes with moves and modes: the certificate only knows those of the program itself."""
+    moves = re.compile(rf"(?<![A-Z])({'|'.join(map(re.escape, letters))})\s*[-+.(0-9{{]", re.IGNORECASE)
+    found = _MODES.search(template) or moves.search(template)
+    if found:
+        raise ValueError(f"codes.{name}: expected no mode and no move of an axis, got {found[1]} in {template!r}")
+
+
+def _check_invertible(codes: Mapping[str, str]) -> None:
+    """Try every code with the numbers in the table and two others: if these do not clash, none do."""
+    numbers = {*_OTHER_NUMBERS, *re.findall(r"[0-9]+(?:\.[0-9]+)?", " ".join(codes.values()))}
+    patterns = {name: _pattern(template) for name, template in codes.items()}
+    for name, template in codes.items():
+        for text in sorted({FIELD.sub(number, template) for number in numbers}):
+            alike = [other for other, pattern in patterns.items() if pattern.fullmatch(text)]
+            if name in alike and len(alike) > 1:
+                raise ValueError(f"codes: expected different texts, got {text!r} for {' and '.join(alike)}")
+
+
+def _pattern(template: str) -> re.Pattern[str]:
+    field = FIELD.search(template)
+    if field is None:
+        return re.compile(re.escape(template))
+    before, after = re.escape(template[: field.start()]), re.escape(template[field.end() :])
+    number = "[0-9]+" if field["form"] == "d" else r"[0-9]+(?:\.[0-9]+)?"
+    return re.compile(before + number + after)
+
+
+def _number_text(template: str, value: float) -> str:
+    field = FIELD.search(template)
+    form = field and field["form"]
+    return plain(value) if form is None else format(int(value) if form == "d" else value, form)
+
+
+def unwritable(event: Event, codes: Mapping[str, str]) -> str:
+    """The reason why ``event`` has no code, in words; empty if it has one."""
+    if event.kind == EventKind.DWELL:
+        return "" if 0 <= event.value <= LONGEST_DWELL else f"a dwell lasts 0 to {LONGEST_DWELL} s"
+    name = _name(event)
+    if not name or not math.isfinite(event.value):
+        return "no code has this meaning"
+    number = _number_text(codes[name], abs(event.value))
+    return "" if float(number) == abs(event.value) else f"the code {name} = {codes[name]!r} would write it as {number}"
+
+
+def code_text(event: Event, codes: Mapping[str, str], dwell: str = "DWELL") -> str:
+    """The program line that executes ``event``.
+
+    Args:
+        event: the event.
+        codes: the machine's table of codes.
+        dwell: the controller's word for a dwell.
+
+    Raises:
+        ValueError: the event has no code; ``event_faults`` reports this beforehand.
+    """
+    reason = unwritable(event, codes)
+    if reason:
+        raise ValueError(f"event: expected one with a code, got {event}: {reason}")
+    if event.kind == EventKind.DWELL:
+        return f"{dwell}{plain(exact(event.value) * 1000)}"
+    template = codes[_name(event)]
+    return FIELD.sub(_number_text(template, abs(event.value)), template)
+
+
+def event_faults(motion: StrutMotion, codes: Mapping[str, str], file: str) -> tuple[Diagnostic, ...]:
+    """Diagnostics for the events of a motion without a code on the machine.
+
+    Args:
+        motion: the motion to be written.
+        codes: the machine's table of codes.
+        file: name of the job, for the diagnostics.
+    """
+    reasons = ((event, unwritable(event, codes)) for event in motion.events)
+    return tuple(
+        Diagnostic("C104", Place(file), f"{event.kind.name.lower()} {event.value:.12g}: {reason}")
+        for event, reason in reasons
+        if reason
+    )
+
+
+def _name(event: Event) -> str:
+    return next((name for name, meaning in MEANINGS.items() if meaning.covers(event)), "")

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Settings: wiring and communication of one machine's controller, as far as common to the family.
+
+Enters: the ``[controller]`` table of a machine, whose entries the reader of machine files has checked one by one.
+Leaves: settings that the writer, the reader and the set-up file share as data. Checks here are those that the reader of
+machine files cannot make: the kind of controller, whether the codes are distinguishable, and a program number that no
+file states. Units: mm, mm/s, ms, encoder counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Self, TypeVar
+
+from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.writing.controllers.pvt.codes import check_codes
+
+APPROACH_RAMP_MS = 500
+"""Duration of acceleration and of deceleration of the approach."""
+_LAST_PROGRAM = 999
+"""Programs from 1000 on are the subprograms of the codes G, M, T, D."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Settings of the controller of one machine; strut i is motor i and the axis of letter i.
+
+    Attributes:
+        counts_per_mm: encoder counts per mm of strut length; negative if the count falls as the strut extends.
+        zero_length: length of each strut in mm at motor position zero.
+        approach_speed: root of the sum of the squares of the six strut speeds on the approach to the first knot, mm/s.
+        letters: axis letter of each strut.
+        coordinate_system: number of the coordinate system of the six motors.
+        program: number of the motion program.
+        length_decimals: digits after the point of a length in mm.
+        speed_decimals: digits after the point of a speed in mm/s.
+        line_limit: longest line that the controller accepts, in characters.
+        codes: text of each event, by the names of ``codes.MEANINGS``.
+
+    Raises:
+        ValueError: the codes are not distinguishable, or the program number is not valid.
+    """
+
+    KIND: ClassVar[str]
+    """Value of ``controller.kind`` in the machine file."""
+
+    counts_per_mm: float
+    zero_length: tuple[float, ...]
+    approach_speed: float
+    letters: tuple[str, ...]
+    coordinate_system: int
+    program: int
+    length_decimals: int
+    speed_decimals: int
+    line_limit: int
+    codes: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        # manual moves and single blocks run under a program number chosen at run time
+        if not 1 <= self.program <= _LAST_PROGRAM:
+            raise ValueError(f"program: expected a whole number from 1 to {_LAST_PROGRAM}, got {self.program}")
+        check_codes(self.codes, self.letters)
+
+    @classmethod
+    def of(cls, controller: Mapping[str, Any]) -> Self:
+        """Settings from ``Machine.controller``; entries without meaning for this controller are ignored.
+
+        Raises:
+            ValueError: the table is of another kind of controller, or its codes are not distinguishable.
+        """
+        kind = controller.get("kind")
+        if kind != cls.KIND:
+            raise ValueError(f"kind: expected {cls.KIND}, got {kind!r}")
+        return cls(**{item.name: controller[item.name] for item in fields(cls)})
+
+
+AnySettings = TypeVar("AnySettings", bound=Settings)
+
+
+def settings_of(form: type[AnySettings], machine: Machine) -> tuple[AnySettings | None, tuple[Diagnostic, ...]]:
+    """Settings of a machine's controller, or None with diagnostics.
+
+    Args:
+        form: the settings class of this kind of controller.
+        machine: as returned by the reader of machine files.
+    """
+    try:
+        return form.of(machine.controller), ()
+    except ValueError as fault:
+        return None, (Diagnostic("M104", Place(machine.name), f"controller.{fault}"),)

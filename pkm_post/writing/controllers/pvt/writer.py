@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Writer: write strut motion as the text of a motion program, from its first comment to its last move.
+
+Enters: knots with six lengths in mm and six speeds in mm/s at whole ms. Leaves: ASCII text. The controller approaches
+knot 0 slowly in LINEAR mode, then follows the cubic through the lengths and speeds of consecutive knots (PVT mode).
+Axis values are true strut lengths; times in the program are in ms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import chain
+
+import numpy as np
+
+from pkm_post.model import Array, StrutMotion
+from pkm_post.writing.controllers.pvt.codes import code_text
+from pkm_post.writing.controllers.pvt.comment import comment_lines
+from pkm_post.writing.controllers.pvt.printing import BLANK, printed, rounded
+from pkm_post.writing.controllers.pvt.settings import Settings
+from pkm_post.writing.controllers.pvt.words import Words
+
+LONGEST_INTERVAL_MS = 4095
+_ROWS_PER_CHUNK = 4096
+_END_OF_STRETCH = "\x1e"
+"""The ASCII record separator, which no program contains."""
+
+
+def program_text(motion: StrutMotion, settings: Settings, words: Words, opening: str, heading: Sequence[str]) -> str:
+    """Write a motion as a motion program.
+
+    Args:
+        motion: at rest at both ends and at every event; knots from 1 to 4095 ms apart, the first at 0.
+        settings: settings of the controller.
+        words: words of the controller.
+        opening: text between the comment on top and the lengths of knot 0.
+        heading: lines of text for the comment on top.
+
+    Raises:
+        ValueError: the motion cannot be written: invalid times, a non-finite number, a speed where it must rest,
+            or an event without code.
+    """
+    _check(motion, settings)
+    stretches = [_approach(motion, settings), *_stretches(motion, settings, words)]
+    body = chain.from_iterable(zip(stretches, _interruptions(motion, settings, words), strict=True))
+    comment = [f"{line}\n" for text in heading for line in comment_lines(text, settings.line_limit, words.comment)]
+    return "".join([*comment, opening, *body, f"{words.linear}\n{words.close}\n"])
+
+
+def rests(motion: StrutMotion, settings: Settings) -> Array:
+    """The knots at which every printed speed is zero."""
+    return np.flatnonzero(~rounded(motion.speed, settings.speed_decimals).any(axis=1))
+
+
+def _approach(motion: StrutMotion, settings: Settings) -> str:
+    """The line that moves to knot 0: lengths only."""
+    decimals = settings.length_decimals
+    lengths = rounded(motion.length[0], decimals).tolist()
+    return " ".join(f"{letter}{at:.{decimals}f}" for letter, at in zip(settings.letters, lengths, strict=True)) + "\n"
+
+
+def _stretches(motion: StrutMotion, settings: Settings, words: Words) -> list[str]:
+    """The lines of the other knots, with changed intervals: one text up to each knot where the motion rests."""
+    intervals = _interval_lines(motion, words.interval)
+    ends = np.zeros(len(motion), dtype=np.uint8)
+    ends[_resting_knots(motion)] = ord(_END_OF_STRETCH)
+    stretches: list[list[str]] = [[]]
+    for start in range(1, len(motion), _ROWS_PER_CHUNK):
+        rows = slice(start, start + _ROWS_PER_CHUNK)
+        length = printed(motion.length[rows], settings.length_decimals)
+        speed = printed(motion.speed[rows], settings.speed_decimals)
+        lines = _lines(intervals[rows], settings.letters, length, speed, ends[rows])
+        first, *others = lines.tobytes().translate(None, BLANK).decode("ascii").split(_END_OF_STRETCH)
+        stretches[-1].append(first)
+        stretches += [[text] for text in others]
+    return ["".join(texts) for texts in stretches[:-1]]
+
+
+def _lines(intervals: Array, letters: Sequence[str], length: Array, speed: Array, ends: Array) -> Array:
+    """Lines of moves as records of characters and blanks, (N,).
+
+    Args:
+        intervals: the interval line before each, or nothing, (N,).
+        letters: letters of the axes.
+        length: printed, (N, 6, W).
+        speed: printed, (N, 6, V).
+        ends: the character after each line, (N,).
+    """
+    columns = [("letter", 1), ("length", length.shape[-1]), ("colon", 1), ("speed", speed.shape[-1]), ("behind", 1)]
+    axis = np.dtype([(name, np.uint8, (width,)) for name, width in columns])
+    lines = np.empty(len(length), dtype=[("interval", intervals.dtype), ("axes", axis, (6,)), ("end", np.uint8)])
+    lines["interval"], lines["end"], axes = intervals, ends, lines["axes"]
+    axes["letter"] = np.array([[ord(letter)] for letter in letters])
+    axes["length"], axes["colon"], axes["speed"] = length, ord(":"), speed
+    axes["behind"] = np.array([[ord(character)] for character in "     \n"])
+    return lines
+
+
+def _resting_knots(motion: StrutMotion) -> list[int]:
+    return sorted({0, len(motion) - 1} | {event.row for event in motion.events})
+
+
+def _interruptions(motion: StrutMotion, settings: Settings, words: Words) -> Iterable[str]:
+    """The text after the line of each knot where the motion rests, in order.
+
+    A dwell of 0 comes first: it stops the controller's look-ahead, which would execute the codes too early.
+    """
+    text = dict.fromkeys(_resting_knots(motion), f"{words.dwell}0\n")
+    for event in motion.events:
+        text[event.row] += code_text(event, settings.codes, words.dwell) + "\n"
+    return text.values()
+
+
+def _interval_lines(motion: StrutMotion, word: str) -> Array:
+    """The line with the interval before each knot; empty if it is already in force, (M,).
+
+    It is needed when the interval changes, and after an interruption that ended PVT mode.
+    """
+    intervals = np.diff(motion.time_ms, prepend=0)
+    told = np.diff(intervals, prepend=0) != 0
+    told[[knot + 1 for knot in _resting_knots(motion)[:-1]]] = True
+    lines = np.array([b"", *(f"{word}{ms}\n".encode("ascii") for ms in range(1, intervals.max() + 1))])
+    return lines[np.where(told, intervals, 0)]
+
+
+def _check(motion: StrutMotion, settings: Settings) -> None:
+    if len(motion) == 0 or motion.time_ms[0] != 0:
+        raise ValueError(f"motion: expected knots from 0 ms on, got {motion.time_ms[:1].tolist()}")
+    intervals = np.diff(motion.time_ms)
+    wrong = np.flatnonzero((intervals < 1) | (intervals > LONGEST_INTERVAL_MS))
+    if len(wrong):
+        raise ValueError(
+            f"motion.time_ms: expected intervals of 1 to {LONGEST_INTERVAL_MS} ms, "
+            f"got {intervals[wrong[0]]} ms before knot {wrong[0] + 1}"
+        )
+    if not (np.isfinite(motion.length).all() and np.isfinite(motion.speed).all()):
+        raise ValueError("motion: expected finite lengths and speeds, got NaN or infinity")
+    rows = [event.row for event in motion.events]
+    if rows != sorted(rows) or any(not 0 <= row < len(motion) for row in rows):
+        raise ValueError(f"motion.events: expected rows in order from 0 to {len(motion) - 1}, got {rows}")
+    knots = _resting_knots(motion)
+    moving = np.flatnonzero(rounded(motion.speed[knots], settings.speed_decimals).any(axis=1))
+    if len(moving):
+        knot = knots[moving[0]]
+        raise ValueError(f"motion.speed: expected rest at knot {knot}, got {motion.speed[knot].tolist()} mm/s")

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Convert: read a part program and write it in another form of G-code.
+
+Enters: a file. Leaves: a file, or diagnostics. On an error nothing is written.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pkm_post.model import Diagnostic, errors
+from pkm_post.reading import AS_WRITTEN, Reading, read_part_program
+from pkm_post.system import staged, unwritten
+from pkm_post.writing.gcode import Form, write
+
+TARGETS: dict[str, Form] = {f"gcode:{form.value}": form for form in Form}
+"""Target forms by command line name."""
+
+
+def convert(
+    file: Path, target: str, out: Path, reading: Reading = AS_WRITTEN, decimals: int = 4, inch: bool = False
+) -> tuple[Diagnostic, ...]:
+    """Write a part program in another form.
+
+    Args:
+        file: the part program.
+        target: a key of ``TARGETS``.
+        out: the file to write.
+        reading: settings that the part program does not contain.
+        decimals: of lengths.
+        inch: whether to write inches.
+
+    Returns:
+        The diagnostics; the file is written only if none is an error.
+
+    Raises:
+        ValueError: the target or the suffix of the file is not known.
+    """
+    if target not in TARGETS:
+        raise ValueError(f"target: expected one of {', '.join(TARGETS)}, got {target!r}")
+    program, found = read_part_program(file, reading)
+    if program is None or errors(found):
+        return found
+    text, told = write(program, TARGETS[target], decimals=decimals, inch=inch)
+    if text is None:
+        return (*found, *told)
+    try:
+        with staged(out.parent) as folder:
+            (folder / out.name).write_text(text, encoding="ascii", newline="\n")
+    except OSError as fault:
+        return (*found, *told, unwritten(out, fault))
+    return (*found, *told)

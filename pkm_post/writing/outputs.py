@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Outputs: files written beside a motion program, and files in several parts.
+
+Texts are written side by side; a certified motion becomes a table, a trajectory becomes a program for LinuxCNC. Only
+files that are read back and measured are certified.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Collection
+from pathlib import Path, PurePath
+
+import numpy as np
+
+from pkm_post.model import Diagnostic, Kind, Place, Program, StrutMotion, Trajectory, pieces
+from pkm_post.writing.controllers import CONTROLLERS, TABLES, Table, part_names
+from pkm_post.writing.gcode import Form, write
+
+Findings = tuple[Diagnostic, ...]
+
+_CHARACTERS_AT_ONCE = 1 << 20
+"""Characters written at once, which avoids a second copy of the whole text as bytes."""
+_FOR_LINUXCNC = "-linuxcnc.ngc"
+_SETUPS = tuple(controller.SETUP_SUFFIX for controller in CONTROLLERS.values())
+
+
+def left_over(program: Path, names: Collection[str], earlier: Collection[str] = ()) -> Findings:
+    """The warning that files of an earlier result remain beside a new one, or nothing.
+
+    A smaller memory gives more parts, the program may have had another suffix, and the additional files may have
+    changed: leftovers appear to belong to the new program.
+
+    Args:
+        program: path of the motion program.
+        names: the files of this posting in its folder.
+        earlier: the files of the previous posting, as listed in its manifest.
+    """
+    endings = (program.suffix, _FOR_LINUXCNC, *_SETUPS, *(table.SUFFIX for table in TABLES.values()))
+    kin = re.compile("|".join(_with_parts(program.stem + ending) for ending in endings))
+    there = os.listdir(program.parent)
+    found = sorted(name for name in there if (kin.fullmatch(name) or name in earlier) and name not in names)
+    return (Diagnostic("F104", Place(str(program)), ", ".join(found)),) if found else ()
+
+
+def _with_parts(name: str) -> str:
+    """A pattern for the name of a file and those of its parts."""
+    path = PurePath(name)
+    return re.escape(path.stem) + "(?:-part[1-9][0-9]*)?" + re.escape(path.suffix)
+
+
+def write_parts(path: Path, texts: tuple[str, ...]) -> list[str]:
+    """Write the parts of a file and return their names."""
+    names = part_names(path.name, len(texts))
+    for name, text in zip(names, texts, strict=True):
+        with path.with_name(name).open("w", encoding="ascii", newline="\n") as file:
+            file.writelines(text[rows] for rows in pieces(len(text), _CHARACTERS_AT_ONCE))
+    return names
+
+
+def read_parts(path: Path, names: list[str]) -> list[tuple[str, str]]:
+    """Names and texts of the parts of a file, read back."""
+    return [(name, path.with_name(name).read_text(encoding="ascii")) for name in names]
+
+
+def write_table(path: Path, table: Table, played: StrutMotion, heading: list[str]) -> tuple[str, Findings]:
+    """Write a table of a motion; return the result of reading it back and measuring it.
+
+    Args:
+        path: path of the motion program; the table takes its stem.
+        table: the kind of table.
+        played: the certified motion.
+        heading: lines that state its origin.
+    """
+    target = path.with_name(path.stem + table.SUFFIX)
+    names = write_parts(target, table.texts(played, heading))
+    return table.measured(read_parts(target, names), played)
+
+
+def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float) -> Findings:
+    """Write the trajectory for a control with its own kinematics and planner."""
+    text, found = linuxcnc_text(trajectory, tip_tolerance)
+    if text is not None:
+        path.with_name(path.stem + _FOR_LINUXCNC).write_text(text, encoding="ascii", newline="\n")
+    return found
+
+
+def linuxcnc_text(trajectory: Trajectory, tip_tolerance: float) -> tuple[str | None, Findings]:
+    """The trajectory as G-code for LinuxCNC's hexapod: X Y Z A B C in {M}, or None with diagnostics.
+
+    Args:
+        trajectory: the trajectory to run.
+        tip_tolerance: path tolerance of the tool tip where the program states none, mm. It is written as P of G64:
+            without P LinuxCNC rounds corners as far as its speed requires.
+    """
+    text, found = write(_as_program(trajectory, tip_tolerance), Form.LINUXCNC)
+    told = "(coordinates of the machine frame, work offsets are zero; not certified)\n"
+    return (None if text is None else told + text), found
+
+
+def _as_program(trajectory: Trajectory, tip_tolerance: float) -> Program:
+    """A trajectory as a program whose work frame is {M}."""
+    return Program(
+        kind=trajectory.kind,
+        position=trajectory.tip,
+        tool_axis=trajectory.axis,
+        spin=trajectory.spin,
+        feed=np.where(trajectory.kind == Kind.RAPID, np.nan, trajectory.feed),
+        arc_centre=trajectory.arc_centre,
+        arc_axis=trajectory.arc_axis,
+        exact_stop=trajectory.exact_stop,
+        tip_tolerance=trajectory.tip_tolerances(tip_tolerance),
+        operation=trajectory.operation,
+        line=trajectory.line,
+        events=trajectory.events,
+        operations=trajectory.operations,
+        tools=trajectory.tools,
+        source=trajectory.source,
+    )

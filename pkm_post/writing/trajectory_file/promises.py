@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Promises: the invariants of a trajectory, checked by both writer and reader.
+
+Enters: a ``model.Trajectory`` with any values. Leaves: in words, each promise that it breaks, with the first record
+(counted from 0) that does. A broken promise would become a wrong motion in a player of the file.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+
+import numpy as np
+
+from pkm_post.geometry import Array, norm
+from pkm_post.model import LEAST_TOLERANCE, MOST_SPIN, Event, EventKind, Kind, Tool, Trajectory
+from pkm_post.writing.trajectory_file.parts import parts
+
+UNIT_TOLERANCE = 1e-5
+"""Tolerance of unit length: a work offset and a symmetry may each be 1e-6 from a rotation."""
+FULL_TURN = 2 * math.pi + 1e-8
+"""rad; a full turn may be longer by the angle below which two directions count as equal."""
+FARTHEST = 1e9
+"""mm: no machine has coordinates beyond this, and their squares would exhaust the digits of a double."""
+LONGEST = 86_400.0
+"""s: longest segment; a lower feed is a slip, and its motion has more points than fit into memory."""
+_LARGEST_NUMBER = 2**31 - 1
+_FINGERPRINT = re.compile(r"[0-9a-f]{64}")
+
+SENSIBLE: dict[EventKind, Callable[[float], bool]] = {
+    EventKind.TOOL_CHANGE: lambda value: value == int(value) and 0 <= value <= _LARGEST_NUMBER,
+    EventKind.SPINDLE: math.isfinite,
+    EventKind.COOLANT: lambda value: value in (0, 1, 2),
+    EventKind.DWELL: lambda value: value >= 0,
+    EventKind.STOP: lambda value: value in (0, 1),
+}
+"""Whether a finite value is valid, by kind of event."""
+
+
+def broken_promises(trajectory: Trajectory) -> list[str]:
+    """Name the broken promises of a trajectory, each with its first offender; none for a sound one."""
+    with np.errstate(all="ignore"):  # any numbers may occur
+        return [
+            *_of_start(trajectory),
+            *_of_origin(trajectory),
+            *_first(_of_tools(trajectory.tools)),
+            *_of_segments(trajectory),
+            *_first(_of_events(trajectory.events, len(trajectory))),
+        ]
+
+
+def _first(broken: Iterable[str]) -> Iterator[str]:
+    """The first of many, with the number of others: a damaged table can have a million."""
+    first, *others = [*broken] or [""]
+    if first:
+        yield f"{first}, and {len(others)} more" if others else first
+
+
+def _of_start(trajectory: Trajectory) -> Iterator[str]:
+    if not _is_near(trajectory.start_tip):
+        yield f"the start tip is not finite, or farther than {FARTHEST:g} mm"
+    if not _is_unit(trajectory.start_axis):
+        yield "the start axis is not of unit length"
+    if not abs(trajectory.start_spin) <= MOST_SPIN:
+        yield f"the start spin is not finite, or beyond {MOST_SPIN:g} rad"
+    if not _is_rigid(trajectory.machine_from_work):
+        yield "the work offset is not a rotation and a shift"
+
+
+def _of_origin(trajectory: Trajectory) -> Iterator[str]:
+    if not re.fullmatch(_FINGERPRINT, trajectory.machine_fingerprint):
+        yield f"the fingerprint {trajectory.machine_fingerprint!r} is not 64 digits of 0-9 and a-f"
+    source, tolerances = trajectory.source_fingerprint, trajectory.tolerances
+    if source and (not re.fullmatch(_FINGERPRINT, source) or not source.strip("0")):
+        yield f"the fingerprint {source!r} of the source is not 64 digits of 0-9 and a-f, or all are 0"
+    if tolerances and not (
+        LEAST_TOLERANCE <= tolerances.tip <= FARTHEST and LEAST_TOLERANCE <= tolerances.axis <= math.pi
+    ):
+        yield f"the tolerances {tolerances.tip} mm and {tolerances.axis} rad are not both at least {LEAST_TOLERANCE:g}"
+
+
+def _of_tools(tools: dict[int, Tool]) -> Iterator[str]:
+    for number, tool in tools.items():
+        if tool.number != number or not 0 <= number <= _LARGEST_NUMBER:
+            yield f"the number of tool {number} is {tool.number}"
+        for name in ("diameter", "corner_radius", "length"):
+            if not 0 <= getattr(tool, name) <= FARTHEST:
+                yield f"the {name.replace('_', ' ')} of tool {number} is {getattr(tool, name)} mm"
+        for name in ("bottom_angle", "side_angle"):
+            if not abs(getattr(tool, name)) < math.pi / 2:
+                yield f"the {name.replace('_', ' ')} of tool {number} is {getattr(tool, name)} rad"
+
+
+def _of_segments(trajectory: Trajectory) -> Iterator[str]:
+    yield from in_segments((begin, _segment_rules(part)) for begin, part in parts(trajectory))
+
+
+def in_segments(found: Iterable[tuple[int, dict[str, Array]]]) -> Iterator[str]:
+    """Name the first segment with each fault, and the number of further ones.
+
+    Args:
+        found: for each part, the index of its first segment and the faulty segments by fault.
+    """
+    firsts: dict[str, int] = {}
+    counts: Counter[str] = Counter()
+    for begin, rules in found:
+        for what, broken in rules.items():
+            rows = np.flatnonzero(broken)
+            if len(rows):
+                firsts.setdefault(what, begin + int(rows[0]))
+                counts[what] += len(rows)
+    for what, first in firsts.items():
+        more = f" and {counts[what] - 1} more" if counts[what] > 1 else ""
+        yield f"segment {first}{more}: the {what}"
+
+
+def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
+    """For each rule, in words, the segments that break it, (N,)."""
+    arc = trajectory.kind == Kind.ARC
+    sweep, length, angle = trajectory.sweep, trajectory.length, trajectory.angle
+    asked = trajectory.tip_tolerance
+    stands = (length == 0) & (angle == 0) & (trajectory.spin == trajectory.spin_before())
+    return {
+        "kind is unknown": ~np.isin(trajectory.kind, list(Kind)),
+        f"tip is not finite, or farther than {FARTHEST:g} mm": ~_is_near(trajectory.tip),
+        "axis is not of unit length": ~_is_unit(trajectory.axis),
+        f"spin is not finite, or beyond {MOST_SPIN:g} rad": ~(np.abs(trajectory.spin) <= MOST_SPIN),
+        "feed is not a finite number above 0": ~(np.isfinite(trajectory.feed) & (trajectory.feed > 0)),
+        f"arc centre is not finite, or farther than {FARTHEST:g} mm": _at(arc, ~_is_near(trajectory.arc_centre[arc])),
+        "arc centre is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_centre),
+        "arc axis is not of unit length": _at(arc, ~_is_unit(trajectory.arc_axis[arc])),
+        "arc axis is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_axis),
+        "sweep is not above 0 and at most a full turn": arc & ~(_within(sweep, 0, FULL_TURN) & (sweep > 0)),
+        "sweep is not 0, although it is no arc": ~arc & (sweep != 0),
+        "length is not a finite number of at least 0": ~(np.isfinite(length) & (length >= 0)),
+        "angle is not between 0 and pi": ~_within(angle, 0, np.pi),
+        "tip, the axis and the spin all stand": stands,
+        f"tip tolerance is not 0, nor a finite number of at least {LEAST_TOLERANCE:g} mm": ~(
+            (asked == 0) | _within(asked, LEAST_TOLERANCE, FARTHEST)
+        ),
+        "feed is so low that the segment takes more than a day": length > LONGEST * trajectory.feed,
+        "tool is not in the table": ~np.isin(trajectory.tool, list(trajectory.tools)),
+        "operation is not in the table": ~_within(trajectory.operation, 0, len(trajectory.operations) - 1),
+        "line is negative": trajectory.line < 0,
+    }
+
+
+def _of_events(events: tuple[Event, ...], segments: int) -> Iterator[str]:
+    row_before = 0
+    for number, event in enumerate(events):
+        if not 0 <= event.row <= segments:
+            yield f"instruction {number}: the row {event.row} is not between 0 and {segments}"
+        elif event.row < row_before:
+            yield f"instruction {number}: the row {event.row} is before that of the last one"
+        if not (math.isfinite(event.value) and SENSIBLE[event.kind](event.value)):
+            yield f"instruction {number}: {event.kind.name} cannot have the value {event.value}"
+        row_before = event.row
+
+
+def _within(values: Array, least: float, most: float) -> Array:
+    return (values >= least) & (values <= most)
+
+
+def _at(rows: Array, broken: Array) -> Array:
+    """Expand the result for some rows to a column of all rows, (N,)."""
+    found = np.zeros(len(rows), dtype=np.bool_)
+    found[rows] = broken
+    return found
+
+
+def _has_number(vectors: Array) -> Array:
+    """Whether (N, 3) vectors have a coordinate that is not NaN, (N,)."""
+    x, y, z = vectors.T
+    return ~(np.isnan(x) & np.isnan(y) & np.isnan(z))
+
+
+def _is_near(points: Array) -> Array:
+    """Whether (..., 3) points are within ``FARTHEST``, (...)."""
+    near: Array = norm(points) <= FARTHEST
+    return near
+
+
+def _is_unit(vectors: Array) -> Array:
+    """Whether (..., 3) vectors are of unit length, (...)."""
+    near: Array = np.abs(norm(vectors) - 1) <= UNIT_TOLERANCE
+    return near
+
+
+def _is_rigid(matrix: Array) -> bool:
+    """Whether a (4, 4) matrix is a rigid transform."""
+    rotation = matrix[:3, :3]
+    excess = np.array([*(rotation @ rotation.T - np.eye(3)), matrix[3, :3]])
+    rigid = np.isfinite(matrix).all() and np.abs(excess).max() <= UNIT_TOLERANCE and matrix[3, 3] == 1
+    return bool(rigid and np.linalg.det(rotation) > 0)

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Who reads what the command line prints may go before it is done, as ``head`` does."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ADDON = Path(__file__).parents[2]
+PART = "G21 G90 G17\nT1 M6\nS5000 M3\nG0 X0 Y0 Z300\nG1 X10 F600\nM5\nM30\n"
+
+
+def run_unread(*arguments, python=("python3",)):
+    """Run a command whose output is closed from the beginning."""
+    reads, writes = os.pipe()
+    os.close(reads)
+    try:
+        command = [*python, "-m", "pkm_post", *map(str, arguments)]
+        found = os.environ | {"PYTHONPATH": str(ADDON)}
+        return subprocess.run(
+            command, env=found, stdout=writes, stderr=subprocess.PIPE, text=True, timeout=120, check=False
+        )
+    finally:
+        os.close(writes)
+
+
+@pytest.mark.parametrize("python", [("python3",), ("python3", "-u")])
+def test_output_that_nobody_reads_ends_a_command_without_a_word(python):
+    ran = run_unread("machine", "check", "example_6tps", python=python)
+    assert (ran.returncode, ran.stderr) == (1, "")
+
+
+def test_posting_that_nobody_follows_leaves_nothing(tmp_path):
+    part = tmp_path / "part.ngc"
+    part.write_text(PART, encoding="ascii")
+    ran = run_unread("post", part, "--tool-length", "1=120", "--out", tmp_path / "out", python=("python3", "-u"))
+    assert (ran.returncode, ran.stderr) == (1, "")
+    assert list((tmp_path / "out").iterdir()) == []

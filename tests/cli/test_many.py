@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Many files are posted at the same time, told in their order, and none stops the others."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from interpreter import PYTHON
+
+from pkm_post.cli.many import run_many
+
+ADDON = Path(__file__).parents[2]
+G_CODE = """\
+T1 M6 G43 H1
+G21 G90 G94 S8000 M3
+G0 X0 Y0 Z30
+G43.5 I0 J0 K1
+G1 X10 Y0 Z20 I0.1 J0 K1 F600
+M5
+M30
+"""
+REACHED = ["--axis-words", "vector", "--tool-length", "1=60", "--work-offset=0,0,250"]
+
+
+def says(text, error="", code=0, seconds=0.0):
+    """A command that prints and ends."""
+    script = (
+        f"import sys, time; time.sleep({seconds}); print({text!r}); print({error!r}, file=sys.stderr); sys.exit({code})"
+    )
+    return [PYTHON, "-c", script]
+
+
+def test_outputs_are_in_order_whatever_ends_first(capfd):
+    assert run_many([says("first", seconds=0.5), says("second"), says("third")], 3, "said") == 0
+    assert capfd.readouterr().out.split() == ["first", "second", "third"]
+
+
+@pytest.mark.parametrize("at_a_time", [1, 2])
+def test_a_failure_does_not_stop_the_others_and_decides_the_code(capfd, at_a_time):
+    assert run_many([says("one"), says("two", "no", 2), says("three")], at_a_time, "said") == 1
+    told = capfd.readouterr()
+    assert told.out.split() == ["one", "two", "three"]
+    assert told.err.split() == ["no"]
+
+
+def test_at_most_so_many_at_a_time(tmp_path):
+    script = (
+        "import pathlib, sys, time; here = pathlib.Path(sys.argv[1]); mine = here / sys.argv[2]; mine.touch();"
+        "print(len(list(here.iterdir()))); time.sleep(0.2); mine.unlink()"
+    )
+    told = subprocess.run(
+        [PYTHON, "-c", f"""
+import sys
+from pkm_post.cli.many import run_many
+commands = [[sys.executable, "-c", {script!r}, {str(tmp_path)!r}, str(number)] for number in range(6)]
+sys.exit(run_many(commands, 2, "counted"))
+"""],
+        env=os.environ | {"PYTHONPATH": str(ADDON)}, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert {int(count) for count in told.stdout.split()} <= {1, 2}
+
+
+def post(*arguments, **more):
+    return subprocess.Popen(
+        [PYTHON, "-m", "pkm_post", "post", *map(str, arguments)],
+        env=os.environ | {"PYTHONPATH": str(ADDON)},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        **more,
+    )
+
+
+@pytest.fixture
+def programs(tmp_path):
+    files = [tmp_path / f"{name}.ngc" for name in "abc"]
+    for file in files:
+        file.write_text(G_CODE)
+    return files
+
+
+def test_batch_is_told_file_by_file(programs, tmp_path):
+    programs[1].write_text(G_CODE.replace("F600", "F0"))
+    told = post(*programs, *REACHED, "--out", tmp_path / "out", "--jobs", 3)
+    printed, errors = told.communicate(timeout=120)
+    assert told.returncode == 1
+    written = [Path(line).name for line in printed.splitlines() if line.startswith(str(tmp_path))]
+    assert written == [
+        f"{name}{end}"
+        for name in "ac"
+        for end in ("-manifest.json", "-report.json", "-report.png", "-setup.pmc", ".pkmt", ".pmc")
+    ]
+    assert re.search(r"b\.ngc: line 5.* error G408", errors)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == sorted(written)
+
+
+def test_batch_gives_the_bytes_that_one_process_gives(programs, tmp_path):
+    for jobs in (1, 2):
+        told = post(*programs, *REACHED, "--out", tmp_path / str(jobs), "--jobs", jobs)
+        told.communicate(timeout=120)
+        assert told.returncode == 0
+    one, two = ({path.name: path.read_bytes() for path in (tmp_path / str(jobs)).iterdir()} for jobs in (1, 2))
+    assert one == two
+
+
+@pytest.mark.parametrize("jobs", ["0", "-1", "many"])
+def test_number_of_processes_that_makes_no_sense(programs, jobs):
+    told = post(*programs, "--jobs", jobs)
+    told.communicate(timeout=60)
+    assert told.returncode == 2
+
+
+def test_an_interrupt_ends_all(tmp_path):
+    sleep = f"import os, pathlib, time; pathlib.Path({str(tmp_path)!r}, str(os.getpid())).touch(); time.sleep(60)"
+    script = f"""
+import sys
+from pkm_post.cli.many import run_many
+sys.exit(run_many([[sys.executable, "-c", {sleep!r}]] * 3, 2, "slept"))
+"""
+    parent = subprocess.Popen(
+        [PYTHON, "-c", script], env=os.environ | {"PYTHONPATH": str(ADDON)},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    end = time.monotonic() + 30
+    while len(list(tmp_path.iterdir())) < 2 and time.monotonic() < end:
+        time.sleep(0.05)
+    children = [int(path.name) for path in tmp_path.iterdir()]
+    assert len(children) == 2
+    parent.send_signal(signal.SIGINT)
+    parent.communicate(timeout=30)
+    assert parent.returncode == 130
+    assert [pid for pid in children if Path(f"/proc/{pid}").exists()] == []

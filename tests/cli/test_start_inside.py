@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Documents are posted by a FreeCAD that is started: whatever else is started, nothing passes for posted."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from interpreter import PYTHON
+
+from pkm_post.cli import inside_freecad
+from pkm_post.cli.inside_freecad import as_ended_inside, command_inside, freecad_command, judged
+
+ADDON = Path(__file__).parents[2]
+
+
+def script(path, text):
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+def started(tmp_path, freecad, *more, files=("part.FCStd",), **environment):
+    """Posting documents where FREECADCMD names something."""
+    command = [PYTHON, "-m", "pkm_post", "post", *files, "--out", "out", *more]
+    settings = os.environ | {"PYTHONPATH": str(ADDON), "FREECADCMD": str(freecad)} | environment
+    return subprocess.run(
+        command, env=settings, cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60
+    )
+
+
+def is_refused(ran, code, *words):
+    assert ran.returncode == 1, ran.stderr
+    assert f"error {code}" in ran.stderr
+    assert [word for word in words if word not in ran.stderr] == []
+    assert "Traceback" not in ran.stderr
+
+
+def test_what_cannot_be_started(tmp_path):
+    text = tmp_path / "text"
+    text.write_text("no program")
+    is_refused(started(tmp_path, "/no/such/freecadcmd"), "F140", "/no/such/freecadcmd", "No such file")
+    is_refused(started(tmp_path, text), "F140", "Permission denied")
+    is_refused(started(tmp_path, tmp_path), "F140", "Permission denied")
+    text.chmod(0o755)
+    is_refused(started(tmp_path, text), "F140", "Exec format error")
+
+
+@pytest.mark.parametrize("code", [0, 1, 2, 63, 67, 127])
+def test_what_is_no_freecad(tmp_path, code):
+    other = script(tmp_path / "other", f"exit {code}")
+    is_refused(started(tmp_path, other), "F141", f"exit code {code}", other)
+
+
+def test_a_freecad_that_crashes(tmp_path):
+    is_refused(started(tmp_path, script(tmp_path / "crash", "kill -SEGV $$")), "F141", "exit code -11")
+
+
+@pytest.mark.parametrize("code", [1, 2, 130])
+def test_the_exit_code_of_the_command_is_that_of_the_command_inside(tmp_path, code):
+    ran = started(tmp_path, script(tmp_path / "inside", f"exit {as_ended_inside(code)}"))
+    assert (ran.returncode, ran.stderr) == (code, "")
+
+
+def test_results_that_are_not_there_where_the_command_ended_well(tmp_path):
+    well = script(tmp_path / "inside", f"exit {as_ended_inside(0)}")
+    is_refused(started(tmp_path, well), "F142", "part.pmc", "part.pkmt", "part-report.json", "part-manifest.json")
+    (tmp_path / "out").mkdir()
+    for name in ("part.pmc", "part.pkmt", "part-manifest.json"):
+        (tmp_path / "out" / name).touch()
+    ran = started(tmp_path, well)
+    is_refused(ran, "F142", "part-report.json")
+    assert "part.pmc" not in ran.stderr
+    (tmp_path / "out" / "part-report.json").touch()
+    assert started(tmp_path, well).returncode == 0
+
+
+def test_a_batch(tmp_path):
+    files = ("a.FCStd", "b.FCStd")
+    ran = started(tmp_path, "/no/such/freecadcmd", "--jobs", "2", files=files)
+    is_refused(ran, "F140")
+    assert ran.stderr.count("error F140") == 2
+    ran = started(tmp_path, script(tmp_path / "other", "exit 0"), "--jobs", "2", files=files)
+    is_refused(ran, "F141")
+    well = script(tmp_path / "inside", f"exit {as_ended_inside(0)}")
+    is_refused(started(tmp_path, well, "--jobs", "2", files=files), "F142", "a.pmc", "b.pmc")
+
+
+def test_a_bash_of_another_system(tmp_path):
+    """On the path of Windows there often is the bash of WSL, which starts nothing where it is not set up."""
+    script(tmp_path / "bash", "echo no distribution is installed >&2; exit 1")
+    path = {"PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}"}
+    is_refused(started(tmp_path, "", **path), "F141", "no distribution is installed")
+
+
+def test_windows_runs_no_script_of_bash(tmp_path):
+    script(tmp_path / "bash", "exit 1")
+    alone = {"PATH": str(tmp_path)}
+    assert freecad_command(alone, "win32") == []
+    assert freecad_command(alone, "linux") == [str(ADDON / "tools" / "freecad")]
+    freecad = script(tmp_path / "FreeCADCmd", "exit 0")
+    assert freecad_command(alone, "win32") == [freecad]
+    assert freecad_command(alone | {"FREECADCMD": "mine"}, "win32") == ["mine"]
+
+
+def test_no_freecad_at_all(monkeypatch, capsys):
+    monkeypatch.setattr(inside_freecad, "freecad_command", lambda: [])
+    assert inside_freecad.run_inside(["post", "part.FCStd"]) == 1
+    assert "error F140" in capsys.readouterr().err
+
+
+def test_without_numpy_it_is_said_in_short(tmp_path):
+    (tmp_path / "numpy.py").write_text("raise ModuleNotFoundError('no numpy', name='numpy')")
+    ran = started(tmp_path, "/no/such/freecadcmd", PYTHONPATH=f"{tmp_path}{os.pathsep}{ADDON}")
+    is_refused(ran, "F140", "/no/such/freecadcmd", "No such file")
+
+
+def test_what_is_not_started_for_freecad_ends_as_it_ends(monkeypatch):
+    monkeypatch.setenv("FREECADCMD", "freecadcmd")
+    inside = command_inside(["post", "part.FCStd"])
+    assert inside[0] == "freecadcmd" and inside[-2:] == ["post", "part.FCStd"]
+    assert [judged(["python3"], code) for code in (0, 1, 64)] == [(0, ""), (1, ""), (64, "")]
+    assert [judged(inside, as_ended_inside(code)) for code in (0, 1, 2, 130)] == [(0, ""), (1, ""), (2, ""), (130, "")]

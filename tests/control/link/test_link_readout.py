@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The digital readout: forward kinematics of what the controller tells, and bits in words."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from machines import direction, example
+from rig import SETTINGS, Wire, controller
+
+from pkm_post.control.link.faults import LinkLostError
+from pkm_post.control.link.readout import Readout, pose_text, state_text
+from pkm_post.control.link.status import MotorBits, Status, SystemBits, _status_of, read_status
+from pkm_post.machine.kinematics.inverse import strut_lengths
+
+NANOMETRE = 1e-6
+GOOD = "880000000401"
+"""Activated, amplifier on; no coordinate system; homed; in position [EPICSpmac]."""
+
+
+@pytest.fixture
+def status():
+    with Wire(controller()).session() as session:
+        return read_status(session, SETTINGS)
+
+
+def test_the_state_of_a_controller_at_rest(status):
+    assert np.allclose(status.length, 500.0) and np.allclose(status.following_error, 0.0)
+    assert status.override == 100.0 and status.standing and not status.running and status.words() == ()
+
+
+def test_poses_from_lengths(status):
+    machine = example()
+    readout = Readout(machine, 120.0)
+    for tilt in np.linspace(0.0, 25.0, 20):
+        tip, axis = np.array([[2 * tilt, -tilt, 300.0 - tilt]]), direction(tilt, 30.0)[None]
+        lengths = strut_lengths(machine, tip, axis, np.zeros(1), np.array([120.0]))
+        pose = readout.pose(dataclasses.replace(status, length=lengths[0]))
+        assert np.allclose(pose.tip, tip[0], atol=NANOMETRE) and np.allclose(pose.axis, axis[0], atol=1e-9)
+
+
+def test_lengths_without_a_pose_are_told_and_got_over(status):
+    machine = example()
+    readout = Readout(machine, 120.0)
+    assert readout.pose(dataclasses.replace(status, length=np.full(6, 10.0))) is None
+    assert pose_text(None) == "tool: no pose has these strut lengths"
+    home = strut_lengths(machine, machine.home_tip[None], np.array([[0.0, 0.0, 1.0]]), np.zeros(1), np.array([120.0]))
+    pose = readout.pose(dataclasses.replace(status, length=home[0]))
+    assert pose_text(pose).startswith("tip X0.000") or pose_text(pose).startswith("tip X-0.000")
+
+
+def test_each_bit_has_its_word(status):
+    for bits, name, word in (
+        (46, "negative_limit", "on its lower limit"), (45, "positive_limit", "on its upper limit"),
+        (42, "open_loop", "in open loop"), (34, "homing", "searching its home"),
+        (3, "amplifier_fault", "amplifier fault"),
+    ):  # fmt: skip
+        motor = MotorBits(1 << bits)
+        assert motor.has(name) and motor.words() == (word,)
+    motors = (*status.motors[:3], MotorBits(1 << 2), *status.motors[4:])
+    text = state_text(dataclasses.replace(status, motors=motors))
+    assert "strut 4: following error too large, switched off" in text and "NOT HOMED" in text
+
+
+def test_bits_are_where_the_manual_has_them():
+    # word 1 bit 0: a program runs; word 2 bit 23: held; word 2 bit 22: run-time error; word 3 bit 1: limit
+    assert SystemBits(int("000001000000000000", 16)).has("running")
+    assert SystemBits(int("000000800000000000", 16)).has("held")
+    assert SystemBits(int("000000400000000000", 16)).words() == ("the program ended with an error",)
+    assert SystemBits(int("000000000000000002", 16)).words() == ("a limit was met",)
+    motor = MotorBits(int(GOOD, 16))
+    assert motor.has("activated") and motor.has("amplifier_enabled") and motor.has("homed") and not motor.words()
+
+
+def test_counts_become_lengths():
+    told = [GOOD, "12345.5", "-20"] * 6 + ["0" * 18, "50"]
+    state = _status_of(tuple(told), SETTINGS)
+    assert isinstance(state, Status)
+    assert state.length[0] == pytest.approx(501.23455) and state.following_error[5] == pytest.approx(-0.002)
+
+
+@pytest.mark.parametrize(
+    "told", [["1"] * 20, ["0" * 12, "1", "1"] * 6 + ["0" * 18], ["0" * 12, "x", "1"] * 6 + ["0" * 18, "1"]]
+)
+def test_an_answer_without_sense_is_told(told):
+    class Session:
+        def ask(self, query):
+            return tuple(told)
+
+    with pytest.raises(LinkLostError):
+        read_status(Session(), SETTINGS)

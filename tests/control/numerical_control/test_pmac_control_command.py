@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The commands ``pmac home``, ``jog``, ``mdi``, ``step``, ``continue``, ``override`` with a simulated controller."""
+
+import copy
+import io
+import re
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rig import served
+from station import PER_BLOCK, SETTINGS, TOOL, job, set_up
+
+from pkm_post.cli import main
+from pkm_post.cli.pmac_control import tell_emergency
+from pkm_post.model import Event, EventKind
+from pkm_post.posting.post_file import post_file
+from pkm_post.writing.controllers.pmac import program_text
+
+MACHINE = "example_6tps"
+LONGEST_S = 60.0
+FAST = 5.0
+"""Simulated seconds in a second, as far as this computer keeps up."""
+START = 1007.8869
+"""mm: the struts of the example at home."""
+
+
+@pytest.fixture
+def simulator():
+    """A controller that serves in a thread, and the name of its port."""
+    made = copy.deepcopy(set_up())
+    with served(made, speed=FAST) as port:
+        yield made, port
+
+
+def pmac(action, port, *arguments):
+    is_by_hand = action != "step" and any(isinstance(argument, Path) for argument in arguments)
+    by_hand = ["--uncertified"] if is_by_hand else []
+    named = ["--machine", MACHINE, "--patience", "10", *by_hand]
+    return main(["pmac", action, "--port", port, *named, *map(str, arguments)])
+
+
+def tip(told):
+    return [float(number) for number in re.search(r"tip X(\S+) Y(\S+) Z(\S+) mm", told).groups()]
+
+
+def test_jogs_and_lines(simulator, capsys):
+    made, port = simulator
+    assert pmac("jog", port, "--x", 3, "--z", "-2", "--feed", 3000) == 0
+    told = capsys.readouterr().out
+    assert np.allclose(tip(told), [3, 0, 298], atol=2e-3) and "arrived; no strut is off by more than 0.000" in told
+    assert pmac("mdi", port, "G91 G1 Y4 F3000") == 0
+    assert np.allclose(tip(capsys.readouterr().out), [3, 4, 298], atol=2e-3)
+    assert pmac("jog", port, "--strut", 2, "--by", 1.5, "--feed", 3000, "--number", 77) == 0
+    assert 77 in made.memory.programs and not made.runs_program()
+    capsys.readouterr()
+    assert pmac("monitor", port, "--seconds", 0.1) == 0
+    assert "spin" in capsys.readouterr().out
+
+
+def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
+    made, port = simulator
+    assert pmac("jog", port, "--x", 900) == 1
+    assert "K102" in capsys.readouterr().err
+    assert pmac("mdi", port, "G1 X10") == 1
+    assert "G408" in capsys.readouterr().err
+    assert pmac("jog", port, "--tilt-x", 3, "--check") == 0
+    assert "3.000 deg from upright" in capsys.readouterr().out
+    assert pmac("jog", port, "--x", 1, "--number", SETTINGS.program) == 1
+    assert "choose another --number" in capsys.readouterr().err
+    assert 999 not in made.memory.programs
+
+
+def test_the_way_to_the_start_of_a_program(simulator, capsys, tmp_path):
+    made, port = simulator
+    file = tmp_path / "job.pmc"
+    file.write_text(program_text(job(SETTINGS, ()).motion, SETTINGS, ["job"]))
+    assert pmac("approach", port, file) == 0
+    assert "the tool is at the start of the program" in capsys.readouterr().out
+    assert pmac("download", port, file) == 0
+    assert pmac("jog", port, "--x", 4, "--tilt-y", 1, "--feed", 3000) == 0
+    capsys.readouterr()
+    assert pmac("run", port, file) == 1
+    assert "away from the start of the program: tip 4.000 mm, axis 1.0000 degrees" in capsys.readouterr().err
+    assert pmac("approach", port, file, "--check") == 0
+    assert pmac("run", port, file) == 1
+    assert pmac("approach", port, file, "--feed", 3000) == 0
+    assert "arrived" in capsys.readouterr().out
+    assert pmac("run", port, file) == 0
+    until_it_rests(made)
+
+
+def test_home(simulator, capsys):
+    made, port = simulator
+    assert pmac("home", port) == 0
+    assert "all struts are homed" in capsys.readouterr().out
+    made.motors.homed[2] = False
+    assert pmac("home", port) == 1
+    assert "not homed: strut 3" in capsys.readouterr().out
+    assert pmac("home", port, "--trigger", "#3HM") == 0
+    assert "all struts have found their homes" in capsys.readouterr().out
+
+
+def test_override(simulator, capsys):
+    _, port = simulator
+    assert pmac("override", port, 40) == 0
+    assert "override 40 %" in capsys.readouterr().out
+
+
+LINES = ("G1 X2 Y0 Z300 F3000", "X2 Y1", "X0 Y0")
+
+
+def test_line_by_line(simulator, capsys, monkeypatch, tmp_path):
+    made, port = simulator
+    source = tmp_path / "part.ngc"
+    source.write_text("G21 G90 G54\n" + "\n".join(LINES) + "\nM30\n")
+    post_file(source, MACHINE, tmp_path, tool_lengths={0: TOOL})
+    file = tmp_path / "part.pmc"
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n\n\n"))
+    assert pmac("step", port, file) == 0
+    told = capsys.readouterr().out
+    begun = [line for line in told.splitlines() if line.startswith("block")]
+    assert begun == [
+        f"block {number} of 3, line {number + 1}: {line}; Enter starts it, the end of the input ends here"
+        for number, line in enumerate(LINES, 1)
+    ]
+    assert told.count("arrived; no strut is off by more than 0.000") == 3 and told.endswith("the program has ended\n")
+    assert pmac("approach", port, file, "--feed", 6000) == 0
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
+    assert pmac("step", port, file) == 0
+    told = capsys.readouterr().out
+    assert "the program has ended" not in told and "block 2 of 3, line 3" in told
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
+    assert pmac("step", port, file, "--block", 2) == 0
+    assert "block 3 of 3, line 4" in capsys.readouterr().out
+    assert pmac("step", port, file, "--block", 4) == 1
+    assert "there is no block 4: the program has 3" in capsys.readouterr().err
+    (tmp_path / "part-manifest.json").unlink()
+    assert pmac("step", port, file) == 1
+    assert "C205" in capsys.readouterr().err and not made.runs_program()
+
+
+def test_behind_a_stop(simulator, capsys, tmp_path):
+    made, port = simulator
+    motion = job(SETTINGS, (Event(PER_BLOCK, EventKind.STOP, 0.0),)).motion
+    file = tmp_path / "job.pmc"
+    file.write_text(program_text(motion, SETTINGS, ["job"]))
+    assert pmac("download", port, file) == 0 and pmac("run", port, file) == 0
+    until_it_rests(made)
+    assert pmac("resume", port) == 1
+    assert "no program is held; after a stop (M0, M1) continue it" in capsys.readouterr().err
+    assert pmac("continue", port, file, "--stop", 2) == 1
+    assert "there is none with number 2" in capsys.readouterr().err
+    assert pmac("continue", port, file, "--stop", 1) == 0
+    assert "a program runs" in capsys.readouterr().out
+    until_it_rests(made)
+    commanded = made.motors.commanded / SETTINGS.counts_per_mm + SETTINGS.zero_length
+    assert np.allclose(commanded, motion.length[-1], atol=1e-4)
+
+
+def until_it_rests(made):
+    until = time.monotonic() + LONGEST_S
+    while made.runs_program():
+        assert time.monotonic() < until
+        time.sleep(0.01)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["jog", "--strut", "7"],
+        ["jog", "--x", "nan"],
+        ["jog", "--feed", "0"],
+        ["jog", "--number", "1000"],
+        ["approach"],
+        ["approach", "x.pmc", "--feed", "0"],
+        ["home", "--trigger", "I5190=1"],
+        ["override", "120"],
+        ["step", "x.pmc", "--block", "0"],
+        ["mdi"],
+        ["continue", "x.pmc"],
+        ["continue", "x.pmc", "--stop", "0"],
+    ],
+)
+def test_arguments_without_sense_by_hand(arguments):
+    action, *rest = arguments
+    with pytest.raises(SystemExit) as refused:
+        main(["pmac", action, "--port", "tcp:127.0.0.1:1", "--machine", MACHINE, *rest])
+    assert refused.value.code == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "connected", "told"),
+    [("hold", False, True), ("run", False, False), ("run", True, True), ("status", True, False)],
+)
+def test_when_people_are_told_what_to_do(name, connected, told, capsys):
+    tell_emergency(name, connected)
+    assert ("EMERGENCY STOP" in capsys.readouterr().err) == told

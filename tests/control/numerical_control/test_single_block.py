@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A posted program run line by line of its source, each to rest, as people see it."""
+
+import json
+
+import numpy as np
+import pytest
+from station import MACHINE, SETTINGS, TOOL, new_station
+
+from pkm_post.control.link.faults import NotReadyError
+from pkm_post.control.link.job import read_job
+from pkm_post.control.numerical_control.execute import off_target
+from pkm_post.control.numerical_control.single_block import blocks_of_program
+from pkm_post.model import EventKind
+from pkm_post.posting.post_file import post_file
+from pkm_post.writing.controllers.pvt.writer import rests
+
+MICRON, COUNT = 1e-3, 1e-4
+HOME = (0.0, 0.0, 300.0)
+SOURCE = """\
+G21 G90 G17 G54
+S1000 M3
+G0 X1 Y0 Z300
+G1 X2 F1200
+X2 Y1
+G3 X1 Y2 R1
+M8
+
+( a comment )
+G1 X0
+X-1 Y1 (a corner)
+M0
+G1 X-1 Y0 Z301
+X0
+G81 X1 Y1 Z298 R300 L2 F1200
+G80 G0 X0 Y0 Z302
+M9 M5
+M30
+"""
+ENDS = {
+    3: (1, 0, 300), 4: (2, 0, 300), 5: (2, 1, 300), 6: (1, 2, 300), 10: (0, 2, 300), 11: (-1, 1, 300), 13: (-1, 0, 301),
+    14: (0, 0, 301), 15: (1, 1, 301), 16: (0, 0, 302),
+}  # fmt: skip
+"""By line where it leads, in the work frame."""
+
+
+@pytest.fixture(scope="module")
+def posted(tmp_path_factory):
+    """The folder of a posted program, with its source."""
+    folder = tmp_path_factory.mktemp("posted")
+    post(folder, SOURCE)
+    return folder
+
+
+def post(folder, source, *tools):
+    (folder / "part.ngc").write_text(source)
+    post_file(folder / "part.ngc", "example_6tps", folder, tool_lengths=dict.fromkeys(tools or (0,), TOOL))
+
+
+def blocks_in(folder):
+    blocks, told = blocks_of_program(folder / "part.pmc", MACHINE)
+    assert blocks is not None and not told
+    return blocks
+
+
+def origin(blocks):
+    return blocks.trajectory.machine_from_work[:3, 3]
+
+
+def test_the_posted_program_rests_seldom_and_has_a_block_for_each_line_that_moves(posted):
+    job, _ = read_job((posted / "part.pmc").read_text(), SETTINGS, "part.pmc")
+    assert len(rests(job.motion, SETTINGS)) < len(ENDS)
+    blocks = blocks_in(posted)
+    lines = SOURCE.splitlines()
+    shown = [blocks.shown(number) for number in range(1, len(blocks) + 1)]
+    assert [each.line for each in shown] == list(ENDS)
+    codes = {3: ("S1000 M3 | ", ""), 10: ("M8 | ", ""), 16: ("", " | M5 M9")}
+    texts = [lines[line - 1].join(codes.get(line, ("", ""))) for line in ENDS]
+    assert [each.text for each in shown] == texts
+    assert str(shown[1]) == "block 2 of 10, line 4: G1 X2 F1200"
+    assert blocks.shown(11).is_over and not blocks.shown(10).is_over
+
+
+def test_the_blocks_are_the_way_of_the_program_without_its_stops(posted):
+    blocks = blocks_in(posted)
+    parts, whole = [blocks.block(number) for number in range(1, len(blocks) + 1)], blocks.trajectory
+    assert np.array_equal(np.vstack([part.tip for part in parts]), whole.tip)
+    assert all(part.exact_stop[-1] and not part.smooth[-1] for part in parts)
+    for before, after in zip(parts[:-1], parts[1:], strict=True):
+        assert np.array_equal(before.tip[-1], after.start_tip) and np.array_equal(before.axis[-1], after.start_axis)
+    events = [(each.kind, each.value) for part in parts for each in part.events]
+    assert events == [(each.kind, each.value) for each in whole.events if each.kind is not EventKind.STOP]
+
+
+@pytest.mark.parametrize("kind", ["tcp", "serial"])
+def test_each_start_runs_one_line_and_rests_at_its_end(posted, kind):
+    station, blocks = new_station(kind), blocks_in(posted)
+    control, read = station.control, station.wire.controller.variables.read
+    assert control.poll().block is None
+    assert control.open_blocks(blocks) == len(ENDS)
+    spindle, coolant = {}, {}
+    for number, (line, end) in enumerate(ENDS.items(), 1):
+        assert control.poll().block.line == line
+        plan, told = control.plan_step()
+        assert not told and plan.job.program.number == 999
+        control.execute(plan)
+        state = station.to_rest()
+        assert not state.status.running and state.block.number == number + 1
+        assert np.linalg.norm(state.pose.tip - origin(blocks) - end) < 5 * MICRON
+        assert off_target(state.status, plan.lengths) < 2 * COUNT and state.status.words() == ()
+        spindle[line], coolant[line] = read("P", 7001), read("P", 7002)
+    assert spindle == dict.fromkeys(ENDS, 1) | {16: 0}  # M5 stands behind all that moves
+    assert coolant == {line: int(10 <= line < 16) for line in ENDS}  # M8 stands behind line 6: with the next that moves
+    assert control.poll().block.is_over
+    with pytest.raises(ValueError, match="expected a block that comes next"):
+        control.plan_step()
+
+
+def test_31_lines_that_blend_are_31_blocks(station, tmp_path):
+    lines = [f"G1 X{x % 7} Y{x / 10:g} Z300 F3000" for x in range(1, 32)]
+    post(tmp_path, "G21 G90 G64 P0.5\n" + "\n".join(lines) + "\nM30\n")
+    job, _ = read_job((tmp_path / "part.pmc").read_text(), SETTINGS, "part.pmc")
+    assert len(rests(job.motion, SETTINGS)) == 2
+    blocks = blocks_in(tmp_path)
+    assert station.control.open_blocks(blocks) == 31
+    for number in (1, 2):
+        plan, _ = station.control.plan_step()
+        station.control.execute(plan)
+        state = station.to_rest()
+        at = state.pose.tip - origin(blocks)
+        assert np.allclose(at, (number, number / 10, 300), atol=5 * MICRON)
+        assert state.block.text == lines[number]
+
+
+def test_a_tool_change_ends_a_block(tmp_path):
+    post(tmp_path, "G21 G90\nT1 M6\nG0 X1 Y0 Z300\nT2 M6 G0 X2\nG1 X3 F600\nM30\n", 1, 2)
+    blocks = blocks_in(tmp_path)
+    shown = [blocks.shown(number).line for number in range(1, len(blocks) + 1)]
+    assert sorted(set(shown)) == [3, 4, 5]
+    texts = [blocks.shown(number).text for number in range(1, len(blocks) + 1)]
+    assert texts[0].startswith("T1 M6 | G0 X1") and any(text.startswith("T2 M6 | ") for text in texts)
+    changes = [[each.value for each in blocks.block(number).events] for number in range(1, len(shown) + 1)]
+    assert changes[0] == [1.0] and [2.0] in changes
+    for number in range(1, len(shown) + 1):
+        assert all(each.row == 0 for each in blocks.block(number).events)
+        assert len(set(blocks.block(number).tool.tolist())) == 1
+
+
+def test_a_block_that_is_held_goes_on_and_the_next_one_waits(station, posted):
+    control = station.control
+    control.open_blocks(blocks_in(posted))
+    plan, _ = control.plan_step()
+    control.execute(plan)
+    control.hold()
+    assert control.poll().block.number == 2 and control.poll().status.held
+    control.resume()
+    assert off_target(station.to_rest().status, plan.lengths) < 2 * COUNT
+
+
+def test_a_block_does_not_begin_elsewhere(station, posted):
+    control = station.control
+    control.open_blocks(blocks_in(posted), at=3)
+    plan, _ = control.plan_step()
+    with pytest.raises(NotReadyError, match="from the first point"):
+        control.execute(plan)
+    assert control.poll().block.number == 3  # it still comes next
+
+
+@pytest.mark.parametrize("block", [0, 11])
+def test_there_is_no_such_block(station, posted, block):
+    blocks = blocks_in(posted)
+    with pytest.raises(ValueError, match="expected a block from 1 to 10"):
+        station.control.open_blocks(blocks, at=block)
+    with pytest.raises(ValueError, match="expected a block from 1 to 10"):
+        blocks.block(block)
+
+
+def test_nothing_to_step_to(station):
+    with pytest.raises(ValueError, match="expected a block that comes next, got none"):
+        station.control.plan_step()
+
+
+def test_a_source_that_is_not_the_one_that_was_posted_is_not_shown(tmp_path):
+    post(tmp_path, SOURCE)
+    (tmp_path / "part.ngc").write_text(SOURCE.replace("X2", "X3"))
+    assert blocks_in(tmp_path).shown(2).text == "-> X2.000 Y0.000 Z300.000"
+    (tmp_path / "part.ngc").unlink()
+    assert str(blocks_in(tmp_path).shown(1)) == "block 1 of 10, line 3: S1000 M3 | -> X1.000 Y0.000 Z300.000"
+
+
+def refused(folder, machine=MACHINE):
+    blocks, told = blocks_of_program(folder / "part.pmc", machine)
+    assert blocks is None
+    return [each.code for each in told]
+
+
+def test_a_program_whose_lines_are_not_known_is_refused_by_name(tmp_path):
+    post(tmp_path, SOURCE)
+    manifest = tmp_path / "part-manifest.json"
+    text = manifest.read_text()
+    manifest.unlink()
+    assert refused(tmp_path) == ["C205"]
+    content = json.loads(text)
+    del content["files"]["part.pkmt"]
+    manifest.write_text(json.dumps(content))
+    assert refused(tmp_path) == ["C205"]
+    manifest.write_text(text)
+    (tmp_path / "part.pkmt").unlink()
+    assert refused(tmp_path) == ["F106"]
+
+
+def test_a_program_of_another_machine_is_refused(posted):
+    import dataclasses
+
+    assert refused(posted, dataclasses.replace(MACHINE, fingerprint="0" * 64)) == ["T104"]

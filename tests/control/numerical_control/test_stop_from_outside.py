@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What ends a command that moves the machine holds the machine; people are called when a stop does not show."""
+
+import copy
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rig import served
+from station import SETTINGS, set_up
+
+from pkm_post.cli import main
+from pkm_post.control.numerical_control.emergency import NOT_AT_REST, STEPS
+from pkm_post.control.simulator import Line, Server
+from pkm_post.model import StrutMotion
+from pkm_post.writing.controllers.pmac import program_text
+
+ADDON = Path(__file__).parents[3]
+LONGEST_S = 60.0
+ADDON_PATH = os.pathsep.join([str(ADDON), *(path for path in sys.path if path)])
+
+
+def until(holds):
+    """Wait for what another thread or process does."""
+    end = time.monotonic() + LONGEST_S
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def slow_job(folder):
+    """All struts 10 mm longer and back, in two minutes."""
+    time_ms = np.arange(0, 120_001, 400)
+    turn = 2 * np.pi * time_ms / 120_000
+    length = SETTINGS.zero_length + 5 * (1 - np.cos(turn))[:, None]
+    speed = (np.pi / 12 * np.sin(turn))[:, None] * np.ones(6)
+    speed[[0, -1]] = 0.0
+    file = folder / "slow.pmc"
+    file.write_text(program_text(StrutMotion(time_ms, length, speed, ()), SETTINGS, ["slow"]))
+    return file
+
+
+@pytest.fixture
+def made():
+    return copy.deepcopy(set_up())
+
+
+def started(action, port, *arguments):
+    command = ["python3", "-m", "pkm_post", "pmac", action, "--port", port, "--machine", "example_6tps", *arguments]
+    environment = os.environ | {"PYTHONPATH": ADDON_PATH}
+    return subprocess.Popen(
+        command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def is_moving(made):
+    return bool(np.abs(made.motors.speed).max() > 0.0)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+@pytest.mark.parametrize(
+    ("action", "arguments"), [("jog", ("--x", "20", "--feed", "60")), ("mdi", ("G91 G1 X20 F60",))]
+)
+def test_a_signal_holds_a_move_by_hand(made, action, arguments, number):
+    with served(made) as port:
+        process = started(action, port, *arguments)
+        until(lambda: is_moving(made) or process.poll() is not None)
+        process.send_signal(number)
+        _, said = process.communicate(timeout=LONGEST_S)
+        assert process.returncode == 1 and "interrupted and held" in said
+        assert made.runs_program() and not is_moving(made)
+
+
+@pytest.mark.parametrize("kind", ["tcp", "serial"])
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_jog_whose_computer_dies_or_hangs_comes_to_rest_by_itself(made, kind, number):
+    """Nothing is sent any more: the controller holds the program within the time that was stated."""
+    feed, clock = 5.0, []
+    with served(made, kind) as port:
+        process = started("jog", port, "--x", "100", "--feed", str(60 * feed))
+        until(lambda: np.abs(made.motors.speed).max() > 1.0 or process.poll() is not None)
+        stated = next(line for line in iter(process.stdout.readline, "") if "falls silent" in line)
+        process.send_signal(number)
+        until(lambda: process_is_still(process, number))
+        clock.append(made.time)
+        start = made.motors.commanded.copy()
+        until(lambda: not is_moving(made))
+        clock.append(made.time)
+        gone = np.abs(made.motors.commanded - start).max() / SETTINGS.counts_per_mm
+        process.kill()
+        process.communicate(timeout=LONGEST_S)
+    within = float(re.search(r"within (\S+) s", stated)[1])
+    assert (clock[1] - clock[0]) / 1000 <= within < 2.0
+    assert gone <= feed * (within - 0.5)  # a strut is no faster than the tip; half of the speed in the last second
+    assert made.systems[0].holding and not is_moving(made)
+
+
+def process_is_still(process, number):
+    """Whether a signal that ends or stops a process has done so."""
+    state = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[0]
+    return state == ("Z" if number == signal.SIGKILL else "T")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_stream_at_rest(made, tmp_path, number):
+    assert not Line(made).refusal("&1DEFINE ROT 8000")
+    with served(made) as port:
+        process = started("stream", port, "--uncertified", "--rotary", "8000", str(slow_job(tmp_path)))
+        until(lambda: is_moving(made) or process.poll() is not None)
+        process.send_signal(number)
+        _, said = process.communicate(timeout=LONGEST_S)
+        assert process.returncode == 1 and "the machine rests, the rotary buffer is empty" in said
+        assert not made.runs_program() and not is_moving(made)
+
+
+def test_a_closed_terminal_holds_a_jog(made):
+    """The process leads a session of its own on a pseudo terminal, which is closed under it."""
+    primary, secondary = os.openpty()
+    with served(made) as port:
+        command = ["python3", "-m", "pkm_post", "pmac", "jog", "--port", port, "--machine", "example_6tps", "--x", "20"]
+        environment = os.environ | {"PYTHONPATH": ADDON_PATH}
+        owner = "import os,sys,fcntl,termios; os.setsid(); fcntl.ioctl(0, termios.TIOCSCTTY, 0)"
+        owner += "; os.execvp(sys.argv[1], sys.argv[1:])"
+        process = subprocess.Popen(
+            ["python3", "-c", owner, *command, "--feed", "60"],
+            env=environment, stdin=secondary, stdout=secondary, stderr=secondary,
+        )  # fmt: skip
+        os.close(secondary)
+        until(lambda: is_moving(made) or process.poll() is not None)
+        os.close(primary)
+        assert process.wait(LONGEST_S) != 0
+        assert made.runs_program() and not is_moving(made)
+
+
+def test_people_are_called_while_a_stop_is_not_confirmed_and_it_goes_on_trying(made, tmp_path, capsys):
+    file = str(slow_job(tmp_path))
+    with served(made) as port:
+        target = ["--port", port, "--machine", "example_6tps"]
+        program = [*target, "--uncertified", file]
+        assert main(["pmac", "download", *program]) == 0 and main(["pmac", "run", *program]) == 0
+        capsys.readouterr()
+        hold, said = made.systems[0].hold, []
+        made.systems[0].hold = made.systems[0].abort = lambda *_: None
+        forget, made.systems[0].forget = made.systems[0].forget, lambda: None
+        ended = threading.Thread(target=lambda: said.append(main(["pmac", "hold", *target])))
+        ended.start()
+        told = []
+        until(lambda: told.append(capsys.readouterr().err) or NOT_AT_REST[0] in "".join(told))
+        made.systems[0].hold, made.systems[0].forget = hold, forget
+        ended.join(LONGEST_S)
+        assert said == [0] and not is_moving(made)
+
+
+def test_whoever_ends_the_trying_is_told_what_to_do():
+    process = started("hold", "tcp:127.0.0.1:1")
+    told = "".join(iter(process.stderr.readline, NOT_AT_REST[-1] + "\n"))
+    assert NOT_AT_REST[0] in told
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=LONGEST_S)
+    assert process.returncode == 1 and STEPS[1] in said
+
+
+def test_a_stop_waits_for_a_controller_that_does_not_answer_yet(made, capsys):
+    """The port is free when the hold begins; the controller comes later."""
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        number = taken.getsockname()[1]
+    said = []
+    command = ["pmac", "hold", "--port", f"tcp:127.0.0.1:{number}", "--machine", "example_6tps"]
+    hold = threading.Thread(target=lambda: said.append(main(command)))
+    hold.start()
+    told = []
+    until(lambda: told.append(capsys.readouterr().err) or NOT_AT_REST[0] in "".join(told))
+    server, ended = Server(made), threading.Event()
+    server.add_tcp(number)
+    serving = threading.Thread(target=server.run, args=(ended.is_set,))
+    serving.start()
+    hold.join(LONGEST_S)
+    ended.set()
+    serving.join(LONGEST_S)
+    server.close()
+    assert said == [0]

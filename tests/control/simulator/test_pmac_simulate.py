@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+import re
+
+import pytest
+
+from pkm_post.cli import main
+from pkm_post.control.simulator import Server
+from pkm_post.writing import manifest
+
+
+@pytest.fixture
+def interrupted(monkeypatch):
+    """The user interrupts as soon as the server runs; it is handed out for a look."""
+    seen = []
+
+    def run(server, ended):
+        seen.append(server)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Server, "run", run)
+    return seen
+
+
+def test_it_tells_where_it_is_and_ends_when_it_is_interrupted(interrupted, capsys):
+    assert main(["pmac", "simulate", "--tcp", "0"]) == 0
+    assert re.fullmatch(
+        r"A simulated Turbo PMAC is at tcp:127\.0\.0\.1:[0-9]+; Ctrl-C ends it\.\nended\n", capsys.readouterr().out
+    )
+    assert main(["pmac", "simulate", "--pty", "--speed", "2", "--memory", "5000"]) == 0
+    assert re.match(r"A simulated Turbo PMAC is at serial:/dev/", capsys.readouterr().out)
+    assert interrupted[1]._controller.settings.memory_words == 5000
+
+
+def test_a_set_up_file_is_carried_out_first(interrupted, tmp_path):
+    file = tmp_path / "setup.pmc"
+    file.write_text("; a comment\n&2\n#1->10000A-5000000 ; strut 1\nI5290=1000\n")
+    assert main(["pmac", "simulate", "--tcp", "0", "--setup", str(file)]) == 0
+    assert interrupted[0]._controller.systems[1].axes.definitions[1].text() == "10000A-5000000"
+
+
+def test_a_line_that_is_refused_is_told_with_its_place(interrupted, tmp_path, capsys):
+    file = tmp_path / "setup.pmc"
+    file.write_text("&1\nFOO=1\n")
+    assert main(["pmac", "simulate", "--tcp", "0", "--setup", str(file)]) == 1
+    assert capsys.readouterr().err == f"{file}:2: ERR003, data error or unrecognized command: FOO=1\n"
+    assert main(["pmac", "simulate", "--tcp", "0", "--setup", str(tmp_path / "none.pmc")]) == 1
+    assert "none.pmc" in capsys.readouterr().err
+    assert not interrupted
+
+
+def test_a_port_that_is_taken_is_told(capsys):
+    from pkm_post.control.simulator import Controller
+
+    server = Server(Controller())
+    port = server.add_tcp(0)
+    assert main(["pmac", "simulate", "--tcp", str(port)]) == 1
+    assert capsys.readouterr().err.startswith("no connection can be offered: ")
+    server.close()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ([], "one of the arguments --pty --tcp is required"),
+        (["--pty", "--tcp", "1"], "not allowed with argument --pty"),
+        (["--tcp", "65536"], "expected a port from 0 to 65535, got '65536'"),
+        (["--tcp", "x"], "expected a port from 0 to 65535, got 'x'"),
+        (["--pty", "--speed", "0"], "expected a number from 0.01 to 100.0, got '0'"),
+        (["--pty", "--speed", "x"], "expected a number from 0.01 to 100.0, got 'x'"),
+        (["--pty", "--memory", "999"], "expected 1000 words or more, got '999'"),
+    ],
+)
+def test_arguments_without_sense_are_refused(arguments, told, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["pmac", "simulate", *arguments])
+    assert ended.value.code == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_set_up_that_has_changed_since_it_was_posted_is_refused(tmp_path, capsys):
+    file = tmp_path / "part-setup.pmc"
+    file.write_text("I15=0\n")
+    manifest.write(tmp_path, "part")
+    file.write_text("I15=1\n")
+    assert main(["pmac", "simulate", "--tcp", "0", "--setup", str(file)]) == 1
+    assert "error F106" in (told := capsys.readouterr().err) and "part-setup.pmc has changed" in told

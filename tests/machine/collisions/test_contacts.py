@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contacts: closed-form scenes, and random ones against many poses and many points of the triangles."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from machines import direction, example
+from meshes import ball, box
+
+from pkm_post.geometry.distances import point_to_cylinder, segment_to_segment
+from pkm_post.geometry.triangles import cut_small
+from pkm_post.machine.collisions.contacts import contacts, contacts_at_ends
+from pkm_post.machine.collisions.movers import Piece, of_body, of_struts, of_tool
+from pkm_post.machine.kinematics import Part, Way
+from pkm_post.machine.kinematics.bodies import Pieces
+from pkm_post.machine.kinematics.checks import HUNDREDTH
+from pkm_post.machine.kinematics.placed import Placed
+from pkm_post.model.machine import Body
+
+LENGTH = 120.0
+HAIR, FACETS = 0.1, 0.04
+"""mm of gap; and how far the facets of a ball are below its surface."""
+NOSE = example().spindle_nose
+HOLDER = Body("holder", 25.0, -NOSE - 50.0, -NOSE)
+"""70 mm above the tip of a tool of 120 mm."""
+
+
+def straight(tips, axes=None, length=LENGTH, spins=0.0):
+    tips = np.array(tips, dtype=float)
+    axes = np.tile([0.0, 0.0, 1.0], (len(tips), 1)) if axes is None else np.array(axes, dtype=float)
+    return Way.straight(tips, axes, np.broadcast_to(spins, len(tips)).astype(float), np.full(len(tips), length))
+
+
+def found(way, mover, mesh, clearance, longest=25.0):
+    return contacts(way, mover, Part.of(cut_small(mesh, longest)), clearance, np.zeros(len(way), dtype=int))
+
+
+@pytest.mark.parametrize("clearance", [0.5, 3.0])
+@pytest.mark.parametrize(
+    ("mesh", "distance"),
+    [
+        (box([-80, 40, 0], [80, 60, 300]), 15.0),  # a wall beside: 40 - 25
+        (box([-80, -80, 0], [80, 80, 160]), 10.0),  # a plate below: 100 + 70 - 160
+        (box([28, 4, 0], [60, 60, 167]), 3.0),  # a post that ends below the holder and beside its way: 170 - 167
+        (ball([0, 0, 150], 10.0, 40), 10.0),  # its top below the holder: 170 - 160
+        (ball([0, 55, 190], 18.0, 40), 12.0),  # beside it: 55 - 18 - 25
+    ],
+)  # fmt: skip
+def test_a_holder_that_just_clears_is_clear_and_one_that_does_not_is_found(mesh, distance, clearance):
+    way = straight([[-30, 0, 100], [40, 0, 100]])
+    mover = of_body(example(), way, HOLDER)
+    towards = np.array([0.0, -1.0, 0.0] if distance in (15.0, 12.0) else [0.0, 0.0, 1.0])
+    for hair in (HAIR, -HAIR):
+        met = found(way, mover, mesh + towards * (distance - clearance - hair), clearance)
+        assert bool(len(met)) == (hair < 0)
+        if len(met):
+            assert abs(met.distance.min() - clearance - hair) < FACETS + HUNDREDTH
+
+
+def test_a_thin_pin_between_two_far_poses_is_found_and_where_it_is():
+    way = straight([[-150, 0, 100], [150, 0, 100]])
+    pin = box([37.0, 3.0, 0.0], [37.2, 3.2, 175.0])
+    met = found(way, of_body(example(), way, HOLDER), pin, 0.001)
+    assert len(met) and set(met.cell) == {1}
+    at = -150 + 300 * met.share
+    assert np.all(np.abs(at - 37.1) < 25.2)
+    assert not len(contacts_at_ends(way, of_body(example(), way, HOLDER), Part.of(pin), 0.001))
+
+
+def test_a_turn_of_the_axis_alone_swings_the_holder():
+    axes = direction(np.array([0.0, 30.0]), np.array([0.0, 0.0])).T
+    way = straight([[0, 0, 100], [0, 0, 100]], axes)
+    # The lower rim of the holder comes down to 100 + 70 cos 30 - 25 sin 30 and out to 70 sin 30 + 25 cos 30.
+    down = 100 + 70 * np.cos(np.pi / 6) - 25 * np.sin(np.pi / 6)
+    for below, hit in ((0.05, False), (-0.05, True)):
+        plate = box([-200, -200, 0], [200, 200, down - below])
+        assert bool(len(found(way, of_body(example(), way, HOLDER), plate, 0.001))) == hit
+
+
+def test_only_cells_in_use_are_looked_at():
+    way = straight([[-100, 0, 100], [-50, 0, 100], [50, 0, 100], [100, 0, 100]])
+    post = box([-5, -5, 0], [5, 5, 130])
+    pieces = [Piece(0.0, 40.0, 5.0)]
+    for cells, hit in ([[1, 3], False], [[1, 2, 3], True], [[2], True], [[], False]):
+        mover = of_tool("cutter", way, np.array(cells, dtype=int), pieces)
+        met = found(way, mover, post, 0.001)
+        assert bool(len(met)) == hit and set(met.cell) <= {2}
+
+
+def test_rounding_grows_a_piece_all_round():
+    way = straight([[0, 0, 100], [1, 0, 100]])
+    mover = of_tool("ball", way, np.array([1]), [Piece(6.0, 40.0, 0.0, 6.0)])
+    for height, hit in ((99.97, False), (100.03, True)):
+        assert bool(len(found(way, mover, box([-50, -50, 0], [50, 50, height]), 0.001))) == hit
+    # Across the corner a ball nose leaves what a flat end mill would touch.
+    corner, gap = box([5.0, -50, 0], [50, 50, 101.0]), np.hypot(4.0, 5.0) - 6.0
+    for hair, hit in ((2 * HUNDREDTH, False), (-2 * HUNDREDTH, True)):
+        assert bool(len(found(way, mover, corner, gap - hair))) == hit
+
+
+def points_of(mesh, apart):
+    """Points of triangles, no point of the surface farther from one of them than ``apart``."""
+    small = cut_small(mesh, apart)
+    return np.unique(small.reshape(-1, 3).round(9), axis=0)
+
+
+def sampled_distance(way, cells, shares, cylinders_of, pieces, points):
+    """Least distances by pose, (M,), of cylinders from points: the other way to compute them."""
+    cylinders = cylinders_of(way.inside(np.repeat(cells, len(shares)), np.tile(shares, len(cells))))
+    least = []
+    for middle, axis, half, radius in zip(
+        cylinders.middle, cylinders.axis, cylinders.half, cylinders.radius, strict=True
+    ):
+        away = points - middle
+        high = away @ axis
+        out = np.linalg.norm(away - high[:, None] * axis, axis=1)
+        least.append(point_to_cylinder(np.column_stack([out, 0 * out, high]), radius, -half, half).min())
+    return np.reshape(least, (-1, pieces)).min(axis=1)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_nothing_is_missed_and_nothing_is_found_that_is_not_there(seed):
+    rng = np.random.default_rng(seed)
+    rows = 6
+    axes = direction(rng.uniform(0, 30, rows), rng.uniform(0, 360, rows)).T
+    way = straight(rng.uniform([-80, -80, 90], [80, 80, 150], (rows, 3)), axes, spins=rng.uniform(-0.5, 0.5, rows))
+    mesh = box(*np.sort(rng.uniform([-60, -60, 0], [60, 60, 190], (2, 3)), axis=0))
+    if seed % 2:
+        mesh = ball(rng.uniform([-60, -60, 80], [60, 60, 200]), rng.uniform(5, 25), 10)
+    body = dataclasses.replace(HOLDER, radius=float(rng.uniform(5, 30)))
+    tool = [Piece(5.0, 30.0, 3.0), Piece(30.0, 70.0, 8.0)]
+    apart, shares = 6.0, np.linspace(0, 1, 17)
+    points = points_of(mesh, apart)
+    for mover in (of_body(example(), way, body), of_tool("tool", way, np.arange(1, rows), tool)):
+        cells, pieces = np.arange(1, rows), len(mover.rounding)
+        brute = sampled_distance(way, cells, shares, mover.cylinders, pieces, points)
+        for clearance in (0.01, 4.0, 12.0):
+            met = found(way, mover, mesh, clearance, longest=20.0)
+            # No finding is missed: what samples see is seen.
+            if brute.min() < clearance:
+                assert len(met)
+                cells_hit = np.unique(np.repeat(cells, len(shares))[brute < clearance])
+                assert set(cells_hit) <= set(met.cell) or len(met) >= 40
+            # No false alarm: at each contact a point of the mesh is as near, by more than a sample can miss.
+            for row in range(0, len(met), 4):
+                there = sampled_distance(
+                    way, met.cell[row : row + 1], met.share[row : row + 1], mover.cylinders, pieces, points
+                )
+                assert there[0] <= clearance + HUNDREDTH + apart
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_struts_are_those_of_the_kinematics(seed):
+    rng = np.random.default_rng(seed)
+    machine = dataclasses.replace(example(), tube_radius=32.0, tube_length=700.0, rod_radius=20.0, rod_length=650.0)
+    way = straight(rng.uniform([-80, -80, 120], [80, 80, 200], (5, 3)), spins=rng.uniform(-0.3, 0.3, 5))
+    mover = of_struts(machine, way)
+    middle = Placed.of(machine, way.inside(np.array([2]), np.array([0.5])))
+    pieces = Pieces.of(machine, middle.distance)
+    start, end = pieces.ends(machine.base_joints, middle.direction)
+    spot = (start + end)[0, 1, int(rng.integers(6))] / 2
+    pin = box(spot - 1.0, spot + 1.0)
+    met = found(way, mover, pin, 0.001)
+    assert len(met) and 2 in met.cell
+    # Far from all struts at dense samples, and from all points between them: nothing.
+    far = spot + [0, 0, 400.0]
+    samples = Placed.of(machine, way.inside(np.repeat(np.arange(1, 5), 21), np.tile(np.linspace(0, 1, 21), 4)))
+    pieces = Pieces.of(machine, samples.distance)
+    start, end = pieces.ends(machine.base_joints, samples.direction)
+    apart = (segment_to_segment(start, end, far, far) - pieces.radius[:, None]).min()
+    met = found(way, mover, box(far - 0.5, far + 0.5), 0.001)
+    assert bool(len(met)) == (apart < 1.0) or abs(apart) < 40.0

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Strut lengths never change faster than sizes of the derivatives of the pose allow."""
+
+import dataclasses
+
+import numpy as np
+from machines import example
+from screw_machines import screwed
+from test_rates import wandering_poses
+
+from pkm_post.geometry import norm
+from pkm_post.machine.kinematics import strut_rate_bounds, strut_rates
+from pkm_post.model import Poses
+
+ROUNDING = 1e-9
+STROKED = dataclasses.replace(example(), strut_stroke=(750.0, 2000.0))
+
+
+def bounds_at(machine, poses):
+    """The bounds at single poses."""
+    sizes = [norm(one) for one in (poses.tip_1, poses.tip_2, poses.axis_1, poses.axis_2)]
+    spin = np.abs(poses.spin_1), np.abs(poses.spin_2)
+    half_tilt = np.tan(np.arccos(poses.axis[:, 2]) / 2)
+    return strut_rate_bounds(machine, sizes[:2], sizes[2:], spin, half_tilt, poses.tool_length)
+
+
+def random_poses(rng, count):
+    """Poses of any tilt up to 70 degrees, with derivatives that have nothing to do with each other."""
+    tilt, azimuth = rng.uniform(0, 1.2, count), rng.uniform(0, 2 * np.pi, count)
+    axis = np.column_stack([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
+    across, bend = (np.cross(axis, rng.normal(size=(count, 3))) * scale for scale in (0.02, 0.001))
+    return Poses(
+        tip=rng.uniform(-80, 80, (count, 3)) + [0, 0, 200], tip_1=rng.normal(size=(count, 3)),
+        tip_2=rng.normal(size=(count, 3)) * 0.1, axis=axis, axis_1=across,
+        axis_2=bend - norm(across)[:, None] ** 2 * axis, spin=rng.uniform(-1, 1, count),
+        spin_1=rng.normal(size=count) * 0.02, spin_2=rng.normal(size=count) * 0.001,
+        tool_length=np.full(count, 120.0), segment=np.zeros(count),
+    )  # fmt: skip
+
+
+def test_no_strut_is_faster_than_its_bound():
+    for poses in (wandering_poses(np.linspace(0, 6, 2000)), random_poses(np.random.default_rng(7), 20000)):
+        length, first, second = strut_rates(STROKED, poses)
+        assert length.min() > STROKED.strut_stroke[0]
+        speed, growth = bounds_at(STROKED, poses)
+        assert np.all(np.abs(first).max(axis=1) <= speed * (1 + ROUNDING))
+        assert np.all(np.abs(second).max(axis=1) <= growth * (1 + ROUNDING))
+        assert np.median(np.abs(first).max(axis=1) / speed) > 0.3
+        assert np.median(np.abs(second).max(axis=1) / growth) > 0.15
+
+
+def test_what_has_no_bound_says_so():
+    poses = wandering_poses(np.linspace(0, 6, 5))
+    for machine in (screwed(STROKED), dataclasses.replace(STROKED, strut_stroke=(0.0, 2000.0))):
+        assert all(np.isinf(bound).all() for bound in bounds_at(machine, poses))

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What stands on a command line becomes a finite number, or the user reads what was expected."""
+
+import argparse
+import math
+import re
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from pkm_post.options.argument_types import (
+    above_zero,
+    accepting,
+    between,
+    count,
+    number,
+    numbered,
+    positive,
+    whole,
+    whole_from,
+)
+
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+NO_NUMBERS = ["", " ", "x", "1,5", "0x10", "1 2", "--1", "nan", "-NaN", "inf", "-infinity", "1e999"]
+NO_DIGITS = [*NO_NUMBERS, "-1", "+1", " 1", "1.0", "1e3", "1_000", "\u00b2", "9" * 5000]
+TEN = whole(1, 10)
+
+
+def refused(convert, text):
+    """What the user reads."""
+    with pytest.raises(argparse.ArgumentTypeError) as told:
+        convert(text)
+    return str(told.value)
+
+
+@given(FINITE)
+def test_every_finite_number_is_taken_as_it_is_written(value):
+    assert number(repr(value)) == value
+    if value > 0:
+        assert positive(repr(value)) == value
+    else:
+        assert refused(positive, repr(value)) == f"expected a number above 0, got {repr(value)!r}"
+
+
+@given(FINITE, FINITE, FINITE)
+@example(1.0, 2.0, 1.0)
+@example(1.0, 2.0, 2.0)
+@example(1.0, 2.0, math.nextafter(2.0, 3.0))
+def test_a_number_between_two_includes_both(least, most, value):
+    if least <= value <= most:
+        assert between(least, most)(repr(value)) == value
+    else:
+        assert refused(between(least, most), repr(value)).startswith(f"expected a number from {least} to {most}, got")
+
+
+@given(FINITE, FINITE)
+@example(2.0, 2.0)
+@example(2.0, math.nextafter(2.0, 3.0))
+def test_a_number_above_zero_can_have_an_upper_end(most, value):
+    if 0 < value <= most:
+        assert above_zero(most)(repr(value)) == value
+    else:
+        assert refused(above_zero(most), repr(value)).startswith(f"expected a number above 0 and up to {most}, got")
+
+
+@given(st.integers(0, 50), st.integers(0, 50), st.integers(0, 50))
+def test_whole_numbers_in_a_range_and_from_one_on(least, most, value):
+    for convert, fits in ((whole(least, most), least <= value <= most), (whole_from(least, "more"), value >= least)):
+        if fits:
+            assert convert(str(value)) == value
+        else:
+            assert refused(convert, str(value)).endswith(f", got '{value}'")
+
+
+@pytest.mark.parametrize("text", NO_NUMBERS)
+def test_what_is_no_finite_number_is_refused(text):
+    assert refused(number, text) == refused(positive, text) == f"expected a number, got {text!r}"
+    assert refused(between(-1, 1), text) == f"expected a number from -1 to 1, got {text!r}"
+
+
+@pytest.mark.parametrize("text", NO_DIGITS)
+def test_what_has_more_than_digits_is_no_whole_number(text):
+    assert refused(count, text) == f"expected a whole number above 0, got {text!r}"
+    assert refused(TEN, text) == f"expected a whole number from 1 to 10, got {text!r}"
+
+
+def test_a_count_begins_at_one():
+    assert count("1") == 1 and count("007") == 7
+    assert refused(count, "0") == "expected a whole number above 0, got '0'"
+
+
+def test_ranges_can_be_told_in_other_words():
+    assert refused(whole(0, 65_535, "a port"), "65536") == "expected a port from 0 to 65535, got '65536'"
+    assert refused(whole_from(1000, "1000 words or more"), "999") == "expected 1000 words or more, got '999'"
+    even = accepting(TEN, lambda value: value % 2 == 0, "an even number")
+    assert even("4") == 4
+    assert refused(even, "3") == "expected an even number, got '3'"
+    assert refused(even, "12") == "expected a whole number from 1 to 10, got '12'"
+
+
+@given(st.integers(0, 10**9), FINITE)
+def test_a_pair_is_taken_apart(tool, value):
+    assert numbered(number, "NUMBER=MM")(f"{tool}={value!r}") == (tool, value)
+
+
+@pytest.mark.parametrize("text", ["", "=", "=5", "120", "T1=120", "-1=5", "1.0=5", " 1=5", "9" * 5000 + "=5"])
+def test_what_is_no_pair_is_refused(text):
+    assert refused(numbered(positive, "NUMBER=MM"), text) == f"expected NUMBER=MM, got {text!r}"
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [("", "a number"), ("5=6", "a number"), ("inf", "a number"), ("0", "a number above 0"), ("-5", "a number above 0")],
+)
+def test_the_value_of_a_pair_is_told_by_itself(value, expected):
+    assert refused(numbered(positive, "NUMBER=MM"), f"1={value}") == f"expected {expected}, got {value!r}"
+
+
+@pytest.mark.parametrize("convert", [number, count, between(0, 1), TEN, numbered(positive, "NUMBER=MM")])
+def test_the_user_reads_it_beside_the_name_of_the_argument(convert, capsys):
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--argument", type=convert)
+    with pytest.raises(SystemExit) as ended:
+        parser.parse_args(["--argument", "many"])
+    assert ended.value.code == 2
+    assert re.search(r"error: argument --argument: expected .*, got 'many'\n$", capsys.readouterr().err)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options that mean nothing for what is read are refused; in a batch each is for the files that it fits."""
+
+from pathlib import Path
+
+import pytest
+from option_examples import FLAGS, words
+
+from pkm_post.cli import main
+from pkm_post.model import Refused
+from pkm_post.options import Source, fitting, given_in, misfits, source_of, typed
+from pkm_post.posting.post_file import post_file
+
+GCODE = "T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG4 P10\nG1 X10 Y0 Z20 F600\nG0 Z30\nM2\n"
+CLDATA = "UNITS/MM\nLOADTL/1\nRAPID\nGOTO/0,0,30\nFEDRAT/600,MMPM\nGOTO/10,0,20\nRAPID\nGOTO/10,0,30\nFINI\n"
+REACHED = ("--tool-length=1=60", "--work-offset=0,0,250")
+FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values")
+FOR_PART_PROGRAMS = (*FOR_CLDATA, "--tool", "--unit", "--allow-open-end", "--wear")
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("a.ngc").write_text(GCODE, encoding="ascii")
+    Path("b.apt").write_text(CLDATA, encoding="ascii")
+    return tmp_path
+
+
+def test_files_are_told_apart_by_their_names():
+    told = [source_of(Path(name)) for name in ("a.NGC", "a.mpf", "a.cls", "a.CL", "a.FCStd", "a")]
+    assert told == [Source.GCODE] * 2 + [Source.CLDATA] * 2 + [Source.JOB] * 2
+
+
+@pytest.mark.parametrize("flag", FLAGS)
+@pytest.mark.parametrize("source", Source)
+def test_each_option_fits_or_is_named(flag, source):
+    given = given_in(typed(" ".join(words(flag, 0))))
+    fits = not (flag in FOR_CLDATA and source is Source.GCODE) and not (
+        flag in FOR_PART_PROGRAMS and source is Source.JOB
+    )
+    assert [each.split()[0] for each in misfits(given, {source})] == ([] if fits else [flag])
+    assert fitting(given, source) == (given if fits else {})
+    assert misfits(given, set(Source)) == []
+
+
+@pytest.mark.parametrize("command", ["check", "convert", "post", "reach"])
+@pytest.mark.parametrize(
+    ("file", "option", "found"),
+    [
+        ("a.ngc", "--contour-data=centre", "--contour-data is for CL data"),
+        ("a.ngc", "--cl-dialect=nx", "--cl-dialect is for CL data"),
+        ("a.ngc", "--cycle-values=depth,feed", "--cycle-values is for CL data"),
+        ("b.apt", "--dwell-unit=ms", "--dwell-unit is for G-code"),
+        ("b.apt", "--axis-words=AC", "--axis-words is for G-code"),
+    ],
+)
+def test_an_option_for_another_kind_of_file_is_refused(files, capsys, command, file, option, found):
+    more = {"convert": ["--to=gcode:3axis", "--out=out.nc"], "post": ["--out=out", *REACHED], "reach": REACHED}
+    assert main([command, file, option, *more.get(command, [])]) == 2
+    told = capsys.readouterr()
+    assert (told.out, told.err) == (
+        "",
+        f"{file}: error L442: an option means nothing for what is read: {found}; leave it out\n",
+    )
+    assert sorted(path.name for path in files.iterdir()) == ["a.ngc", "b.apt"]
+
+
+def test_a_document_has_nothing_to_be_read_so(files, capsys):
+    Path("c.FCStd").write_bytes(b"")
+    assert main(["post", "c.FCStd", "--unit=mm", "--allow-open-end"]) == 2
+    assert [line.split(": ")[3] for line in capsys.readouterr().err.splitlines()] == [
+        "--unit is for G-code and CL data; leave it out",
+        "--allow-open-end is for G-code and CL data; leave it out",
+    ]
+    assert main(["post", "a.ngc", "--job=Job"]) == 2
+    assert "--job is for CAM jobs" in capsys.readouterr().err
+
+
+def test_in_a_batch_each_option_is_for_the_files_that_it_fits(files, capsys):
+    mixed = ["a.ngc", "b.apt", "--contour-data=centre", "--dwell-unit=ms"]
+    assert main(["check", *mixed]) == 0
+    assert main(["reach", *mixed, *REACHED]) == 0
+    assert main(["post", *mixed, *REACHED, "--jobs=1", "--out=out"]) == 0
+    assert {"a.pmc", "b.pmc"} <= {path.name for path in (files / "out").iterdir()}
+    capsys.readouterr()
+    assert main(["check", "a.ngc", "a.ngc", "--contour-data=centre"]) == 2
+    assert capsys.readouterr().err.startswith("arguments: error L442: ")
+
+
+def test_macros_are_told_with_what_else_is_wrong(files):
+    with pytest.raises(Refused) as refused:
+        post_file("a.ngc", out="out", arguments="--contour-data centre --work-offset 0,0,250")
+    assert [each.code for each in refused.value.diagnostics] == ["L442", "J113"]
+    assert not Path("out").exists()

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options of one layer go before those of another one by one; what is shown of an option can be typed again."""
+
+import random
+import shlex
+
+import numpy as np
+import pytest
+from option_examples import ADDED, FLAGS, words
+
+from pkm_post.options import (
+    flag_of,
+    given_in,
+    layered,
+    options_from,
+    overrides,
+    said_by,
+    shown,
+    tool_lengths_from,
+    typed,
+)
+from pkm_post.options.choices import Options
+
+ULP = 1e-12
+SEEDS = range(20)
+
+
+def options_of(text):
+    return vars(options_from(typed(text)))
+
+
+def same(one, other):
+    """Whether options are equal; a work offset may be a matrix, and degrees are radians and back."""
+    for name, value in one.items():
+        if isinstance(value, np.ndarray | float):
+            assert np.allclose(value, other[name], rtol=ULP, atol=ULP), name
+        elif name == "spin":
+            assert (value.rule, value.objective) == (other[name].rule, other[name].objective)
+            assert value.heading == pytest.approx(other[name].heading, abs=ULP)
+        else:
+            assert value == other[name], name
+    return True
+
+
+def retyped(given):
+    """Values as they are shown, typed again."""
+    for name, value in given.items():
+        for one in value if isinstance(value, list) else [value]:
+            if isinstance(one, bool):
+                yield flag_of(name) if one else flag_of(name).replace("--", "--no-", 1)
+            else:
+                yield f"{flag_of(name)}={shown(name, one)}"
+
+
+@pytest.mark.parametrize("which", [0, 1])
+@pytest.mark.parametrize("flag", FLAGS)
+def test_what_is_shown_is_what_was_typed(flag, which):
+    given = given_in(typed(shlex.join(words(flag, which))))
+    assert len(given) == 1
+    assert given_in(typed(shlex.join(retyped(given)))) == given
+
+
+def test_defaults_are_not_given():
+    assert given_in(typed("")) == {}
+    assert list(overrides(given_in(typed("--tip-tolerance 0.01 --machine a")), given_in(typed("")))) == []
+
+
+@pytest.mark.parametrize("flag", sorted(ADDED))
+def test_what_is_added_replaces_nothing(flag):
+    job, given = (typed(shlex.join(words(flag, which))) for which in (0, 1))
+    (name,) = given_in(given)
+    assert vars(layered(job, given_in(given)))[name] == [*vars(job)[name], *vars(given)[name]]
+    assert list(overrides(given_in(job), given_in(given))) == []
+
+
+@pytest.mark.parametrize("flag", [flag for flag in FLAGS if flag not in ADDED])
+def test_one_option_goes_before_and_all_others_stay(flag):
+    job = typed(shlex.join([word for each in FLAGS for word in words(each, 0)]))
+    given = given_in(typed(shlex.join(words(flag, 1))))
+    (name,) = given
+    mixed = vars(layered(job, given))
+    assert mixed[name] == vars(typed(shlex.join(words(flag, 1))))[name]
+    assert {each for each in mixed if mixed[each] != vars(job)[each]} == {name, "given"}
+    (told,) = overrides(given_in(job), given)
+    assert told.flag == flag
+    assert list(overrides(given_in(job), given_in(job))) == []
+
+
+def test_what_is_said_of_one_tool_leaves_the_others():
+    job = typed("--tool-length 1=120 --tool-length 2=80 --actual-tool 3=9.5,1")
+    given = given_in(typed("--tool-length 2=85 --tool-length 4=60"))
+    assert tool_lengths_from(layered(job, given)) == {1: 120, 2: 85, 4: 60}
+    assert [str(each) for each in overrides(given_in(job), given)] == ["--tool-length 2=85 instead of 2=80"]
+
+
+def test_options_in_place_of_all_take_back_what_they_do_not_say():
+    job = given_in(typed("--actual-tool 3=9.5,1 --also csv --surface-speed 120"))
+    told = [str(each) for each in overrides(job, said_by(Options()), whole=True)]
+    assert sorted(told) == [
+        "--actual-tool none instead of 3=9.5,1",
+        "--also none instead of csv",
+        "--surface-speed none instead of 120",
+    ]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_options_are_said_as_they_were_typed(seed):
+    chance = random.Random(seed)
+    chosen = shlex.join(word for flag in FLAGS if chance.random() < 0.6 for word in words(flag, chance.randrange(2)))
+    said = said_by(options_from(typed(chosen)))
+    again = shlex.join(retyped({name: value for name, value in said.items() if value is not None}))
+    assert same(options_of(again), options_of(chosen))
+
+
+def numbers_in(values):
+    for value in values:
+        if isinstance(value, list | tuple):
+            yield from numbers_in(value)
+        elif isinstance(value, float):
+            yield value
+
+
+LETTERS = "=,-. 0179eaxZ'\"\\\u00b5\n"
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_mutated_options_are_refused_or_can_be_typed_again(seed):
+    """Text with letters left out, put in and exchanged: never another exception than that of text, never infinity."""
+    chance = random.Random(seed)
+    refused = understood = 0
+    for _ in range(200):
+        text = list(shlex.join(words(chance.choice(FLAGS), chance.randrange(2))))
+        for _ in range(chance.randrange(3)):
+            place = chance.randrange(len(text))
+            text[place : place + chance.randrange(2)] = chance.choice(["", chance.choice(LETTERS)])
+        try:
+            given = given_in(typed("".join(text)))
+        except ValueError:
+            refused += 1
+            continue
+        understood += 1
+        assert given_in(typed(shlex.join(retyped(given)))) == given, "".join(text)
+        assert np.isfinite(list(numbers_in(given.values()))).all()
+    assert refused and understood

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plans keep the shortest interval and the block rate of a controller, and are slower only where they must be."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from posted_jobs import NARROW, finding, of, preset
+from programs import random_job
+
+from pkm_post.planning.pace import factors_of_crowds, slower_feed
+
+ROUGH = (0.05, 0.05)
+SEEDS = (2, 4, 7)
+
+
+def on(shortest=1, rate=np.inf, name="example_6tps"):
+    return dataclasses.replace(preset(name), shortest_interval=shortest, block_rate=rate)
+
+
+def job(seed):
+    return random_job(np.random.default_rng(seed))
+
+
+def blocks_of_busiest_second(time_ms):
+    return max(np.count_nonzero((time_ms >= begin) & (time_ms < begin + 1000)) for begin in time_ms)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize(("shortest", "tolerances"), [(2, NARROW), (4, NARROW), (10, ROUGH)])
+@pytest.mark.parametrize("name", ["example_6tps", "linuxcnc_genhexkins"])
+def test_no_interval_is_shorter_than_the_controller_takes(seed, shortest, tolerances, name):
+    _, _, motion, _, certificate, faults = of(on(shortest, name=name), job(seed), tolerances)
+    assert faults == ()
+    least = np.diff(motion.time_ms).min()
+    assert least >= shortest
+    assert finding(certificate, "interval shorter than the controller takes").value == shortest - least
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("rate", [60.0, 25.0])
+def test_no_second_has_more_blocks_than_the_controller_takes(seed, rate):
+    _, _, free, *_ = of(on(), job(seed), NARROW)
+    _, _, motion, _, certificate, faults = of(on(rate=rate), job(seed), NARROW)
+    assert faults == ()
+    busiest = blocks_of_busiest_second(motion.time_ms)
+    assert busiest <= rate
+    assert finding(certificate, "blocks in one second").value == busiest
+    assert motion.time_ms[-1] >= free.time_ms[-1]
+    if blocks_of_busiest_second(free.time_ms) <= rate:
+        np.testing.assert_array_equal(motion.time_ms, free.time_ms)
+
+
+def test_the_jobs_have_seconds_with_more_blocks_than_that():
+    assert max(blocks_of_busiest_second(of(on(), job(seed), NARROW)[2].time_ms) for seed in SEEDS) > 60
+
+
+def test_a_path_that_needs_closer_points_is_refused_for_that():
+    *_, faults = of(on(50), job(2), NARROW)
+    assert {fault.code for fault in faults} == {"V119"}
+    assert all("controller.shortest_interval is 50" in fault.found for fault in faults)
+
+
+def test_only_segments_of_a_crowded_second_are_slower():
+    time_ms = np.concatenate([np.arange(0, 1000, 10), np.arange(1000, 3001, 100)])
+    segment = (time_ms - 1) // 500
+    factor = factors_of_crowds(time_ms, segment, 50.0, 6)
+    assert np.all(factor[:2] <= 0.5 * 0.95 + 1e-12) and np.all(factor[4:] == 1)
+    feed = slower_feed(np.full(6, 20.0), np.full(6, 5.0), np.arange(1, 7) * 0.5, factor)
+    np.testing.assert_allclose(feed[:2], 10 * factor[:2])
+    assert np.all(feed[4:] == 20)

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+import numpy as np
+from machines import example
+from programs import ON_PALLET, cone, program
+
+from pkm_post.model import Event, EventKind
+from pkm_post.model.certificate import Tolerances
+from pkm_post.planning import motion as planning
+from pkm_post.planning.knots import LONGEST_MS, knots
+from pkm_post.planning.stations import stations
+from pkm_post.toolpath.placement.place import place
+
+NO_EDGES = np.array([], dtype=np.int64)
+
+
+def schedule_of(made):
+    trajectory, _ = place(made, example(), ON_PALLET)
+    path = planning.tool_path(trajectory, Tolerances(1e-3, np.radians(1e-3)))
+    schedule, faults = planning.plan_feed(path, trajectory, example())
+    assert not faults
+    return trajectory, path, schedule
+
+
+def stop_and_go():
+    return program(
+        [[0, 0, 60], [10, 0, 60], [10, 10, 60], [0, 10, 60]],
+        events=(Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.DWELL, 0.5), Event(4, EventKind.SPINDLE, 0)),
+    )
+
+
+def test_speed_is_the_derivative_of_the_way():
+    _, _, schedule = schedule_of(cone())
+    time = np.linspace(0.01, schedule.course.time[-1] - 0.01, 2000)
+    step = 1e-6
+    s, speed, _ = schedule.at(time)
+    np.testing.assert_allclose((schedule.at(time + step)[0] - schedule.at(time - step)[0]) / (2 * step), speed,
+                               atol=5e-3)  # fmt: skip
+    assert np.all(np.diff(s) >= 0)
+
+
+def test_rests_are_whole_milliseconds_at_rest():
+    trajectory, path, schedule = schedule_of(stop_and_go())
+    s, speed, _ = schedule.at(schedule.rests_ms / 1000)
+    np.testing.assert_allclose(speed, 0, atol=1e-9)
+    np.testing.assert_array_equal(schedule.rest_joints, [0, 2, 4])
+    np.testing.assert_allclose(s, path.starts[schedule.rest_joints], atol=1e-9)
+    assert trajectory.exact_stop.tolist() == [False, True, False, True]
+
+
+def test_feed_is_kept_and_reached():
+    _, path, schedule = schedule_of(program([[0, 0, 60], [0, 0, 50], [100, 0, 50]], feed=30.0))
+    marks = stations(path)
+    cutting = marks.segment[1:] > 0
+    assert schedule.course.speed[1:][cutting].max() <= 30.0
+    assert schedule.course.speed[1:][cutting].max() > 29.9
+
+
+def test_knots_halve_until_the_error_holds():
+    # An error that grows with the width and is large near 500 ms: knots must crowd there and nowhere else.
+    def error(start, end):
+        near = (start <= 500) & (end >= 500)
+        return np.where(near, (end - start) / 4, (end - start) / 64)
+
+    found = knots(np.array([0, 1000, 1003]), NO_EDGES, error)
+    width = np.diff(found)
+    assert {0, 1000, 1003} <= set(found.tolist())
+    assert width.max() <= 64 < LONGEST_MS
+    assert width[np.searchsorted(found, 500) - 1] <= 4
+    assert (error(found[:-1], found[1:]) <= 1).all()
+
+
+def test_an_error_that_never_holds_ends_at_one_millisecond():
+    found = knots(np.array([0, 37]), NO_EDGES, lambda start, end: np.full(len(start), 2.0))
+    np.testing.assert_array_equal(found, np.arange(38))
+
+
+def test_cuts_are_made_at_edges():
+    # A path of straights with short blends: an interval holds when no edge lies inside it.
+    edges = np.array([20, 23, 57, 60, 91, 94])
+    found = knots(
+        np.array([0, 120]), edges, lambda start, end: 2.0 * ((edges[:, None] > start) & (edges[:, None] < end)).any(0)
+    )
+    np.testing.assert_array_equal(found, [0, *edges, 120])
+
+
+def test_when_a_place_is_passed_is_when_the_course_is_there():
+    _, _, schedule = schedule_of(stop_and_go())
+    course = schedule.course
+    s = np.sort(np.random.default_rng(4).uniform(0, course.s[-1], 2000))
+    time = course.when(s)
+    np.testing.assert_allclose(course.at(time)[0], s, atol=1e-9)
+    assert np.all(np.diff(time) > 0)
+    np.testing.assert_allclose(course.when(course.s[1:]), course.time[1:], atol=1e-9)

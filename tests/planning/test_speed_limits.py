@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A feed plan that computes limits only where they may matter is the plan that computes them everywhere."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from machines import example
+from programs import ON_PALLET, cone, program, random_job
+
+from pkm_post.model.certificate import Tolerances
+from pkm_post.planning import motion as planning
+from pkm_post.planning import speed_limits
+from pkm_post.planning.limits import limits, rough_limits
+from pkm_post.planning.path_bounds import PathBounds
+from pkm_post.planning.profile import cell_times, speed_profile
+from pkm_post.planning.speed_limits import (
+    _following,
+    below_feed,
+    bent,
+    bounded_by,
+    feed_at,
+    rough_feed,
+    roughly_bounded,
+)
+from pkm_post.planning.stations import stations
+from pkm_post.toolpath.placement.place import place
+
+TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+LONGER = 1e-3
+"""Part of the time that a screened plan may take longer: it has no places between joints where it runs at the feed."""
+
+
+def wavy(feed):
+    """A scan of short moves with a corner at the end of each line."""
+    x = np.tile(np.concatenate([np.linspace(-20, 20, 101), np.linspace(20, -20, 101)]), 3)
+    y = np.repeat(np.arange(6.0), 101)
+    return program(np.column_stack([x, y, 60 + 2 * np.sin(x / 6) * np.cos(y / 5)]), feed=feed)
+
+
+def slow(machine):
+    return dataclasses.replace(machine, strut_speed=60.0, strut_acceleration=400.0, tip_acceleration=300.0)
+
+
+JOBS = {
+    "at the feed": (wavy(30.0), example()),
+    "at the limits": (wavy(200.0), example()),
+    "slow machine": (wavy(40.0), slow(example())),
+    "five axes": (cone(300), example()),
+    "five axes on a slow machine": (cone(300), slow(example())),
+    **{f"random {seed}": (random_job(np.random.default_rng(seed)), example()) for seed in range(8)},
+}
+SCREENED = {"at the feed": 0.7, "slow machine": 0.1, "five axes": 0.9}
+"""Least part of the segments that need no limits."""
+
+
+def path_of(job):
+    made, machine = job
+    trajectory, _ = place(made, machine, ON_PALLET)
+    return planning.tool_path(trajectory, TOLERANCES), trajectory, machine
+
+
+def rough_limits_of(path, machine):
+    most = PathBounds.of(path)
+    return rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
+
+
+def everywhere(path, machine):
+    """Stations, the ceiling of the speed squared at them, and the plan, with nothing left out."""
+    marks = stations(path)
+    poses = path.within(marks.segment, marks.u)
+    square, along = limits(feed_at(path, poses, marks.u), bounded_by(machine, poses))
+    square[marks.rest] = 0.0
+    return marks, square, speed_profile(marks.s, square, along)
+
+
+@pytest.mark.parametrize("name", JOBS)
+def test_the_screened_plan_is_the_whole_plan(name):
+    path, trajectory, machine = path_of(JOBS[name])
+    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    marks, square, plan = everywhere(path, machine)
+    whole = float(cell_times(marks.s, plan).sum())
+    stretched = 1e-3 * (len(schedule.rests_ms) - 1)
+    assert schedule.rests_ms[-1] / 1000 == pytest.approx(whole, abs=stretched + LONGER * whole)
+    # Nowhere is it above the ceilings of the whole plan, at any of its stations.
+    passed = schedule.course.when(marks.s[1:])
+    assert np.all(schedule.course.at(passed)[1] <= np.sqrt(square[1:]) * (1 + 1e-6) + 1e-6)
+
+
+@pytest.mark.parametrize("name", SCREENED)
+def test_much_of_a_path_needs_no_limits(name):
+    path, _, machine = path_of(JOBS[name])
+    close = below_feed(path, *rough_limits_of(path, machine))
+    assert np.mean(~close) >= SCREENED[name]
+
+
+@pytest.mark.parametrize("name", JOBS)
+def test_rough_limits_are_below_the_true_ones(name):
+    path, _, machine = path_of(JOBS[name])
+    rough = rough_limits_of(path, machine)
+    marks = stations(path)
+    poses = path.within(marks.segment, marks.u)
+    true = limits(feed_at(path, poses, marks.u), bounded_by(machine, poses))
+    following = _following(path, marks.segment, marks.u)
+    for below, above in zip(rough, true, strict=True):
+        assert np.all(np.minimum(below[marks.segment], below[following]) <= above * (1 + 1e-9))
+
+
+@pytest.mark.parametrize("block", [5, 64])
+def test_blocks_do_not_show(block, monkeypatch):
+    path, trajectory, machine = path_of(JOBS["slow machine"])
+    whole, _ = planning.plan_feed(path, trajectory, machine)
+    monkeypatch.setattr(planning, "_STATIONS_AT_ONCE", block)
+    monkeypatch.setattr(speed_limits, "_STATIONS_AT_ONCE", block)
+    cut, _ = planning.plan_feed(path, trajectory, machine)
+    np.testing.assert_array_equal(cut.course.s, whole.course.s)
+    np.testing.assert_allclose(cut.course.speed, whole.course.speed, rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(cut.rests_ms, whole.rests_ms)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 0.3, 20.0])
+def test_between_the_joints_of_a_segment_that_is_not_bent_the_path_is_straight(tolerance):
+    rng, found = np.random.default_rng(11), []
+    for _ in range(6):
+        trajectory, _ = place(random_job(rng), example(), ON_PALLET)
+        path = planning.tool_path(trajectory, Tolerances(tolerance, tolerance / 50))
+        straight = np.flatnonzero(~bent(path, PathBounds.of(path)))
+        found.append(len(straight) / len(path.feed))
+        share = np.linspace(0, 1, 101)
+        poses = path.within(np.repeat(straight, 101), np.outer(path.segments.extent[straight], share).ravel())
+        tip = poses.tip.reshape(-1, 101, 3)
+        chord = tip[:, :1] + share[:, None] * (tip[:, -1:] - tip[:, :1])
+        assert np.linalg.norm(tip - chord, axis=2).max(initial=0.0) <= 2 * 0.01
+    assert (min(found) > 0.8) == (tolerance == 1e-3)  # bounds of both ends of a segment are taken together

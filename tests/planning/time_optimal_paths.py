@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Paths and limits for the comparison with the shortest times that are possible."""
+
+import dataclasses
+
+import numpy as np
+from machines import example
+from programs import ON_PALLET, cone, program
+
+from pkm_post.model import Kind
+from pkm_post.model.certificate import Tolerances
+from pkm_post.planning import motion as planning
+from pkm_post.planning.stations import stations
+from pkm_post.toolpath.placement.place import place
+
+
+def _corners():
+    return program([[0, 0, 60], [30, 0, 60], [30, 30, 60], [60, 30, 60], [60, 0, 60], [80, 0, 60]], feed=150.0)
+
+
+def _arcs():
+    centre, turn = np.full((4, 3), np.nan), np.full((4, 3), np.nan)
+    centre[1:] = [[20, 0, 60], [60, 0, 60], [100, 0, 60]]
+    turn[1:] = [[0, 0, -1], [0, 0, 1], [0, 0, -1]]
+    kind = [Kind.RAPID, Kind.ARC, Kind.ARC, Kind.ARC]
+    return program(
+        [[0, 0, 60], [40, 0, 60], [80, 0, 60], [120, 0, 60]], kind=kind, centre=centre, turn=turn, feed=150.0
+    )
+
+
+PATHS = {"cone": lambda: cone(60, turns=0.5, tilt_deg=20.0), "corners": _corners, "arcs": _arcs}
+LIMITS = {"struts slow": (120.0, 5000.0), "struts weak": (500.0, 800.0), "struts strong": (500.0, 5000.0)}
+"""Strut speed in mm/s and strut acceleration in mm/s^2."""
+
+
+def stations_of(name, limits):
+    """Machine, path and stations; nothing but the struts and the feed is limited."""
+    speed, acceleration = LIMITS[limits]
+    machine = dataclasses.replace(
+        example(), strut_speed=speed, strut_acceleration=acceleration, tip_acceleration=np.inf, axis_speed=np.inf,
+        rapid_speed=200.0,
+    )  # fmt: skip
+    made = PATHS[name]()
+    trajectory, _ = place(
+        dataclasses.replace(made, feed=np.where(made.kind == Kind.RAPID, np.nan, 200.0)), machine, ON_PALLET
+    )
+    path = planning.tool_path(
+        dataclasses.replace(trajectory, exact_stop=_at_the_end(trajectory)), Tolerances(0.1, 0.01)
+    )
+    return machine, path, stations(path)
+
+
+def _at_the_end(trajectory):
+    stops = np.zeros(len(trajectory), dtype=bool)
+    stops[-1] = True
+    return stops

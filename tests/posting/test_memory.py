@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Posting in pieces: their size changes nothing, and memory for a line stays below a stated number of bytes."""
+
+import gc
+import json
+import resource
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pkm_post.certificate import drives, fault_causes, joints, struts, tool_course
+from pkm_post.options.choices import Options
+from pkm_post.planning import motion as planning
+from pkm_post.planning import profile, schedule, speed_limits
+from pkm_post.posting.post_file import post_file
+from pkm_post.posting.run import give_back_memory
+from pkm_post.reading.sources import Reading
+from pkm_post.writing import outputs
+from pkm_post.writing.controllers.pvt import reader as program_reader
+from pkm_post.writing.controllers.pvt import writer
+from pkm_post.writing.trajectory_file import parts
+from pkm_post.writing.trajectory_file import reader as trajectory_reader
+
+PIECES = (
+    (planning, "_KNOTS_AT_ONCE"),
+    (planning, "_STATIONS_AT_ONCE"),
+    (planning, "_MARKS_AT_ONCE"),
+    (speed_limits, "_STATIONS_AT_ONCE"),
+    (profile, "_AT_ONCE"),
+    (schedule, "_AT_ONCE"),
+    (struts, "_AT_ONCE"),
+    (tool_course, "_AT_ONCE"),
+    (joints, "_AT_ONCE"),
+    (drives, "_AT_ONCE"),
+    (fault_causes, "_AT_ONCE"),
+    (writer, "_ROWS_PER_CHUNK"),
+    (program_reader, "_CHUNK"),
+    (outputs, "_CHARACTERS_AT_ONCE"),
+    (parts, "SEGMENTS"),
+    (trajectory_reader, "SEGMENTS"),
+)
+ALL = 1 << 30
+BYTES_PER_LINE = 1600
+"""Of a rough surface with 1.4 points of the motion to a line, at most: it takes 1300, and took 3100 in one piece."""
+ON_PALLET = np.eye(4)
+ON_PALLET[2, 3] = 200.0
+
+
+def scan(lines, leans):
+    """G-code of a scan over a rough surface, with two tools, a dwell, an arc, and a tool that leans if wished for."""
+    rng = np.random.default_rng(1)
+    x = 0.3 * np.abs(np.arange(lines) % 400 - 200) - 30
+    z = 10 + np.sin(x / 9) + rng.uniform(-0.005, 0.005, lines)
+    lean = np.sin(x / 20) / 5
+    axes = np.column_stack([np.sin(lean), 0 * lean, np.cos(lean)])
+    words = [f" I{i:.6f} J{j:.6f} K{k:.6f}" if leans else "" for i, j, k in axes]
+    rows = zip(x, np.linspace(0, 50, lines), z, words, strict=True)
+    moves = [f"G1 X{a:.4f} Y{b:.4f} Z{c:.4f}{word}" for a, b, c, word in rows]
+    offset = "G43.5" if leans else "G43"
+    half = lines // 2
+    middle = ["G4 P0.5", "G0 Z40", "T2 M6", f"{offset} H2", "S8000 M3", "G0 X0 Y0"]
+    arc = [] if leans else ["G1 Z10", "G3 X10 Y0 I5 J0"]
+    return "\n".join(["G21 G90 G17", "T1 M6", f"{offset} H1", "S9000 M3", "G0 X30 Y0 Z40", "F2400", *moves[:half],
+                      *middle, *arc, *moves[half:], "G91 G0 Z10", "M5", "M2", ""])  # fmt: skip
+
+
+def post(folder, lines, leans=False, name="scan"):
+    """Post a scan; the files by name."""
+    file = folder / "scan.ngc"
+    file.write_text(scan(lines, leans))
+    reading = Reading(axis_words="vector" if leans else "none")
+    options = Options(work_offset=ON_PALLET)
+    made = post_file(file, "example_6tps", folder / name, options, {1: 120.0, 2: 100.0}, reading)
+    return {path.name: path for path in made.files}
+
+
+@pytest.mark.parametrize("leans", [False, True])
+def test_pieces_of_any_size_give_the_same_files(monkeypatch, tmp_path, leans):
+    def posted(size):
+        for module, name in PIECES:
+            monkeypatch.setattr(module, name, size)
+        return post(tmp_path, 400, leans, str(size))
+
+    whole = posted(ALL)
+    expected = json.loads(whole["scan-report.json"].read_text())
+    for size in (1, 7, 1000):
+        found = posted(size)
+        assert found.keys() == whole.keys()
+        for name in ("scan.pkmt", "scan.pmc"):
+            assert found[name].read_bytes() == whole[name].read_bytes(), (name, size)
+        assert_alike(json.loads(found["scan-report.json"].read_text()), expected)
+
+
+def assert_alike(found, expected):
+    """The same report; numbers that are sums of many may differ in their last digits."""
+    if isinstance(expected, dict):
+        assert found.keys() == expected.keys()
+        for key in expected:
+            assert_alike(found[key], expected[key])
+    elif isinstance(expected, list):
+        assert len(found) == len(expected)
+        for one, other in zip(found, expected, strict=True):
+            assert_alike(one, other)
+    elif isinstance(expected, float):
+        assert found == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    else:
+        assert found == expected
+
+
+def test_memory_for_a_line_is_bounded(tmp_path):
+    """The difference of two jobs: what does not depend on their length, as the pieces themselves, is in both."""
+    few, many = 5000, 20000
+    post(tmp_path, few)  # what is imported and kept for later jobs is there then
+    peaks = [peak_of(tmp_path, lines) for lines in (few, many)]
+    assert (peaks[1] - peaks[0]) / (many - few) < BYTES_PER_LINE
+
+
+def peak_of(folder: Path, lines: int) -> int:
+    """The most memory that posting takes, bytes."""
+    gc.collect()
+    tracemalloc.start()
+    try:
+        post(folder, lines)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_what_is_free_between_columns_is_given_back_to_the_system():
+    columns = [np.ones(12_000) for _ in range(2000)]
+    kept = columns[::10]
+    free = sum(column.nbytes for column in columns) - sum(column.nbytes for column in kept)
+    del columns
+    before = resident()
+    give_back_memory()
+    assert before - resident() > free / 2
+    assert all(column.all() for column in kept)
+
+
+def resident() -> int:
+    """Memory that this process has, bytes."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()

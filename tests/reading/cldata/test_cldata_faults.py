@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faults of CL data: bad programs state in their first line exactly what they must give."""
+
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pkm_post.model import Kind
+from pkm_post.model.diagnostics import errors
+from pkm_post.reading.cldata import DIALECTS, ReadOptions, read, words
+from pkm_post.reading.cldata.faults import EXPECTED, MOST_TOLD
+from pkm_post.reading.cldata.grammar import STATEMENT
+from pkm_post.reading.grammar import parser_of
+
+BAD_PROGRAMS = sorted((Path(__file__).parents[2] / "data" / "bad_cldata").glob("*.cl"))
+EXPECTATION = re.compile(rb"\$\$ expects (.+)")
+
+
+def test_there_are_bad_programs():
+    assert len(BAD_PROGRAMS) >= 40
+
+
+@pytest.mark.parametrize("path", BAD_PROGRAMS, ids=lambda path: path.stem)
+def test_bad_programs_give_the_stated_diagnostics(path):
+    text = path.read_bytes()
+    stated = EXPECTATION.match(text)
+    assert stated, "the first line states what is expected, such as: $$ expects L202 2:4, L411 0:0"
+    program, diagnostics = read(text, path.name)
+    given = [f"{fault.code} {fault.place.line}:{fault.place.column}" for fault in diagnostics]
+    assert ", ".join(given) == stated[1].decode()
+    assert (program is None) == bool(errors(diagnostics))
+    assert {fault.place.file for fault in diagnostics} == {path.name}
+
+
+@pytest.mark.parametrize(
+    "line, found",
+    [
+        ("GOTO/1,2.5mm,0", "'2.5mm'"),
+        ("GOTO/1,\0,0", "character 0x00"),
+        ("GOTO 1,2,3", "'1', expected '/', ',', '=' or the end of the statement"),
+        ("TLON,GOFWD/(CIRCLE/1,2", "the end of the statement, expected ')'"),
+        ("GOTO/1,2,3)", "')'"),
+    ],
+)
+def test_diagnostics_tell_what_was_found_and_expected(line, found):
+    (fault,) = read(line, "part.cl")[1]
+    assert fault.found == found
+
+
+def test_every_terminal_has_words():
+    terminals = {terminal.name for terminal in parser_of(STATEMENT).terminals}
+    assert terminals - {"BLANK", "TEXT"} <= set(EXPECTED)
+
+
+def test_a_hundred_errors_are_told_and_the_others_counted():
+    diagnostics = read("GOTO/;\n" * 250, "part.cl")[1]
+    assert len(diagnostics) == MOST_TOLD + 1
+    assert (diagnostics[-1].code, diagnostics[-1].found) == ("L199", "and 150 more")
+
+
+def test_a_missing_lark_is_named(monkeypatch):
+    parser_of.cache_clear()
+    monkeypatch.setitem(sys.modules, "lark", None)
+    with pytest.raises(ImportError, match="needs lark: install python3-lark"):
+        read("GOTO/1,2,3", "part.cl")
+    monkeypatch.undo()
+
+
+def test_any_bytes_give_a_program_or_diagnostics():
+    random = np.random.default_rng(20)
+    seed = b"UNITS/MM\nRAPID\nGOTO/1,2,3,0,0,1\nFEDRAT/5,MMPM\nCIRCLE/1,2,3,0,0,1\n$$-> CSYS/1 $\nCYCLE/DRILL,(TLON=')"
+    for _ in range(300):
+        text = bytearray(seed * 2)
+        for place in random.integers(0, len(text), random.integers(1, 30)):
+            text[place] = random.integers(0, 256)
+        cut = random.integers(0, len(text))
+        program, diagnostics = read(bytes(text[cut:] + text[:cut]), "fuzz.cl")
+        assert (program is None) == bool(errors(diagnostics))
+        noise = random.integers(0, 256, 200, dtype=np.uint8).tobytes()
+        program, diagnostics = read(noise, "fuzz.cl")
+        assert (program is None) == bool(errors(diagnostics))
+
+
+def shown(values):
+    return ",".join(f"{value:g}" for value in values)
+
+
+NUMBERS = st.one_of(st.sampled_from([0.0, 1.0, -1.0, 10.0, 360.0, 1e9]), st.floats(-50, 50).map(lambda x: round(x, 3)))
+WORDS = st.sampled_from(
+    ["ON", "TANTO", "INTOF", "CANON", "PERPTO", "CLW", "CCLW", "ANGLE", "TIMES", "OFF", "MM", "DRILL", "FEDTO", "RAPTO"]
+)
+MAJORS = st.sampled_from([*sorted({*words.HANDLERS, *words.REFUSED} - {""}), *["GOTO"] * 40])
+SURFACES = st.sampled_from(["PLANE", "LINE", "CIRCLE", "CYLNDR", "POINT", "VECTOR"])
+PARTS = st.builds("({}/{})".format, SURFACES, st.lists(NUMBERS, max_size=7).map(shown))
+ITEMS = st.lists(st.one_of(NUMBERS.map("{:g}".format), WORDS, PARTS, st.just("")), max_size=5).map(",".join)
+COUNTS = st.sampled_from([3, 4, 6, 7, 9, 10, 11, 13, 14, 17])
+COUNTED = COUNTS.flatmap(lambda count: st.lists(NUMBERS, min_size=count, max_size=count)).map(shown)
+TLON = st.builds(
+    "TLON,GOFWD/(CIRCLE/0,0,0,0,0,1,10),{},(PLANE/1,0,0,{:g})".format,
+    st.sampled_from(["ON", "TANTO", "ON,2,INTOF", "PAST"]),
+    NUMBERS,
+)
+SOUND = st.sampled_from([
+    "RAPID", "AUTOPS", "FEDRAT/9", "GOTO/10,0,0", "GOTO/0,10,0", "GODLTA/0,0,1", "8,6,0", "UNITS/INCHES",
+    "MSYS/1,2,3,0,1,0,-1,0,0", "MSYS/0,0,0,1,0,0,0,1,0", "$$ CIRCLE/0,0,0,0,0,1,10\nGOTO/8,6,0",
+    "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/8,6,0\n0,10,0", "GOTO/10,0,0\nGOCLW/0,0,0,0,0,1,10,0,10,0",
+    "GOTO/10,0,0\nINDIRP/10,5,0\nTLON,GOFWD/(CIRCLE/0,0,0,10),ON,2,INTOF,(PLANE/1,1,0,5)",
+    "GOTO/10,0,0\nARCSLP/3\nARCDAT/0,0,0,0,0,1,10\nARCMOV/CCLW,10,0,3,720",
+    "GOTO/10,0,0\nHELICAL/0,0,0,0,1,0,0,0,1,2,10,-10,0,9", "CYCLE/DRILL,FEDTO,5,RAPTO,2\nGOTO/3,3,0\nCYCLE/OFF",
+])  # fmt: skip
+RECORDS = st.one_of(st.builds("{}/{}".format, MAJORS, st.one_of(COUNTED, ITEMS)), COUNTED, TLON, SOUND)
+
+
+@settings(max_examples=400, deadline=None, derandomize=True)
+@given(st.one_of(st.lists(RECORDS, max_size=12), st.lists(SOUND, max_size=12)), st.sampled_from([None, *DIALECTS]))
+def test_any_records_give_a_program_or_diagnostics(records, dialect):
+    text = "\n".join(["UNITS/MM", "FEDRAT/100", "GOTO/10,0,0", *records])
+    program, diagnostics = read(text, "part.cl", ReadOptions(dialect=dialect))
+    assert (program is None) == bool(errors(diagnostics))
+    if program is not None:
+        assert np.isfinite(program.position).all()
+        assert np.isfinite(program.arc_centre[program.kind == Kind.ARC]).all()
+
+
+@pytest.mark.parametrize("piece", ["GOTO/1,", "1", "(", "A,", "$$", "'", "1.", "$ ", "A/(", " ", "-"])
+def test_ten_megabytes_in_one_line(piece):
+    program, diagnostics = read(piece * (10_000_000 // len(piece)), "long.cl")
+    assert program is None
+    assert errors(diagnostics)

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The shape of the tool as CUTTER and TLDATA give it."""
+
+import math
+
+import pytest
+
+from pkm_post.reading.cldata import ReadOptions, read
+
+BODY = "LOADTL/1,LENGTH,100\nFEDRAT/600,MMPM\nGOTO/0,0,0\nGOTO/10,0,0\nFINI\n"
+
+
+def tool_and_codes(statement, unit="MM"):
+    program, diagnostics = read(f"UNITS/{unit}\n{statement}\n{BODY}".encode(), "part.cls", ReadOptions())
+    return (None if program is None else program.tools[1]), [item.code for item in diagnostics]
+
+
+def shape(tool):
+    return tool.diameter, tool.corner_radius, math.degrees(tool.bottom_angle), math.degrees(tool.side_angle)
+
+
+@pytest.mark.parametrize(
+    ("statement", "expected"),
+    [
+        ("CUTTER/10", (10, 0, 0, 0)),
+        ("CUTTER/20,4,6,4,0,0,60", (20, 4, 0, 0)),
+        ("CUTTER/6.,0,3.,1.802582,31.,0.", (6, 0, 31, 0)),  # a drill of an NCL user
+        ("CUTTER/14.,7.,0,7.,0,0,73.", (14, 7, 0, 0)),  # a ball of SolidWorks
+        ("CUTTER/10,2,3.3218,2,0,10,40", (10, 2, 0, 10)),
+        ("CUTTER/10,1,4,2.10707,15,0,40", (10, 1, 15, 0)),
+        ("CUTTER/10,2,3.3218,2", (10, 2, 0, 0)),
+        ("TLDATA/MILL,6.0000,3.0000,50.0000,0.0000,0.0000", (6, 3, 0, 0)),
+        ("TLDATA/MILL,6.0000,1.0000,50.0000,5.0000,15.0000", (6, 1, 15, 5)),
+        ("TLDATA/DRILL,MILL,6.0000,118.0000", (6, 0, 0, 0)),
+    ],
+)
+def test_sizes_of_the_tool(statement, expected):
+    tool, codes = tool_and_codes(statement)
+    assert shape(tool) == pytest.approx(expected, abs=1e-9)
+    assert codes == (["L418"] if statement == "CUTTER/10,2,3.3218,2" else [])
+
+
+@pytest.mark.parametrize(
+    ("statement", "known"),
+    [
+        ("CUTTER/10", False),
+        ("CUTTER/10,0", True),
+        ("CUTTER/10,5", True),
+        ("$$-> CUTTER / 10.0", False),
+        ("TLDATA/MILL,10,5,50,0,0", True),
+        ("TLDATA/DRILL,MILL,6.0000,118.0000", False),
+        ("PPRINT/none", False),
+    ],
+)
+def test_a_diameter_alone_leaves_the_corner_open(statement, known):
+    assert tool_and_codes(statement)[0].corner_known is known
+
+
+def test_angles_stay_degrees_in_inches():
+    tool, _ = tool_and_codes("CUTTER/1,0.1,0.4,0.13032,15,0,4", "INCHES")
+    assert shape(tool) == pytest.approx((25.4, 2.54, 15, 0), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "statement", ["CUTTER/10,6", "CUTTER/10,0,5,0,90,0", "CUTTER/10,0,5,0,45,45", "CUTTER/10,1,1,1,-1,0"]
+)
+def test_impossible_shapes_are_refused(statement):
+    assert tool_and_codes(statement) == (None, ["L403"])
+
+
+def test_ball_with_a_taper_is_larger_than_half_the_nominal_diameter():
+    # d = 2 r tan(45 - b/2), where the corner's centre comes to the axis
+    d = 2 * 3 * math.tan(math.radians(40))
+    tool, codes = tool_and_codes(f"CUTTER/{d:.6f},3,0,3,0,10")
+    assert shape(tool) == pytest.approx((d, 3, 0, 10), abs=1e-5)
+    assert codes == []

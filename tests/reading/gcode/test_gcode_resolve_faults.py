@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Programs that are well written and mean nothing: the first line of each says what is wrong with it, and where."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from pkm_post.model import RULES, Severity, Tool
+from pkm_post.reading.gcode.located import located
+from pkm_post.reading.gcode.options import ReadOptions
+from pkm_post.reading.gcode.resolve import resolve
+from pkm_post.reading.gcode.scan import scan
+
+PROGRAMS = sorted((Path(__file__).parents[2] / "data" / "bad_gcode_meaning").glob("*.ngc"))
+EXPECTS = re.compile(r"; expects (G4\d\d|G317) (\d+):(\d+)\n(?:; reads with (\S+)\n)?")
+TOOLS = {1: Tool(1, "end mill", 10.0, 0.0, 60.0), 2: Tool(2, "drill", 5.0, 0.0, 90.0)}
+
+
+def options(words):
+    if words == "G54=":
+        return ReadOptions(tools=TOOLS, work_offsets={"G54": (0.0, 0.0, 0.0, 0.0)})
+    name, _, value = (words or "axis_words=none").partition("=")
+    return ReadOptions(tools=TOOLS, **{name: value})
+
+
+def test_there_are_programs_for_every_code():
+    assert len(PROGRAMS) > 70
+    codes = {EXPECTS.match(path.read_text(encoding="utf-8")).group(1) for path in PROGRAMS}
+    assert codes == {code for code in RULES if code.startswith("G4")} | {"G317"}
+
+
+@pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
+def test_tells_what_its_first_line_says(path):
+    text = path.read_text(encoding="utf-8")
+    code, line, column, words = EXPECTS.match(text).groups()
+    blocks, faults = scan(text, path.name)
+    assert not faults
+    program, faults = resolve(blocks, options(words))
+    told = [(fault.code, fault.place.line, fault.place.column) for fault in located(faults, text)]
+    assert told == [(code, int(line), int(column))]
+    assert (program is None) == (RULES[code].severity is Severity.ERROR)
+
+
+def test_every_fault_of_a_program_is_told():
+    blocks, _ = scan("G0 X0 Y0 Z5 Q1\nG12\nG1 X1 A1\nG4\n", "part.ngc")
+    _, faults = resolve(blocks, ReadOptions())
+    assert [(fault.code, fault.place.line) for fault in faults] == [("G404", 1), ("G401", 2), ("G414", 3), ("G405", 4)]
+
+
+def test_many_faults_of_a_kind_are_counted():
+    blocks, _ = scan("G0 X0 Y0 Z5\n" + "G1 X1\n" * 1000, "part.ngc")
+    _, faults = resolve(blocks, ReadOptions())
+    assert len(faults) == 50
+    assert str(faults[-1]).startswith("part.ngc: line 51: error G408") and "and 950 more like it" in str(faults[-1])

@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The scan: what blocks hold, and that the fast way and the way through lark alone are one."""
+
+import random
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pkm_post.reading.gcode import lines
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.row import LONGEST_LINE
+from pkm_post.reading.gcode.scan import scan, scan_by_block
+
+
+def scanned(text):
+    blocks, diagnostics = scan(text, "part.ngc")
+    assert diagnostics == ()
+    return blocks
+
+
+def assert_same(one, other):
+    assert one[1] == other[1]
+    if one[0] is None or other[0] is None:
+        assert one[0] is other[0]
+        return
+    for name in ("line", "g", "g_row", "m", "m_row", "deleted"):
+        np.testing.assert_array_equal(getattr(one[0], name), getattr(other[0], name), err_msg=name)
+    assert list(one[0].words) == list(other[0].words)
+    for letter in one[0].words:
+        np.testing.assert_array_equal(one[0].word(letter), other[0].word(letter), err_msg=letter)
+    assert one[0].special == other[0].special
+    assert one[0].comments == other[0].comments
+    assert one[0].source == other[0].source
+
+
+def test_a_block_has_words_and_codes():
+    blocks = scanned("G21 G90\nN20 G1 X1.5 Y-2 F300 M3 M8\n")
+    assert blocks.line.tolist() == [1, 2]
+    assert blocks.g_of(0).tolist() == [210, 900]
+    assert blocks.g_of(1).tolist() == [10]
+    assert blocks.m_of(1).tolist() == [3, 8]
+    assert blocks.words_of(1) == {"X": 1.5, "Y": -2.0, "F": 300.0}
+
+
+@pytest.mark.parametrize(
+    "code, tenths", [("G1", 10), ("g01", 10), ("G 1", 10), ("G1.", 10), ("G43.4", 434), ("G59.30", 593)]
+)
+def test_g_codes_are_kept_in_tenths(code, tenths):
+    assert scanned(f"{code} X1").g.tolist() == [tenths]
+
+
+@pytest.mark.parametrize(
+    "number, value", [("5", 5.0), ("+.5", 0.5), ("5.", 5.0), ("-0", 0.0), ("-0012.250", -12.25), ("  16.3", 16.3)]
+)
+def test_numbers_are_read_in_every_form(number, value):
+    assert scanned(f"X{number}").word("X")[0] == value
+
+
+def test_lines_that_say_nothing_are_no_rows():
+    blocks = scanned("%\n\nN10\n  (a comment)\n/\n; another\nG0\n%\n")
+    assert blocks.line.tolist() == [7]
+
+
+def test_block_delete_is_told():
+    assert scanned("/N10 G1 X1\nG1 X2\n/ #1=2\n").deleted.tolist() == [True, False, True]
+
+
+@pytest.mark.parametrize(
+    "line, kind",
+    [
+        ("#1=2", "assignment"),
+        ("G1 X[#1+2]", "word"),
+        ("O100 sub", "o_word"),
+        ("A3=[0+1] B3=0 C3=1", "named_word"),
+        ("LN X1 Y2 Z3 NX#1 NY0 NZ1", "surface_word"),
+    ],
+)
+def test_blocks_with_more_than_plain_words_keep_their_tree(line, kind):
+    blocks = scanned(f"G0 X0\n{line}\nG1 X1\n")
+    assert list(blocks.special) == [1]
+    assert kind in {child.data for child in blocks.special[1].children if not isinstance(child, str)}
+    assert blocks.words_of(1) == {}
+    assert len(blocks.g_of(1)) == len(blocks.m_of(1)) == 0
+
+
+@pytest.mark.parametrize(
+    "expression, tree",
+    [
+        ("2**3**2", "((2 ** 3) ** 2)"),
+        ("1+2*3", "(1 + (2 * 3))"),
+        ("1-2-3", "((1 - 2) - 3)"),
+        ("6 mod 4/2", "((6 mod 4) / 2)"),
+        ("1 lt 2 and 3 ge 2+1", "((1 lt 2) and (3 ge (2 + 1)))"),
+        ("-2**2", "(-2 ** 2)"),
+        ("[1+2]*3", "((1 + 2) * 3)"),
+    ],
+)
+def test_operators_bind_as_in_rs274ngc(expression, tree):
+    def written(branch):
+        return str(branch) if isinstance(branch, str) else f"({' '.join(written(child) for child in branch.children)})"
+
+    (assignment,) = scanned(f"#1=[{expression}]").special[0].children
+    assert written(assignment.children[1]) == tree
+
+
+@pytest.mark.parametrize(
+    "line, g, words",
+    [
+        ("TRAORI(1)", [435], {}),
+        ("G1 X2 A3=0.5 b 3=-1 C3 = 2", [10], {"X": 2, "A3": 0.5, "B3": -1, "C3": 2}),
+        ("LN X1 NX0 N Y-1 tz1", [435, 10], {"X": 1, "NX": 0, "NY": -1, "TZ": 1}),
+    ],
+)
+def test_words_of_other_dialects_are_plain(line, g, words):
+    for way in (scan, scan_by_block):
+        blocks, faults = way(f"G0 X0\n{line}\n", "part.ngc")
+        assert not faults and not blocks.special
+        assert blocks.g_of(1).tolist() == g
+        assert blocks.words_of(1) == words
+
+
+@pytest.mark.parametrize("line", ["L N X1", "TRA ORI", "T RAFOOF", "L N X1 NX1"])
+def test_keywords_have_no_blanks_inside(line):
+    for text in (line, f"LN X1\nTRAORI\nTRAFOOF\nLN NX1 X1\n{line}"):
+        one, other = scan(text, "part.ngc"), scan_by_block(text, "part.ngc")
+        assert one[0] is None
+        assert_same(one, other)
+
+
+def test_comments_that_speak_are_kept():
+    blocks = scanned("(MSG, mind the clamp)\nG0 X1 (rapid)\n(msg,h\xe9)\n; TOOL 3: ball 6 mm\n(DEBUG,#1)\n; T5 (6 mm)")
+    assert blocks.comments == (
+        (1, "MSG, mind the clamp"),
+        (3, "msg,h\xe9"),
+        (4, "TOOL 3: ball 6 mm"),
+        (5, "DEBUG,#1"),
+        (6, "T5 (6 mm)"),
+    )
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1"])
+def test_encodings_of_comments_do_not_matter(encoding):
+    assert scanned("(MSG, K\xfchlung)\r\nG1 X1\r\n".encode(encoding)).comments == ((1, "MSG, K\xfchlung"),)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_line_ends_do_not_matter(end):
+    assert_same(scan(f"G1 X1{end}{end}Y2{end}M30", "f"), scan("G1 X1\n\nY2\nM30\n", "f"))
+
+
+def test_a_line_of_ten_megabytes_is_one_fault():
+    blocks, diagnostics = scan("G1 X1\n" + "Y2" * 5_000_000 + "\nG1 X$", "part.ngc")
+    assert blocks is None
+    assert [(fault.code, fault.place.line) for fault in diagnostics] == [("G104", 2), ("G101", 3)]
+
+
+def test_the_longest_line_is_a_block():
+    comment = "(" + "x" * (LONGEST_LINE - 4) + ")"
+    assert len(scanned(f"X1{comment}")) == 1
+    assert_same(scan(f"X1 {comment}\nX2", "f"), scan_by_block(f"X1 {comment}\nX2", "f"))
+
+
+def test_a_hundred_faults_are_told_and_the_others_counted():
+    _, diagnostics = scan("X\n" * 130, "part.ngc")
+    assert [fault.code for fault in diagnostics] == ["G201"] * 100 + ["G199"]
+    assert diagnostics[-1].found == "and 30 more"
+
+
+def test_columns_count_characters_not_bytes():
+    for encoding in ("utf-8", "latin-1"):
+        (fault,) = scan("(K\xfchlung) X$".encode(encoding), "part.ngc")[1]
+        assert (fault.place.column, fault.found) == (12, "'$'")
+
+
+def test_blocks_refuse_columns_of_another_length():
+    blocks = scanned("G1 X1\nX2")
+    with pytest.raises(ValueError, match=r"Blocks.words X: expected \(2,\), got \(1,\)"):
+        Blocks(np.array([1, 2]), {"X": blocks.word("X")[:1]}, [10], [0], [], [], [False, False], {}, (), "f")
+
+
+DIGITS = st.text("0123456789", min_size=1, max_size=4)
+NUMBERS = st.builds(
+    "{}{}".format,
+    st.sampled_from(["", "", "-", "+"]),
+    st.one_of(DIGITS, DIGITS.map("{}.".format), DIGITS.map(".{}".format), st.builds("{}.{}".format, DIGITS, DIGITS)),
+)
+MALFORMED = st.sampled_from(
+    ["1.2.3", "1-2", "-", "", ".", "--1", "1..", "5 6", "+-3", "1e5", "9" * 400, "$", "\x00", "\xe9"]
+)
+LETTERS = st.sampled_from("ABCDEFHIJKLMNOPQRSTUVWXYZabcxyzfn")
+CODES = st.sampled_from(["G1", "g01", "G 2", "G43.4", "G90", "G17", "M3", "m08", "M 6", "G1.25", "G-1", "M3.5"])
+BLANKS = st.sampled_from(["", "", " ", "  ", "\t", "(c)", "( ; )", "(MSG, here)"])
+PLAIN = st.builds("{}{}{}".format, LETTERS, BLANKS, st.one_of(NUMBERS, NUMBERS, NUMBERS, NUMBERS, MALFORMED))
+SPECIAL = st.sampled_from(
+    ["#1=2", "X[#1+2]", "#<a-b>=-#5", "O100 sub", "o<f> call [1] [-2]", "A3=.5", "B 3 = 1", "LN", "NX1", "TRAORI(1)"]
+    + ["X-[1-2]", "#1=[1 -2]", "#1=[1 2]", "TRA ORI", "O1000", "A4=1", "[", "]", "(", ")", "(a (b) c)", "; (", "%", "/"]
+)
+BLOCKS = st.builds(
+    "{}{}{}{}".format,
+    st.sampled_from(["", "", "", "/", " / ", "%"]),
+    st.sampled_from(["", "N10 ", "n010", "N5.5 ", "N-1", "N1.2.3"]),
+    st.lists(st.one_of(PLAIN, PLAIN, PLAIN, CODES, CODES, SPECIAL, BLANKS), max_size=6).flatmap(
+        lambda words: st.lists(BLANKS, min_size=len(words), max_size=len(words)).map(
+            lambda blanks: "".join(word + blank for word, blank in zip(words, blanks, strict=True))
+        )
+    ),
+    st.sampled_from(["", "", ";end", " ", "(T1 D=6)"]),
+)
+PROGRAMS = st.builds(
+    lambda blocks, end: end.join(blocks), st.lists(BLOCKS, max_size=8), st.sampled_from(["\n", "\r\n"])
+)
+
+
+@settings(derandomize=True, deadline=None, max_examples=300)
+@given(PROGRAMS)
+def test_both_ways_give_the_same(program):
+    assert_same(scan(program, "part.ngc"), scan_by_block(program, "part.ngc"))
+
+
+@settings(derandomize=True, deadline=None, max_examples=300)
+@given(PROGRAMS)
+def test_both_ways_give_the_same_of_the_lines_that_are_good(program):
+    good = "\n".join(line for line in program.splitlines() if scan(line, "part.ngc")[0] is not None)
+    one = scan(good, "part.ngc")
+    assert {fault.code for fault in one[1]} <= {"G212"}  # behind a percent sign
+    assert_same(one, scan_by_block(good, "part.ngc"))
+
+
+@pytest.mark.parametrize("block", ["M[2.3]", "M[2+0.3]", "G[1.04]", "G[1-2]", "G[1] X[2]", "X[3] Y2", "G1 X[#1]"])
+def test_both_ways_give_the_same_of_numbers_in_brackets(block):
+    assert_same(scan(f"X1\n{block}\nX2", "part.ngc"), scan_by_block(f"X1\n{block}\nX2", "part.ngc"))
+
+
+def test_pieces_do_not_show(monkeypatch):
+    chance = random.Random(20)
+    program = "\n".join(
+        f"N{row} G{row % 4} X{chance.uniform(-9, 9):.4f} (c) #1={row}"[: chance.randint(0, 40)] for row in range(400)
+    )
+    whole = scan(program, "part.ngc")
+    monkeypatch.setattr(lines, "PIECE", 100)
+    assert_same(scan(program, "part.ngc"), whole)
+
+
+def test_numbers_are_the_nearest_doubles():
+    chance = random.Random(21)
+    texts = [f"{chance.uniform(-1, 1) * 10 ** chance.randint(-6, 12):.{chance.randint(0, 17)}f}" for _ in range(3000)]
+    blocks = scanned("\n".join(f"X{text}" for text in texts))
+    assert blocks.word("X").tolist() == [float(text) for text in texts]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_any_bytes_give_blocks_or_diagnostics(seed):
+    chance = random.Random(seed)
+    alphabet = [bytes(range(256)), b"GXYZMNO#[]()<>=;/%. -+0123456789\n\r\t", b"GX1 .-\n", b"O1 subcallwhi[#1lt2]\n"][
+        seed
+    ]
+    for _ in range(1000):
+        text = bytes(chance.choices(alphabet, k=chance.randint(0, 120)))
+        blocks, diagnostics = scan(text, "noise.ngc")
+        assert (blocks is None) == bool(diagnostics)
+        assert_same((blocks, diagnostics), scan_by_block(text, "noise.ngc"))

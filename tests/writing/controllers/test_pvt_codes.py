@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+import numpy as np
+import pytest
+from controller_settings import settings_for
+
+from pkm_post.model import Event, EventKind, StrutMotion
+from pkm_post.writing.controllers.pvt.codes import MEANINGS, check_codes, code_text, event_faults
+
+CODES, LETTERS = settings_for().codes, settings_for().letters
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "text"),
+    [
+        (EventKind.TOOL_CHANGE, 12, "T12 M6"),
+        (EventKind.SPINDLE, 18000.0, "S18000 M3"),
+        (EventKind.SPINDLE, -3183.1, "S3183.1 M4"),
+        (EventKind.SPINDLE, -0.0, "M5"),
+        (EventKind.DWELL, 0.0001, "DWELL0.1"),
+        (EventKind.DWELL, 4, "DWELL4000"),
+        (EventKind.STOP, 1, "M1"),
+    ],
+)
+def test_an_event_has_one_text(kind, value, text):
+    assert code_text(Event(0, kind, value), CODES) == text
+
+
+def test_a_code_with_fixed_decimals_writes_what_it_can_write_exactly():
+    codes = CODES | {"spindle_clockwise": "S{value:.2f} M3"}
+    check_codes(codes, LETTERS)
+    assert code_text(Event(0, EventKind.SPINDLE, 1200.5), codes) == "S1200.50 M3"
+    with pytest.raises(ValueError, match="would write it as 3183.10"):
+        code_text(Event(0, EventKind.SPINDLE, 3183.0989), codes)
+
+
+def test_the_codes_of_the_example_are_in_order_and_tell_all_meanings_apart():
+    check_codes(CODES, LETTERS)
+    values = [3 * meaning.sign if meaning.value is None else meaning.value for meaning in MEANINGS.values()]
+    events = [Event(0, meaning.kind, value) for meaning, value in zip(MEANINGS.values(), values, strict=True)]
+    texts = [code_text(event, CODES) for event in events]
+    assert texts == ["T3 M6", "M5", "S3 M3", "S3 M4", "M9", "M8", "M7", "M0", "M1"]
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"coolant_mist": "M8"}, "got 'M8' for coolant_flood and coolant_mist"),
+        ({"coolant_mist": "S7 M3"}, "got 'S7 M3' for spindle_clockwise and coolant_mist"),
+        ({"tool_change": "S6 M{value:d}"}, "got 'S6 M3' for tool_change and spindle_clockwise"),
+        ({"tool_change": "M6"}, "tool_change: expected text with one"),
+        ({"tool_change": "T{value} T{value}"}, "tool_change: expected text with one"),
+        ({"tool_change": "T1{value:d}"}, "apart from other digits"),
+        ({"tool_change": "T{value:.0f}"}, "tool_change: expected text with one"),
+        ({"tool_change": "S{value:.2f} M4"}, "for tool_change and spindle_counterclockwise"),
+        ({"stop": "S1.50 M3", "spindle_clockwise": "S{value:.2f} M3"}, "got 'S1.50 M3' for spindle_clockwise and stop"),
+        ({"stop": "M0 ; halt"}, "stop: expected text without ';'"),
+        ({"stop": "M{value}"}, "stop: expected text without"),
+        ({"stop": "DWELL1000"}, "not beginning with"),
+        ({"stop": "dwell1000"}, "not beginning with"),
+        ({"stop": "M0 // halt"}, "no comment"),
+        ({"coolant_off": "M60==0"}, "coolant_off: expected DWELL0 behind a synchronous assignment"),
+        ({"coolant_off": "DWELL0 M60|=1"}, "not beginning with"),
+        ({"coolant_off": "M9 M60|=1"}, "expected DWELL0 behind a synchronous assignment"),
+        ({"spindle_clockwise": "M60=={value}"}, "expected DWELL0 behind a synchronous assignment"),
+        ({"stop": "INC"}, "no mode and no move of an axis, got INC"),
+        ({"stop": "M0 PVT20"}, "got PVT in"),
+        ({"stop": "m0rapid"}, "got rapid in"),
+        ({"stop": "CLEAR"}, "got CLEAR in"),
+        ({"stop": f"{LETTERS[0]}100"}, f"got {LETTERS[0]} in"),
+        ({"stop": f"M0 {LETTERS[5].lower()} -1.5"}, f"got {LETTERS[5].lower()} in"),
+        ({"tool_change": f"M6 {LETTERS[1]}{{value}}"}, f"got {LETTERS[1]} in"),
+        ({"stop": ""}, "stop: expected"),
+        ({"pallet": "M60"}, "expected the names"),
+    ],
+)
+def test_a_table_of_codes_must_be_well_formed_and_invertible(change, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        check_codes(CODES | change, LETTERS)
+
+
+def test_outputs_can_be_set_with_synchronous_assignments():
+    # Turbo PMAC User Manual, p. 250: one behind the last move or dwell of a program is not carried out
+    codes = CODES | {
+        "coolant_flood": "M60==1 DWELL0",
+        "coolant_off": "M60==0 DWELL0",
+        "spindle_clockwise": "M70=={value} DWELL0",
+    }
+    check_codes(codes, LETTERS)
+    assert code_text(Event(0, EventKind.COOLANT, 0.0), codes) == "M60==0 DWELL0"
+    assert code_text(Event(0, EventKind.SPINDLE, 900.5), codes) == "M70==900.5 DWELL0"
+
+
+def test_every_kind_of_event_but_the_dwell_has_a_code():
+    assert {meaning.kind for meaning in MEANINGS.values()} == set(EventKind) - {EventKind.DWELL}
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "found"),
+    [
+        (
+            EventKind.TOOL_CHANGE,
+            1.5,
+            "tool_change 1.5: the code tool_change = 'T{value:d} M6' would write it as 1",
+        ),
+        (EventKind.TOOL_CHANGE, -1, "tool_change -1: no code has this meaning"),
+        (EventKind.SPINDLE, float("inf"), "spindle inf: no code has this meaning"),
+        (EventKind.COOLANT, 3, "coolant 3: no code has this meaning"),
+        # 2^23 - 1 ms, the longest time of a move or dwell (PMAC User Manual, p. 169)
+        (EventKind.DWELL, 8388.7, "dwell 8388.7: a dwell lasts 0 to 8388.607 s"),
+        (EventKind.DWELL, float("nan"), "dwell nan: a dwell lasts 0 to 8388.607 s"),
+    ],
+)
+def test_an_event_without_code_is_told_before_writing(kind, value, found):
+    event = Event(0, kind, value)
+    motion = StrutMotion(np.array([0]), np.full((1, 6), 500.0), np.zeros((1, 6)), (event,))
+    assert [(fault.code, fault.found) for fault in event_faults(motion, CODES, "job")] == [("C104", found)]
+    with pytest.raises(ValueError, match="expected one with a code"):
+        code_text(event, CODES)
+
+
+def test_a_job_with_codes_for_all_events_has_no_faults(job, settings):
+    assert event_faults(job, settings.codes, "job") == ()

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Writer and reader each have a statement of what codes do: a fault in one of them is not read as if it were none."""
+
+from itertools import combinations
+
+import pytest
+from controller_settings import settings_for
+
+from pkm_post.model import Event, EventKind, StrutMotion
+from pkm_post.writing.controllers import CONTROLLERS
+from pkm_post.writing.controllers.pvt import codes, syntax
+
+PAIRS = list(combinations(codes.MEANINGS, 2))
+VALUES = {
+    EventKind.TOOL_CHANGE: (7.0,),
+    EventKind.SPINDLE: (0.0, 900.0, -900.0),
+    EventKind.COOLANT: (0.0, 1.0, 2.0),
+    EventKind.STOP: (0.0, 1.0),
+}
+
+
+def test_both_know_the_same_codes():
+    assert set(codes.MEANINGS) == set(syntax.EFFECTS)
+
+
+@pytest.mark.parametrize("kind", CONTROLLERS)
+@pytest.mark.parametrize("pair", PAIRS, ids="-".join)
+def test_two_meanings_swapped_in_the_writer_are_found(monkeypatch, job, kind, pair):
+    first, second = pair
+    swapped = codes.MEANINGS | {first: codes.MEANINGS[second], second: codes.MEANINGS[first]}
+    settings, controller = settings_for(kind), CONTROLLERS[kind]
+    monkeypatch.setattr(codes, "MEANINGS", swapped)
+    for event in (Event(0, kind, value) for kind, values in VALUES.items() for value in values):
+        alone = StrutMotion(job.time_ms[:3], job.length[:3], job.speed[:3], (event,))
+        if controller.faults(alone, settings, "job"):
+            continue  # nothing is written
+        (text,) = controller.program_parts(alone, settings, [])
+        read, _ = controller.read_parts([("job.pmc", text)], settings)
+        if read is None or read.events != alone.events:
+            return
+    pytest.fail("every event is read as it was meant")
