@@ -21,7 +21,7 @@ def add_commands(commands: Any) -> None:
     checking.set_defaults(run=_check)
     calibrating = actions.add_parser("calibrate", help="find the joints of a machine from measured poses")
     calibrating.add_argument("file", metavar="NAME_OR_FILE")
-    calibrating.add_argument("measurements", type=Path, metavar="MEASUREMENTS.csv", help="see docs/calibration.md")
+    calibrating.add_argument("measurements", type=Path, metavar="MEASUREMENTS.csv", help="see docs/machine-file.md")
     calibrating.add_argument("--out", required=True, type=Path, metavar="NEW.toml", help="the machine file to write")
     calibrating.set_defaults(run=_calibrate)
 

@@ -308,8 +308,8 @@ RULES: dict[str, Rule] = {
         "the machine cannot stand at the tool-change pose", "correct tool_change.nose, or the limit that is in the way"
     ),
     # M2: calibration of the machine
-    "M201": _error("the measurements cannot be read", "check the path; docs/calibration.md describes the file"),
-    "M202": _error("a row of the measurements is malformed", "correct it; docs/calibration.md describes the file"),
+    "M201": _error("the measurements cannot be read", "check the path; docs/machine-file.md describes the file"),
+    "M202": _error("a row of the measurements is malformed", "correct it; docs/machine-file.md describes the file"),
     "M203": _error("no machine fits the measurements", "look for wrong rows, units and frames in the measurements"),
     "M204": _error("the calibrated machine cannot be written", "correct what is said of the file that was written"),
     "M205": _warning("the poses do not determine all parameters", "measure at more places, with more tilt and spin"),

@@ -18,7 +18,7 @@ from pkm_post.geometry import Array, norm
 
 PLANNED_SHARE = 0.6
 """Share of each acceleration limit that is planned: the cubic that a controller runs across a switch from full
-acceleration to full braking reaches 5/3 of it at its end (shown in docs/feed.md and in the tests)."""
+acceleration to full braking reaches 5/3 of it at its end (shown in docs/planning.md and in the tests)."""
 _FOR_CURVATURE = 0.5
 """Share of the planned acceleration that the curvature of the path may use; the rest accelerates and brakes."""
 _NEGLIGIBLE = 1e-12

@@ -3,7 +3,7 @@
 
 The bounds are closed-form in the parameters of a segment and its two blends; the path is not sampled. Enters: a path.
 Leaves: upper bounds per segment. They show where a path demands so little of a machine that its limits need not be
-computed at every station. docs/feed.md has the derivations.
+computed at every station. docs/planning.md has the derivations.
 """
 
 from __future__ import annotations

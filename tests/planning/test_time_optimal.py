@@ -13,7 +13,7 @@ from pkm_post.planning.speed_limits import bounded_by, feed_at
 
 SHORTEST = json.loads((Path(__file__).parents[1] / "data" / "time_optimal.json").read_text(encoding="ascii"))
 FACTOR = 1.7
-"""What docs/feed.md says of these paths."""
+"""What docs/planning.md says of these paths."""
 OPTIMUM_DIGITS = 1e-3
 """Relative: the shortest times have four decimals, and hold between grid points to about this."""
 

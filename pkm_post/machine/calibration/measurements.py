@@ -2,7 +2,7 @@
 """Measurements: read a CSV file of poses and strut lengths into ``kinematics.calibration.Measured``, or its faults.
 
 One row per pose, in mm and degrees: tip x, y, z and tool axis i, j, k in {M}, spin, gauge length, and the six counted
-strut lengths l1 to l6. docs/calibration.md describes it.
+strut lengths l1 to l6. docs/machine-file.md describes it.
 """
 
 from __future__ import annotations
