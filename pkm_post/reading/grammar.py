@@ -1,19 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Grammar: an EBNF grammar of record and its lark parser. The package creates lark parsers only here.
+"""Grammars of record of one line, in EBNF, and their lark parsers. The package creates lark parsers only here.
 
-Enters: a grammar file, and the text of one line. Leaves: the parse tree of the line, or lark's report of the unexpected
-input and what it expected.
+Enters: the text of one line. Leaves: its parse tree, or lark's report of the unexpected input and what it expected.
 """
 
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from lark import Lark, Token, Tree, UnexpectedInput
+
+_FOLDER = Path(__file__).parent
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,27 @@ class Grammar:
             return unexpected
 
 
+BLOCK = Grammar(_FOLDER / "gcode" / "block.lark", start="block", reads="G-code")
+"""One block of G-code."""
+STATEMENT = Grammar(_FOLDER / "cldata" / "statement.lark", start="statement", reads="CL data", empty_parts=True)
+"""One statement of CL data, without comments, its lines joined."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """The fault of a line.
+
+    Attributes:
+        code: key into the table of diagnostics.
+        offset: index of its character or byte in the line.
+        found: what was found, as written.
+    """
+
+    code: str
+    offset: int
+    found: str
+
+
 @functools.cache
 def parser_of(grammar: Grammar) -> Lark:
     """The parser of a grammar, cached.
@@ -69,3 +92,14 @@ def parser_of(grammar: Grammar) -> Lark:
         lexer="contextual",
         maybe_placeholders=grammar.empty_parts,
     )
+
+
+def in_words(terminals: set[str], words: Mapping[str, tuple[str, ...]]) -> str:
+    """List terminals in words.
+
+    Args:
+        terminals: names of terminals.
+        words: the terminals of each word, in the order of the list.
+    """
+    named = [word for word, names in words.items() if terminals.intersection(names)]
+    return " or ".join(filter(None, (", ".join(named[:-1]), *named[-1:])))

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pkm_post.model import RULES, Diagnostic, Place, Severity
 from pkm_post.reading.cldata.lines import JOINT, Lines
+from pkm_post.reading.grammar import Fault, in_words
 
 if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
@@ -21,30 +21,20 @@ if TYPE_CHECKING:
 MOST_TOLD = 100
 """Errors reported individually; the rest are only counted."""
 
-EXPECTED: dict[str, str] = {
-    "WORD": "a word",
-    "TEXT_WORD": "a word",
-    "NUMBER": "a number",
-    "STRING": "a text in quotes",
-    "SLASH": "'/'",
-    "COMMA": "','",
-    "EQUAL": "'='",
-    "LPAR": "'('",
-    "RPAR": "')'",
-    "$END": "the end of the statement",
+EXPECTED: dict[str, tuple[str, ...]] = {
+    "a word": ("WORD", "TEXT_WORD"),
+    "a number": ("NUMBER",),
+    "a text in quotes": ("STRING",),
+    "'/'": ("SLASH",),
+    "','": ("COMMA",),
+    "'='": ("EQUAL",),
+    "'('": ("LPAR",),
+    "')'": ("RPAR",),
+    "the end of the statement": ("$END",),
 }
 """The terminals of the grammar in words, in reporting order."""
 
 _RUN = re.compile(r"[\w.+-]+")
-
-
-@dataclass(frozen=True)
-class Fault:
-    """A fault at one character of a statement."""
-
-    code: str
-    offset: int
-    found: str
 
 
 class Faults:
@@ -121,7 +111,7 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
     """The fault of a terminal that cannot continue the statement."""
     at_end = unexpected.token.type == "$END"
     offset = len(text.rstrip(f" \t{JOINT}")) if at_end else unexpected.token.start_pos or 0
-    expected = _in_words(set(unexpected.accepts or unexpected.expected))
+    expected = in_words(set(unexpected.accepts or unexpected.expected), EXPECTED)
     found = "the end of the statement" if at_end else f"'{str(unexpected.token)[:40]}'"
     code = "L202"
     if unexpected.token.type == "RPAR":
@@ -131,9 +121,3 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
     elif not text[:offset].strip(f" \t{JOINT}"):
         code = "L201"
     return Fault(code, offset, f"{found}, expected {expected}" if expected else found)
-
-
-def _in_words(terminals: set[str]) -> str:
-    """Terminals in words."""
-    words = list(dict.fromkeys(word for name, word in EXPECTED.items() if name in terminals))
-    return " or ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.cldata.faults import Fault, Faults, fault_of
-from pkm_post.reading.cldata.grammar import STATEMENT
+from pkm_post.reading.cldata.faults import Faults, fault_of
 from pkm_post.reading.cldata.lines import JOINT, LONGEST_LINE, MARK, Lines
 from pkm_post.reading.cldata.statements import Form, Statements, form_of
+from pkm_post.reading.grammar import STATEMENT, Fault
 
 if TYPE_CHECKING:
     from lark import UnexpectedInput

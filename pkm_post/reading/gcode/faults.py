@@ -11,7 +11,7 @@ import re
 from typing import TYPE_CHECKING
 
 from pkm_post.model import Diagnostic, Place
-from pkm_post.reading.gcode.row import Fault
+from pkm_post.reading.grammar import Fault, in_words
 
 if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
@@ -138,7 +138,7 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
     accepted = _accepted(text, unexpected)
     code, place = _code_and_place(text, offset, unexpected, accepted)
     found = "the end of the block" if place == offset and at_end else f"'{text[place : place + 1]}'"
-    return Fault(code, place, f"{found}, expected {_in_words(accepted)}")
+    return Fault(code, place, f"{found}, expected {in_words(accepted, EXPECTED)}")
 
 
 def _accepted(text: str, unexpected: UnexpectedToken) -> set[str]:
@@ -192,9 +192,3 @@ def _open_brackets(text: str) -> list[int]:
         elif open_at:
             open_at.pop()
     return open_at
-
-
-def _in_words(terminals: set[str]) -> str:
-    """Terminals in words."""
-    words = [words for words, names in EXPECTED.items() if terminals.intersection(names)]
-    return " or ".join(filter(None, (", ".join(words[:-1]), words[-1])))

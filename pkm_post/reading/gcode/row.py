@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from pkm_post.reading.gcode.grammar import BLOCK
+from pkm_post.reading.grammar import BLOCK, Fault
 
 if TYPE_CHECKING:
     from lark import Token, Tree, UnexpectedInput
@@ -27,21 +27,6 @@ LARGEST_CODE = 9999.0
 
 DIALECT_CODES: dict[str, tuple[int, ...]] = {"LN": (435, 10), "TRAORI": (435,), "TRAFOOF": (430,)}
 """Words of other dialects and the equivalent G codes, in tenths: G43.5 G1, G43.5 and G43."""
-
-
-@dataclass(frozen=True)
-class Fault:
-    """The fault of a line.
-
-    Attributes:
-        code: key into the table of diagnostics.
-        offset: byte offset in the line.
-        found: what was found, as written.
-    """
-
-    code: str
-    offset: int
-    found: str
 
 
 @dataclass

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from pkm_post.reading.cldata import read
 from pkm_post.reading.cldata.faults import Faults
-from pkm_post.reading.cldata.grammar import STATEMENT
 from pkm_post.reading.cldata.lines import JOINT, decoded, logical_lines
 from pkm_post.reading.cldata.scan import scan
 from pkm_post.reading.cldata.statements import form_of
+from pkm_post.reading.grammar import STATEMENT
 
 BLANKS = st.sampled_from(["", " ", "  ", " $\n"])
 NUMBERS = st.sampled_from(["1", "-2.5", ".25", "+3.", "1.0E-05", "-0.0", "12e2", "007"])

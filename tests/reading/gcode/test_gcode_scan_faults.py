@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from pkm_post.reading.gcode.faults import EXPECTED
-from pkm_post.reading.gcode.grammar import BLOCK
 from pkm_post.reading.gcode.scan import scan, scan_by_block
-from pkm_post.reading.grammar import parser_of
+from pkm_post.reading.grammar import BLOCK, parser_of
 
 BAD_PROGRAMS = sorted((Path(__file__).parents[2] / "data" / "bad_gcode").glob("*.ngc"))
 EXPECTATION = re.compile(rb"; expects ((?:[GL]\d{3} \d+:\d+(?:, |\r?\n))+)")

@@ -9,9 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from pkm_post.reading.cldata.grammar import STATEMENT
-from pkm_post.reading.gcode.grammar import BLOCK
-from pkm_post.reading.grammar import parser_of
+from pkm_post.reading.grammar import BLOCK, STATEMENT, parser_of
 from pkm_post.reading.program_text import Colour, Language, language_of, spans
 from pkm_post.reading.program_text.colours import LONGEST, TABLES
 
