@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Files: final names of results, and locks between processes."""
 
+from pkm_post.system.decimals import DecimalReader
 from pkm_post.system.document_file.content import DocumentContent, Job
 from pkm_post.system.document_file.damaged import Damaged
 from pkm_post.system.document_file.read import read_document
@@ -13,6 +14,7 @@ from pkm_post.system.workers import workers
 __all__ = [
     "FAULTS",
     "Damaged",
+    "DecimalReader",
     "DocumentContent",
     "Job",
     "Lock",

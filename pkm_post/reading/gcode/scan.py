@@ -16,11 +16,11 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.faults import Faults, readable
 from pkm_post.reading.gcode.lexer import Lexed, lex
 from pkm_post.reading.gcode.lines import clean, pieces, without_comments, without_lines
-from pkm_post.reading.gcode.numbers import values_of
 from pkm_post.reading.gcode.percent import Demarcated, demarcated
 from pkm_post.reading.gcode.row import LONGEST_LINE, Row, read_row
 from pkm_post.reading.gcode.shapes import BY_ITSELF, NOTHING, Shapes
 from pkm_post.reading.gcode.table import Table
+from pkm_post.system import DecimalReader
 
 Scanned = tuple[Blocks | None, tuple[Diagnostic, ...]]
 _SHOWN = 40
@@ -124,7 +124,7 @@ def _read_alone(
 
 def _values(text: bytes, lexed: Lexed, line_start: Array, shape: Array) -> Array:
     """The numbers of all lines with a shape; lines with a malformed number lose their shape."""
-    values = values_of(text, lexed.starts, lexed.ends)
+    values = DecimalReader(text).numbers(lexed.starts, lexed.ends)
     wrong = np.concatenate([lexed.suspicious, lexed.starts[~np.isfinite(values)]])
     shape[_lines_at(wrong, line_start)] = BY_ITSELF
     if (shape == BY_ITSELF).any():

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.writing.controllers.pvt.numbers import Digits
+from pkm_post.system import DecimalReader
 from pkm_post.writing.controllers.pvt.syntax import Form
 
 
@@ -101,13 +101,13 @@ class _Marks:
         self.complete = len(self._closing)
         begins = np.append(0, self._places[self._closing] + 1)
         self.edges = begins if begins[-1] == len(text) else np.append(begins, len(text))
-        self._digits = Digits(text)
+        self._reader = DecimalReader(text)
 
     def moves(self, form: Form) -> tuple[Array, Array]:
         """Rows of lines of moves, (M,), and their lengths and speeds, (M, 6, 2)."""
         rows, places = self._alike(form.with_numbers("."))
         letters, lengths, colons, speeds, ends = np.moveaxis(places.reshape(-1, 6, 5), 2, 0)
-        values, fits = self._digits.decimals(
+        values, fits = self._reader.decimals(
             np.stack([letters, colons], axis=2), np.stack([lengths, speeds], axis=2), np.stack([colons, ends], axis=2)
         )
         begins = np.column_stack([self.edges[rows], ends[:, :-1] + 1])
@@ -117,7 +117,7 @@ class _Marks:
     def intervals(self, form: Form, longest: int) -> tuple[Array, Array]:
         """Rows of lines of intervals, (M,), and the intervals in ms, (M,)."""
         rows, places = self._alike(form.with_numbers(""))
-        value, fits = self._digits.whole_numbers(places[:, -2], places[:, -1])
+        value, fits = self._reader.whole_numbers(places[:, -2], places[:, -1])
         in_one_piece = places[:, -2] - self.edges[rows] == places.shape[1] - 2
         right = fits & in_one_piece & (value >= 1) & (value <= longest)
         return rows[right], value[right]

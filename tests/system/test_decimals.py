@@ -1,13 +1,67 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+"""Decimals parsed many at once are those that Python reads one by one, to the last bit."""
+
+import random
 import re
 
 import numpy as np
 import pytest
 
-from pkm_post.writing.controllers.pvt.numbers import Digits
+from pkm_post.system import DecimalReader
 
+RUN = re.compile(rb"[-+.\d]+")
 DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]{0,14})\.[0-9]{1,15}")
 WHOLE = re.compile(r"0|[1-9][0-9]{0,14}")
+
+
+def one_by_one(run):
+    try:
+        return float(run)
+    except ValueError:
+        return np.nan
+
+
+def compare(text):
+    runs = list(RUN.finditer(text))
+    starts, ends = (np.array([getattr(run, which)() for run in runs], np.int64) for which in ("start", "end"))
+    values = DecimalReader(text).numbers(starts, ends)
+    expected = np.array([one_by_one(run[0]) for run in runs], np.float64)
+    # As bits, so that -0 is not 0; what is no number is NaN in both.
+    np.testing.assert_array_equal(np.isnan(values), np.isnan(expected))
+    good = ~np.isnan(expected)
+    np.testing.assert_array_equal(values[good].view(np.int64), expected[good].view(np.int64))
+
+
+def test_no_numbers_at_all():
+    compare(b"")
+    compare(b"G X\n")
+
+
+@pytest.mark.parametrize(
+    "number",
+    [b"0", b"-0", b"+0.", b".5", b"-.5", b"5.", b"00012.500", b"12345678", b"123456789", b"1.12345678", b"1.123456789"]
+    + [b"99999999.99999999", b"90071992.54740993", b"-12345678.1234567", b"9" * 400, b"0." + b"0" * 400 + b"1"]
+    + [b"-", b"+", b".", b"-.", b"1.2.3", b"1-2", b"--1", b"+-1", b"1..", b"..1", b"1-", b"1+", b"1.-2", b"12345678-"],
+)
+def test_a_number_at_every_place_of_a_text(number):
+    for text in (number, b"X" + number, number + b"\n", b" 7 " + number + b" 8 ", b".5" + b" " * 9 + number):
+        compare(text)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_numbers_of_any_size(seed):
+    chance = random.Random(seed)
+    texts = [
+        f"{chance.choice(['', '-', '+'])}{chance.random() * 10 ** chance.randint(-6, 12):.{chance.randint(0, 14)}f}"
+        for _ in range(20_000)
+    ]
+    compare(" ".join(texts).encode())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_digits_points_and_signs_in_any_order(seed):
+    chance = random.Random(seed)
+    compare(b" ".join(bytes(chance.choices(b"0123456789.+-", k=chance.randint(1, 12))) for _ in range(20_000)))
 
 
 def read(numbers):
@@ -16,7 +70,7 @@ def read(numbers):
     before = np.cumsum([0, *(len(number) + 2 for number in numbers)])[:-1]
     ends = before + 1 + np.array([len(number) for number in numbers])
     points = before + 1 + np.array([number.index(".") for number in numbers])
-    return Digits(text.encode("latin-1")).decimals(before, points, ends)
+    return DecimalReader(text.encode("latin-1")).decimals(before, points, ends)
 
 
 def assert_read(numbers):
@@ -47,7 +101,7 @@ def test_numbers_of_any_length_side_by_side():
     "number",
     ["0.0", "-0.0000", "9007199254.740991", "0.900719925474099", "900719925474099.1", "-12345678.12345678", "0.1"],
 )
-def test_single_numbers_are_read_wherever_they_are(number):
+def test_single_decimals_are_read_wherever_they_are(number):
     assert_read([number])
     assert_read(["1.5", number, "2.25"])
 
@@ -82,6 +136,6 @@ def test_whole_numbers_have_no_zeros_in_front_and_no_sign():
     text = "".join(f"T{number}\n" for number in numbers)
     before = np.cumsum([0, *(len(number) + 2 for number in numbers)])[:-1]
     ends = before + 1 + np.array([len(number) for number in numbers])
-    values, fits = Digits(text.encode("ascii")).whole_numbers(before, ends)
+    values, fits = DecimalReader(text.encode("ascii")).whole_numbers(before, ends)
     assert fits.tolist() == [WHOLE.fullmatch(number) is not None for number in numbers]
     assert values[fits].tolist() == [int(number) for number in numbers[:8]]
