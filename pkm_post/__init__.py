@@ -17,9 +17,9 @@ def post_job(job, machine=None, out=".", **choices):  # type: ignore[no-untyped-
         pkm_post.model.Refused: as that function, and F130 if memory runs out.
     """
     from pkm_post.freecad_app.post_job import post_job as post
-    from pkm_post.system import memory_or_refused
+    from pkm_post.system import memory_guard
 
-    with memory_or_refused(job.Label):
+    with memory_guard(job.Label):
         return post(job, machine, out, **choices)
 
 
@@ -50,10 +50,10 @@ def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-d
     from os import PathLike
     from pathlib import Path
 
-    from pkm_post.system import memory_or_refused
+    from pkm_post.system import memory_guard
 
     is_path = isinstance(source, str | PathLike)
-    with memory_or_refused(str(source) if is_path else source.Label):
+    with memory_guard(str(source) if is_path else source.Label):
         if is_path and Path(source).suffix.lower() != ".fcstd":
             from pkm_post.posting import post_file
 

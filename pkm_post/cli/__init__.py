@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import pkm_post
 from pkm_post.cli import machine, part_programs, pmac, post, reach, reach_map, verify
 from pkm_post.cli.inside_freecad import INTERRUPTED
-from pkm_post.system import FAULTS, lack_of_memory
+from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 __all__ = ["main"]
 
@@ -37,8 +37,8 @@ def main(arguments: Sequence[str]) -> int:
         return 1
     except KeyboardInterrupt:
         return INTERRUPTED
-    except FAULTS as fault:
-        told = lack_of_memory(fault, "pkm_post") or _not_installed(fault)
+    except MEMORY_FAULTS as fault:
+        told = memory_diagnostic(fault, "pkm_post") or _not_installed(fault)
         if told is None:
             raise
         print(told, file=sys.stderr)

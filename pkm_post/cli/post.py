@@ -33,7 +33,7 @@ from pkm_post.options import (
     source_of,
     whole_from,
 )
-from pkm_post.system import Damaged, Job, memory_or_refused, read_document
+from pkm_post.system import DamagedDocument, Job, memory_guard, read_document
 
 if TYPE_CHECKING:
     from pkm_post.posting import Posted
@@ -115,7 +115,7 @@ def _jobs_in(document: Path) -> tuple[Job, ...]:
     """CAM jobs of a document; none of an unreadable one, which is refused when posted."""
     try:
         return read_document(document).jobs
-    except (OSError, Damaged):
+    except (OSError, DamagedDocument):
         return ()
 
 
@@ -136,7 +136,7 @@ def _post_one(file: Path, namespace: argparse.Namespace) -> int:
 
     post, line = _part_program if is_part_program(file) else _document, ProgressLine(file.name)
     try:
-        with line, memory_or_refused(str(file)):
+        with line, memory_guard(str(file)):
             results = post(file, namespace, line)
     except Refused as refused:
         print(refused, file=sys.stderr)

@@ -50,7 +50,7 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
     from pkm_post.machine import machine_named, reach_map
     from pkm_post.report import draw_reach
-    from pkm_post.system import staged, unwritten
+    from pkm_post.system import staged, write_fault
 
     if math.prod(map(len, (namespace.x, namespace.y, namespace.z))) > _MOST_PLACES:
         print(f"expected --x, --y and --z with at most {_MOST_PLACES} places together", file=sys.stderr)
@@ -72,7 +72,7 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
                 print(warning, file=sys.stderr)
             names = sorted(path.name for path in folder.iterdir())
     except OSError as fault:
-        print(unwritten(namespace.out, fault), file=sys.stderr)
+        print(write_fault(namespace.out, fault), file=sys.stderr)
         return 1
     for name in names:
         print(namespace.out / name)

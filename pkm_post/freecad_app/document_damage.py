@@ -13,7 +13,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from pkm_post.model import Diagnostic, Place, Refused
-from pkm_post.system import Damaged, DocumentContent, read_document
+from pkm_post.system import DamagedDocument, DocumentContent, read_document
 
 
 def intact(file: FilePath) -> DocumentContent:
@@ -26,7 +26,7 @@ def intact(file: FilePath) -> DocumentContent:
         return read_document(file)
     except OSError as fault:
         raise Refused([Diagnostic("J101", Place(str(file)), str(fault))]) from fault
-    except Damaged as damaged:
+    except DamagedDocument as damaged:
         raise Refused([Diagnostic(damaged.code, Place(str(file)), damaged.found)]) from damaged
 
 

@@ -23,7 +23,7 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.machine import find_collisions, reach
 from pkm_post.model import Diagnostic, Refused, Trajectory, errors
 from pkm_post.posting import known_setup, step_names
-from pkm_post.system import staged, unwritten
+from pkm_post.system import staged, write_fault
 from pkm_post.writing import Form, manifest, outputs, trajectory_file, write
 
 T = TypeVar("T")
@@ -61,7 +61,7 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
             _value(trajectory_file.read(stored), found)
             manifest.write(folder, target.stem)
     except OSError as fault:
-        raise Refused([*found, unwritten(target, fault)]) from fault
+        raise Refused([*found, write_fault(target, fault)]) from fault
     made = (path.name, target.name, manifest.manifest_name(target.stem))
     found = (*found, *outputs.left_over(path, made, earlier))
     lines = (

@@ -60,10 +60,10 @@ class HexapodPost(PostProcessor):
         from pkm_post.freecad_app.post_outputs import OUTPUTS
         from pkm_post.freecad_app.progress import Stopped
         from pkm_post.model import Refused
-        from pkm_post.system import memory_or_refused
+        from pkm_post.system import memory_guard
 
         try:
-            with memory_or_refused(self._job.Label):
+            with memory_guard(self._job.Label):
                 settings = settings_of(self._job, post_processor=self.name, selection=self._chosen)
                 text, diagnostics = OUTPUTS[self.name](self._job, settings, program_path(self._job))
         except Refused as refused:

@@ -13,7 +13,7 @@ from functools import wraps
 from typing import Any
 
 from pkm_post.model import Refused
-from pkm_post.system import memory_or_refused
+from pkm_post.system import memory_guard
 
 Execute = Callable[[Any, Any], Any]
 """The method of a proxy that computes its object."""
@@ -25,7 +25,7 @@ def briefly_refused(execute: Execute) -> Execute:
     @wraps(execute)
     def brief(proxy: Any, obj: Any) -> Any:
         try:
-            with memory_or_refused(obj.Label):
+            with memory_guard(obj.Label):
                 return execute(proxy, obj)
         except Refused as refused:
             raise refused.with_traceback(None) from None

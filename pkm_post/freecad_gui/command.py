@@ -16,7 +16,7 @@ from PySide import QtWidgets
 
 from pkm_post.freecad_app.transaction import transaction
 from pkm_post.freecad_gui.workbench import ICONS
-from pkm_post.system import FAULTS, lack_of_memory
+from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 translate = FreeCAD.Qt.translate
 
@@ -30,8 +30,8 @@ def memory_or_told(title: str) -> Iterator[None]:
     """
     try:
         yield
-    except FAULTS as fault:
-        diagnostic = lack_of_memory(fault, title)
+    except MEMORY_FAULTS as fault:
+        diagnostic = memory_diagnostic(fault, title)
         if diagnostic is None:
             raise
         QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, str(diagnostic))

@@ -26,7 +26,7 @@ from pkm_post.freecad_gui.player_text import told
 from pkm_post.freecad_gui.recompute_watch import RecomputeWatch
 from pkm_post.freecad_gui.stage import Stage
 from pkm_post.model import Place, Refused
-from pkm_post.system import memory_or_refused
+from pkm_post.system import memory_guard
 
 translate = FreeCAD.Qt.translate
 
@@ -208,7 +208,7 @@ def open_player(subject: Any) -> Player | None:
     for open_before in window.findChildren(QtWidgets.QDockWidget, _NAME):
         open_before.close()
     try:
-        with memory_or_refused(subject.Label):
+        with memory_guard(subject.Label):
             simulation = plan_of(subject)
     except (Refused, ValueError) as fault:
         QtWidgets.QMessageBox.warning(window, translate("PKM_Simulate", "Simulate"), str(fault))

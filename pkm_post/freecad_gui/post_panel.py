@@ -27,7 +27,7 @@ from pkm_post.freecad_gui.workbench import ICONS
 from pkm_post.model import Refused
 from pkm_post.options import READING
 from pkm_post.posting import Prepared
-from pkm_post.system import memory_or_refused
+from pkm_post.system import memory_guard
 
 translate = FreeCAD.Qt.translate
 
@@ -84,7 +84,7 @@ class PostPanel:
         self._show_progress(READING, 0.0)
         QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
         try:
-            with memory_or_refused(self.job.Label):
+            with memory_guard(self.job.Label):
                 read = self._read()
         except BaseException as fault:
             self._show_end(fault)

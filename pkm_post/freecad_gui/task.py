@@ -13,7 +13,7 @@ from typing import Any
 from PySide import QtCore
 
 from pkm_post.freecad_app.progress import Stopped
-from pkm_post.system import memory_or_refused
+from pkm_post.system import memory_guard
 
 
 class Task(QtCore.QThread):
@@ -53,7 +53,7 @@ class Task(QtCore.QThread):
     def run(self) -> None:
         """Called by Qt in the other thread: store the result or the exception, so that none escapes."""
         try:
-            with memory_or_refused("PKM Post"):
+            with memory_guard("PKM Post"):
                 self._value = self._call()
         except BaseException as fault:
             self._fault = fault

@@ -37,7 +37,7 @@ from pkm_post.posting.machine_check import home_faults
 from pkm_post.posting.placed import trajectory_of
 from pkm_post.posting.run import Findings, Log, Progress, Run, quiet, unwatched
 from pkm_post.report import plots, summary
-from pkm_post.system import memory_or_refused, staged, unwritten
+from pkm_post.system import memory_guard, staged, write_fault
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_seal, read_texts, trajectory_file
 
 SUFFIX = ".pmc"
@@ -85,7 +85,7 @@ def post(
     run = Run(log, progress, _shares(options), list(found))
     try:
         results = staged(program_path.parent, manifest.manifest_name(program_path.stem))
-        with memory_or_refused(str(program_path)), results as folder:
+        with memory_guard(str(program_path)), results as folder:
             parts, report = _all_steps(run, program, machine, folder / program_path.name, options, setup)
             run.end()
             manifest.write(folder, program_path.stem)
@@ -93,7 +93,7 @@ def post(
     except OSError as fault:
         if fault is run.raised_outside:
             raise
-        raise Refused([*run.warnings, unwritten(program_path, fault)]) from fault
+        raise Refused([*run.warnings, write_fault(program_path, fault)]) from fault
     gone = [path for path in posted.files if not path.is_file()]
     run.accept(tuple(Diagnostic("F142", Place(str(path)), "it was written") for path in gone))
     return posted

@@ -1,30 +1,28 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files: final names of results, and locks between processes."""
+"""System: files and processes: results that appear together, locks, documents on disk, threads, memory."""
 
 from pkm_post.system.decimals import DecimalReader
-from pkm_post.system.document_file.content import DocumentContent, Job
-from pkm_post.system.document_file.damaged import Damaged
-from pkm_post.system.document_file.read import read_document
-from pkm_post.system.lock import Lock, Words, locked, words_of
-from pkm_post.system.out_of_memory import FAULTS, lack_of_memory, memory_or_refused
-from pkm_post.system.staged import staged
-from pkm_post.system.unwritten import unwritten
+from pkm_post.system.document import DocumentContent, Job, read_document
+from pkm_post.system.document_archive import DamagedDocument
+from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
+from pkm_post.system.out_of_memory import MEMORY_FAULTS, memory_diagnostic, memory_guard
+from pkm_post.system.staged import staged, write_fault
 from pkm_post.system.workers import workers
 
 __all__ = [
-    "FAULTS",
-    "Damaged",
+    "MEMORY_FAULTS",
+    "DamagedDocument",
     "DecimalReader",
     "DocumentContent",
     "Job",
     "Lock",
-    "Words",
-    "lack_of_memory",
-    "locked",
-    "memory_or_refused",
+    "OwnerRecord",
+    "memory_diagnostic",
+    "try_lock",
+    "memory_guard",
     "read_document",
     "staged",
-    "unwritten",
-    "words_of",
+    "write_fault",
+    "lock_owner",
     "workers",
 ]

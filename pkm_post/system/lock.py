@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lock: exclusive ownership by one process of this computer, with a file that describes the owner.
+"""Lock files: exclusive ownership by one process of this computer, with a record of the owner in the file.
 
 The system holds the lock and releases it when the process ends in any manner. The content of an unlocked file is
-meaningless.
-
-Input: a path, words. Output: a lock, or the words of the owning process.
+meaningless. Input: a path and a record. Output: a lock, or the record of the owning process.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ if sys.platform == "win32":
     import msvcrt
 
     _LOCKED_BYTE = 1 << 30
-    """Others cannot read a byte that is locked: this one is far behind the words."""
+    """Other processes cannot read a locked byte: this one is far behind the record."""
 
     def _lock(descriptor: int) -> None:
         os.lseek(descriptor, _LOCKED_BYTE, os.SEEK_SET)
@@ -32,10 +30,10 @@ else:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-_EVERYBODY = 0o666
+_ALL_USERS = 0o666
 _MOST_BYTES = 4096
 
-Words = dict[str, Any]
+OwnerRecord = dict[str, Any]
 
 
 class Lock:
@@ -50,11 +48,11 @@ class Lock:
     def __exit__(self, *raised: object) -> None:
         self.release()
 
-    def say(self, words: Words) -> None:
-        """Write the description for other processes."""
+    def describe(self, record: OwnerRecord) -> None:
+        """Write the record of the owner, for other processes."""
         os.ftruncate(self._descriptor, 0)
         os.lseek(self._descriptor, 0, os.SEEK_SET)
-        os.write(self._descriptor, json.dumps(words).encode()[:_MOST_BYTES])
+        os.write(self._descriptor, json.dumps(record).encode()[:_MOST_BYTES])
 
     def release(self) -> None:
         """Release the lock. The file is removed first, so that a waiting process sees that its file is stale."""
@@ -70,7 +68,7 @@ class Lock:
             self._path.unlink(missing_ok=True)
 
 
-def locked(path: Path) -> Lock | None:
+def try_lock(path: Path) -> Lock | None:
     """Acquire the lock of a path; None when another process holds it.
 
     Raises:
@@ -91,13 +89,13 @@ def locked(path: Path) -> Lock | None:
         os.close(descriptor)
 
 
-def words_of(path: Path) -> Words:
-    """Description that the owning process wrote; empty when there is none."""
+def lock_owner(path: Path) -> OwnerRecord:
+    """The record that the owning process wrote; empty when there is none."""
     try:
-        said = json.loads(path.read_bytes()[:_MOST_BYTES])
+        record = json.loads(path.read_bytes()[:_MOST_BYTES])
     except (OSError, ValueError):
         return {}
-    return said if isinstance(said, dict) else {}
+    return record if isinstance(record, dict) else {}
 
 
 def _opened(path: Path) -> int:
@@ -107,9 +105,9 @@ def _opened(path: Path) -> int:
         with contextlib.suppress(FileNotFoundError):
             return os.open(path, flags)
         with contextlib.suppress(FileExistsError):
-            descriptor = os.open(path, flags | os.O_CREAT | os.O_EXCL, _EVERYBODY)
+            descriptor = os.open(path, flags | os.O_CREAT | os.O_EXCL, _ALL_USERS)
             if hasattr(os, "fchmod"):
-                os.fchmod(descriptor, _EVERYBODY)
+                os.fchmod(descriptor, _ALL_USERS)
             return descriptor
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Out of memory: report a lack of memory anywhere as the diagnostic F130 at the entry points.
+"""Out of memory: every entry point reports a lack of memory as the diagnostic F130.
 
-Input: a name of the current task. All entry points use this: the command line, CAM's Post Process, document objects,
-panels, and the macro API. Unfinished work is rolled back on the way out, as for any exception. This module is imported
-without NumPy, as the command line starts without it.
+Input: a name of the current task. The entry points are the command line, CAM's Post Process, document objects, panels,
+and the macro API. Unfinished work is rolled back on the way out, as for any exception. This module does not need NumPy,
+as the command line starts without it.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ if sys.platform != "win32":
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
 
-FAULTS = (MemoryError, OSError, RuntimeError, ImportError)
-"""Exceptions that can signal it."""
+MEMORY_FAULTS = (MemoryError, OSError, RuntimeError, ImportError)
+"""Exceptions that can signal a lack of memory."""
 
 _UNIT = 1 << 20 if sys.platform == "darwin" else 1 << 10
 """Units of the peak process size per MB: macOS counts bytes, others kilobytes."""
@@ -33,7 +33,7 @@ _NO_THREAD = "can't start new thread"
 
 
 @contextmanager
-def memory_or_refused(subject: str) -> Iterator[None]:
+def memory_guard(subject: str) -> Iterator[None]:
     """Refuse work that exceeds the memory.
 
     Args:
@@ -46,8 +46,8 @@ def memory_or_refused(subject: str) -> Iterator[None]:
         _start_workers()
         yield
         return
-    except FAULTS as fault:
-        diagnostic = lack_of_memory(fault, subject)
+    except MEMORY_FAULTS as fault:
+        diagnostic = memory_diagnostic(fault, subject)
         if diagnostic is None:
             raise
     from pkm_post.model import Refused
@@ -55,12 +55,12 @@ def memory_or_refused(subject: str) -> Iterator[None]:
     raise Refused([diagnostic])
 
 
-def lack_of_memory(fault: BaseException, subject: str) -> Diagnostic | None:
+def memory_diagnostic(fault: BaseException, subject: str) -> Diagnostic | None:
     """Diagnostic of an exception that signals lack of memory; None for all others.
 
     Args:
-        fault: one of ``FAULTS``; on lack of memory, the memory held by the calls in its traceback is released.
-        subject: as in ``memory_or_refused``.
+        fault: one of ``MEMORY_FAULTS``; on lack of memory, the memory held by the calls in its traceback is released.
+        subject: as in ``memory_guard``.
     """
     if not _is_lack_of_memory(fault):
         return None
@@ -88,12 +88,12 @@ def _is_lack_of_memory(fault: BaseException) -> bool:
 
 
 def _found(fault: BaseException) -> str:
-    """Format the requested memory, the step, and the process size before."""
-    asked = str(fault) or "a request for memory was refused"
-    return ", ".join([asked, *getattr(fault, "__notes__", ()), *_had()])
+    """Text of the requested memory, the step, and the largest size of the process."""
+    request = str(fault) or "a request for memory was refused"
+    return ", ".join([request, *getattr(fault, "__notes__", ()), *_peak_size()])
 
 
-def _had() -> list[str]:
+def _peak_size() -> list[str]:
     if sys.platform == "win32":
         return []
     size = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

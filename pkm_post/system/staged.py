@@ -2,11 +2,13 @@
 """Staged files: results are written to a private folder and get their final names when all are complete.
 
 Input: the target folder. Output: all files in it, or none. A machine must never receive half a program, nor a program
-beside the report of another one.
+with the report of another one. All earlier files are moved aside before any new one arrives: a process that is killed
+leaves earlier files or new files, perhaps not all of them, but no mixture.
 """
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import shutil
@@ -15,10 +17,16 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from pkm_post.system.lock import Lock, locked
-from pkm_post.system.moved import move
+from pkm_post.system.lock import Lock, try_lock
 
+if TYPE_CHECKING:
+    from pkm_post.model import Diagnostic
+
+
+_Move = tuple[Path, Path]
+"""Source and destination."""
 _PREFIX = ".staged-"
 _PRIVATE = re.compile(re.escape(_PREFIX) + "[a-z0-9_]{8}")
 """Names of private folders, as ``tempfile.mkdtemp`` makes them."""
@@ -36,6 +44,10 @@ _PAUSE = 0.005
 
 class BusyError(OSError):
     """Another process has been moving files into a folder for too long."""
+
+
+class MixedError(OSError):
+    """Files could not be moved, and not all of the earlier ones could be restored."""
 
 
 @contextmanager
@@ -69,7 +81,7 @@ def staged(folder: Path, last: str = "") -> Iterator[Path]:
         for name in sorted(os.listdir(new)):
             _synchronise(new / name)
         with _lock_of(folder / _LOCK):
-            move(new, folder, aside, last)
+            _move_files(new, folder, aside, last)
 
 
 @contextmanager
@@ -90,7 +102,7 @@ def _sweep(folder: Path) -> None:
     """Remove the private folders of ended processes."""
     for name in filter(_PRIVATE.fullmatch, os.listdir(folder)):
         try:
-            owner = locked(folder / name / _OWNER)
+            owner = try_lock(folder / name / _OWNER)
         except OSError:
             continue  # another user's, or its process is removing it
         if owner is not None:
@@ -101,7 +113,7 @@ def _sweep(folder: Path) -> None:
 def _lock_of(path: Path) -> Lock:
     """Lock of a path, once the owning process releases it or ends."""
     deadline = time.monotonic() + _PATIENCE
-    while (lock := locked(path)) is None:
+    while (lock := try_lock(path)) is None:
         if time.monotonic() > deadline:
             raise BusyError(f"another process has been moving files into {path.parent} for {_PATIENCE:g} s")
         time.sleep(_PAUSE)
@@ -112,3 +124,91 @@ def _synchronise(file: Path) -> None:
     """Wait until the content of a file is on disk; folders cannot be opened this way and are refused."""
     with file.open("r+b") as stream:  # Windows synchronises only files open for writing
         os.fsync(stream.fileno())
+
+
+def _move_files(new: Path, folder: Path, aside: Path, last: str) -> None:
+    """Move all files of a folder into another one, and those that they replace into a third one.
+
+    A failure or a user interrupt restores the initial state.
+
+    Args:
+        new: contains the files to move, no folders.
+        folder: target folder.
+        aside: receives the replaced files; it is empty.
+        last: file that marks the set as complete, if there is one: it is removed first and arrives last.
+
+    Raises:
+        OSError: a file cannot be moved.
+        MixedError: nor can all earlier ones be restored.
+    """
+    names = sorted(os.listdir(new), key=lambda name: (name == last, name))
+    for name in names:
+        _refuse_folder(folder / name)
+    begun: list[_Move] = []
+    try:
+        for source, target in _moves(names, new, folder, aside, last):
+            begun.append((source, target))
+            os.replace(source, target)
+        _synchronise_names(folder)
+    except BaseException as fault:
+        _undo(begun, last, fault)
+        raise
+
+
+def _moves(names: list[str], new: Path, folder: Path, aside: Path, last: str) -> Iterator[_Move]:
+    """Yield all moves in order; names reach the disk before moves that depend on them."""
+    for name in reversed(names):
+        if os.path.lexists(folder / name):
+            yield folder / name, aside / name
+    _synchronise_names(folder)
+    for name in names:
+        if name == last:
+            _synchronise_names(folder)
+        yield new / name, folder / name
+
+
+def _undo(begun: list[_Move], last: str, fault: BaseException) -> None:
+    """Undo the begun moves; ``last`` is not restored if another file was not."""
+    stuck: list[str] = []
+    for source, target in reversed(begun):
+        if stuck and source.name == last:
+            continue
+        try:
+            if not os.path.lexists(source):  # the last move may not have happened
+                os.replace(target, source)
+        except OSError:
+            stuck.append(source.name)
+    if stuck:
+        names = ", ".join(dict.fromkeys(stuck))
+        raise MixedError(f"{fault}; after that these files could not be restored: {names}") from fault
+
+
+def _refuse_folder(target: Path) -> None:
+    if target.is_dir() and not target.is_symlink():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
+
+
+def _synchronise_names(folder: Path) -> None:
+    """Wait until the names in a folder are on disk; Windows cannot open folders and stores names itself."""
+    if os.name == "posix":
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+_CODES = ((BusyError, "F109"), (MixedError, "F110"), (OSError, "F101"))
+
+
+def write_fault(path: Path, fault: OSError) -> Diagnostic:
+    """Make the diagnostic of a result that could not be written.
+
+    Args:
+        path: of the result.
+        fault: raised by ``staged`` or by writing into its folder.
+    """
+    from pkm_post.model import Diagnostic, Place
+
+    code = next(code for kind, code in _CODES if isinstance(fault, kind))
+    return Diagnostic(code, Place(str(path)), str(fault))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pkm_post.model import Diagnostic, errors
 from pkm_post.reading import AS_WRITTEN, Reading, read_part_program
-from pkm_post.system import staged, unwritten
+from pkm_post.system import staged, write_fault
 from pkm_post.writing.gcode import Form, write
 
 TARGETS: dict[str, Form] = {f"gcode:{form.value}": form for form in Form}
@@ -48,5 +48,5 @@ def convert(
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="ascii", newline="\n")
     except OSError as fault:
-        return (*found, *told, unwritten(out, fault))
+        return (*found, *told, write_fault(out, fault))
     return (*found, *told)

@@ -22,7 +22,7 @@ from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.machine.description import find_machine
 from pkm_post.model import Refused
 from pkm_post.options.choices import Options
-from pkm_post.system.document_file import read_document
+from pkm_post.system import read_document
 from pkm_post.writing import manifest
 
 MACHINE = "example_6tps"

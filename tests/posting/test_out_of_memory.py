@@ -20,7 +20,7 @@ from pkm_post.machine.description import find_machine, read_machine
 from pkm_post.model import Refused
 from pkm_post.options import Options
 from pkm_post.posting import post, step_names, steps
-from pkm_post.system.out_of_memory import memory_or_refused
+from pkm_post.system.out_of_memory import memory_guard
 
 GCODE = "T1 M6\nS1000 M3\nG0 X0 Y0 Z60\nG1 X10 F600\nG2 X20 Y0 I5 J0\nM5\nM2\n"
 CLDATA = "UNITS/MM\nLOADTL/1,LENGTH,120.0\nFEDRAT/MMPM,600\nGOTO/0,0,60\nGOTO/10,0,60\nEND\nFINI\n"
@@ -199,7 +199,7 @@ def test_macros_get_a_refusal(files, tmp_path):
     ],
 )
 def test_all_ways_to_say_it_are_taken(fault):
-    with pytest.raises(Refused) as refused, memory_or_refused("part.ngc"):
+    with pytest.raises(Refused) as refused, memory_guard("part.ngc"):
         raise fault
     (diagnostic,) = refused.value.diagnostics
     assert (diagnostic.code, diagnostic.place.file) == ("F130", "part.ngc")
@@ -211,7 +211,7 @@ def test_all_ways_to_say_it_are_taken(fault):
     [ValueError("memory"), OSError(errno.ENOSPC, "full"), RuntimeError("no thread"), ImportError("no such module")],
 )
 def test_other_faults_pass(fault):
-    with pytest.raises(type(fault)) as passed, memory_or_refused("part.ngc"):
+    with pytest.raises(type(fault)) as passed, memory_guard("part.ngc"):
         raise fault
     assert passed.value is fault
 
@@ -224,7 +224,7 @@ def test_what_was_held_is_free_when_it_is_told():
         held.append(weakref.ref(columns))
         raise MemoryError
 
-    with pytest.raises(Refused) as refused, memory_or_refused("part.ngc"):
+    with pytest.raises(Refused) as refused, memory_guard("part.ngc"):
         hold()
     gc.collect()
     assert refused.value.diagnostics

@@ -12,7 +12,7 @@ from interpreter import PYTHON
 from killed_posts import MANIFEST, NAMES, post, whole, written
 
 from pkm_post.system import staged
-from pkm_post.system.lock import locked
+from pkm_post.system.lock import try_lock
 from pkm_post.system.staged import BusyError
 from pkm_post.writing import manifest
 
@@ -55,7 +55,7 @@ def test_two_that_post_at_once_end_one_after_the_other(tmp_path):
 def test_a_process_that_does_not_end_moving_is_told(tmp_path, monkeypatch):
     post(tmp_path, "earlier")
     monkeypatch.setattr(importlib.import_module("pkm_post.system.staged"), "_PATIENCE", 0.02)
-    with locked(tmp_path / ".staged-lock"), pytest.raises(BusyError, match="another process has been moving files"):
+    with try_lock(tmp_path / ".staged-lock"), pytest.raises(BusyError, match="another process has been moving files"):
         post(tmp_path, "new")
     assert whole(tmp_path) == "earlier"
     assert sorted(os.listdir(tmp_path)) == RESULTS

@@ -7,28 +7,28 @@ import subprocess
 
 from interpreter import PYTHON
 
-from pkm_post.system.lock import locked, words_of
+from pkm_post.system.lock import lock_owner, try_lock
 
 _CHILD = """
 import sys, time
 from pathlib import Path
-from pkm_post.system.lock import locked
-lock = locked(Path(sys.argv[1]))
-lock.say({"what": "child"})
-print("locked", flush=True)
+from pkm_post.system.lock import try_lock
+lock = try_lock(Path(sys.argv[1]))
+lock.describe({"what": "child"})
+print("try_lock", flush=True)
 sys.stdin.read()
 """
 
 
 def test_a_lock_is_had_once_and_says_whose_it_is(tmp_path):
     path = tmp_path / "a.lock"
-    with locked(path) as lock:
-        lock.say({"what": "a long word that is followed by a short one"})
-        lock.say({"what": "jog"})
-        assert locked(path) is None
-        assert words_of(path) == {"what": "jog"}
+    with try_lock(path) as lock:
+        lock.describe({"what": "a long word that is followed by a short one"})
+        lock.describe({"what": "jog"})
+        assert try_lock(path) is None
+        assert lock_owner(path) == {"what": "jog"}
     assert not list(tmp_path.iterdir())
-    locked(path).release()
+    try_lock(path).release()
 
 
 def test_a_process_that_is_killed_leaves_no_lock(tmp_path):
@@ -36,23 +36,23 @@ def test_a_process_that_is_killed_leaves_no_lock(tmp_path):
     child = subprocess.Popen([PYTHON, "-c", _CHILD, path], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     try:
         assert child.stdout.readline() == b"locked\n"
-        assert locked(path) is None and words_of(path) == {"what": "child"}
+        assert try_lock(path) is None and lock_owner(path) == {"what": "child"}
     finally:
         child.send_signal(signal.SIGKILL)
         child.communicate(timeout=20)
     assert path.exists()
-    locked(path).release()
+    try_lock(path).release()
 
 
 def test_other_users_of_the_computer_can_take_it_too(tmp_path):
     path = tmp_path / "a.lock"
-    with locked(path):
+    with try_lock(path):
         assert stat.S_IMODE(path.stat().st_mode) == 0o666
 
 
 def test_words_that_are_none(tmp_path):
     path = tmp_path / "a.lock"
-    assert words_of(path) == {}
+    assert lock_owner(path) == {}
     for said in (b"", b"{", b"[1]", b"\xff\xfe"):
         path.write_bytes(said)
-        assert words_of(path) == {}
+        assert lock_owner(path) == {}

@@ -9,7 +9,7 @@ import stat
 import pytest
 
 from pkm_post.system import staged
-from pkm_post.system.moved import MixedError
+from pkm_post.system.staged import MixedError
 
 
 def contents(folder):
@@ -153,7 +153,7 @@ def test_files_that_cannot_be_put_back_are_named_and_the_last_is_not_there(tmp_p
         return "new" in (source if source.name == "b" else target if source.name == "a" else tmp_path).parent.name
 
     failing(monkeypatch, "replace", b_does_not_come_and_a_does_not_go)
-    with pytest.raises(MixedError, match="could not be put back: a$"):
+    with pytest.raises(MixedError, match="could not be restored: a$"):
         write_generation(tmp_path, "new")
     assert contents(tmp_path) == {"a": "new", "b": "old", "d": "old"}
 

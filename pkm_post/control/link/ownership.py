@@ -34,7 +34,7 @@ from pkm_post.control.link.free_words import free_words
 from pkm_post.control.link.motion import is_busy
 from pkm_post.control.link.session import Session
 from pkm_post.model import Diagnostic, Place
-from pkm_post.system import Lock, Words, locked, words_of
+from pkm_post.system import Lock, OwnerRecord, lock_owner, try_lock
 
 VARIABLES = range(8187, 8192)
 """Numbers of the P-variables: owner, count, address of its computer, time since 1970 in s, operation."""
@@ -241,13 +241,13 @@ def lock_path(port: str) -> Path:
 def _locked(session: Session, what: str) -> Lock:
     path = lock_path(session.port_name)
     try:
-        lock = locked(path)
+        lock = try_lock(path)
     except OSError as fault:
         raise DiagnosedError(_diagnostic(session, "C212", f"{path}: {fault.strerror}")) from fault
     if lock is None:
-        said = words_of(path)
+        said = lock_owner(path)
         raise NotOwnerError(_diagnostic(session, "C210", _process(said)), str(said.get("what", "")))
-    lock.say({"user": _user(), "process": os.getpid(), "what": what, "since": int(time.time())})
+    lock.describe({"user": _user(), "process": os.getpid(), "what": what, "since": int(time.time())})
     return lock
 
 
@@ -323,7 +323,7 @@ def _diagnostic(session: Session, code: str, found: str) -> Diagnostic:
     return Diagnostic(code, Place(session.port_name or "controller"), found)
 
 
-def _process(said: Words) -> str:
+def _process(said: OwnerRecord) -> str:
     """The process that holds the lock on this computer, in plain text."""
     if not {"user", "process", "what", "since"} <= said.keys():
         return "a process of this computer that does not say who it is"

@@ -21,7 +21,7 @@ from pkm_post.freecad_gui.editor.posting import Posting
 from pkm_post.freecad_gui.editor.tool_bar import tool_bar
 from pkm_post.model import Refused
 from pkm_post.reading import SUFFIXES, Content, is_part_program
-from pkm_post.system import memory_or_refused, staged
+from pkm_post.system import memory_guard, staged
 
 translate = FreeCAD.Qt.translate
 
@@ -115,7 +115,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
             )
         elif self._saved():
             try:
-                with memory_or_refused(str(self.body.file)):
+                with memory_guard(str(self.body.file)):
                     return linked.decode_file(self.body.file, self.body.reading.chosen(), job)
             except Refused as refused:
                 QtWidgets.QMessageBox.warning(self, title, str(refused))

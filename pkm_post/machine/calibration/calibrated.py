@@ -14,7 +14,7 @@ from pkm_post.machine.calibration.measurements import read_measurements
 from pkm_post.machine.description import CannotRewriteError, find_machine, machine_named, machine_of, with_entries
 from pkm_post.machine.kinematics.calibration import PARAMETERS, Calibration, calibrate, combination_text
 from pkm_post.model import Diagnostic, Machine, Place, errors
-from pkm_post.system import staged, unwritten
+from pkm_post.system import staged, write_fault
 
 _WRITTEN = 1e-6
 """mm: largest change of a number by formatting."""
@@ -48,7 +48,7 @@ def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[st
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="utf-8", newline="")
     except OSError as fault:
-        return None, (*told, unwritten(out, fault))
+        return None, (*told, write_fault(out, fault))
     return report(machine, found, len(measured)), told
 
 

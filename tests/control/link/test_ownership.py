@@ -25,7 +25,7 @@ from pkm_post.control.link.readout import state_text
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import read_status
 from pkm_post.model.rules import RULES
-from pkm_post.system.lock import locked, words_of
+from pkm_post.system.lock import lock_owner, try_lock
 
 KINDS = pytest.mark.parametrize("kind", ["serial", "tcp"])
 PROGRAM = small_program()
@@ -229,13 +229,13 @@ def test_a_client_that_was_killed_locks_nobody_out():
             assert child.stdout.readline() == b"taken\n"
             with Session(port_named(name)) as session, pytest.raises(NotOwnerError, match="download"):
                 download(session, PROGRAM)
-            assert words_of(lock_path(name))["process"] == child.pid
+            assert lock_owner(lock_path(name))["process"] == child.pid
         finally:
             child.send_signal(signal.SIGKILL)
             child.communicate(timeout=20)
         with Session(port_named(name)) as session:
             assert download(session, PROGRAM).lines == len(PROGRAM.lines)
-        with locked(lock_path(name)) as lock:
+        with try_lock(lock_path(name)) as lock:
             assert lock is not None
 
 

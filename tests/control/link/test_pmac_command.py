@@ -14,7 +14,7 @@ from pkm_post.control.link.ports import port_named
 from pkm_post.control.simulator import Controller
 from pkm_post.machine.description import machine_named
 from pkm_post.model import StrutMotion
-from pkm_post.system.lock import locked
+from pkm_post.system.lock import try_lock
 from pkm_post.writing.controllers.pmac import program_text, settings_of, setup_text
 
 MACHINE = "example_6tps"
@@ -153,8 +153,8 @@ def test_one_client_has_the_machine_and_the_others_watch_and_stop(simulator, job
     typed(monkeypatch, port, *(f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)))
     assert pmac("download", port, job) == 0 and pmac("run", port, job) == 0
     name = port_named(port).name
-    with locked(lock_path(name)) as lock:
-        lock.say({"user": "anna", "process": 4711, "what": "jog", "since": 0})
+    with try_lock(lock_path(name)) as lock:
+        lock.describe({"user": "anna", "process": 4711, "what": "jog", "since": 0})
         orders = [("download", job), ("run", job), ("stream", job), ("jog", "--x", 1), ("mdi", "G1 X1 F100")]
         for order in (*orders, ("resume",), ("override", 50), ("home", "--trigger", "#1HM")):
             capsys.readouterr()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A document that was cut off, changed or made by somebody else is known before FreeCAD sees it."""
+"""A truncated, modified or foreign document is detected before FreeCAD opens it."""
 
 import random
 import struct
@@ -8,7 +8,7 @@ import zlib
 
 import pytest
 
-from pkm_post.system.document_file import Damaged, read_document
+from pkm_post.system import DamagedDocument, read_document
 
 OBJECTS = """<Object name="Job"><Properties>
 <Property name="Label"><String value="Front &amp; back"/></Property>
@@ -51,7 +51,7 @@ def file(tmp_path):
 def damage(file, content):
     """Code and words of what is found in these bytes."""
     file.write_bytes(content)
-    with pytest.raises(Damaged) as damaged:
+    with pytest.raises(DamagedDocument) as damaged:
         read_document(file)
     return damaged.value.code, damaged.value.found
 
@@ -111,7 +111,7 @@ def test_a_bit_that_flips_is_seen_or_means_nothing(file):
         file.write_bytes(changed)
         try:
             content = read_document(file)
-        except Damaged:
+        except DamagedDocument:
             continue
         unseen += 1
         assert content.jobs[0].operations == ("Cut", "Bore")
@@ -131,7 +131,7 @@ def test_bytes_by_chance_never_raise_anything_else(file, seed):
         file.write_bytes(changed)
         try:
             read_document(file)
-        except Damaged as damaged:
+        except DamagedDocument as damaged:
             assert damaged.code in ("J101", "J129", "J130") and damaged.found
 
 
@@ -184,7 +184,7 @@ def test_a_password_or_another_method(file):
     for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         locked[locked.index(signature) + offset] |= 1
     code, found = damage(file, locked)
-    assert code == "J129" and "not by FreeCAD" in found
+    assert code == "J129" and "FreeCAD does not read" in found
 
 
 BAD_XML = {
@@ -193,11 +193,15 @@ BAD_XML = {
     "another root": ("<Document ", "<Documents ", "<Documents> instead of <Document>"),
     "an object too few": ('<Object name="Bore">', '<Other name="Bore">', "no XML"),
     "an object that is not listed": ('<Object type="Path::FeaturePython" name="Bore"/>', "", "Bore is not in the list"),
-    "an object that is not there": ('<Object name="Bore">', '<Object name="Bare">', "Bore is listed, and is not there"),
-    "another count": ('<Objects Count="4">', '<Objects Count="3">', "3 objects in <Objects> announced, 4 found"),
-    "no count": ('<ObjectData Count="4">', "<ObjectData>", "no number of objects in <ObjectData> announced, 4 found"),
-    "an operation that is not there": ('<Link value="Bore"/>', '<Link value="Gone"/>', "Gone of Front & back is not"),
-    "a path that is not there": ('file="Bore.nc"', 'file="Gone.nc"', "Gone.nc is listed, and is not in the archive"),
+    "an object that is not there": ('<Object name="Bore">', '<Object name="Bare">', "Bore is listed and missing"),
+    "another count": ('<Objects Count="4">', '<Objects Count="3">', "3 objects declared in <Objects>, 4 found"),
+    "no count": ('<ObjectData Count="4">', "<ObjectData>", "no number of objects declared in <ObjectData>, 4 found"),
+    "a missing operation": (
+        '<Link value="Bore"/>',
+        '<Link value="Gone"/>',
+        "Gone of Front & back is missing",
+    ),
+    "a path that is not there": ('file="Bore.nc"', 'file="Gone.nc"', "Gone.nc is listed and missing in the archive"),
     "an encoding that is none": ('encoding="utf-8"', 'encoding="utf-9"', "no XML: unknown encoding"),
     "entities": ("<Document ", '<!DOCTYPE x [<!ENTITY a "b">]><Document ', "a DOCTYPE, which FreeCAD never writes"),
 }

@@ -1,19 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Content: extract from the XML of a FreeCAD document its objects, CAM jobs with operations, and other members.
+"""Document: verify a FreeCAD document on disk and list its CAM jobs, without FreeCAD and without NumPy.
 
-Enters: XML in chunks. Leaves: a table, or ``Damaged``. FreeCAD accepts truncated XML and omits missing objects, so the
-lists are compared here. Entity declarations are refused: FreeCAD never writes them, and would expand them without
-limit.
+Enters: a file. Leaves: its jobs with their operations and its archive members, or ``DamagedDocument``. FreeCAD accepts
+truncated XML and omits missing objects, so the lists are compared here. Entity declarations are refused: FreeCAD never
+writes them, and would expand them without limit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import zipfile
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from pkm_post.system.document_file.damaged import content_is_damaged
+from pkm_post.system.document_archive import DOCUMENT, damaged_content, verified_archive
 
 _JOB = ("Path.Main.Job", "ObjectJob")
 """Module and class of the proxy of a job as stored by FreeCAD."""
@@ -21,6 +23,7 @@ _DEEPEST = 100
 """Nesting depth of elements; FreeCAD documents have about ten levels."""
 _MEMBERS = ("Path", "Part", "Mesh")
 """Property elements whose value is in another archive member that posting reads."""
+_PIECE = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,45 @@ class DocumentContent:
     members: tuple[str, ...]
 
 
+def read_document(file: Path) -> DocumentContent:
+    """Verify a document and list its content.
+
+    Args:
+        file: path of the document.
+
+    Raises:
+        OSError: the file cannot be read.
+        DamagedDocument: it is not a document, or not a complete one.
+    """
+    with file.open("rb") as stream, verified_archive(stream) as archive:
+        content = _read_content(_pieces(archive))
+        for name in content.members:
+            if name not in archive.NameToInfo:
+                raise damaged_content(f"{name} is listed and missing in the archive")
+        return content
+
+
+def _pieces(archive: zipfile.ZipFile) -> Iterator[bytes]:
+    with archive.open(DOCUMENT) as content:
+        while piece := content.read(_PIECE):
+            yield piece
+
+
+def _read_content(pieces: Iterable[bytes]) -> DocumentContent:
+    """Content of the XML in chunks, in order."""
+    reader = _Reader()
+    parser = ElementTree.XMLParser(target=reader)
+    try:
+        for piece in pieces:
+            parser.feed(piece)
+        parser.close()
+    except (ElementTree.ParseError, ValueError, LookupError) as fault:  # the last two: unknown encodings
+        raise damaged_content(f"no XML: {fault}") from fault
+    _check_lists(reader)
+    members = tuple(name for each in reader.objects for name in each.members)
+    return DocumentContent(tuple(_jobs(reader.objects)), members)
+
+
 @dataclass
 class _Object:
     """Extracted data of an object: label, proxy class, links and the members that hold its values."""
@@ -77,15 +119,15 @@ class _Reader(ElementTree.TreeBuilder):
 
     def doctype(self, name: str, public: str | None, system: str | None) -> None:
         """Refuse a document type, which is needed only for entities."""
-        raise content_is_damaged("a DOCTYPE, which FreeCAD never writes")
+        raise damaged_content("a DOCTYPE, which FreeCAD never writes")
 
     def start(self, tag: str, attributes: Any) -> ElementTree.Element:
         """Track the element path, and record the declared lengths of lists."""
         self.path.append(tag)
         if self.path[0] != "Document":
-            raise content_is_damaged(f"<{tag}> instead of <Document>")
+            raise damaged_content(f"<{tag}> instead of <Document>")
         if len(self.path) > _DEEPEST:
-            raise content_is_damaged(f"elements are nested more than {_DEEPEST} deep")
+            raise damaged_content(f"elements are nested more than {_DEEPEST} deep")
         if len(self.path) == 2 and "Count" in attributes:
             self.counts[tag] = attributes["Count"]
         return super().start(tag, attributes)
@@ -93,36 +135,14 @@ class _Reader(ElementTree.TreeBuilder):
     def end(self, tag: str) -> ElementTree.Element:
         """Record an object when it is complete, and discard its tree."""
         element = super().end(tag)
-        way = tuple(self.path)
+        path = tuple(self.path)
         self.path.pop()
-        if way == ("Document", "Objects", "Object"):
+        if path == ("Document", "Objects", "Object"):
             self.listed.append(element.get("name", ""))
-        elif way == ("Document", "ObjectData", "Object"):
+        elif path == ("Document", "ObjectData", "Object"):
             self.objects.append(_object(element))
             element.clear()
         return element
-
-
-def read_content(pieces: Iterable[bytes]) -> DocumentContent:
-    """What a document lists.
-
-    Args:
-        pieces: chunks of its XML, in order.
-
-    Raises:
-        Damaged: FreeCAD did not write this.
-    """
-    reader = _Reader()
-    parser = ElementTree.XMLParser(target=reader)
-    try:
-        for piece in pieces:
-            parser.feed(piece)
-        parser.close()
-    except (ElementTree.ParseError, ValueError, LookupError) as fault:  # the last two: unknown encodings
-        raise content_is_damaged(f"no XML: {fault}") from fault
-    _check_lists(reader)
-    members = tuple(name for each in reader.objects for name in each.members)
-    return DocumentContent(tuple(_jobs(reader.objects)), members)
 
 
 def _object(element: ElementTree.Element) -> _Object:
@@ -146,15 +166,15 @@ def _object(element: ElementTree.Element) -> _Object:
 
 def _check_lists(reader: _Reader) -> None:
     """Compare the list of objects with the objects and with their declared count."""
-    made = [each.name for each in reader.objects]
-    for name in sorted(set(reader.listed) - set(made)):
-        raise content_is_damaged(f"the object {name} is listed, and is not there")
-    for name in sorted(set(made) - set(reader.listed)):
-        raise content_is_damaged(f"the object {name} is not in the list of objects")
-    for tag, names in (("Objects", reader.listed), ("ObjectData", made)):
+    stored = [each.name for each in reader.objects]
+    for name in sorted(set(reader.listed) - set(stored)):
+        raise damaged_content(f"the object {name} is listed and missing")
+    for name in sorted(set(stored) - set(reader.listed)):
+        raise damaged_content(f"the object {name} is not in the list of objects")
+    for tag, names in (("Objects", reader.listed), ("ObjectData", stored)):
         if reader.counts.get(tag) != str(len(names)) or len(set(names)) < len(names):
             count = reader.counts.get(tag, "no number of")
-            raise content_is_damaged(f"{count} objects in <{tag}> announced, {len(set(names))} found")
+            raise damaged_content(f"{count} objects declared in <{tag}>, {len(set(names))} found")
 
 
 def _jobs(objects: list[_Object]) -> Iterable[Job]:
@@ -163,5 +183,5 @@ def _jobs(objects: list[_Object]) -> Iterable[Job]:
         if each.proxy == _JOB:
             operations = by_name[each.operations].group if each.operations in by_name else ()
             for name in sorted(set(operations) - set(by_name)):
-                raise content_is_damaged(f"the operation {name} of {each.label} is not there")
+                raise damaged_content(f"the operation {name} of {each.label} is missing")
             yield Job(each.name, each.label, operations)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a user is told when results cannot take the place of earlier ones, and what is in the folder then."""
+"""Messages and folder content when results cannot replace earlier ones."""
 
 import errno
 import importlib
@@ -8,7 +8,7 @@ import os
 import pytest
 
 from pkm_post.cli import main
-from pkm_post.system.lock import locked
+from pkm_post.system.lock import try_lock
 from pkm_post.writing import manifest
 
 PART = "G21 G90 G17\nT1 M6\nS5000 M3\nG0 X0 Y0 Z300\nG1 X10 F600\nM5\nM30\n"
@@ -56,16 +56,16 @@ def locked_by_another_program(monkeypatch, when):
 def test_earlier_results_stay_whole_when_one_is_open_elsewhere(posted, tmp_path, monkeypatch, capsys, name):
     before = contents(posted)
     locked_by_another_program(monkeypatch, lambda source, target: source == posted / name)
-    told = refusal(tmp_path, capsys)
-    assert "part.pmc: error F101" in told and OPEN in told and name in told
+    output = refusal(tmp_path, capsys)
+    assert "part.pmc: error F101" in output and OPEN in output and name in output
     assert contents(posted) == before
     assert main(["verify", str(posted / "part.pmc"), "--against", str(posted / "part.pkmt")]) == 0
 
 
-def test_a_folder_that_another_process_does_not_leave_is_told(posted, tmp_path, monkeypatch, capsys):
+def test_a_folder_that_another_process_does_not_leave_is_reported(posted, tmp_path, monkeypatch, capsys):
     before = contents(posted)
     monkeypatch.setattr(importlib.import_module("pkm_post.system.staged"), "_PATIENCE", 0.02)
-    with locked(posted / ".staged-lock"):
+    with try_lock(posted / ".staged-lock"):
         assert "part.pmc: error F109" in refusal(tmp_path, capsys)
     assert contents(posted) == before
 
@@ -76,9 +76,9 @@ def test_results_that_are_mixed_are_named_and_no_reader_accepts_them(posted, tmp
         return back or (source.name == "part.pmc" and source.parent.name == "new")
 
     locked_by_another_program(monkeypatch, program_stays_and_trajectory_does_not_come)
-    told = refusal(tmp_path, capsys)
-    assert "part.pmc: error F110" in told and told.rstrip().endswith("try again")
-    assert "could not be put back: part.pkmt, part-setup.pmc, part-report.png, part-report.json;" in told
+    output = refusal(tmp_path, capsys)
+    assert "part.pmc: error F110" in output and output.rstrip().endswith("try again")
+    assert "could not be restored: part.pkmt, part-setup.pmc, part-report.png, part-report.json;" in output
     for name in contents(posted):
         found, (fault,) = manifest.check(posted / name)
         assert found is None and fault.code == "F107"
