@@ -15,7 +15,7 @@ from pathlib import Path
 from pkm_post.system.lock import try_lock
 lock = try_lock(Path(sys.argv[1]))
 lock.describe({"what": "child"})
-print("try_lock", flush=True)
+print("locked", flush=True)
 sys.stdin.read()
 """
 
