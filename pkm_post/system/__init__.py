@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""System: files and processes: results that appear together, locks, documents on disk, threads, memory."""
+"""System: files and processes: results that appear together, locks, documents on disk, threads, numbers of texts.
 
-from pkm_post.system.decimals import DecimalReader
+The command line starts in a Python without NumPy: what needs NumPy is imported at its first use.
+"""
+
+from typing import TYPE_CHECKING, Any
+
 from pkm_post.system.document import DocumentContent, Job, read_document
 from pkm_post.system.document_archive import DamagedDocument
 from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
 from pkm_post.system.out_of_memory import MEMORY_FAULTS, memory_diagnostic, memory_guard
 from pkm_post.system.staged import staged, write_fault
 from pkm_post.system.workers import workers
+
+if TYPE_CHECKING:
+    from pkm_post.system.decimals import DecimalReader
 
 __all__ = [
     "MEMORY_FAULTS",
@@ -17,12 +24,20 @@ __all__ = [
     "Job",
     "Lock",
     "OwnerRecord",
+    "lock_owner",
     "memory_diagnostic",
-    "try_lock",
     "memory_guard",
     "read_document",
     "staged",
-    "write_fault",
-    "lock_owner",
+    "try_lock",
     "workers",
+    "write_fault",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "DecimalReader":
+        from pkm_post.system.decimals import DecimalReader
+
+        return DecimalReader
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
