@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import FreeCAD
 
-import pkm_post.freecad_app.post_hook
-import pkm_post.freecad_app.step_file
+import pkm_post.freecad_app.startup
 
-pkm_post.freecad_app.post_hook.install()
-pkm_post.freecad_app.step_file.install()
+pkm_post.freecad_app.startup.install_post_processors()
+pkm_post.freecad_app.startup.install_step_reader()
 FreeCAD.addImportType(
     "Part program (*.ngc *.nc *.ncl *.cls *.apt *.aptsource)",
     "pkm_post.freecad_app.program_import",

@@ -23,9 +23,9 @@ import Path.Main.Job
 import Path.Op.Custom
 import Path.Preferences
 
-from pkm_post.freecad_app.job import set_gauge_length
-from pkm_post.freecad_app.normals import surface_points
+from pkm_post.freecad_app.face_projection import surface_points
 from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
+from pkm_post.freecad_app.tools import set_gauge_length
 from pkm_post.model import Tool
 from pkm_post.toolpath.compensation import Cutter, tip_from_contact
 

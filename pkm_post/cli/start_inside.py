@@ -22,9 +22,9 @@ def _import_package() -> None:
     package = importlib.util.module_from_spec(spec)
     sys.modules["pkm_post"] = package
     spec.loader.exec_module(package)
-    from pkm_post.freecad_app import step_file
+    from pkm_post.freecad_app import startup
 
-    step_file.install()
+    startup.install_step_reader()
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from typing import Any
 
 import Path.Preferences
 
-from pkm_post.freecad_app.job import document_name
+from pkm_post.freecad_app.document import document_name
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import Given, Source, TextParser, given_in, misfits, text_parser, typed
 from pkm_post.writing import Form

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.freecad_app.face_feet import nurbs_of
+from pkm_post.freecad_app.face_projection import nurbs_of
 from pkm_post.geometry import cross, dot, norm
 from pkm_post.toolpath import Array, Span, Surface
 

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
 import numpy as np
+import Part
 
 from pkm_post.geometry import Array
 
@@ -25,3 +27,77 @@ def apply(matrix: Array, points: Array) -> Array:
     """Transform points (N, 3) to the other frame."""
     moved: Array = points @ matrix[:3, :3].T + matrix[:3, 3]
     return moved
+
+
+Link = tuple[Any, list[str]]
+Placed = tuple[App.Vector, App.Vector]
+"""A point of a plane or an axis, and its normal or direction."""
+
+
+def plane_of(link: Link) -> Placed:
+    """The plane of a flat face or a datum plane.
+
+    Args:
+        link: the object and the name of its face; no name for an object with a single face.
+
+    Raises:
+        ValueError: the face is not flat, or there is none.
+    """
+    shape = _element(link, lambda whole: whole.Faces)
+    plane = shape.findPlane() if shape is not None and shape.ShapeType == "Face" else None
+    if plane is None:
+        raise ValueError(f"Plane: expected a flat face or a datum plane, got {_told(link)}")
+    return plane.Position, plane.Axis
+
+
+def axis_of(link: Link) -> Placed:
+    """The axis of an edge, a face of revolution or a datum line.
+
+    Args:
+        link: the object and the name of its edge or face; no name for an object with a single edge.
+
+    Raises:
+        ValueError: the picked element has no axis.
+    """
+    shape = _element(link, lambda whole: whole.Edges)
+    form = {"Edge": "Curve", "Face": "Surface"}.get("" if shape is None else shape.ShapeType, "")
+    known = _FORMS.get(getattr(shape, form).TypeId) if form else None
+    if known is None:
+        raise ValueError(f"Line: expected a straight or round edge, a round face or a datum line, got {_told(link)}")
+    point, direction = known
+    return getattr(getattr(shape, form), point), getattr(getattr(shape, form), direction)
+
+
+_FORMS = {
+    "Part::GeomLine": ("Location", "Direction"),
+    "Part::GeomCircle": ("Center", "Axis"),
+    "Part::GeomEllipse": ("Center", "Axis"),
+    "Part::GeomCylinder": ("Center", "Axis"),
+    "Part::GeomCone": ("Apex", "Axis"),
+    "Part::GeomToroid": ("Center", "Axis"),
+    "Part::GeomSurfaceOfRevolution": ("Location", "Direction"),
+}
+"""For each curve and surface with an axis, the attributes with its point and direction."""
+
+
+def _element(link: Link, parts: Callable[[Any], list[Any]]) -> Any:
+    """The element that a link names, or the single element of an object, in document coordinates; None if none."""
+    obj, names = link
+    name = next(iter(names), "")
+    shape = Part.getShape(obj, name, needSubElement=True)
+    if shape.isNull():
+        return None
+    if shape.ShapeType not in ("Face", "Edge"):
+        found = parts(shape)
+        if len(found) != 1:
+            return None
+        (shape,) = found
+    # A shape has the placement of its object; the object may be in a part with another placement.
+    shape = shape.copy()
+    shape.Placement = obj.getGlobalPlacement() * obj.Placement.inverse() * shape.Placement
+    return shape
+
+
+def _told(link: Link) -> str:
+    obj, names = link
+    return " ".join([obj.Label, *names]).strip()

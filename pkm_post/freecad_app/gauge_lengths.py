@@ -8,13 +8,15 @@ is inside its holder, and the holder counts.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import FreeCAD as App
 from Path.Base.Util import opProperty, toolControllerForOp
 
-from pkm_post.freecad_app.job import document_name
+from pkm_post.freecad_app.document import document_name
 from pkm_post.freecad_app.tools import bit_length, gauge_length, set_gauge_length
 from pkm_post.model import Diagnostic, Place
 
@@ -83,3 +85,39 @@ def keep_gauge_lengths(job: Any, lengths: Mapping[str, float]) -> None:
     for controller in job.Tools.Group:
         if lengths.get(controller.Name, gauge_length(controller)) != gauge_length(controller):
             set_gauge_length(controller, lengths[controller.Name])
+
+
+_DIGITS = 9
+"""Significant digits shown: nanometres of a metre."""
+_MICRO = "µ"
+"""The only non-ASCII letter in FreeCAD's units of length."""
+_USUAL = "100 mm"
+"""A length typical of a tool; a number without a unit is in the unit in which this one is displayed."""
+
+
+def typed_length(text: str, point: str = ".") -> float | None:
+    """The typed length, mm; None if it is not a positive length.
+
+    Args:
+        text: such as ``120``, ``120 mm``, ``4.5 in`` or ``3*40 mm``.
+        point: decimal separator in the user's language; a full stop is always accepted. A comma that is not the
+            decimal separator is invalid.
+    """
+    text = text.replace(point, ".")
+    if not text.strip() or "," in text or not text.replace(_MICRO, "").isascii():
+        return None
+    try:
+        quantity = App.Units.Quantity(text)
+    except ValueError:  # raised for a syntax error
+        return None
+    if quantity.Unit not in (App.Units.Unit(), App.Units.Length):
+        return None
+    _, usual, _ = App.Units.Quantity(_USUAL).getUserPreferred()
+    mm = float(quantity.Value * (1.0 if quantity.Unit == App.Units.Length else usual))
+    return mm if 0.0 < mm < math.inf else None
+
+
+def length_text(mm: float, point: str = ".") -> str:
+    """A length in the unit that FreeCAD is set to, with all its digits."""
+    _, factor, unit = App.Units.Quantity(f"{mm!r} mm").getUserPreferred()
+    return f"{mm / factor:.{_DIGITS}g} {unit}".replace(".", point)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from pathlib import Path as FilePath
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -18,14 +18,43 @@ import numpy as np
 from Path.Base.Util import opProperty, toolControllerForOp
 
 from pkm_post.freecad_app.commands import read_commands
-from pkm_post.freecad_app.document_damage import file_faults
-from pkm_post.freecad_app.operation_state import state_faults
-from pkm_post.freecad_app.selection import EVERYTHING, Selection
-from pkm_post.freecad_app.tools import read_tools, set_gauge_length
+from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.document_checks import file_faults, state_faults
+from pkm_post.freecad_app.tools import read_tools
 from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Event, EventKind, Place, Program, Tool, errors
 from pkm_post.toolpath import transform
 
-__all__ = ["document_name", "read_job", "set_gauge_length"]
+
+@dataclass(frozen=True)
+class Selection:
+    """The selected items; None means all.
+
+    Attributes:
+        operations: some of the job's own.
+        fixtures: some of the job's own.
+    """
+
+    operations: Sequence[Any] | None = None
+    fixtures: Sequence[str] | None = None
+
+    def operations_of(self, job: Any) -> list[Any]:
+        """The selected operations, in the order of the job."""
+        own = list(job.Operations.Group)
+        return own if self.operations is None else [each for each in own if each in self.operations]
+
+    def strangers(self, job: Any) -> list[Any]:
+        """Selected operations that do not belong to the job."""
+        return [each for each in self.operations or () if each not in job.Operations.Group]
+
+    def fixtures_of(self, job: Any) -> list[str]:
+        """The selected fixtures, in the order of the job."""
+        own = list(job.Fixtures)
+        return own if self.fixtures is None else [each for each in own if each in self.fixtures]
+
+
+EVERYTHING = Selection()
+"""The whole job."""
+
 
 NO_LENGTHS: Mapping[int, float] = MappingProxyType({})
 
@@ -60,11 +89,6 @@ def read_job(
     if errors(faults):
         return None, tuple(faults)
     return dataclasses.replace(way.program(tools), reading=(way.counted(job, active),)), tuple(faults)
-
-
-def document_name(document: Any) -> str:
-    """The file name of a document, or its label if it was never saved."""
-    return FilePath(document.FileName).name or document.Label
 
 
 def _selection_faults(job: Any, selection: Selection, place: Place) -> list[Diagnostic]:

@@ -15,8 +15,8 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from pkm_post.freecad_app.arguments import own_arguments
-from pkm_post.freecad_app.job import document_name
-from pkm_post.freecad_app.selection import EVERYTHING, Selection
+from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.job import EVERYTHING, Selection
 from pkm_post.freecad_app.tools import gauge_length
 from pkm_post.model import Diagnostic, Place
 from pkm_post.options import (

@@ -18,11 +18,9 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
+from pkm_post.freecad_app.document_object import EDITABLE, READ_ONLY, PropertyProxy, Row, briefly_refused
 from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job_settings import settings_of
-from pkm_post.freecad_app.object_properties import EDITABLE, READ_ONLY, Row
-from pkm_post.freecad_app.property_proxy import PropertyProxy
-from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.geometry import Array
 from pkm_post.machine import Pose, Way, machine_named, reach_findings, reach_margins, strut_lengths
 from pkm_post.model import Machine, Refused

@@ -8,13 +8,106 @@ a face picked on the original stands for that of the clone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
+import FreeCAD as App
+import numpy as np
 import Part
 
-from pkm_post.freecad_app.contact_faces import NamedFace
+from pkm_post.freecad_app.face_projection import project
+from pkm_post.freecad_app.progress import Progress
+from pkm_post.geometry import Array, dot
 from pkm_post.model import Diagnostic, Place
+
+_SAME_NORMAL = np.cos(1e-3)
+"""Cosine of the angle up to which two faces count as one smooth surface: 0.06 degrees."""
+_BOX_MARGIN = 1e-4
+"""Enlargement of a face's bounding box beyond the tolerance, mm."""
+_AT_ONCE = 5000
+"""Points projected between two progress steps."""
+
+
+@dataclass(frozen=True)
+class NamedFace:
+    """A face with its displayed name, object and element, as in ``Box.Face6``."""
+
+    name: str
+    face: Any
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Columns of N points.
+
+    Attributes:
+        normal: (N, 3) unit normal of the nearest face, out of the material; NaN where none is within the tolerance.
+        face: (N,) index of that face, -1 for none.
+        other: (N,) index of another face within the tolerance whose normal differs, -1 for none.
+    """
+
+    normal: Array
+    face: Array
+    other: Array
+
+
+def contacts(faces: Sequence[NamedFace], points: Array, tolerance: float, text: str) -> Contacts:
+    """Find the faces on which points lie.
+
+    Args:
+        faces: the faces.
+        points: (N, 3).
+        tolerance: largest distance of a point from its face, mm.
+        text: label of the progress bar.
+
+    Raises:
+        Stopped: the user cancelled.
+    """
+    found = Contacts(np.full(points.shape, np.nan), np.full(len(points), -1), np.full(len(points), -1))
+    nearest = np.full(len(points), np.inf)
+    parts = [(index, rows) for index, named in enumerate(faces) for rows in _near(named.face, points, tolerance)]
+    with Progress(text, len(parts)) as progress:
+        for index, rows in parts:
+            distance, normal = _on_face(faces[index].face, points[rows], tolerance)
+            on = distance <= tolerance
+            rows, distance, normal = rows[on], distance[on], normal[on]
+            differs = dot(found.normal[rows], normal) < _SAME_NORMAL  # false until there is one
+            nearer = distance < nearest[rows]
+            found.other[rows[differs]] = np.where(nearer, found.face[rows], index)[differs]
+            chosen = rows[nearer]
+            nearest[chosen], found.normal[chosen], found.face[chosen] = distance[nearer], normal[nearer], index
+            progress.step()
+    return found
+
+
+def nearest_face(faces: Sequence[NamedFace], point: Array) -> tuple[str, float]:
+    """Name of the face nearest to a point (3,), edges included, and its distance in mm."""
+    vertex = Part.Vertex(App.Vector(*point.tolist()))
+    return min(((named.name, named.face.distToShape(vertex)[0]) for named in faces), key=lambda pair: pair[1])
+
+
+def _near(face: Any, points: Array, tolerance: float) -> Iterator[Array]:
+    """Yield the rows of the points in the bounding box of a face, in batches.
+
+    ``face.BoundBox`` would be that of the display triangles, which miss bulges of the face.
+    """
+    with_triangles, with_tolerance = False, False
+    box = face.optimalBoundingBox(with_triangles, with_tolerance)
+    tolerance += _BOX_MARGIN
+    low, high = np.array([box.XMin, box.YMin, box.ZMin]), np.array([box.XMax, box.YMax, box.ZMax])
+    rows = np.flatnonzero(np.all((points >= low - tolerance) & (points <= high + tolerance), axis=1))
+    yield from (rows[first : first + _AT_ONCE] for first in range(0, len(rows), _AT_ONCE))
+
+
+def _on_face(face: Any, points: Array, tolerance: float) -> tuple[Array, Array]:
+    """Distances of points from a face, (n,), and the surface normals at their feet, (n, 3)."""
+    _, normals, signed, on_face = project(face, points, trimmed=True)
+    distance = np.where(np.isfinite(normals).all(axis=1), np.abs(signed), np.inf)
+    for row in np.flatnonzero((distance <= tolerance) & ~on_face).tolist():  # beyond an edge, which may be close enough
+        distance[row] = face.distToShape(Part.Vertex(App.Vector(*points[row].tolist())))[0]
+    return distance, normals
+
 
 Chosen = Iterable[tuple[Any, Sequence[str]]]
 

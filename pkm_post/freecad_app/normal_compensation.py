@@ -19,13 +19,10 @@ import numpy as np
 from Path.Base.Util import toolControllerForOp
 from PathScripts import PathUtils
 
-from pkm_post.freecad_app.contact_faces import Contacts, NamedFace, contacts, nearest_face
-from pkm_post.freecad_app.contact_guides import guides
-from pkm_post.freecad_app.contact_moves import Compensation, compensated
-from pkm_post.freecad_app.derived_operation import BASE_AND_ACTIVE, DerivedOperation
-from pkm_post.freecad_app.model_faces import model_faces
-from pkm_post.freecad_app.object_properties import Row
-from pkm_post.freecad_app.tool_cutter import read_cutter
+from pkm_post.freecad_app.cutter_contact import Compensation, compensated, guides
+from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperation, Row
+from pkm_post.freecad_app.model_faces import Contacts, NamedFace, contacts, model_faces, nearest_face
+from pkm_post.freecad_app.tools import read_cutter
 from pkm_post.model import Diagnostic, Kind, Place, Program
 from pkm_post.reading import with_chords
 from pkm_post.toolpath import AxisRule, Cutter

@@ -15,11 +15,11 @@ from typing import Any
 import FreeCAD as App
 
 from pkm_post.freecad_app.arguments import given_by
-from pkm_post.freecad_app.document_damage import check_read, intact
-from pkm_post.freecad_app.job import NO_LENGTHS, document_name
+from pkm_post.freecad_app.document import document_name, is_job
+from pkm_post.freecad_app.document_checks import check_read, intact
+from pkm_post.freecad_app.job import NO_LENGTHS
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
-from pkm_post.freecad_app.kinds import is_job
-from pkm_post.freecad_app.prepared_job import prepared_job
+from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import READING, Given, Item, Options, job_stem, lost_results
 from pkm_post.posting import SUFFIX, Log, Posted, Prepared, Progress, quiet, unwatched

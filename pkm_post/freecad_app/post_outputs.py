@@ -17,8 +17,8 @@ import FreeCAD as App
 from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings
+from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.post_job import post_to
-from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.machine import find_collisions, reach
 from pkm_post.model import Diagnostic, Refused, Trajectory, errors

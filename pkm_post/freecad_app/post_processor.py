@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import FreeCAD as App
 from Path.Post.Processor import PostProcessor
 
-from pkm_post.freecad_app.selection import EVERYTHING, Selection
+from pkm_post.freecad_app.job import EVERYTHING, Selection
 
 TOOLTIPS: dict[str, str] = {
     "hexapod_pmac": "Certified motion programs for hexapod machine tools with six telescopic struts and a Turbo PMAC"

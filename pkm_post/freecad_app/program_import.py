@@ -13,8 +13,8 @@ from typing import Any
 
 import FreeCAD as App
 
+from pkm_post.freecad_app.document import transaction
 from pkm_post.freecad_app.program_object import create_program
-from pkm_post.freecad_app.transaction import transaction
 
 
 def open(filename: str) -> Any:  # noqa: A001 - FreeCAD wants this name

@@ -20,9 +20,8 @@ import Path
 import Path.Op.Custom
 
 from pkm_post.freecad_app.commands import commands_of
-from pkm_post.freecad_app.object_properties import Row
-from pkm_post.freecad_app.property_proxy import PropertyProxy
-from pkm_post.freecad_app.tool_controller import answered
+from pkm_post.freecad_app.document_object import PropertyProxy, Row
+from pkm_post.freecad_app.tools import answered
 from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused, Severity
 from pkm_post.reading import (
     AXIS_WORDS,

@@ -15,12 +15,18 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
+from pkm_post.freecad_app.document_object import (
+    HIDDEN,
+    NO_RECOMPUTE,
+    READ_ONLY,
+    PropertyProxy,
+    Row,
+    add_missing,
+    briefly_refused,
+)
 from pkm_post.freecad_app.frames import apply
-from pkm_post.freecad_app.job_on_machine import job_on_machine
-from pkm_post.freecad_app.object_properties import HIDDEN, NO_RECOMPUTE, READ_ONLY, Row, add_missing
+from pkm_post.freecad_app.job_setup import job_on_machine
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.freecad_app.property_proxy import PropertyProxy
-from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.geometry import Array
 from pkm_post.machine import SHOWN, Reach, reach
 from pkm_post.model import errors

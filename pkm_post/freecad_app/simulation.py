@@ -7,19 +7,179 @@ played as well, and reported as problems, each with its start and its worst poin
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import FreeCAD as App
 import numpy as np
 
-from pkm_post.freecad_app.job_on_machine import JobOnMachine, job_on_machine
+from pkm_post.freecad_app.job_setup import JobOnMachine, job_on_machine
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.freecad_app.simulated_motion import Problem, Simulation
-from pkm_post.geometry import norm
-from pkm_post.machine import Reach, ReachFinding, reach
-from pkm_post.model import RULES, Refused, Severity
+from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, norm, unit
+from pkm_post.machine import Pose, Reach, ReachFinding, reach
+from pkm_post.model import RULES, EventKind, Machine, Motion, Place, Refused, Severity, StrutMotion, Tool, Trajectory
 from pkm_post.planning import motion as planning
+
+_AT_ONCE = 16384
+"""Cubics per pass: the working arrays of one pass stay in the processor's cache."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A stretch of the path that the machine cannot follow.
+
+    Attributes:
+        time: start, s.
+        place: of its first block.
+        worst_time: time of the worst violation, s.
+        worst_place: of the block with the worst violation.
+        worst_tip: (3,) tool tip in {M} at that time.
+        text: description of the worst violation.
+    """
+
+    time: float
+    place: Place
+    worst_time: float
+    worst_place: Place
+    worst_tip: Array
+    text: str
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A planned motion.
+
+    Attributes:
+        trajectory: the path, in {M}.
+        machine: the machine that executes it.
+        motion: poses by time.
+        struts: lengths and speeds by time.
+        problems: violations, by time.
+    """
+
+    trajectory: Trajectory
+    machine: Machine
+    motion: Motion
+    struts: StrutMotion
+    problems: tuple[Problem, ...]
+
+    @property
+    def duration(self) -> float:
+        """Duration of the motion, s."""
+        return float(self.motion.time_ms[-1]) / 1000.0
+
+    def operation_times(self) -> tuple[Array, Array]:
+        """Moving time and dwell time of each operation of the trajectory, (O,) each, s."""
+        trajectory, count = self.trajectory, len(self.trajectory.operations)
+        driven = np.diff(self.motion.joint_time, prepend=0.0)
+        moving = np.bincount(trajectory.operation, driven, count)
+        dwells = [event for event in trajectory.events if event.kind == EventKind.DWELL]
+        row = np.minimum([event.row for event in dwells], len(trajectory) - 1).astype(np.int64)
+        return moving, np.bincount(trajectory.operation[row], [event.value for event in dwells], count)
+
+    @cached_property
+    def greatest_speeds(self) -> Array:
+        """The greatest absolute speed of each strut, (6,) in mm/s, between the knots as well."""
+        greatest = np.abs(self.struts.speed).max(axis=0)
+        last = len(self.struts) - 1
+        for begin in range(0, last, _AT_ONCE):
+            greatest = np.maximum(greatest, self._greatest_between(np.arange(begin, min(begin + _AT_ONCE, last))))
+        return greatest
+
+    def _greatest_between(self, rows: Array) -> Array:
+        """The same, inside the cubics that begin at some knots."""
+        cubics = self.struts.cubics(rows)
+        _, speed, _, _, duration = cubics
+        starts, ends = hermite_accelerations(*cubics)
+        turns = starts * ends < 0.0  # the speed of a cubic is extreme there
+        share = np.divide(starts, starts - ends, out=np.zeros_like(starts), where=turns)
+        reached = speed + starts * share * duration[:, None] / 2.0
+        greatest: Array = np.abs(reached).max(axis=0)
+        return greatest
+
+    def pose_at(self, seconds: Array) -> Pose:
+        """Poses in {M} at times (T,)."""
+        start, share, duration = self._between(seconds)
+        motion, end = self.motion, start + 1
+
+        def at(value: Array, rate: Array) -> Array:
+            return hermite_lengths(value[start], rate[start], value[end], rate[end], duration, share[:, None])[:, 0]
+
+        nose = hermite_lengths(*_noses(motion, start), *_noses(motion, end), duration, share[:, None])[:, 0]
+        axis = unit(at(motion.axis, motion.axis_rate))
+        spin = at(motion.spin[:, None], motion.spin_rate[:, None])[:, 0]
+        length = motion.tool_length[end]  # at a tool change the spindle stands still, and the tip jumps
+        return nose - length[:, None] * axis, axis, spin, length
+
+    def struts_at(self, seconds: Array) -> tuple[Array, Array]:
+        """Strut lengths and speeds at times (T,), (T, 6) each."""
+        start, share, _ = self._between(seconds)
+        cubics = self.struts.cubics(start)
+        return hermite_lengths(*cubics, share[:, None])[:, 0], hermite_speeds(*cubics, share[:, None])[:, 0]
+
+    def block_at(self, seconds: float) -> int:
+        """The segment of the trajectory that is active at a time; the earlier one where two meet."""
+        return min(int(np.searchsorted(self.motion.joint_time, seconds)), len(self.trajectory) - 1)
+
+    def tool_at(self, seconds: float) -> Tool:
+        """The tool in the spindle at a time."""
+        return self.trajectory.tools[int(self.trajectory.tool[self.block_at(seconds)])]
+
+    def operation_begins(self, number: int) -> tuple[int, float]:
+        """The first segment of an operation, and its start time."""
+        row = int(np.argmax(self.trajectory.operation == number))
+        return row, float(self.motion.joint_time[row - 1]) if row else 0.0
+
+    def next_block(self, seconds: float) -> float:
+        """End time of the block after a time."""
+        after = self.motion.joint_time[np.searchsorted(self.motion.joint_time, seconds, side="right") :]
+        return float(after[0]) if len(after) else self.duration
+
+    def block_before(self, seconds: float) -> float:
+        """Start time of the block before a time."""
+        before = self.motion.joint_time[: np.searchsorted(self.motion.joint_time, seconds)]
+        return float(before[-1]) if len(before) else 0.0
+
+    def problem_between(self, start: float, end: float) -> Problem | None:
+        """The first problem after a time, up to another time."""
+        return next((problem for problem in self.problems if start < problem.time <= end), None)
+
+    def envelope(self, columns: int) -> tuple[Array, Array]:
+        """Least and largest of lengths and speeds, (2, columns, 6) each, over equal time intervals.
+
+        Uses the knots and the interval boundaries, so that long cubics are covered as well.
+        """
+        edges = np.linspace(0.0, self.duration, columns + 1)
+        at_edges = self.struts_at(edges)
+        first = np.searchsorted(self.motion.time_ms / 1000.0, edges)
+        lengths = _extremes(self.struts.length, first, at_edges[0])
+        return lengths, _extremes(self.struts.speed, first, at_edges[1])
+
+    def _between(self, seconds: Array) -> tuple[Array, Array, Array]:
+        """Knot before each time (T,), the elapsed share of the interval (T,), and its duration (T,)."""
+        ms = np.clip(np.asarray(seconds, dtype=np.float64) * 1000.0, 0.0, self.motion.time_ms[-1])
+        whole_ms = ms.astype(np.int64)  # searching integers for floats would copy the whole array first
+        start = np.clip(np.searchsorted(self.motion.time_ms, whole_ms, side="right") - 1, 0, len(self.motion) - 2)
+        whole = self.motion.time_ms[start + 1] - self.motion.time_ms[start]
+        return start, (ms - self.motion.time_ms[start]) / whole, whole / 1000.0
+
+
+def _noses(motion: Motion, knot: Array) -> tuple[Array, Array]:
+    """Position and velocity of the spindle nose at knots: unlike the tip, it does not jump at tool changes."""
+    length = motion.tool_length[knot][:, None]
+    return motion.tip[knot] + length * motion.axis[knot], motion.tip_rate[knot] + length * motion.axis_rate[knot]
+
+
+def _extremes(knots: Array, first: Array, ends: Array) -> Array:
+    """Least and largest rows (2, C, 6) of knots by interval; an interval without a knot uses its two ends."""
+    least, largest = np.minimum(ends[:-1], ends[1:]), np.maximum(ends[:-1], ends[1:])
+    full = np.flatnonzero(first[1:] > first[:-1])
+    if len(full):
+        least[full] = np.minimum(least[full], np.minimum.reduceat(knots, first[full], axis=0))
+        largest[full] = np.maximum(largest[full], np.maximum.reduceat(knots, first[full], axis=0))
+    return np.stack([least, largest])
+
 
 translate = App.Qt.translate
 

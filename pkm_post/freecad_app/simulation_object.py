@@ -15,13 +15,10 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
+from pkm_post.freecad_app.document_object import PropertyProxy, Row, briefly_refused
 from pkm_post.freecad_app.frames import apply
-from pkm_post.freecad_app.job_on_machine import job_on_machine
-from pkm_post.freecad_app.object_properties import Row
-from pkm_post.freecad_app.property_proxy import PropertyProxy
-from pkm_post.freecad_app.refusals import briefly_refused
-from pkm_post.freecad_app.simulated_motion import Problem, Simulation
-from pkm_post.freecad_app.simulation import simulation_of
+from pkm_post.freecad_app.job_setup import job_on_machine
+from pkm_post.freecad_app.simulation import Problem, Simulation, simulation_of
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 

@@ -20,16 +20,14 @@ import Path
 import Path.Op.Base
 
 from pkm_post.freecad_app.commands import commands_of
-from pkm_post.freecad_app.contact_faces import NamedFace
+from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.document_object import briefly_refused
 from pkm_post.freecad_app.face_surface import face_surface
-from pkm_post.freecad_app.job import document_name
-from pkm_post.freecad_app.model_faces import model_faces
+from pkm_post.freecad_app.model_faces import NamedFace, model_faces
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.freecad_app.surface_check import check_faces
-from pkm_post.freecad_app.surface_finish_inputs import read_inputs
-from pkm_post.freecad_app.surface_finish_settings import add_missing_properties
-from pkm_post.freecad_app.tool_controller import answered
+from pkm_post.freecad_app.surface_finish_settings import add_missing_properties, read_inputs
+from pkm_post.freecad_app.tools import answered
 from pkm_post.model import Diagnostic, Place, Program, Refused
 from pkm_post.toolpath import Cutter, Poses, Settings, cover, program_of
 

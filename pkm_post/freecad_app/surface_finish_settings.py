@@ -9,13 +9,21 @@ from __future__ import annotations
 
 import enum
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import FreeCAD as App
+import numpy as np
 
-from pkm_post.freecad_app.object_properties import READ_ONLY, Row, add_missing
-from pkm_post.model import Diagnostic, Place
-from pkm_post.toolpath import AxisRule, CutMode, LeadMove, Lines, Order, Settings, Stepover, Tolerances
+from pkm_post.freecad_app.document_object import READ_ONLY, Row, add_missing
+from pkm_post.freecad_app.job_settings import settings_of
+from pkm_post.freecad_app.model_faces import NamedFace, model_faces
+from pkm_post.freecad_app.tools import read_cutter, read_tools
+from pkm_post.geometry import Array
+from pkm_post.machine import machine_named, reach_margins
+from pkm_post.model import Diagnostic, Machine, Place, errors
+from pkm_post.posting import work_offset
+from pkm_post.toolpath import AxisRule, CutMode, Cutter, LeadMove, Lines, Order, Settings, Stepover, Tolerances
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
@@ -137,3 +145,106 @@ def _settings(obj: Any, cone: float, feed: float, plunge: float) -> Settings:
         lead_length=obj.LeadLength.Value,
         approach=obj.ApproachDistance.Value,
     )
+
+
+_TILTS = np.radians(np.arange(0.0, 80.5, 0.5))
+_DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
+
+
+def machine_tilt(
+    name: str, job: Any, controller: Any, box: tuple[Array, Array], place: Place
+) -> tuple[float | None, tuple[Diagnostic, ...]]:
+    """The largest tilt from upright that the machine reaches at the part in every direction.
+
+    Args:
+        name: name of a machine included in PKM Post, or path of a machine file.
+        job: the CAM job, with its work offset and its gauge lengths.
+        controller: the tool controller, with a gauge length.
+        box: lowest and highest corner of the region of the tip, (3,) each, mm.
+        place: location stated in diagnostics.
+
+    Returns:
+        The angle in rad, or None; and the faults: M1xx of the machine file, J113, K108, N310.
+
+    Raises:
+        Refused: the arguments of the job are invalid, J117.
+    """
+    settings = settings_of(job)
+    machine, machine_faults = machine_named(name)
+    tools, tool_faults = read_tools([controller], settings.tool_lengths, place.file)
+    if machine is None or not tools:
+        return None, (*machine_faults, *tool_faults)
+    offset, faults = work_offset(machine, settings.options)
+    if offset is None:
+        return None, faults
+    tilt = _largest(machine, offset, tools[int(controller.ToolNumber)].length, *box)
+    if tilt is None:
+        return None, (Diagnostic("N310", place, f"{machine.name} at {settings.arguments.work_offset}"),)
+    return tilt, ()
+
+
+def _largest(machine: Machine, machine_from_work: Array, length: float, low: Array, high: Array) -> float | None:
+    """The last tilt before the first that is out of reach somewhere; None if upright is out of reach."""
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+    points = np.vstack([(np.asarray(low) + high) / 2, corners])
+    tilt, turn = (each.ravel() for each in np.meshgrid(_TILTS, _DIRECTIONS, indexing="ij"))
+    lean = np.column_stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])
+    tip = np.tile(points @ machine_from_work[:3, :3].T + machine_from_work[:3, 3], (len(lean), 1))
+    axis = np.repeat(lean @ machine_from_work[:3, :3].T, len(points), axis=0)
+    margins = reach_margins(machine, tip, axis, np.zeros(len(tip)), np.full(len(tip), length))
+    worst = np.minimum.reduce([
+        *(each.min(axis=1) for each in (margins.shortest, margins.longest, margins.base, margins.platform)),
+        margins.singular,
+    ])  # fmt: skip
+    reached = (worst.reshape(len(_TILTS), -1) >= 0.0).all(axis=1)
+    beyond = int(np.argmin(reached)) if not reached.all() else len(_TILTS)
+    return float(_TILTS[beyond - 1]) if beyond else None
+
+
+def upright(cone_axis: Any) -> bool:
+    """Whether the axis of a cone points straight up."""
+    x, y, z = cone_axis
+    return bool(z > 0.0 and math.hypot(x, y) <= 1e-9 * z)
+
+
+Inputs = tuple[tuple[NamedFace, ...], Cutter, Settings]
+"""Faces, cutter and settings."""
+
+
+def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, tuple[Diagnostic, ...]]:
+    """Read faces, cutter and settings of an operation.
+
+    Args:
+        obj: the operation, with a tool controller.
+        job: its job.
+        place: location stated in diagnostics.
+
+    Returns:
+        The inputs, or None; and all their faults.
+    """
+    chosen = [(thing, names) for thing, names in obj.Base or ()]
+    faces, face_faults = model_faces(job.Model, chosen, place) if chosen else (None, ())
+    cutter, tool_faults = read_cutter(obj.ToolController, place)
+    found: list[Diagnostic] = [] if chosen else [Diagnostic("N308", place, "Base is empty")]
+    found += [*face_faults, *tool_faults]
+    cone, cone_faults = _cone(obj, job, faces or (), place)
+    settings, faults = read_settings(obj, cone, place)
+    found += [*cone_faults, *faults]
+    if faces is None or cutter is None or settings is None or errors(found):
+        return None, tuple(found)
+    return (faces, cutter, settings), tuple(found)
+
+
+def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple[float, tuple[Diagnostic, ...]]:
+    """Half angle of the cone of the tool axis in rad: the user's, or the machine's where that is narrower."""
+    limit = math.radians(obj.ConeLimit.Value)
+    if not obj.Machine or not faces:
+        return limit, ()
+    if not upright(obj.ConeAxis):
+        return limit, (Diagnostic("N309", place, "a machine limits the tilt from upright: ConeAxis is not (0, 0, 1)"),)
+    boxes = [named.face.BoundBox for named in faces]
+    low = np.array([min(getattr(box, side) for box in boxes) for side in ("XMin", "YMin", "ZMin")])
+    high = np.array([max(getattr(box, side) for box in boxes) for side in ("XMax", "YMax", "ZMax")])
+    high[2] = max(high[2], obj.ClearanceHeight.Value)
+    tilt, faults = machine_tilt(obj.Machine, job, obj.ToolController, (low, high), place)
+    return (limit if tilt is None else min(limit, tilt)), faults

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from Path.Base.Util import toolControllerForOp
 from PathScripts import PathUtils
 
-from pkm_post.freecad_app.derived_operation import program_of
-from pkm_post.freecad_app.material_side import base_side, is_symmetric, spindle_sense_of
+from pkm_post.freecad_app.document_object import program_of
 from pkm_post.geometry import Array
 from pkm_post.model import Kind, Program
 from pkm_post.toolpath import (
@@ -31,6 +31,52 @@ from pkm_post.toolpath import (
     sector,
     transform,
 )
+
+NOT_STATED, LEFT, RIGHT = "Not stated", "Left", "Right"
+SIDES = {NOT_STATED: 0, LEFT: -1, RIGHT: 1}
+"""Choices of the property ``MaterialSide``."""
+
+_CUT_MODES = {"Climb": 1, "Conventional": -1}
+_SENSES = {"Forward": 1, "Reverse": -1}
+_PROFILE = {("Outside", "CW"): 1, ("Outside", "CCW"): -1, ("Inside", "CCW"): 1, ("Inside", "CW"): -1}
+"""Side of the contour and direction of CAM's profile operation; CAM reverses holes by itself."""
+_ORDERS = ("Order", "CutPattern", "OffsetPattern", "ClearingPattern")
+_ONE_WAY = ("One way", "Spiral", "Offset")
+"""Pass patterns that keep the material on one side throughout."""
+
+
+def is_symmetric(obj: Any) -> bool:
+    """Whether an object is a mirrored or rotated operation."""
+    return hasattr(getattr(obj, "Proxy", None), "matrices")
+
+
+def material_side_of(obj: Any) -> int:
+    """The side on which an operation has the material, as far as its properties state it.
+
+    Args:
+        obj: an operation; a mirrored or rotated one takes the side of its base, and so does a dress-up.
+    """
+    if is_symmetric(obj):
+        return base_side(obj) * obj.Proxy.hand(obj)
+    if hasattr(obj, "CutMode"):
+        orders = [getattr(obj, name) for name in _ORDERS if hasattr(obj, name)]
+        return _CUT_MODES.get(obj.CutMode, 0) if all(order in _ONE_WAY for order in orders) else 0
+    if hasattr(obj, "Side") and hasattr(obj, "Direction"):
+        return _PROFILE.get((str(obj.Side), str(obj.Direction)), 0)
+    base = getattr(obj, "Base", None)
+    return material_side_of(base) if hasattr(base, "Path") else 0
+
+
+def base_side(obj: Any) -> int:
+    """The side on which the base of a mirrored or rotated operation has the material."""
+    stated = SIDES[obj.MaterialSide]
+    return stated if stated or obj.Base is None else material_side_of(obj.Base)
+
+
+def spindle_sense_of(obj: Any) -> int:
+    """+1 if the tool controller of an operation turns the spindle clockwise (M3), -1 counterclockwise, 0 if stopped."""
+    return _SENSES.get(getattr(toolControllerForOp(obj), "SpindleDir", ""), 0)
+
 
 _PARALLEL = 1e-6
 """Sine of the angle between planes below which they do not intersect."""

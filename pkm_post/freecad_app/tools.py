@@ -8,13 +8,17 @@ bit and the corner of a bull nose differently, and none of them stores the gauge
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import SimpleNamespace
 from typing import Any
 
 import FreeCAD as App
+from PathScripts import PathUtils
 
 from pkm_post.model import Diagnostic, Place, Tool, corner_reach
+from pkm_post.toolpath import Cutter
 
 GAUGE_LENGTH = "GaugeLength"
 
@@ -143,3 +147,49 @@ _SHAPES: dict[str, Callable[[Any], Sizes]] = {
     "dovetail": _dovetail,
 }
 """Sizes by shape; all others, such as end mills and reamers, count as flat at the bottom and upright at the side."""
+
+
+_KNOWN_SHAPES = ("endmill", "ballend", "bullnose")
+"""Shapes with a flat bottom and an upright side. ``read_tools`` does not return the angle of a tapered one."""
+_ANY_LENGTH = 1.0
+
+
+def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
+    """The cutter of a tool controller.
+
+    Args:
+        controller: the tool controller, or None.
+        place: location stated in diagnostics.
+
+    Returns:
+        The cutter, or None; and the faults: J112, N116.
+    """
+    if controller is None or controller.Tool is None:
+        return None, (Diagnostic("J112", place, "none is set" if controller is None else "it has no tool"),)
+    bit, number = controller.Tool, int(controller.ToolNumber)
+    shape = str(getattr(bit, "ShapeType", None) or getattr(bit, "ShapeName", ""))
+    if shape.lower() not in _KNOWN_SHAPES:
+        return None, (Diagnostic("N116", place, f"{bit.Label} is of the shape {shape}"),)
+    tools, faults = read_tools([controller], {number: _ANY_LENGTH}, place.file)
+    if faults:
+        return None, faults
+    try:
+        return Cutter.of(tools[number]), ()
+    except ValueError as impossible:
+        return None, (Diagnostic("N116", place, f"{bit.Label}, {impossible}"),)
+
+
+@contextlib.contextmanager
+def answered(controller: Any) -> Iterator[None]:
+    """Answer for the user: with several controllers CAM asks, and without a window it fails.
+
+    Args:
+        controller: the tool controller; None leaves the question to the user.
+    """
+    before = PathUtils.UserInput
+    if controller is not None:
+        PathUtils.UserInput = SimpleNamespace(selectedToolController=lambda: controller)
+    try:
+        yield
+    finally:
+        PathUtils.UserInput = before

@@ -13,7 +13,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore
 
-from pkm_post.freecad_app.kinds import is_job, is_simulation
+from pkm_post.freecad_app.document import is_job, is_simulation
 
 _A_MOMENT = 50
 """ms between two checks whether a document is still recomputing."""

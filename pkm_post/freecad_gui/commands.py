@@ -6,7 +6,7 @@ from __future__ import annotations
 import FreeCAD
 import FreeCADGui
 
-from pkm_post.freecad_app.kinds import is_job, is_operation, is_simulation
+from pkm_post.freecad_app.document import is_job, is_operation, is_simulation
 from pkm_post.freecad_gui import command_actions
 from pkm_post.freecad_gui.command import Command, PanelCommand, WindowCommand
 

@@ -14,7 +14,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtGui
 
-from pkm_post.freecad_app.transaction import transaction
+from pkm_post.freecad_app.document import transaction
 from pkm_post.freecad_gui.workbench import ICONS
 
 translate = FreeCAD.Qt.translate

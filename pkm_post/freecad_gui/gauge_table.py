@@ -14,8 +14,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.gauge_lengths import ToolRow, tool_rows
-from pkm_post.freecad_app.typed_length import length_text
+from pkm_post.freecad_app.gauge_lengths import ToolRow, length_text, tool_rows
 from pkm_post.freecad_gui.change_watch import ChangeWatch
 from pkm_post.freecad_gui.length_field import LengthField, decimal_point
 from pkm_post.model import Refused

@@ -15,10 +15,10 @@ import FreeCAD
 from PySide import QtWidgets
 
 from pkm_post.freecad_app.arguments import job_arguments, own_text, parsed, remember
+from pkm_post.freecad_app.document import transaction
 from pkm_post.freecad_app.gauge_lengths import keep_gauge_lengths
 from pkm_post.freecad_app.post_job import file_name
 from pkm_post.freecad_app.post_processor import program_path
-from pkm_post.freecad_app.transaction import transaction
 from pkm_post.freecad_gui.gauge_table import GaugeTable
 from pkm_post.freecad_gui.post_choices import PostChoices
 from pkm_post.freecad_gui.preferences import default_arguments, default_folder

@@ -12,7 +12,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.typed_length import length_text, typed_length
+from pkm_post.freecad_app.gauge_lengths import length_text, typed_length
 
 translate = FreeCAD.Qt.translate
 

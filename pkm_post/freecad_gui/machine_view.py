@@ -11,9 +11,9 @@ from typing import Any
 
 import FreeCAD
 
+from pkm_post.freecad_app.document import transaction
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.machine_object import go_home, machine_of, pose_of
-from pkm_post.freecad_app.transaction import transaction
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.machine_scene import MachineScene
 from pkm_post.freecad_gui.views import DrawnView

@@ -15,7 +15,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.simulated_motion import Problem, Simulation
+from pkm_post.freecad_app.simulation import Problem, Simulation
 from pkm_post.freecad_app.simulation_object import plan_of
 from pkm_post.freecad_gui.cam_simulator import open_cam_simulator
 from pkm_post.freecad_gui.deletion_watch import DeletionWatch

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.simulated_motion import Simulation
+from pkm_post.freecad_app.simulation import Simulation
 from pkm_post.freecad_gui.player_controls import PlayerControls
 from pkm_post.freecad_gui.player_lists import PlayerLists
 from pkm_post.freecad_gui.strut_plot import StrutPlot

@@ -11,7 +11,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.simulated_motion import Problem, Simulation
+from pkm_post.freecad_app.simulation import Problem, Simulation
 
 translate = FreeCAD.Qt.translate
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import FreeCAD
 
-from pkm_post.freecad_app.simulated_motion import Problem, Simulation
+from pkm_post.freecad_app.simulation import Problem, Simulation
 
 translate = FreeCAD.Qt.translate
 

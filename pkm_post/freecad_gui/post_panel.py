@@ -15,7 +15,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.job_settings import settings_of
-from pkm_post.freecad_app.prepared_job import prepared_job
+from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.deletion_watch import DeletionWatch
 from pkm_post.freecad_gui.job_choices import JobChoices

@@ -12,7 +12,7 @@ from typing import Any
 import FreeCADGui
 import numpy as np
 
-from pkm_post.freecad_app.simulated_motion import Simulation
+from pkm_post.freecad_app.simulation import Simulation
 from pkm_post.freecad_gui.machine_scene import MachineScene
 from pkm_post.model import Tool
 

@@ -15,7 +15,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_app.simulated_motion import Simulation
+from pkm_post.freecad_app.simulation import Simulation
 from pkm_post.geometry import Array
 
 translate = FreeCAD.Qt.translate

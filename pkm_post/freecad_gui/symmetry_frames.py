@@ -9,7 +9,7 @@ from typing import Any
 
 import FreeCAD
 
-from pkm_post.freecad_app.symmetry_reference import axis_of, plane_of
+from pkm_post.freecad_app.frames import axis_of, plane_of
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 

@@ -35,7 +35,7 @@ _FARTHEST = 1e6
 
 Result = tuple[Mesh | None, tuple[Diagnostic, ...]]
 READERS: dict[str, Callable[[Path, str], Result]] = {}
-"""Readers of other formats by suffix. Inside FreeCAD, ``freecad_app.step_file`` adds STEP."""
+"""Readers of other formats by suffix. Inside FreeCAD, ``freecad_app.mesh`` adds STEP."""
 
 
 def read_mesh(file: str | Path) -> Result:

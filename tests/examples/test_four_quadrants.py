@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT / "tests" / "freecad_app"))
 from cam_jobs import add_operation, new_job  # noqa: E402
 
 from examples.tapered_column.build import Column, build  # noqa: E402
-from pkm_post.freecad_app.derived_operation import program_of  # noqa: E402
+from pkm_post.freecad_app.document_object import program_of  # noqa: E402
 from pkm_post.freecad_app.symmetry_report import family_of  # noqa: E402
 from pkm_post.toolpath.placement import passes  # noqa: E402
 

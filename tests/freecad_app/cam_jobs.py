@@ -7,7 +7,7 @@ import Path
 import Path.Main.Job
 import Path.Op.Custom
 
-from pkm_post.freecad_app.job import set_gauge_length
+from pkm_post.freecad_app.tools import set_gauge_length
 
 ARC = ["G0 Z10", "G0 X0 Y0", "G1 Z0 F5", "G2 X10 Y0 I5 J0", "G3 X10 Y0 Z-2 I-3 J0", "G0 Z10"]
 FIVE_AXIS = [

@@ -9,7 +9,7 @@ import FreeCAD as App
 import Path.Main.Job as CamJob
 from test_tools import stock_bit
 
-from pkm_post.freecad_app.job import set_gauge_length
+from pkm_post.freecad_app.tools import set_gauge_length
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.freecad_app.contact_guides import guides
+from pkm_post.freecad_app.cutter_contact import guides
 from pkm_post.model import Kind, Program
 
 NONE = -1

@@ -10,11 +10,11 @@ from cam_jobs import add_operation, job_in_reach
 from Path.Post.Processor import PostProcessorFactory
 
 from pkm_post.cli import main
-from pkm_post.freecad_app import document_damage
+from pkm_post.freecad_app import document_checks as document_damage
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import settings_of
+from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.post_job import find_job, post_document, post_job
-from pkm_post.freecad_app.prepared_job import prepared_job
 from pkm_post.model import Refused
 
 CUT = ["G0 X0 Y0 Z30", "G0 Z26", "G1 X2 Y1 Z25 F25", "G0 Z30"]

@@ -9,9 +9,10 @@ import Path.Op.Drilling
 import pytest
 from cam_jobs import moves
 
-from pkm_post.freecad_app.job import read_job, set_gauge_length
+from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.post_job import post_job
 from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.freecad_app.tools import set_gauge_length
 from pkm_post.model import EventKind, Kind
 from pkm_post.options.choices import Options
 

@@ -8,10 +8,9 @@ import Path.Main.Job
 import pytest
 from cam_jobs import add_operation, new_job
 
-from pkm_post.freecad_app.job import set_gauge_length
-from pkm_post.freecad_app.job_setup import job_setup
+from pkm_post.freecad_app.job_setup import job_setup, study_job
 from pkm_post.freecad_app.post_job import post_as_the_job_says
-from pkm_post.freecad_app.reach_job import study_job
+from pkm_post.freecad_app.tools import set_gauge_length
 from pkm_post.geometry.triangles import is_closed, volume
 from pkm_post.model import Refused
 

@@ -6,9 +6,9 @@ import Path.Op.PocketShape
 import Path.Op.Profile
 import pytest
 
-from pkm_post.freecad_app.derived_operation import program_of
-from pkm_post.freecad_app.material_side import material_side_of
+from pkm_post.freecad_app.document_object import program_of
 from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.freecad_app.symmetry_report import material_side_of
 from pkm_post.toolpath.placement.passes import chords
 
 MIDDLE = [10, 10, 0]

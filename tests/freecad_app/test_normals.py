@@ -6,7 +6,7 @@ import numpy as np
 import Part
 import pytest
 
-from pkm_post.freecad_app.normals import project, surface_grid, surface_points
+from pkm_post.freecad_app.face_projection import project, surface_grid, surface_points
 
 ROUNDING = 1e-9
 NANOMETRE = 1e-6

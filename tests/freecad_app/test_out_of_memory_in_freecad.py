@@ -13,8 +13,8 @@ WHAT = "Unable to allocate 7 GiB"
 PLACED = "pkm_post.posting.placed.place"
 CALLS = (
     "pkm_post.freecad_app.post_processor.program_path",
-    "pkm_post.freecad_app.prepared_job.machine_named",
-    "pkm_post.freecad_app.prepared_job.read_job",
+    "pkm_post.freecad_app.job_setup.machine_named",
+    "pkm_post.freecad_app.job_setup.read_job",
     PLACED,
     "pkm_post.writing.trajectory_file.writer.blocks",
     "pkm_post.writing.trajectory_file.reader.bytes_of",

@@ -8,8 +8,8 @@ from cam_jobs import add_operation, new_job
 from Path.Post.Processor import PostProcessorFactory
 
 from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.job_setup import study_job
 from pkm_post.freecad_app.post_job import post_as_the_job_says
-from pkm_post.freecad_app.reach_job import study_job
 from pkm_post.model import Refused
 from pkm_post.reading import gcode
 from pkm_post.writing import trajectory_file

@@ -10,8 +10,8 @@ from another_freecad import printed_by
 from cam_jobs import add_tool_controller, moves, new_job, reopened
 
 from pkm_post.freecad_app import program_import
+from pkm_post.freecad_app.document import is_program
 from pkm_post.freecad_app.job import read_job
-from pkm_post.freecad_app.kinds import is_program
 from pkm_post.freecad_app.program_object import create_program, decode, read_program
 from pkm_post.model import Refused
 

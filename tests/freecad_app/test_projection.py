@@ -6,8 +6,7 @@ import numpy as np
 import Part
 import pytest
 
-from pkm_post.freecad_app.face_feet import nurbs_of
-from pkm_post.freecad_app.normals import project, surface_points
+from pkm_post.freecad_app.face_projection import nurbs_of, project, surface_points
 from pkm_post.freecad_app.progress import Stopped
 
 NANOMETRE = 1e-6

@@ -5,8 +5,8 @@ import pytest
 from cam_jobs import add_operation, new_job
 
 from pkm_post.freecad_app.arguments import job_arguments
+from pkm_post.freecad_app.job_setup import place_job, study_job
 from pkm_post.freecad_app.post_job import post_as_the_job_says
-from pkm_post.freecad_app.reach_job import place_job, study_job
 from pkm_post.model import Refused
 from pkm_post.model.diagnostics import errors
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from cam_jobs import ON_EXAMPLE, add_operation, job_in_reach, reopened
 
+from pkm_post.freecad_app.job_setup import study_job
 from pkm_post.freecad_app.machine_object import create_machine
-from pkm_post.freecad_app.reach_job import study_job
 from pkm_post.freecad_app.reach_object import create_reach, machine_for, thinned
 
 NANOMETRE = 1e-6

@@ -7,8 +7,9 @@ import Path
 import pytest
 from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, moves
 
-from pkm_post.freecad_app.job import read_job, set_gauge_length
+from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.symmetry import create_mirror
+from pkm_post.freecad_app.tools import set_gauge_length
 from pkm_post.model import EventKind
 
 SIX_DECIMALS = 1e-6

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 from cam_jobs import add_operation
 
+from pkm_post.freecad_app.document_object import briefly_refused
 from pkm_post.freecad_app.reach_object import create_reach
-from pkm_post.freecad_app.refusals import briefly_refused
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.model import Diagnostic, Place, Refused
 

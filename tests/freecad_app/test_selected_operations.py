@@ -10,9 +10,9 @@ import pytest
 from cam_jobs import FIVE_AXIS, add_operation, new_job
 from Path.Post.Processor import PostProcessorFactory
 
+from pkm_post.freecad_app.job import Selection
 from pkm_post.freecad_app.job_settings import settings_of
-from pkm_post.freecad_app.prepared_job import prepared_job
-from pkm_post.freecad_app.selection import Selection
+from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.model import Refused
 
 POSTS = ["hexapod_pmac", "hexapod_linuxcnc", "hexapod_gcode"]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from cam_jobs import ARC, FIVE_AXIS, ON_EXAMPLE, add_operation, job_in_reach, reopened
 
-from pkm_post.freecad_app.kinds import is_operation, is_simulation
+from pkm_post.freecad_app.document import is_operation, is_simulation
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.simulation import simulate_job
 from pkm_post.freecad_app.simulation_object import create_simulation, plan_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from cam_jobs import add_operation, moves, reopened
 
-from pkm_post.freecad_app.derived_operation import program_of
+from pkm_post.freecad_app.document_object import program_of
 from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
 from pkm_post.freecad_app.symmetry_report import family_of
 

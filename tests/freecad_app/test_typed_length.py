@@ -4,7 +4,7 @@
 import FreeCAD as App
 import pytest
 
-from pkm_post.freecad_app.typed_length import length_text, typed_length
+from pkm_post.freecad_app.gauge_lengths import length_text, typed_length
 
 MILLIMETRES, INCHES = 6, 3
 """Unit schemes of FreeCAD: metric small parts and CNC, imperial decimal."""

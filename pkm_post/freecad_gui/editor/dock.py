@@ -13,7 +13,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.kinds import is_program
+from pkm_post.freecad_app.document import is_program
 from pkm_post.freecad_gui.editor import linked
 from pkm_post.freecad_gui.editor.body import Body
 from pkm_post.freecad_gui.editor.file_drop import FileDrop

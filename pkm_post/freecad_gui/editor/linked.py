@@ -12,9 +12,8 @@ from typing import Any
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.freecad_app.kinds import is_job, is_program
+from pkm_post.freecad_app.document import is_job, is_program, transaction
 from pkm_post.freecad_app.program_object import create_program, decode, set_reading
-from pkm_post.freecad_app.transaction import transaction
 from pkm_post.reading import Reading
 
 translate = FreeCAD.Qt.translate

@@ -10,7 +10,7 @@ import pytest
 from another_freecad import ROOT, printed_by
 from Path.Post.Processor import PostProcessor, PostProcessorFactory
 
-from pkm_post.freecad_app import post_hook
+from pkm_post.freecad_app import startup
 
 NAME = "hexapod_pmac"
 NAMES = ["hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"]
@@ -25,10 +25,10 @@ def test_cam_lists_each_post_processor_once(name):
 
 def test_installing_again_changes_nothing():
     search = Path.Preferences.searchPathsPost
-    post_hook.install()
-    post_hook.install()
+    startup.install_post_processors()
+    startup.install_post_processors()
     assert Path.Preferences.searchPathsPost is search
-    assert search().count(post_hook.FOLDER) == 1
+    assert search().count(startup.FOLDER) == 1
 
 
 def test_folder_of_the_add_on_comes_first():

@@ -1,21 +1,66 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Import hook: calls a function as soon as a module is imported, whoever imports it.
+"""Startup: what the add-on registers when FreeCAD starts, without importing CAM, numpy or OpenCASCADE.
 
-This keeps heavy imports out of FreeCAD's startup.
+The post-processors are registered with CAM, and STEP with the mesh reader, each when its module is imported. Up to
+FreeCAD 1.1, CAM searches the folders that ``Path.Preferences.searchPathsPost`` lists, and cannot register another one;
+that function is extended here. Newer versions provide a call.
 """
 
 from __future__ import annotations
 
 import importlib.util
+import os
 import sys
 from collections.abc import Callable, Sequence
 from importlib.machinery import ModuleSpec
+from pathlib import Path
 from types import ModuleType
+from typing import Any
+
+FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "postprocessors")
+_PREFERENCES = "Path.Preferences"
+_MESH_FILE = "pkm_post.reading.mesh_file"
 
 Then = Callable[[ModuleType], None]
 
 
-def when_imported(name: str, then: Then) -> None:
+def install_post_processors() -> None:
+    """Register the post-processors, now if CAM is loaded and otherwise when it is."""
+    _when_imported(_PREFERENCES, _add_folder)
+
+
+def install_step_reader() -> None:
+    """Let ``mesh_file`` read STEP, now if it is loaded and otherwise when it is."""
+    _when_imported(_MESH_FILE, _add_step)
+
+
+def _add_folder(preferences: ModuleType) -> None:
+    """Add the folder to the search path of CAM, once."""
+    search_paths = preferences.searchPathsPost
+    if FOLDER in search_paths():
+        return
+    add_folder = getattr(preferences, "addAddonPostPath", None)
+    if add_folder is not None:  # FreeCAD newer than 1.1
+        add_folder(FOLDER)
+        return
+
+    def searchPathsPost() -> list[str]:
+        return [FOLDER, *search_paths()]  # first, to override an outdated copy in the macro folder
+
+    preferences.searchPathsPost = searchPathsPost
+
+
+def _add_step(mesh_file: ModuleType) -> None:
+    mesh_file.READERS.update(dict.fromkeys(mesh_file.STEP_SUFFIXES, _read_step))
+
+
+def _read_step(path: Path, name: str) -> Any:
+    from pkm_post.freecad_app.mesh import read_step
+
+    return read_step(path, name)
+
+
+def _when_imported(name: str, then: Then) -> None:
     """Call a function with a module: now if it is loaded, otherwise right after its import.
 
     Args:

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Document damage: detects differences between a document in FreeCAD and the saved one.
+
+Takes a file or a document; returns its faults. FreeCAD opens a truncated or modified file without an error and replaces
+unreadable paths with empty ones. The file is therefore checked before it is opened, and again when a job of an open
+document is read: until it is saved, the file is still the one that was opened.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import lru_cache
+from pathlib import Path as FilePath
+from typing import Any
+
+from pkm_post.freecad_app.commands.faults import not_text
+from pkm_post.freecad_app.commands.words import Words
+from pkm_post.model import Diagnostic, Place, Refused
+from pkm_post.system import DamagedDocument, DocumentContent, read_document
+
+
+def intact(file: FilePath) -> DocumentContent:
+    """Contents listed in a document, after checking its file.
+
+    Raises:
+        Refused: it cannot be read, or is damaged: J101, J129, J130.
+    """
+    try:
+        return read_document(file)
+    except OSError as fault:
+        raise Refused([Diagnostic("J101", Place(str(file)), str(fault))]) from fault
+    except DamagedDocument as damaged:
+        raise Refused([Diagnostic(damaged.code, Place(str(file)), damaged.found)]) from damaged
+
+
+def check_read(document: Any, content: DocumentContent) -> None:
+    """Compare the operations of a newly opened document with those listed in its file.
+
+    Raises:
+        Refused: some are missing, J131.
+    """
+    place, faults = Place(document.FileName), []
+    for job in content.jobs:
+        found = document.getObject(job.name)
+        read = [each.Name for each in found.Operations.Group] if hasattr(found, "Operations") else []
+        if read != list(job.operations):
+            missing = ", ".join(sorted(set(job.operations) - set(read))) or "none is missing, the order is another"
+            told = f"{len(read)} of {len(job.operations)} operations of {job.label}: {missing}"
+            faults.append(Diagnostic("J131", place, told))
+    if faults:
+        raise Refused(faults)
+
+
+def file_faults(document: Any) -> tuple[Diagnostic, ...]:
+    """Faults in the file of an open document; none if it was never saved or no longer exists."""
+    file = FilePath(document.FileName)
+    if not document.FileName or not file.is_file():
+        return ()
+    status = file.stat()
+    return _faults_of(file, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=16)
+def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...]:
+    """The same, cached by file state: document objects ask at every recompute."""
+    try:
+        intact(file)
+    except Refused as refused:
+        return refused.diagnostics
+    return ()
+
+
+_OURS = "pkm_post."
+
+
+def is_ours(operation: Any) -> bool:
+    """Whether the object belongs to this add-on, whose objects transform tool axes together with points."""
+    return type(getattr(operation, "Proxy", None)).__module__.startswith(_OURS)
+
+
+def bases(operation: Any) -> list[Any]:
+    """The operations directly below; faces and edges from which an operation is made are excluded."""
+    base = getattr(operation, "Base", None)
+    linked = base if isinstance(base, list | tuple) else [base]
+    return [below for below in linked if hasattr(below, "isDerivedFrom") and below.isDerivedFrom("Path::Feature")]
+
+
+def spoilers(operation: Any) -> Iterator[Any]:
+    """Yield third-party layers, the object itself or below it, on top of moves with tool-axis words."""
+    for below in bases(operation):
+        if not is_ours(operation) and Words.of(below.Path.Commands).axis_words().any():
+            yield operation
+        yield from spoilers(below)
+
+
+_NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
+"""Entries of ``State``. The first remains until the document is closed, whatever is computed."""
+
+
+def state_faults(operation: Any, source: str) -> list[Diagnostic]:
+    """The faults of an operation before its commands are read: the first fault, or all layers in the way.
+
+    Args:
+        operation: of a job, active.
+        source: name of the document.
+    """
+    place = Place(source, operation.Label)
+    for code, found in _FAULTS:
+        told = found(operation)
+        if told:
+            return [Diagnostic(code, place, told)]
+    try:
+        return [Diagnostic("J108", place, layer.Label) for layer in spoilers(operation)]
+    except UnicodeDecodeError as fault:
+        return [not_text(fault, source, operation.Label)]
+
+
+def _has_no_path(operation: Any) -> str:
+    return "" if operation.isDerivedFrom("Path::Feature") else f"a {operation.TypeId}"
+
+
+def _not_read(operation: Any) -> str:
+    return "its state is Restore" if _NOT_READ in operation.State else ""
+
+
+def _not_valid(operation: Any) -> str:
+    if not operation.isValid():
+        return str(operation.getStatusString())
+    return "the operation it copies is gone" if is_ours(operation) and operation.Base is None else ""
+
+
+def _not_computed(operation: Any) -> str:
+    return "its state is Touched" if _NOT_COMPUTED in operation.State else ""
+
+
+def _empty(operation: Any) -> str:
+    """A path that CAM computes has at least a comment; only one made from an inactive operation is entirely empty."""
+    return "" if operation.Path.Size or _stands_on_inactive(operation) else "no command, not even a comment"
+
+
+def _stands_on_inactive(operation: Any) -> bool:
+    return any(getattr(below, "Active", True) is False or _stands_on_inactive(below) for below in bases(operation))
+
+
+_FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
+    ("J136", _has_no_path),
+    ("J134", _not_read),
+    ("J116", _not_valid),
+    ("J133", _not_computed),
+    ("J132", _empty),
+)
+"""Finding by code, empty if there is none, in this order: each test relies on those before it."""

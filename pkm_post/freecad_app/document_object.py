@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Object properties: adds user-visible properties to our document objects, from tables.
+
+Takes rows; adds the properties. The same happens when a document is opened: one of an older version lacks
+later properties. Names, types and units are a file format: they can be extended, not changed.
+"""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
+from types import MappingProxyType
+from typing import Any, ClassVar
+
+import FreeCAD as App
+import numpy as np
+import Path
+
+from pkm_post.freecad_app.commands import commands_of, read_commands
+from pkm_post.model import Diagnostic, Program, Refused
+from pkm_post.system import memory_guard
+from pkm_post.toolpath import transform
+
+Row = tuple[str, str, str, str, Any]
+"""A property: its type, name, group, description, and its initial value or its choices."""
+
+EDITABLE, READ_ONLY, HIDDEN = 0, 1, 2
+"""Editor modes: whether the user can edit a property, only read it, or does not see it."""
+NO_RECOMPUTE = 16
+"""Attribute of a property whose change does not recompute the object."""
+_NONE: Mapping[str, int] = MappingProxyType({})
+
+
+def add_missing(obj: Any, rows: Iterable[Row], mode: int = EDITABLE, attributes: Mapping[str, int] = _NONE) -> None:
+    """Add the properties that an object lacks.
+
+    Args:
+        obj: the document object.
+        rows: the table.
+        mode: editor mode of all of them.
+        attributes: property attributes by name, where there are any.
+    """
+    for kind, name, group, text, value in rows:
+        if not hasattr(obj, name):
+            obj.addProperty(kind, name, group, text, attributes.get(name, 0))
+            setattr(obj, name, value)
+        if mode != EDITABLE:
+            obj.setEditorMode(name, mode)
+
+
+class PropertyProxy:
+    """A proxy that saves nothing but the properties of its object.
+
+    Attributes:
+        properties: set by the user.
+        results: computed, read-only for the user.
+    """
+
+    properties: ClassVar[tuple[Row, ...]] = ()
+    results: ClassVar[tuple[Row, ...]] = ()
+
+    def __init__(self, obj: Any) -> None:
+        self.add_missing_properties(obj)
+        obj.Proxy = self
+
+    def add_missing_properties(self, obj: Any) -> None:
+        """Add the properties that the object lacks, whether new or from an older version."""
+        add_missing(obj, self.properties)
+        add_missing(obj, self.results, READ_ONLY)
+
+    def clear_results(self, obj: Any) -> None:
+        """Clear the results, so that none is outdated after an error."""
+        for _, name, _, _, value in self.results:
+            setattr(obj, name, value)
+
+    def onDocumentRestored(self, obj: Any) -> None:
+        """Add the properties that documents of older versions lack."""
+        self.add_missing_properties(obj)
+
+    def dumps(self) -> None:
+        """Save nothing but the properties."""
+
+    def loads(self, state: object) -> None:
+        """Restore nothing: nothing was saved."""
+
+
+Execute = Callable[[Any, Any], Any]
+"""The method of a proxy that computes its object."""
+
+
+def briefly_refused(execute: Execute) -> Execute:
+    """Remove the traceback from refusals and memory errors that ``execute`` raises."""
+
+    @wraps(execute)
+    def brief(proxy: Any, obj: Any) -> Any:
+        try:
+            with memory_guard(obj.Label):
+                return execute(proxy, obj)
+        except Refused as refused:
+            raise refused.with_traceback(None) from None
+
+    return brief
+
+
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
+
+BASE_AND_ACTIVE: tuple[Row, ...] = (
+    ("App::PropertyLink", "Base", "Path",
+     QT_TRANSLATE_NOOP("App::Property", "The operation that this one is made from"), None),
+    ("App::PropertyBool", "Active", "Path",
+     QT_TRANSLATE_NOOP("App::Property", "Switch this off to leave the operation out of the program"), True),
+)  # fmt: skip
+
+
+class DerivedOperation(PropertyProxy, abc.ABC):
+    """Base class of these objects. CAM needs only the properties and the path of an operation."""
+
+    @abc.abstractmethod
+    def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+        """The program of the object, or None, and its faults; from the program of its base, in the frame of the job."""
+
+    @briefly_refused
+    def execute(self, obj: Any) -> None:
+        """Recompute the path: FreeCAD calls this when the base or a property has changed."""
+        obj.Path = Path.Path()  # after an error no outdated path remains to be posted
+        if not obj.Active:
+            obj.Path = Path.Path("(inactive operation)")
+        elif obj.Base is not None:
+            obj.Path = Path.Path(commands_of(_value(*self.derive(obj, program_of(obj.Base)))))
+
+
+def program_of(base: Any) -> Program:
+    """The program of an operation without tools, with its placement applied.
+
+    Raises:
+        Refused: its commands cannot be read.
+    """
+    placement = np.array(base.Placement.Matrix.A).reshape(4, 4)
+    program = _value(*read_commands(base.Path.Commands, base.Document.Name, base.Label))
+    return _value(*transform(program, placement))
+
+
+def _value(value: Any, diagnostics: tuple[Diagnostic, ...]) -> Any:
+    """Return the value and show its warnings; or raise an exception that FreeCAD shows at the object."""
+    if value is None:
+        raise Refused(diagnostics)
+    for warning in diagnostics:
+        App.Console.PrintWarning(f"{warning}\n")
+    return value
