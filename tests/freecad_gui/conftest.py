@@ -9,6 +9,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from pictures import painted
 
 ADDON = Path(__file__).parents[2]
 
@@ -28,8 +29,8 @@ class Scene:
         return self.found[name]
 
     def drew(self, name):
-        """Whether a picture of a window with something in it was kept."""
-        return (self.folder / name).stat().st_size > 20_000
+        """Whether the picture of a window shows something: more than a twentieth of it is not background."""
+        return painted(self.folder / name) > 0.05
 
     def keep(self, pattern):
         """Put pictures into the folder that PKM_PICTURES names, below the root of the repository, if it names one."""

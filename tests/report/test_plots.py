@@ -4,10 +4,12 @@ import sys
 
 import numpy as np
 import pytest
+from pictures import painted
 from programs import cone
 
 from pkm_post.machine.description import machine_named
 from pkm_post.posting.steps import post
+from pkm_post.report import plots
 from pkm_post.report.plots import _only, shown
 from pkm_post.report.reach_plot import draw_reach
 
@@ -52,13 +54,32 @@ def test_a_picture_shows_names_as_they_are(tmp_path):
     )
     machine = dataclasses.replace(machine_named("example_6tps")[0], name=NO_MATHEMATICS)
     assert post(named, machine, tmp_path / "part.pmc").diagnostics == ()
-    assert (tmp_path / "part-report.png").read_bytes().startswith(b"\x89PNG")
+    assert 0.02 < painted(tmp_path / "part-report.png") < 0.5
+
+
+def test_the_picture_of_a_report_has_its_axes_lines_and_legends(tmp_path, monkeypatch):
+    figures = []
+    monkeypatch.setattr(plots, "save", lambda figure, path, **how: figures.append(figure) or path.touch())
+    machine = machine_named("example_6tps")[0]
+    program = cone()
+    post(program, machine, tmp_path / "part.pmc")
+    (figure,) = figures
+    path, lengths, speeds, deviations = figure.get_axes()
+    assert [axes.get_ylabel() for axes in (lengths, speeds, deviations)] == [
+        "strut length mm", "strut speed mm/s", "deviation by tolerance",
+    ]  # fmt: skip
+    legends = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in (path, lengths, deviations)]
+    assert legends == [[*program.operations, "rapid"], [f"strut {n}" for n in range(1, 7)], ["tip", "axis"]]
+    limits = [line.get_ydata()[0] for line in lengths.lines[6:]]
+    assert limits == list(machine.strut_stroke)
+    assert deviations.lines[0].get_ydata().max() <= 1.0
+    assert program.source in figure.get_suptitle() and machine.name in figure.get_suptitle()
 
 
 def test_a_reach_map_shows_the_name_of_the_machine_as_it_is(tmp_path):
     tip = np.array([[x, y, 200.0] for x in (0.0, 50.0) for y in (0.0, 50.0)])
     assert draw_reach(tmp_path / "map.png", NO_MATHEMATICS, tip, np.full(4, 0.5)) == ()
-    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+    assert 0.02 < painted(tmp_path / "map.png") < 0.9
 
 
 class Broken:
