@@ -2,8 +2,7 @@
 """Reading: G-code, CL data, CAM documents and meshes, from their files to a program."""
 
 from pkm_post.reading import check, gcode
-from pkm_post.reading.cldata.dialects import DIALECTS
-from pkm_post.reading.cldata.options import CONTOUR_DATA, UNITS
+from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS, UNITS
 from pkm_post.reading.gcode.axes import axis_of
 from pkm_post.reading.gcode.chords import CHORD_ERROR, with_chords
 from pkm_post.reading.gcode.codes import IN_STEP_WITH_SPINDLE

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """CL data: read APT cutter location files, in the dialects of CAM systems, into a ``Program``."""
 
-from pkm_post.reading.cldata.dialects import DIALECTS, Dialect, detect
-from pkm_post.reading.cldata.options import CONTOUR_DATA, CYCLE_VALUES, UNITS, ReadOptions
+from pkm_post.reading.cldata.options import CONTOUR_DATA, CYCLE_VALUES, DIALECTS, UNITS, Dialect, ReadOptions, detect
 from pkm_post.reading.cldata.reader import read
 
 __all__ = ["CONTOUR_DATA", "CYCLE_VALUES", "DIALECTS", "UNITS", "Dialect", "ReadOptions", "detect", "read"]

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pkm_post.model import RULES, Diagnostic, Place, Severity
-from pkm_post.reading.cldata.lines import JOINT, Lines
+from pkm_post.reading.cldata.logical_lines import JOINT, Lines
 from pkm_post.reading.grammar import Fault, in_words
 
 if TYPE_CHECKING:

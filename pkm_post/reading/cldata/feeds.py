@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 from pkm_post.model import EventKind
-from pkm_post.reading.cldata.course import Course, Feed
 from pkm_post.reading.cldata.options import UNITS
+from pkm_post.reading.cldata.state import Course, Feed
 from pkm_post.reading.cldata.statements import Statement
 
 MM_PER_MINUTE: dict[str, float | None] = {"MMPM": 1.0, "IPM": 25.4, "FPM": 304.8, "PERMIN": None}

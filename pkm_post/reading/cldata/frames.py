@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.cldata.course import Course
 from pkm_post.reading.cldata.feeds import shown
 from pkm_post.reading.cldata.length_unit import UNIT_WORDS
 from pkm_post.reading.cldata.options import UNITS
+from pkm_post.reading.cldata.state import Course
 from pkm_post.reading.cldata.statements import Statement
 
 _SQUARE = 1e-3

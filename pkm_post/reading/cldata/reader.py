@@ -10,20 +10,19 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Program
-from pkm_post.reading.cldata.contour_data import contour_offsets
-from pkm_post.reading.cldata.course import Course
-from pkm_post.reading.cldata.dialects import DIALECTS, detect
+from pkm_post.reading.cldata.arcs import fit_arcs
+from pkm_post.reading.cldata.cutcom import contour_offsets
+from pkm_post.reading.cldata.cycle_statement import cycles_told
 from pkm_post.reading.cldata.faults import Faults
-from pkm_post.reading.cldata.fit import fit_arcs
-from pkm_post.reading.cldata.holes import cycles_told
+from pkm_post.reading.cldata.interpreter import walk
 from pkm_post.reading.cldata.length_unit import length_unit
-from pkm_post.reading.cldata.lines import LONGEST_LINE, decoded, logical_lines, without_long_lines
-from pkm_post.reading.cldata.motion import program_of
-from pkm_post.reading.cldata.options import ReadOptions
+from pkm_post.reading.cldata.logical_lines import LONGEST_LINE, decoded, logical_lines, without_long_lines
+from pkm_post.reading.cldata.options import DIALECTS, ReadOptions, detect
 from pkm_post.reading.cldata.points import Points, ValueNames, all_points, bulk_rows, resolve
-from pkm_post.reading.cldata.scan import scan
+from pkm_post.reading.cldata.program import program_of
+from pkm_post.reading.cldata.state import Course
+from pkm_post.reading.cldata.statements import scan
 from pkm_post.reading.cldata.tools import keep
-from pkm_post.reading.cldata.walk import walk
 
 LARGE_INCHES = 2000.0
 """mm; a larger part in inches is more likely in mm."""

@@ -11,8 +11,8 @@ import math
 from dataclasses import replace
 
 from pkm_post.model import EventKind, Tool, angles_fit, corner_reach, largest_corner
-from pkm_post.reading.cldata.course import Course
 from pkm_post.reading.cldata.feeds import shown
+from pkm_post.reading.cldata.state import Course
 from pkm_post.reading.cldata.statements import Statement
 
 _TOUCHING = 2e-3

@@ -6,7 +6,7 @@ import tracemalloc
 import pytest
 
 from pkm_post.reading.cldata import read
-from pkm_post.reading.cldata.lines import LONGEST_LINE, without_long_lines
+from pkm_post.reading.cldata.logical_lines import LONGEST_LINE, without_long_lines
 
 AROUND = (b"UNITS/MM\n$$ comment\n", b"\nRAPID\nGOTO/1,2,3\n")
 

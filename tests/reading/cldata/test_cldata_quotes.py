@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pkm_post.reading.cldata import read
-from pkm_post.reading.cldata.lines import JOINT, decoded, logical_lines
+from pkm_post.reading.cldata.logical_lines import JOINT, decoded, logical_lines
 
 PIECES = [
     "GOTO/1,2,3",

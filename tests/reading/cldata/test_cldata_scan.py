@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 
 from pkm_post.reading.cldata import read
 from pkm_post.reading.cldata.faults import Faults
-from pkm_post.reading.cldata.lines import JOINT, decoded, logical_lines
-from pkm_post.reading.cldata.scan import scan
-from pkm_post.reading.cldata.statements import form_of
+from pkm_post.reading.cldata.logical_lines import JOINT, decoded, logical_lines
+from pkm_post.reading.cldata.statements import form_of, scan
 from pkm_post.reading.grammar import STATEMENT
 
 BLANKS = st.sampled_from(["", " ", "  ", " $\n"])

@@ -10,11 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from pkm_post.model import Array, EventKind, Tool
-from pkm_post.reading.cldata.cycles import Cycle
-from pkm_post.reading.cldata.dialects import Dialect
+from pkm_post.reading.cldata.cycle_notation import Cycle
 from pkm_post.reading.cldata.faults import Faults
 from pkm_post.reading.cldata.length_unit import LengthUnit
-from pkm_post.reading.cldata.options import UNITS, ReadOptions
+from pkm_post.reading.cldata.options import UNITS, Dialect, ReadOptions
 from pkm_post.reading.cldata.statements import Statements
 
 Vector = tuple[float, ...]

@@ -14,12 +14,11 @@ import numpy as np
 
 from pkm_post.geometry import arc_length, arc_sweep, dot, norm
 from pkm_post.model import Array, Event, EventKind, Kind, Program
-from pkm_post.reading.cldata.contour_data import Offset
-from pkm_post.reading.cldata.course import Course
-from pkm_post.reading.cldata.drilled import drilled_holes
-from pkm_post.reading.cldata.fit import Fitted
-from pkm_post.reading.cldata.hole_moves import Holes
+from pkm_post.reading.cldata.arcs import Fitted
+from pkm_post.reading.cldata.cutcom import Offset
+from pkm_post.reading.cldata.drilling import Holes, drilled_holes
 from pkm_post.reading.cldata.points import Points, in_force
+from pkm_post.reading.cldata.state import Course
 
 
 @dataclass
