@@ -29,7 +29,7 @@ sys.path.insert(0, str(FilePath(__file__).resolve().parents[1]))
 
 from pkm_post.freecad_app.post_job import post_job  # noqa: E402
 from pkm_post.freecad_app.tools import set_gauge_length  # noqa: E402 - the path comes first
-from pkm_post.machine.description import find_machine  # noqa: E402
+from pkm_post.machine import find_machine  # noqa: E402
 from pkm_post.options.choices import Options  # noqa: E402
 
 WIDTH = 120.0

@@ -19,9 +19,10 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 from programs import program  # noqa: E402 - the path comes first
 
-from pkm_post.machine.description import machine_named  # noqa: E402
-from pkm_post.machine.position import best_position  # noqa: E402
-from pkm_post.machine.spin import OBJECTIVES, Policy, Rule, least_shares, optimise  # noqa: E402
+from pkm_post.machine.best_position import best_position  # noqa: E402
+from pkm_post.machine.description.presets import machine_named  # noqa: E402
+from pkm_post.machine.spin.optimise import least_shares, optimise  # noqa: E402
+from pkm_post.machine.spin.policy import OBJECTIVES, Policy, Rule  # noqa: E402
 from pkm_post.toolpath.placement import place  # noqa: E402
 
 

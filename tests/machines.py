@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.machine.description import find_machine
+from pkm_post.machine.description.presets import find_machine
 from pkm_post.model import Machine, ToolChange
 
 INCH = 25.4
+LEAD = 10.0
+"""mm: lead of the screws of ``screwed``."""
 
 
 def machine(base, platform, reach=0.0, stroke=(0.0, np.inf), characteristic_length=200.0) -> Machine:
@@ -55,6 +57,15 @@ def nategh() -> Machine:
     )
 
 
+def screwed(machine):
+    """The machine with universal joints at both ends and no keys: its screws turn with the joints."""
+    base = np.tile([1.0, 0.0, 0.0], (6, 1))
+    platform = np.tile([np.cos(0.2), np.sin(0.2), 0.0], (6, 1))
+    return replace(
+        machine, base_axes=base, platform_axes=platform, screw_lead=LEAD, platform_joint_kind="universal",
+    )  # fmt: skip
+
+
 def direction(tilt_deg, azimuth_deg):
     tilt, azimuth = np.radians(tilt_deg), np.radians(azimuth_deg)
     return np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
@@ -62,7 +73,7 @@ def direction(tilt_deg, azimuth_deg):
 
 def axis_and_spin(rotation):
     """The tool axis and spin that give a rotation matrix; for poses published as Euler angles."""
-    from pkm_post.machine.kinematics import platform_rotation
+    from pkm_post.machine.kinematics.inverse import platform_rotation
 
     axis = rotation[:, 2]
     rest = platform_rotation(axis[None], np.zeros(1))[0].T @ rotation

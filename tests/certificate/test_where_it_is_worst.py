@@ -9,7 +9,7 @@ from test_nothing_exceeds import TOLERANCES, certified
 
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
-from pkm_post.machine.kinematics import forward
+from pkm_post.machine.kinematics.forward import forward
 from pkm_post.machine.kinematics.jacobian import linearise
 
 MOMENT = 1e-9

@@ -24,7 +24,7 @@ from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.job_setup import job_on_machine, prepared_job, study_job
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.post_job import post_as_the_job_says
-from pkm_post.machine.description import find_machine, machine_named
+from pkm_post.machine import find_machine, machine_named
 from pkm_post.model import Refused
 from pkm_post.options import given_in, options_from, tool_lengths_from, typed
 from pkm_post.posting import post

@@ -9,9 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array, dot, numbered
-from pkm_post.machine.collisions.against_meshes import Driven
-from pkm_post.machine.collisions.contacts import Contacts
-from pkm_post.machine.collisions.tool_shapes import Profile, cutter_profile
+from pkm_post.machine.collisions.contacts import Contacts, Driven
+from pkm_post.machine.collisions.moving_bodies import Profile, cutter_profile
 from pkm_post.model import Kind, Setup, Shank, Tool, largest_corner
 
 _STEP = 0.2

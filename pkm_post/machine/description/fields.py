@@ -11,7 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from pkm_post.machine.description import forms, solids, units
+from pkm_post.machine.description import forms, units
+from pkm_post.machine.description import forms as solids
 from pkm_post.machine.description.forms import Form
 from pkm_post.machine.description.units import Dimension
 

@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pkm_post.machine.description.reader import read_machine
+from pkm_post.model import Diagnostic, Machine, Place
+
 _PACKAGE = Path(__file__).parents[2]
 _IN_A_WHEEL = _PACKAGE / "resources" / "machines"
 FOLDER = _IN_A_WHEEL if _IN_A_WHEEL.is_dir() else _PACKAGE.parent / "resources" / "machines"
@@ -43,3 +46,15 @@ def find_machine(name_or_path: str) -> Path | None:
 
 def _names(folder: Path) -> list[str]:
     return sorted(path.stem for path in folder.glob(f"*{SUFFIX}"))
+
+
+def machine_named(name_or_path: str | Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
+    """The machine, or the faults of its name or file.
+
+    Args:
+        name_or_path: name of a machine that ships with PKM Post, or path of a machine file.
+    """
+    path = find_machine(str(name_or_path))
+    if path is None:
+        return None, (Diagnostic("M101", Place(str(name_or_path)), "no machine of this name comes with PKM Post"),)
+    return read_machine(path)

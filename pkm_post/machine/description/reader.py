@@ -8,21 +8,63 @@ well-formed entries. A file with a fault yields no machine, since a misread limi
 from __future__ import annotations
 
 import hashlib
+import math
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from pkm_post.machine.description.contradictions import contradictions
-from pkm_post.machine.description.faults import Fault, not_toml, tell
+import numpy as np
+
+from pkm_post.machine.description.consistency import contradictions, rest_axes, tool_change
+from pkm_post.machine.description.faults import MOST_BYTES, Fault, not_toml, tell, too_deep, too_large
 from pkm_post.machine.description.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
-from pkm_post.machine.description.forms import NAME, PROSE, FormError, holds_unknown, shown
-from pkm_post.machine.description.rest_pose import rest_axes
-from pkm_post.machine.description.text_limits import MOST_BYTES, too_deep, too_large
-from pkm_post.machine.description.tool_change import tool_change
+from pkm_post.machine.description.forms import NAME, PROSE, Array, FormError, holds_unknown, shown
 from pkm_post.machine.description.units import Scale, stated_units
-from pkm_post.machine.description.work_offsets import offset_names, stated_poses, work_offsets
 from pkm_post.model import Diagnostic, Machine, Place
+
+SECTION = "work_offsets"
+
+
+def offset_names(document: dict[str, Any]) -> list[str]:
+    """Names of the work offsets, in file order."""
+    section = document.get(SECTION)
+    return [name for name, offset in section.items() if isinstance(offset, dict)] if isinstance(section, dict) else []
+
+
+def stated_poses(names: list[str], document: dict[str, Any]) -> list[Fault]:
+    """Faults of offsets without exactly one of origin and matrix."""
+    faults = []
+    for name in names:
+        stated = document[SECTION][name]
+        if "origin" not in stated and "matrix" not in stated:
+            faults.append(Fault("M103", (SECTION, name, "origin"), "needed, unless there is a matrix"))
+        faults += [
+            Fault("M104", (SECTION, name, key), "expected either a matrix or an origin, got both")
+            for key in ("origin", "rotation_z")
+            if "matrix" in stated and key in stated
+        ]
+    return faults
+
+
+def _upright(origin: Array, rotation_z: float) -> Array:
+    """Pose with this origin, rotated by ``rotation_z`` rad about the z axis of {M}."""
+    cosine, sine = math.cos(rotation_z), math.sin(rotation_z)
+    pose = np.eye(4)
+    pose[:2, :2] = (cosine, -sine), (sine, cosine)
+    pose[:3, 3] = origin
+    return pose
+
+
+def work_offsets(names: list[str], values: dict[str, Any]) -> dict[str, Array]:
+    """Poses ``machine_from_work`` by name, of faultless offsets."""
+    poses = {}
+    for name in names:
+        origin, rotation_z, matrix = (values[f"{SECTION}.{name}.{key}"] for key in ("origin", "rotation_z", "matrix"))
+        poses[name] = _upright(origin, rotation_z) if matrix is None else matrix
+        poses[name].flags.writeable = False
+    return poses
+
 
 CONTROLLER = "controller"
 _FREE_TEXTS = (NAME, PROSE)

@@ -15,9 +15,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry import Array, cross, fill_frame
-from pkm_post.machine.kinematics.inverse import form_of_squares, strut_vectors
-from pkm_post.machine.kinematics.orientation import angular_rates, platform_rotation
+from pkm_post.geometry import Array, cross, dot, fill_frame, norm
+from pkm_post.machine.kinematics.inverse import (
+    angular_rates,
+    arms_from_tip,
+    form_of_squares,
+    platform_rotation,
+    strut_vectors,
+)
+from pkm_post.machine.kinematics.jacobian import linearise
 from pkm_post.machine.kinematics.screw import screw_rates
 from pkm_post.model import Machine, Poses
 
@@ -116,3 +122,87 @@ def _of_screw(
     swing = (joint_1 - speed * direction) / distance
     swing_1 = (joint_2 - growth * direction - 2 * speed * swing) / distance
     return np.stack(screw_rates(machine, (direction, swing, swing_1), rotation, *turn))
+
+
+def tool_rates(
+    machine: Machine, tip: Array, rotation: Array, tool_length: Array, speed: Array, acceleration: Array
+) -> tuple[Array, Array]:
+    """Twist of the tool tip and its rate, (N, 6) each: mm/s and mm/s^2, then rad/s and rad/s^2.
+
+    Args:
+        machine: the geometry.
+        tip: (N, 3) tool tips in {M}, mm.
+        rotation: (N, 3, 3) rotations of the platform.
+        tool_length: (N,) gauge lengths, mm.
+        speed: (N, 6) first derivatives of the strut lengths, mm/s.
+        acceleration: (N, 6) second derivatives, mm/s^2.
+
+    Raises:
+        numpy.linalg.LinAlgError: a pose is singular.
+    """
+    jacobian, _ = linearise(machine, tip, rotation, tool_length)
+    twist = np.linalg.solve(jacobian, speed[..., None])[..., 0]
+    drift = _without_acceleration(machine, tip, rotation, tool_length, twist)
+    return twist, np.linalg.solve(jacobian, (acceleration - drift)[..., None])[..., 0]
+
+
+def _without_acceleration(machine: Machine, tip: Array, rotation: Array, tool_length: Array, twist: Array) -> Array:
+    """Second derivatives of the strut lengths, (N, 6), of a tool at constant twist."""
+    reach = (machine.spindle_nose + tool_length)[:, None]
+    arm = machine.platform_joints @ rotation.transpose(0, 2, 1) + (reach * rotation[:, :, 2])[:, None, :]
+    strut = arm + tip[:, None, :] - machine.base_joints
+    distance = norm(strut)
+    along, turn = strut / distance[..., None], twist[:, None, 3:]
+    velocity = twist[:, None, :3] + cross(turn, arm)
+    inwards = cross(turn, cross(turn, arm))
+    speed = dot(along, velocity)
+    growth = dot(along, inwards) + (dot(velocity, velocity) - speed**2) / distance
+    if machine.screw_lead == 0.0:
+        return np.asarray(growth)
+    swing = (velocity - speed[..., None] * along) / distance[..., None]
+    swing_1 = (inwards - growth[..., None] * along - 2 * speed[..., None] * swing) / distance[..., None]
+    _, _, of_screw = screw_rates(machine, (along, swing, swing_1), rotation, twist[:, 3:], np.zeros((len(tip), 3)))
+    return np.asarray(growth + of_screw)
+
+
+_NEARER = 0.99
+"""Rounded corners and cubics may make a strut slightly shorter than on the path that is proven within the stroke."""
+
+Pair = tuple[Array, Array]
+
+
+def nearest_joints(machine: Machine) -> float:
+    """Least distance between the two joints of a strut within the stroke, mm."""
+    return _NEARER * (machine.strut_stroke[0] + float(machine.length_offset.min()))
+
+
+def strut_rate_bounds(
+    machine: Machine, tip: Pair, axis: Pair, spin: Pair, half_tilt: Array, tool_length: Array
+) -> Pair:
+    """Bounds of the first and second derivative of any strut length, (N,) each, while struts are within their stroke.
+
+    Infinite for a screw without a key, whose correction has no bound here, and without a shortest length.
+
+    Args:
+        machine: the geometry.
+        tip: sizes of first and second derivatives of the tip, (N,) each.
+        axis: of the unit tool axis.
+        spin: of the spin.
+        half_tilt: (N,) tangent of half the highest tilt.
+        tool_length: (N,) gauge lengths.
+    """
+    shortest = nearest_joints(machine)
+    if machine.screw_lead != 0.0 or shortest <= 0:
+        endless = np.full(len(half_tilt), np.inf)
+        return endless, endless
+    arm = float(arms_from_tip(machine, tool_length).max())
+    turn, turn_1 = _turning(axis, spin, half_tilt)
+    speed = tip[0] + arm * turn
+    return speed, tip[1] + arm * (turn_1 + turn**2) + speed**2 / shortest
+
+
+def _turning(axis: Pair, spin: Pair, half_tilt: Array) -> Pair:
+    """Bounds of angular velocity and acceleration; the zero-torsion frame itself also turns about the axis."""
+    about = spin[0] + half_tilt * axis[0]
+    about_1 = spin[1] + half_tilt * axis[1] + half_tilt * (1 + half_tilt**2) / 2 * axis[0] ** 2
+    return np.hypot(axis[0], about), axis[1] + about_1 + about * axis[0]

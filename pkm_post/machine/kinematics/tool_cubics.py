@@ -24,8 +24,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_powers, length_of
-from pkm_post.machine.kinematics.interpolation import Ends, Inside, fastest, steepest, stray
-from pkm_post.machine.kinematics.rate_bounds import nearest_joints
+from pkm_post.machine.kinematics.rates import nearest_joints
+from pkm_post.machine.kinematics.strut_cubics import Ends, Inside, fastest, steepest, stray
 from pkm_post.model import Machine
 
 ROUNDED_SHARE = 0.99

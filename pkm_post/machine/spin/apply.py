@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Apply: the spin of a policy, applied to a trajectory.
+"""Apply a spin policy to a trajectory.
 
-Takes a trajectory as placed, with the spin of the part program or none; returns it with another spin.
+Input: a trajectory as placed, with the spin of the part program or none. Output: the same trajectory with another spin,
+in rad, or diagnostics where the policy leaves the spin undefined.
 """
 
 from __future__ import annotations
@@ -10,11 +11,35 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.geometry import norm
+from pkm_post.geometry import Array, cross, norm, torsion
 from pkm_post.machine.spin.optimise import optimise
 from pkm_post.machine.spin.policy import Policy, Rule
-from pkm_post.machine.spin.rules import spin_in_plane
 from pkm_post.model import Diagnostic, EventKind, Machine, Trajectory
+
+_NO_DIRECTION = 1e-6
+"""Below this sine the tool axis is normal to the plane, which leaves the spin undefined."""
+
+
+def spin_in_plane(axis: Array, heading: float, of_y: bool = False) -> Array:
+    """Spins that keep an axis of the platform parallel to a vertical plane, (N,) rad, without jumps by full turns.
+
+    Args:
+        axis: (N, 3) unit tool axes in {M}, in order along the path.
+        heading: direction of the x axis of the platform when the tool is upright, rad from x towards y.
+        of_y: whether the y axis stays in its plane instead of the x axis.
+
+    Returns:
+        The spins; NaN where the tool axis is normal to the plane, which leaves the spin undefined.
+    """
+    cosine, sine = np.cos(heading), np.sin(heading)
+    kept = cross(axis, np.array([cosine, sine, 0.0])) if of_y else cross(np.array([-sine, cosine, 0.0]), axis)
+    x = cross(kept, axis) if of_y else kept
+    spin = torsion(axis, x)
+    spin[norm(kept) < _NO_DIRECTION] = np.nan
+    known = np.flatnonzero(~np.isnan(spin))
+    spin[known] = np.unwrap(spin[known])
+    return spin
+
 
 _SAME = 1e-6
 """mm, and difference of unit axes: a tool this close to the tool-change pose is there."""

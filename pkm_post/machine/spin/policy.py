@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from pkm_post.machine.spin.shares import JOINTS, SINGULAR, STROKE
+from pkm_post.machine.spin.normalised_margins import JOINTS, SINGULAR, STROKE
 
 
 class Rule(enum.Enum):

@@ -8,8 +8,8 @@ from programs import ON_PALLET, cone
 from simulated import make
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.machine.description import machine_named
-from pkm_post.machine.kinematics import forward
+from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine.kinematics.forward import forward
 from pkm_post.options.choices import Options
 from pkm_post.planning import motion as planning
 from pkm_post.posting.steps import post

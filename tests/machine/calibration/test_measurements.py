@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from machines import random_poses
 
-from pkm_post.machine.calibration import COLUMNS, read_measurements
-from pkm_post.machine.kinematics import platform_rotation
+from pkm_post.machine.calibration.calibrate_file import COLUMNS, read_measurements
+from pkm_post.machine.kinematics.inverse import platform_rotation
 
 HEAD = ",".join(COLUMNS)
 ROW = "1,2,800,0,0,1,30,120,801,802,803,804,805,806"

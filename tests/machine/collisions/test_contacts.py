@@ -11,11 +11,11 @@ from meshes import ball, box
 from pkm_post.geometry.distances import point_to_cylinder, segment_to_segment
 from pkm_post.geometry.triangles import cut_small
 from pkm_post.machine.collisions.contacts import contacts, contacts_at_ends
-from pkm_post.machine.collisions.movers import Piece, of_body, of_struts, of_tool
-from pkm_post.machine.kinematics import Part, Way
-from pkm_post.machine.kinematics.bodies import Pieces
-from pkm_post.machine.kinematics.checks import HUNDREDTH
-from pkm_post.machine.kinematics.placed import Placed
+from pkm_post.machine.collisions.moving_bodies import Piece, of_body, of_struts, of_tool
+from pkm_post.machine.kinematics.placed_machine import Pieces, Placed
+from pkm_post.machine.reach.collision_mesh import Part
+from pkm_post.machine.reach.limit_checks import HUNDREDTH
+from pkm_post.machine.reach.pose_path import Way
 from pkm_post.model.machine import Body
 
 LENGTH = 120.0

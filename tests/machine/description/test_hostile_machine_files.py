@@ -7,11 +7,11 @@ import tomllib
 
 import pytest
 
-from pkm_post.machine.description import faults, machine_of, presets, read_machine, reader
-from pkm_post.machine.description.faults import MOST_SHOWN
-from pkm_post.machine.description.presets import FOLDER
-from pkm_post.machine.description.solids import MOST_SOLIDS
-from pkm_post.machine.description.text_limits import DEEPEST, MOST_BYTES
+from pkm_post.machine.description import faults, reader
+from pkm_post.machine.description.faults import DEEPEST, MOST_BYTES, MOST_SHOWN
+from pkm_post.machine.description.forms import MOST_SOLIDS
+from pkm_post.machine.description.presets import FOLDER, presets
+from pkm_post.machine.description.reader import machine_of, read_machine
 from pkm_post.posting.machine_check import machine_faults, summary
 
 PRESET = (FOLDER / "example_6tps.toml").read_text(encoding="utf-8")

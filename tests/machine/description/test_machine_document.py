@@ -4,9 +4,8 @@
 import re
 from pathlib import Path
 
-from pkm_post.machine.description.faults import MOST_SHOWN
+from pkm_post.machine.description.faults import DEEPEST, MOST_BYTES, MOST_SHOWN
 from pkm_post.machine.description.fields import FIELDS, REQUIRED
-from pkm_post.machine.description.text_limits import DEEPEST, MOST_BYTES
 from pkm_post.machine.description.units import DIMENSIONS, MILLISECONDS, PLAIN, UNITS
 
 DOCUMENT = (Path(__file__).parents[3] / "docs" / "machine-file.md").read_text(encoding="utf-8")

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from pkm_post.machine.description import find_machine, read_machine
 from pkm_post.machine.description.fields import FIELDS
+from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine.description.reader import read_machine
 
 PRESET = find_machine("example_6tps")
 BAD_MACHINES = sorted((Path(__file__).parents[2] / "data" / "bad_machines").glob("*.toml"))

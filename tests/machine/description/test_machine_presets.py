@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from machines import axis_and_spin, direction, rotation_about
 
-from pkm_post.machine.description import find_machine, presets, read_machine, templates
 from pkm_post.machine.description.fields import FIELDS, REQUIRED
-from pkm_post.machine.kinematics import forward, scaled_jacobian, strut_lengths
+from pkm_post.machine.description.presets import find_machine, presets, templates
+from pkm_post.machine.description.reader import read_machine
+from pkm_post.machine.kinematics.forward import forward
+from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine.kinematics.jacobian import scaled_jacobian
 
 INCH = 25.4
 PRINTED = 5.1e-5

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pkm_post.machine.description import find_machine, read_machine
-from pkm_post.machine.kinematics import strut_lengths
+from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine.description.reader import read_machine
+from pkm_post.machine.kinematics.inverse import strut_lengths
 
 MICRON = 1e-3
 PRINTED_COORDINATE = 1e-4  # mm, joints are printed with 4 decimals

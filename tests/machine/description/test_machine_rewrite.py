@@ -6,14 +6,9 @@ import difflib
 import numpy as np
 import pytest
 
-from pkm_post.machine.description import (
-    CannotRewriteError,
-    find_machine,
-    machine_of,
-    presets,
-    read_machine,
-    with_entries,
-)
+from pkm_post.machine.description.presets import find_machine, presets
+from pkm_post.machine.description.reader import machine_of, read_machine
+from pkm_post.machine.description.rewrite import CannotRewriteError, with_entries
 
 NANOMETRE = 1.01e-6
 EXAMPLE = find_machine("example_6tps").read_text(encoding="utf-8")

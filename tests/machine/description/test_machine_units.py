@@ -8,8 +8,9 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 import pytest
 
-from pkm_post.machine.description import find_machine, read_machine
 from pkm_post.machine.description.fields import FIELDS, section_tree
+from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine.description.reader import read_machine
 from pkm_post.machine.description.units import LENGTH, SPEED, TURNING_RATE, factor
 
 PRESET = find_machine("example_6tps")

@@ -5,11 +5,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-from machines import example
-from screw_machines import screwed
+from machines import example, screwed
 
 from pkm_post.geometry import norm
-from pkm_post.machine.kinematics import follow, platform_rotation, strut_lengths
+from pkm_post.machine.kinematics.forward import follow
+from pkm_post.machine.kinematics.inverse import platform_rotation, strut_lengths
 
 NANOMETRE = 1e-6
 

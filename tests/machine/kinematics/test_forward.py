@@ -2,11 +2,11 @@
 import dataclasses
 
 import numpy as np
-from machines import example, random_poses
-from screw_machines import screwed
+from machines import example, random_poses, screwed
 
 from pkm_post.geometry import angle_between, norm
-from pkm_post.machine.kinematics import forward, platform_rotation, strut_lengths
+from pkm_post.machine.kinematics.forward import forward
+from pkm_post.machine.kinematics.inverse import platform_rotation, strut_lengths
 
 NANOMETRE = 1e-6
 """mm."""

@@ -3,12 +3,10 @@ import dataclasses
 
 import numpy as np
 import pytest
-from machines import INCH, axis_and_spin, direction, example, genhexkins, nategh, random_poses, rotation_about
-from screw_machines import screwed
+from machines import INCH, axis_and_spin, direction, example, genhexkins, nategh, random_poses, rotation_about, screwed
 
 from pkm_post.geometry import norm
-from pkm_post.machine.kinematics import platform_rotation, strut_lengths, strut_vectors
-from pkm_post.machine.kinematics.inverse import lengths_at_tips
+from pkm_post.machine.kinematics.inverse import lengths_at_tips, platform_rotation, strut_lengths, strut_vectors
 from pkm_post.machine.kinematics.screw import screw_correction
 
 PICOMETRE = 1e-9

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
 import pytest
-from machines import axis_and_spin, direction, example, nategh, random_poses, rotation_about
-from screw_machines import screwed
+from machines import axis_and_spin, direction, example, nategh, random_poses, rotation_about, screwed
 
-from pkm_post.machine.kinematics import jacobian_of_platform, jacobian_of_tip, scaled_jacobian, strut_lengths
+from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine.kinematics.jacobian import jacobian_of_platform, jacobian_of_tip, scaled_jacobian
 from pkm_post.model import Machine
 
 STEP = 1e-5
@@ -18,7 +18,7 @@ def lengths_after(machine: Machine, pose, twist, about_platform):
     rotation = np.eye(3)
     for coordinate in range(3):
         rotation = rotation_about(coordinate, np.degrees(twist[3 + coordinate])) @ rotation
-    from pkm_post.machine.kinematics import platform_rotation
+    from pkm_post.machine.kinematics.inverse import platform_rotation
 
     matrix = rotation @ platform_rotation(axis, spin)[0]
     new_axis, new_spin = axis_and_spin(matrix)

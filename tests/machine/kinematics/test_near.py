@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
 import pytest
-from machines import example
-from screw_machines import screwed
+from machines import example, screwed
 from test_rates import wandering_poses
 
 from pkm_post.geometry import norm, unit
-from pkm_post.machine.kinematics import Ends, NearPoses, forward, near_poses, strut_lengths
+from pkm_post.machine.kinematics.forward import NearPoses, forward, near_poses
+from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine.kinematics.strut_cubics import Ends
 
 SHARE = np.linspace(0, 1, 9)
 LENGTH = 1e-10

@@ -4,12 +4,11 @@
 import dataclasses
 
 import numpy as np
-from machines import example
-from screw_machines import screwed
+from machines import example, screwed
 from test_rates import wandering_poses
 
 from pkm_post.geometry import norm
-from pkm_post.machine.kinematics import strut_rate_bounds, strut_rates
+from pkm_post.machine.kinematics.rates import strut_rate_bounds, strut_rates
 from pkm_post.model import Poses
 
 ROUNDING = 1e-9

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
 import pytest
-from machines import example
-from screw_machines import screwed
+from machines import example, screwed
 
-from pkm_post.machine.kinematics import jacobian_of_tip, strut_lengths, strut_rates
-from pkm_post.machine.kinematics.orientation import angular_rates, attitude_rates
+from pkm_post.machine.kinematics.inverse import angular_rates, attitude_rates, strut_lengths
+from pkm_post.machine.kinematics.jacobian import jacobian_of_tip
+from pkm_post.machine.kinematics.rates import strut_rates
 from pkm_post.model import Poses
 
 STEP = 1e-4

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from machines import genhexkins, random_poses
 
-from pkm_post.machine.kinematics import platform_rotation, strut_vectors
+from pkm_post.machine.kinematics.inverse import platform_rotation, strut_vectors
 from pkm_post.machine.kinematics.screw import screw_correction, screw_gradient, screw_rates
 
 NANOMETRE = 1e-6

@@ -6,10 +6,11 @@ import dataclasses
 import numpy as np
 import pytest
 from machines import example, random_poses
-from ways import LENGTH, upright
+from pose_paths import LENGTH, upright
 
 from pkm_post.geometry import unit
-from pkm_post.machine.kinematics import jacobian_of_tip, stiffness_along, strut_vectors
+from pkm_post.machine.kinematics.inverse import strut_vectors
+from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, stiffness_along
 
 PRINTED = 0.06e3
 """N/mm: the golden numbers are in N/micron with one decimal."""

@@ -1,24 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
 import pytest
-from machines import example
-from screw_machines import screwed
+from machines import example, screwed
 from test_rates import wandering_poses
 
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds, norm
 from pkm_post.geometry.vectors import cross
-from pkm_post.machine.kinematics import (
-    Ends,
-    Inside,
-    carried,
-    fastest,
-    jacobian_of_tip,
-    moving,
-    steepest,
-    stray,
-    strut_lengths,
-    strut_rates,
-)
+from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine.kinematics.jacobian import jacobian_of_tip
+from pkm_post.machine.kinematics.rates import strut_rates
+from pkm_post.machine.kinematics.strut_cubics import Ends, Inside, carried, fastest, moving, steepest, stray
 
 SHARE = np.linspace(0.05, 0.95, 13)
 MACHINES = {"example": example, "screws": lambda: screwed(example())}

@@ -5,22 +5,15 @@ import dataclasses
 
 import numpy as np
 import pytest
-from machines import example
-from screw_machines import screwed
+from machines import example, screwed
 from test_rates import wandering_poses
 
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds, norm
 from pkm_post.geometry.vectors import cross, unit
-from pkm_post.machine.kinematics import (
-    Ends,
-    Inside,
-    ToolCubics,
-    bounded_demand,
-    forward,
-    jacobian_of_tip,
-    measured_demand,
-    scaled_jacobian,
-)
+from pkm_post.machine.kinematics.forward import forward
+from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, scaled_jacobian
+from pkm_post.machine.kinematics.strut_cubics import Ends, Inside
+from pkm_post.machine.kinematics.tool_cubics import ToolCubics, bounded_demand, measured_demand
 from pkm_post.model import Poses
 
 SHARE = np.linspace(0, 1, 41)

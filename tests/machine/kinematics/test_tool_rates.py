@@ -3,13 +3,11 @@
 
 import numpy as np
 import pytest
-from machines import example, genhexkins
-from screw_machines import screwed
+from machines import example, genhexkins, screwed
 from test_rates import wandering_poses
 
-from pkm_post.machine.kinematics import platform_rotation, strut_rates
-from pkm_post.machine.kinematics.orientation import angular_rates
-from pkm_post.machine.kinematics.tool_rates import tool_rates
+from pkm_post.machine.kinematics.inverse import angular_rates, platform_rotation
+from pkm_post.machine.kinematics.rates import strut_rates, tool_rates
 
 TIMES = np.linspace(0, 6, 200)
 

@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 import pytest
 
-from pkm_post.machine.spin.course import best_course
+from pkm_post.machine.spin.optimise import best_course
 
 
 def by_trying(candidates, scores, start, limit, extent):

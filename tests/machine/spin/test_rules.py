@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from machines import axis_and_spin, direction, rotation_about
 
-from pkm_post.machine.kinematics import platform_rotation
-from pkm_post.machine.spin import spin_in_plane
+from pkm_post.machine.kinematics.inverse import platform_rotation
+from pkm_post.machine.spin.apply import spin_in_plane
 
 
 def leaning(count=40, seed=5):

@@ -9,10 +9,11 @@ from machines import direction
 from programs import program
 
 from pkm_post.geometry import norm
-from pkm_post.machine.description import machine_named
-from pkm_post.machine.kinematics import strut_lengths
-from pkm_post.machine.spin import Policy, Rule, least_shares, optimise
-from pkm_post.machine.spin.shares import JOINTS, SINGULAR, STROKE, shares
+from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine.spin.normalised_margins import JOINTS, SINGULAR, STROKE, shares
+from pkm_post.machine.spin.optimise import least_shares, optimise
+from pkm_post.machine.spin.policy import Policy, Rule
 from pkm_post.toolpath.placement import place
 
 DEGREE = np.pi / 180

@@ -6,8 +6,9 @@ import pytest
 from machines import direction
 from programs import ON_PALLET, cone, program
 
-from pkm_post.machine.description import machine_named
-from pkm_post.machine.spin import Policy, Rule, with_spin
+from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine.spin.apply import with_spin
+from pkm_post.machine.spin.policy import Policy, Rule
 from pkm_post.options import Options
 from pkm_post.posting import post
 from pkm_post.toolpath.placement import place

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Best position: the work offset that maximises the score of the worst pose of a whole job.
+
+Takes a trajectory with the work offset it was placed with; returns another work offset, with the margins before and
+after. The job includes its mirrored and rotated copies, since they are in the trajectory; it excludes the path from the
+home pose to its first point. Only a few poses are decisive: the search uses this active set, and whenever its result
+makes another pose the worst one, that pose is added.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.machine.spin.normalised_margins import STROKE, Samples, score, shares
+from pkm_post.model import Machine, Trajectory
+from pkm_post.toolpath import rotation
+
+_AT_RANDOM = 24
+_SEED = 1
+_MOST_STEPS = 2000
+
+
+def compass_search(height: Callable[[Array], Array], start: Array, first_step: Array, last_step: Array) -> Array:
+    """Climb from a start to a point that no small step improves, (D,).
+
+    Args:
+        height: maps points (P, D) to their heights (P,).
+        start: (D,) start point.
+        first_step: (D,) initial steps by coordinate; zero for fixed ones.
+        last_step: (D,) steps at which the search ends.
+    """
+    random = np.random.default_rng(_SEED)
+    free = np.flatnonzero(first_step)
+    at, best, scale = start, float(height(start[None])[0]), 1.0
+    for _ in range(_MOST_STEPS):
+        if (scale * first_step <= last_step).all():
+            break
+        directions = random.normal(size=(_AT_RANDOM, len(free)))
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        steps = np.zeros((2 * len(free) + _AT_RANDOM, len(start)))
+        steps[:, free] = np.vstack([np.eye(len(free)), -np.eye(len(free)), directions])
+        tried = at + scale * first_step * steps
+        heights = height(tried)
+        highest = int(np.argmax(heights))
+        if heights[highest] > best:
+            at, best, scale = tried[highest], float(heights[highest]), min(2 * scale, 1.0)
+        else:
+            scale /= 2
+    return at
+
+
+FREEDOMS = "xyzabc"
+"""Translations along and rotations about the axes of {M} through the middle of the job, by letter."""
+
+_FIRST_STEP = np.array([80.0, 80.0, 80.0, *np.radians([10.0, 10.0, 30.0])])
+_LAST_STEP = np.array([0.1, 0.1, 0.1, *np.radians([0.02, 0.02, 0.02])])
+_FIRST_POSES = 40
+_POSES_THAT_JOIN = 8
+_ROUNDS = 50
+_EQUAL = 1e-6
+"""Score difference that counts as zero."""
+
+
+@dataclass(frozen=True)
+class Position:
+    """Result of the search.
+
+    Attributes:
+        machine_from_work: (4, 4) the work offset.
+        before: (3,) least shares of stroke, joints and distance to singular poses with the original work offset.
+        after: (3,) the same with the new work offset.
+    """
+
+    machine_from_work: Array
+    before: Array
+    after: Array
+
+
+@dataclass(frozen=True)
+class _Job:
+    """Poses of a job in {M}, moved as a whole about its middle."""
+
+    machine: Machine
+    middle: Array
+    tip: Array
+    axis: Array
+    spin: Array
+    tool_length: Array
+
+    def shares(self, moves: Array, rows: Array) -> Array:
+        """Shares of the given poses after each move, (P, R, 3), for moves (P, 6)."""
+        matrices = np.array([_matrix(move, self.middle) for move in moves])
+        turned = matrices[:, :3, :3].transpose(0, 2, 1)
+        tip = self.tip[rows] @ turned + matrices[:, None, :3, 3]
+        axis = self.axis[rows] @ turned
+        count = len(moves)
+        repeated = np.tile(self.spin[rows], count), np.tile(self.tool_length[rows], count)
+        left = shares(self.machine, tip.reshape(-1, 3), axis.reshape(-1, 3), *repeated)
+        return left.reshape(count, len(rows), 3)
+
+
+def best_position(
+    trajectory: Trajectory,
+    machine: Machine,
+    free: str = "xyzc",
+    weights: dict[int, float] | None = None,
+    fixed: Array | None = None,
+) -> Position:
+    """Search for the work offset.
+
+    Args:
+        trajectory: a job on the machine; its spin is kept at every pose.
+        machine: geometry and limits.
+        free: letters of ``FREEDOMS`` that may change.
+        weights: weights of the shares, by column; the stroke by default.
+        fixed: (N,) segments that stay on the machine when the workpiece moves: those of tool changes; none by default.
+
+    Raises:
+        ValueError: a letter is unknown, or there is none.
+    """
+    if not free or set(free) - set(FREEDOMS):
+        raise ValueError(f"free: expected letters of {FREEDOMS!r}, got {free!r}")
+    job = _job(trajectory, machine, np.zeros(len(trajectory), dtype=bool) if fixed is None else fixed)
+    every, weights = np.arange(len(job.tip)), weights or {STROKE: 1.0}
+    chosen = np.array([letter in free for letter in FREEDOMS])
+    move, active = np.zeros(6), _first_poses(job)
+    # Even if the rounds do not suffice, the reported result is evaluated at every pose.
+    for _ in range(_ROUNDS):
+
+        def worst(moves: Array, rows: Array = active) -> Array:
+            left = job.shares(moves, rows)
+            scores = score(left.reshape(-1, 3), weights).reshape(len(moves), -1)
+            return np.asarray(scores.min(axis=1))
+
+        move = compass_search(worst, move, _FIRST_STEP * chosen, _LAST_STEP)
+        scores = score(job.shares(move[None], every)[0], weights)
+        if scores.min() >= worst(move[None])[0] - _EQUAL:
+            break
+        active = np.union1d(active, np.argsort(scores)[:_POSES_THAT_JOIN])
+    return Position(
+        machine_from_work=_matrix(move, job.middle) @ trajectory.machine_from_work,
+        before=job.shares(np.zeros((1, 6)), every)[0].min(axis=0),
+        after=job.shares(move[None], every)[0].min(axis=0),
+    )
+
+
+def _job(trajectory: Trajectory, machine: Machine, fixed: Array) -> _Job:
+    """The poses that move with the workpiece; only the end of a segment from home or a tool change."""
+    samples = Samples.of(trajectory)
+    from_elsewhere, at_end = np.append(True, fixed[:-1]), np.append(np.diff(samples.segment) > 0, True)
+    rows = ~fixed[samples.segment] & (~from_elsewhere[samples.segment] | at_end)
+    tip = samples.tip[rows]
+    middle = (tip.min(axis=0) + tip.max(axis=0)) / 2
+    return _Job(machine, middle, tip, samples.axis[rows], samples.spin[rows], samples.tool_length[rows])
+
+
+def _first_poses(job: _Job) -> Array:
+    """Poses at the extremes of the job in every coordinate, and some between."""
+    coordinates = np.hstack([job.tip, job.axis])
+    ends = np.concatenate([coordinates.argmin(axis=0), coordinates.argmax(axis=0)])
+    between = np.linspace(0, len(job.tip) - 1, min(_FIRST_POSES, len(job.tip))).astype(np.int64)
+    return np.union1d(ends, between)
+
+
+def _matrix(move: Array, middle: Array) -> Array:
+    """The (4, 4) matrix of a translation and rotations about the middle."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = move[:3]
+    for coordinate, angle in enumerate(move[3:]):
+        direction = np.eye(3)[coordinate]
+        if not math.isclose(angle, 0.0):
+            matrix = matrix @ rotation(middle, direction, angle)
+    return matrix

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Calibrated: write a machine file with identified joints and length offsets, and a report on them.
+
+The new file is the old text with three entries replaced; it is parsed again before it is kept. Lengths in mm.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from pkm_post.geometry import norm
+from pkm_post.machine.calibration.identification import PARAMETERS, Calibration, Measured, calibrate, combination_text
+from pkm_post.machine.description.presets import find_machine, machine_named
+from pkm_post.machine.description.reader import machine_of
+from pkm_post.machine.description.rewrite import CannotRewriteError, with_entries
+from pkm_post.model import Diagnostic, Machine, Place, errors
+from pkm_post.system import staged, write_fault
+
+COLUMNS = ("x", "y", "z", "i", "j", "k", "spin", "gauge", "l1", "l2", "l3", "l4", "l5", "l6")
+_AXIS_TOLERANCE = 1e-3
+"""Tolerance of the length of a tool axis: four decimals are common."""
+_LEAST_K = -0.99
+_LARGEST = 1e6
+
+
+def read_measurements(path: Path) -> tuple[Measured | None, tuple[Diagnostic, ...]]:
+    """Read a file of measurements.
+
+    Args:
+        path: CSV in UTF-8; empty lines and lines that begin with # are skipped.
+
+    Returns:
+        The measurements, or None and every fault of the file.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, ValueError) as fault:
+        return None, (Diagnostic("M201", Place(str(path)), getattr(fault, "strerror", None) or str(fault)),)
+    try:
+        rows = list(_rows(text))
+    except csv.Error as fault:
+        return None, (Diagnostic("M202", Place(str(path)), str(fault)),)
+    if not rows:
+        return None, (Diagnostic("M202", Place(str(path)), f"expected a line {','.join(COLUMNS)} and rows below it"),)
+    (line, head), *rows = rows
+    if head != list(COLUMNS):
+        found = f"expected the columns {','.join(COLUMNS)}, got {','.join(head)}"
+        return None, (Diagnostic("M202", Place(str(path), line=line), found),)
+    faults = tuple(
+        Diagnostic("M202", Place(str(path), line=line), found) for line, cells in rows if (found := _fault(cells))
+    )
+    if faults or not rows:
+        return None, faults or (Diagnostic("M202", Place(str(path), line=line), "no pose is below the columns"),)
+    return _measured(np.array([cells for _, cells in rows], dtype=np.float64)), ()
+
+
+def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the non-empty, non-comment lines with their numbers from 1."""
+    # Line by line, since an unpaired quotation mark would swallow the lines below it.
+    for line, row in enumerate(text.splitlines(), start=1):
+        cells = [cell.strip() for cell in next(csv.reader([row]), [])]
+        if any(cells) and not cells[0].startswith("#"):
+            yield line, cells
+
+
+def _fault(cells: list[str]) -> str:
+    """Fault of a row, empty when it has none."""
+    if len(cells) != len(COLUMNS):
+        return f"expected {len(COLUMNS)} numbers, got {len(cells)}"
+    numbers = np.array([_number(cell) for cell in cells])
+    for name, cell, number in zip(COLUMNS, cells, numbers, strict=True):
+        if not abs(number) < _LARGEST:
+            return f"{name}: expected a number, got {cell!r}"
+    named = dict(zip(COLUMNS, numbers, strict=True))
+    length = float(norm(numbers[3:6]))
+    if abs(length - 1.0) > _AXIS_TOLERANCE:
+        return f"i, j, k: expected a vector of length 1, got {length:.4f}"
+    if named["k"] < _LEAST_K:
+        return "k: expected a tool axis that points from the tip to the spindle, got one that points down"
+    short = [name for name in COLUMNS[8:] if named[name] <= 0.0]
+    return f"{short[0]}: expected a length above 0, got {named[short[0]]:g}" if short else ""
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return float("nan")
+
+
+def _measured(numbers: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Measured:
+    axis = numbers[:, 3:6]
+    return Measured(
+        tip=numbers[:, :3],
+        axis=axis / norm(axis)[:, None],
+        spin=np.radians(numbers[:, 6]),
+        tool_length=numbers[:, 7],
+        lengths=numbers[:, 8:],
+    )
+
+
+_WRITTEN = 1e-6
+"""mm: largest change of a number by formatting."""
+
+
+def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[str | None, tuple[Diagnostic, ...]]:
+    """Calibrate a machine and write its new file.
+
+    Args:
+        machine_file: name of a preset or path of a machine file.
+        measurements: CSV file of poses and lengths.
+        out: the machine file to write.
+
+    Returns:
+        A report for the user, or None when nothing was written; and the diagnostics.
+    """
+    machine, faults = machine_named(machine_file)
+    measured, wrong = read_measurements(measurements)
+    path = find_machine(machine_file)
+    if machine is None or measured is None or path is None:
+        return None, faults + wrong
+    found = calibrate(machine, measured)
+    told = _told(found, str(measurements))
+    if errors(told):
+        return None, told
+    text, faults = _text(path, found, len(measured), measurements.name, str(out))
+    told += faults
+    if text is None:
+        return None, told
+    try:
+        with staged(out.parent) as folder:
+            (folder / out.name).write_text(text, encoding="utf-8", newline="")
+    except OSError as fault:
+        return None, (*told, write_fault(out, fault))
+    return report(machine, found, len(measured)), told
+
+
+def report(machine: Machine, found: Calibration, poses: int) -> str:
+    """Format the result, strut by strut: change of each parameter, and its standard deviation below."""
+    change = _parameters(found.machine) - _parameters(machine)
+    worst, worst_strut = np.unravel_index(np.abs(found.left_over).argmax(), found.left_over.shape)
+    rows = [
+        f"poses {poses}, rank {found.rank} of 42, condition {found.condition:.4g}",
+        f"lengths off by {found.before:.4f} mm before, {found.after:.4f} mm after (root mean square)",
+        f"worst after: {found.left_over[worst, worst_strut]:.4f} mm, strut {worst_strut + 1} at pose {worst + 1}",
+        "change and standard deviation in mm:",
+        " ".join([" " * 7, *(f"{name:>10}" for name in PARAMETERS)]),
+    ]
+    for strut in range(len(change)):
+        rows.append(" ".join([f"strut {strut + 1}", *(f"{value:10.4f}" for value in change[strut])]))
+        rows.append(" ".join([" " * 7, *(f"{value:10.4f}" for value in found.deviation[strut])]))
+    rows += [f"not determined: {combination_text(strut, shares)}" for strut, shares in found.undetermined]
+    return "\n".join(rows)
+
+
+def _told(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
+    if not found.converged:
+        return (
+            Diagnostic("M203", Place(file), f"lengths are off by {found.before:.4f} mm, then {found.after:.4f} mm"),
+        )
+    if found.undetermined:
+        return (Diagnostic("M205", Place(file), f"rank {found.rank} of {found.deviation.size}"),)
+    return ()
+
+
+def _text(
+    path: Path, found: Calibration, poses: int, source: str, out: str
+) -> tuple[str | None, tuple[Diagnostic, ...]]:
+    """Text of the new file, after parsing it again."""
+    entries = {
+        "base.joints": found.machine.base_joints,
+        "platform.joints": found.machine.platform_joints,
+        "struts.length_offset": found.machine.length_offset,
+    }
+    try:
+        text = with_entries(path.read_bytes().decode("utf-8"), entries)
+    except CannotRewriteError as fault:
+        return None, (Diagnostic("M204", Place(str(path)), str(fault)),)
+    text = (
+        f"# Calibrated with {source}: {poses} poses, rank {found.rank} of {found.deviation.size}, lengths off by"
+        f" {found.before:.4f} mm before and {found.after:.4f} mm after.\n{text}"
+    )
+    written, faults = machine_of(text.encode("utf-8"), out)
+    if written is None:
+        return None, faults
+    if np.abs(_parameters(written) - _parameters(found.machine)).max() > _WRITTEN:
+        return None, (Diagnostic("M204", Place(str(path)), "its entries were not found again"),)
+    return text, ()
+
+
+def _parameters(machine: Machine) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    return np.hstack([machine.base_joints, machine.platform_joints, machine.length_offset[:, None]])

@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Movers: moving bodies that may collide: bodies of the platform, struts, shank and cutter of a tool.
+
+Each is a set of cylinders at any pose, with a bound of the motion of any point in each cell of the path. Solids of
+revolution about the tool axis are independent of the spin. Units: mm, rad.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from pkm_post.geometry import Array, Cylinders
+from pkm_post.machine.kinematics.inverse import Pose, arms_from_tip
+from pkm_post.machine.kinematics.placed_machine import Placed, lever_of_rod, reach_of_body, strut_cylinders
+from pkm_post.machine.reach.limit_checks import shortest_distance
+from pkm_post.machine.reach.pose_path import Way
+from pkm_post.model import Body, Machine, Shank, Tool
+from pkm_post.toolpath import Cutter
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A cylinder about the tool axis, offset by a rounding radius.
+
+    Attributes:
+        start: height of its lower end above the tip, before the offset.
+        end: height of its upper end, likewise.
+        radius: radius before the offset; 0 makes it a line.
+        rounding: offset on all sides.
+    """
+
+    start: float
+    end: float
+    radius: float
+    rounding: float = 0.0
+
+
+@dataclass(frozen=True)
+class Mover:
+    """A moving body.
+
+    Attributes:
+        name: its name in messages.
+        cells: (K,) the cells of the path in which it is checked, ascending.
+        change: (N,) upper bound of the motion of any of its points in each cell of the path.
+        reach: upper bound of the distance from the tip of any point that turns with the platform, mm.
+        rounding: (P,) offset of each of its P cylinders.
+        cylinders: P cylinders for each of M poses, pose by pose.
+    """
+
+    name: str
+    cells: Array
+    change: Array
+    reach: float
+    rounding: Array
+    cylinders: Callable[[Pose], Cylinders]
+
+
+def of_body(machine: Machine, way: Way, body: Body) -> Mover:
+    """A body of the platform, along the whole path."""
+    offset = machine.spindle_nose + body.start, machine.spindle_nose + body.end
+    reach = reach_of_body(machine, way.tool_length, body)
+    return Mover(
+        body.name,
+        np.arange(1, len(way)),
+        _about_the_axis(way, reach),
+        reach,
+        np.zeros(1),
+        partial(_platform_cylinder, *offset, body.radius),
+    )
+
+
+def of_tool(name: str, way: Way, cells: Array, pieces: Iterable[Piece]) -> Mover:
+    """A part of a tool, in the cells where it is in use."""
+    start, end, radius, rounding = np.array([[p.start, p.end, p.radius, p.rounding] for p in pieces]).T
+    reach = float((np.hypot(np.maximum(np.abs(start), np.abs(end)), radius) + rounding).max())
+    return Mover(
+        name, cells, _about_the_axis(way, reach), reach, rounding, partial(_tool_cylinders, start, end, radius)
+    )
+
+
+def of_struts(machine: Machine, way: Way) -> Mover | None:
+    """The six struts; None if the joints of a strut coincide somewhere, which another check refuses."""
+    shortest = shortest_distance(machine, way)
+    if not shortest > 0:
+        return None
+    lever, arm = lever_of_rod(machine, shortest), float(arms_from_tip(machine, way.tool_length).max())
+    pieces = len(list(strut_cylinders(Placed.of(machine, way.rows(slice(0, 1))))))
+    change = lever * (way.travel + arm * way.turn())
+    return Mover("strut", np.arange(1, len(way)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine))
+
+
+def _about_the_axis(way: Way, reach: float) -> Array:
+    """Bound of the motion of points that move with the tip and turn about it; the spin moves no solid of revolution."""
+    return way.travel + way.angle * reach
+
+
+def _platform_cylinder(start: float, end: float, radius: float, pose: Pose) -> Cylinders:
+    tip, axis, _, tool_length = pose
+    middle = tip + ((start + end) / 2 + tool_length)[:, None] * axis
+    return Cylinders(middle, axis, np.full(len(tip), (end - start) / 2), np.full(len(tip), radius))
+
+
+def _tool_cylinders(start: Array, end: Array, radius: Array, pose: Pose) -> Cylinders:
+    tip, axis, _, _ = pose
+    middle = tip[:, None] + ((start + end) / 2)[:, None] * axis[:, None]
+    repeated = np.repeat(axis, len(start), axis=0)
+    return Cylinders(middle.reshape(-1, 3), repeated, *(np.tile(one, len(tip)) for one in ((end - start) / 2, radius)))
+
+
+def _struts(machine: Machine, pose: Pose) -> Cylinders:
+    """All pieces of all struts, pose by pose."""
+    pieces = list(strut_cylinders(Placed.of(machine, pose)))
+    count = len(pose[0])
+
+    def by_pose(columns: list[Array]) -> Array:
+        shape = columns[0].shape[1:]
+        stacked = np.concatenate([column.reshape(count, 6, *shape) for column in columns], axis=1)
+        return stacked.reshape(-1, *shape)
+
+    return Cylinders(
+        *(by_pose([getattr(one, name) for one in pieces]) for name in ("middle", "axis", "half", "radius"))
+    )
+
+
+_ARC_CHORDS = 24
+_STEPS = 6
+"""Cylinders that approximate one slanted line of a profile."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Radii of a solid of revolution about the tool axis, by height above the tip.
+
+    Attributes:
+        height: (K,) heights, ascending.
+        radius: (K,) radii, linear between heights.
+    """
+
+    height: Array
+    radius: Array
+
+    @property
+    def farthest(self) -> float:
+        """The largest distance of any of its points from the tip, mm."""
+        return float(np.hypot(self.height, self.radius).max())
+
+    def contains(self, high: Array, out: Array, more: float = 0.0) -> Array:
+        """Whether points at heights and distances from the axis, (N,), are inside the profile offset by ``more``.
+
+        An outward offset may include slightly more than this distance, never less; an inward one slightly less, never
+        more.
+        """
+        low, top = self.height[0] - more, self.height[-1] + more
+        radius = self._widest(high, more) if more > 0 else self._narrowest(high, -more)
+        inside: Array = (high >= low) & (high <= top) & (out <= radius + more)
+        return inside
+
+    def _widest(self, high: Array, within: float) -> Array:
+        if (np.diff(self.radius) >= 0).all():
+            return self._at(high + within)
+        return np.full(len(high), self.radius.max())
+
+    def _narrowest(self, high: Array, within: float) -> Array:
+        """Cutters bulge at most once: the smallest radius of a stretch is at one of its ends."""
+        return np.minimum(self._at(high - within), self._at(high + within))
+
+    def _at(self, high: Array) -> Array:
+        return np.interp(high, self.height, self.radius)
+
+
+def cylinder(start: float, end: float, radius: float) -> Profile:
+    """The profile of a cylinder."""
+    return Profile(np.array([start, end]), np.array([radius, radius]))
+
+
+def cutter_profile(tool: Tool, length: float) -> Profile:
+    """The cutting part of a tool of known diameter, up to a height; chords of the corner arc are inside it."""
+    cutter = Cutter.of(tool)
+    angle = np.linspace(cutter.corner_start, cutter.corner_end, _ARC_CHORDS + 1)
+    radius = cutter.radial_offset + cutter.corner_radius * np.sin(angle)
+    height = cutter.axial_offset - cutter.corner_radius * np.cos(angle)
+    height, radius = np.append(0.0, height), np.append(0.0, np.maximum(radius, 0.0))
+    if length > height[-1]:
+        side = radius[-1] + (length - height[-1]) * math.tan(tool.side_angle)
+        return Profile(np.append(height, length), np.append(radius, max(side, 0.0)))
+    kept = height < length
+    return Profile(np.append(height[kept], length), np.append(radius[kept], np.interp(length, height, radius)))
+
+
+def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[Piece, ...]:
+    """Cylinders inside a cutter reduced by an allowance on all sides."""
+    less = min(allowance, tool.diameter / 4)
+    if tool.bottom_angle == 0.0 and tool.side_angle == 0.0:
+        rounding = max(min(tool.corner_radius, tool.diameter / 2) - less, 0.0)
+        start = less + rounding
+        return (Piece(start, max(length - rounding, start), tool.diameter / 2 - less - rounding, rounding),)
+    profile = cutter_profile(tool, length)
+    edges = np.unique(np.concatenate([np.linspace(*ends, _STEPS + 1) for ends in _sections(profile)]))
+    edges = edges[edges >= less]
+    wide = (
+        np.minimum(*(np.interp(one, profile.height, profile.radius) for one in (edges[:-1] - less, edges[1:]))) - less
+    )
+    return tuple(
+        Piece(low, high, radius)
+        for low, high, radius in zip(edges[:-1].tolist(), edges[1:].tolist(), wide.tolist(), strict=True)
+        if radius > 0
+    )
+
+
+def _sections(profile: Profile) -> list[tuple[float, float]]:
+    """Heights between which the radius changes along one line or the corner arc."""
+    corner = [
+        profile.height[0],
+        profile.height[min(1, len(profile.height) - 1)],
+        profile.height[-2],
+        profile.height[-1],
+    ]
+    return [(float(low), float(high)) for low, high in zip(corner[:-1], corner[1:], strict=True) if high > low]
+
+
+def shank_pieces(tool: Tool, shank: Shank, allowance: float) -> tuple[Piece, ...]:
+    """The shank below the spindle nose, reduced by an allowance; it may rub where the cutter has been."""
+    start, radius = shank.start + allowance, shank.diameter / 2 - min(allowance, shank.diameter / 4)
+    return (Piece(start, tool.length, radius),) if start < tool.length else ()

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Against the stock: rapid moves, shanks and bodies of the machine in remaining or possibly remaining material.
+
+A stock point met before any cutter can have reached it certainly remains: an error. A point that no cutter has
+certainly cut may remain: a warning. Units: mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.machine.collisions.contacts import Driven
+from pkm_post.machine.collisions.moving_bodies import Profile, cylinder
+from pkm_post.machine.collisions.stock_grid import Grid, Swept, first_met, when_cut
+from pkm_post.machine.collisions.tools_in_use import InUse
+from pkm_post.model import Body, Diagnostic, Machine, Mesh
+
+_SCALLOP = 0.1
+"""mm: largest ridge between two poses of a cutter, which counts as having cut everything between them."""
+
+_MOST_MET = 4000
+"""Most intruded points whose cutting time is determined."""
+
+
+@dataclass(frozen=True)
+class Intruder:
+    """A body that must not enter the stock.
+
+    Attributes:
+        name: its name in messages.
+        codes: diagnostic codes of a certain and of a possible collision.
+        shapes: its profiles about the tool axis, and the cells to which each applies.
+    """
+
+    name: str
+    codes: tuple[str, str]
+    shapes: tuple[tuple[Profile, Array], ...]
+
+
+def rapid_cutter(used: InUse) -> Intruder:
+    """The cutting part of a tool in rapid moves."""
+    return Intruder(f"{used.name} in a rapid move", ("K136", "K137"), ((used.profile(), used.rapid),))
+
+
+def shank_of(used: InUse) -> Intruder:
+    """The shank of a tool, if it has one."""
+    assert used.shank is not None
+    shape = cylinder(used.shank.start, used.tool.length, used.shank.diameter / 2)
+    return Intruder(f"shank of {used.name}", ("K134", "K135"), ((shape, used.cells()),))
+
+
+def body_of(machine: Machine, body: Body, used: Sequence[InUse]) -> Intruder:
+    """A body of the platform."""
+    return Intruder(
+        body.name,
+        ("K134", "K135"),
+        tuple(
+            (cylinder(nose + body.start, nose + body.end, body.radius), one.cells())
+            for one, nose in ((one, machine.spindle_nose + one.tool.length) for one in used)
+        ),
+    )
+
+
+def stock_faults(
+    driven: Driven, stock: Mesh, intruders: Sequence[Intruder], used: Sequence[InUse], tolerance: float
+) -> tuple[Grid, list[Diagnostic]]:
+    """Intrusions into the stock, one fault for each operation; and the grid of points checked.
+
+    Args:
+        driven: the trajectory.
+        stock: a closed mesh.
+        intruders: bodies that must not enter it.
+        used: all tools in use, since each one cuts.
+        tolerance: largest deviation of the tool from the trajectory, mm.
+    """
+    grid = Grid.of(stock.triangles)
+    work_from_machine = np.linalg.inv(driven.trajectory.machine_from_work)
+    cuts = [(one, _cuts(driven, one, grid, work_from_machine)) for one in used if one.has_size]
+    ridge = max((swept.moved**2 / (4 * one.tool.diameter) for one, swept in cuts), default=0.0)
+    less = max(_SCALLOP, ridge) + tolerance
+    unknown = min((float(one.cutting.min(initial=np.inf)) - 1 for one in used if not one.has_size), default=np.inf)
+    found: list[Diagnostic] = []
+    for one in intruders:
+        first = _first_met(driven, one, grid, work_from_machine, less)
+        number = _some(np.flatnonzero(np.isfinite(first)))
+        points, met = grid.points(number), first[number]
+        may, sure = np.full(len(met), unknown), np.full(len(met), np.inf)
+        for cutter, swept in cuts:
+            times = when_cut(points, met, swept, cutter.profile(), cutter.largest_profile(), tolerance)
+            may, sure = np.minimum(may, times[0]), np.minimum(sure, times[1])
+        certain = ~(may < met) & (not stock.assumed)
+        hits = [(one.codes[0], certain)] if certain.any() else [(one.codes[1], ~(sure <= met))]
+        for code, hit in hits:
+            found += _told(driven, one.name, code, stock, points[hit], met[hit])
+    return grid, found
+
+
+def _some(number: Array) -> Array:
+    """At most ``_MOST_MET`` of them, evenly chosen."""
+    return number[np.unique(np.linspace(0, max(len(number) - 1, 0), _MOST_MET).astype(np.int64))[: len(number)]]
+
+
+def _cuts(driven: Driven, used: InUse, grid: Grid, work_from_machine: Array) -> Swept:
+    """Poses in which a tool cuts, in steps whose ridges stay within ``_SCALLOP``."""
+    step = float(np.sqrt(4 * used.tool.diameter * _SCALLOP))
+    return _swept(driven, used.cutting, used.largest_profile(), grid, work_from_machine, step)
+
+
+def _first_met(driven: Driven, intruder: Intruder, grid: Grid, work_from_machine: Array, less: float) -> Array:
+    """First positions at which stock points are inside an intruder by more than ``less``, (points,)."""
+    first = np.full(grid.filled.size, np.inf)
+    for profile, cells in intruder.shapes:
+        swept = _swept(driven, cells, profile, grid, work_from_machine, grid.step)
+        first = np.minimum(first, first_met(grid, swept, profile, -less))
+    return first
+
+
+def _swept(driven: Driven, cells: Array, profile: Profile, grid: Grid, work_from_machine: Array, step: float) -> Swept:
+    box = [len(axis) * grid.step for axis in grid.axes]
+    wide = 2 * float(profile.radius.max())
+    length = float(profile.height[-1] - profile.height[0])
+    pairs = min(wide, box[0]) * min(wide, box[1]) * min(length, max(box)) / grid.step**3
+    return Swept.of(driven.way, cells, work_from_machine, profile.farthest, step, pairs)
+
+
+def _told(driven: Driven, name: str, code: str, stock: Mesh, points: Array, met: Array) -> Iterator[Diagnostic]:
+    """One fault for each operation, at its first intrusion, from the points met and their positions on the path."""
+    cells = np.maximum(np.ceil(met).astype(np.int64), 1)
+    operation = driven.operation[cells]
+    for number in np.unique(operation):
+        mine = np.flatnonzero(operation == number)
+        begin = mine[np.argmin(met[mine])]
+        x, y, z = points[begin]
+        found = f"{name}, stock {stock.source}, at X{x:.1f} Y{y:.1f} Z{z:.1f}"
+        yield driven.told(code, int(cells[begin]), found)

@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Between: evaluate a check on a whole pose path, not only at its samples.
+
+Every margin has a slope: its greatest rate of change with platform motion. If the margin is m0 and m1 at the ends of a
+stretch and changes by at most c on it, it is at least (m0 + m1 - c) / 2 in between. Where that is not negative, the
+stretch is free of violations. Otherwise the stretch is halved and checked again, until a violation is found or ruled
+out, or the bound is 0 within the resolution of the check, which counts as a violation. Margins may be lower bounds
+of the true ones at any pose: the result stays valid.
+
+A check with expensive margins starts with every 64th row. It refines to the rows where less than its comfort is left,
+and elsewhere far enough to know the least margin to a quarter. When only violations are requested, every check does so
+and refines only where one is possible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.geometry import Array, norm
+from pkm_post.machine.kinematics.inverse import arms_from_tip
+from pkm_post.machine.kinematics.placed_machine import Placed
+from pkm_post.machine.reach.findings import ReachFinding, Subject
+from pkm_post.machine.reach.pose_path import Way, turn_between
+from pkm_post.model import Machine
+from pkm_post.system import workers
+
+_AT_ONCE = 2048
+"""Poses per pass: the working arrays of one pass stay in the processor's cache."""
+_STRIDE = 64
+_STRIDE_FOR_FAULTS = 512
+_THREE_QUARTERS = 0.75
+"""Beyond the comfort, the share of the least computed margin that the skipped rows must have."""
+
+
+@dataclass(frozen=True)
+class Check(Subject):
+    """One check of poses.
+
+    Attributes:
+        margins: (M, P) margins of M placed poses, or lower bounds of them; a column for each of the ``parts``.
+        by_travel: upper bound of the margin change per mm that every point of the platform travels.
+        by_turn: upper bound per rad that the platform turns about the tip.
+        resolution: between two rows, a smaller margin counts as zero.
+        comfort: margins beyond it need not be computed for every row.
+    """
+
+    margins: Callable[[Placed], Array]
+    by_travel: float
+    by_turn: float
+    resolution: float
+    comfort: float = np.inf
+
+
+def survey(
+    machine: Machine, way: Way, checks: tuple[Check, ...], faults_alone: bool = False
+) -> tuple[ReachFinding, ...]:
+    """Evaluate each check along the whole path.
+
+    Args:
+        machine: the machine the checks evaluate.
+        way: the pose path, at least one row.
+        checks: the checks to evaluate.
+        faults_alone: do not refine margins that are proven non-negative.
+    """
+    turn = way.turn()
+    if faults_alone:
+        surveys = [_Survey(machine, way, replace(check, comfort=0.0), turn) for check in checks]
+        return tuple(workers().map(lambda one: one.strided(_STRIDE_FOR_FAULTS, 0.0), surveys))
+    surveys = [_Survey(machine, way, check, turn) for check in checks]
+    thorough = [one for one in surveys if one.check.comfort == np.inf]
+    if thorough:
+        for rows in _chunks(np.arange(len(way))):
+            placed = Placed.of(machine, way.rows(rows))
+            for one in thorough:
+                one.note(rows, one.check.margins(placed))
+    return tuple(one.refined() if one in thorough else one.strided(_STRIDE, _THREE_QUARTERS) for one in surveys)
+
+
+def _chunks(rows: Array) -> Iterator[Array]:
+    return (rows[first : first + _AT_ONCE] for first in range(0, len(rows), _AT_ONCE))
+
+
+class _Survey:
+    """State of one check along the rows."""
+
+    def __init__(self, machine: Machine, way: Way, check: Check, turn: Array) -> None:
+        self.machine, self.way, self.check = machine, way, check
+        self.change = check.by_travel * way.travel + check.by_turn * turn
+        self.margin, self.part = np.empty(len(way)), np.zeros(len(way), dtype=np.int32)
+        self.computed, self.proven = np.zeros(len(way), dtype=bool), np.full(len(way), -np.inf)
+
+    def _finding(self, at_least: float) -> ReachFinding:
+        """Build the finding; skipped rows must not look as bad as the worst computed row."""
+        beyond = np.nextafter(self.margin[self.computed].min(), np.inf)
+        margin = np.where(self.computed, self.margin, np.maximum(self.margin, beyond))
+        return ReachFinding(self.check, margin, self.part, at_least)
+
+    def note(self, rows: Array, margins: Array) -> None:
+        """Store the worst margin of each row."""
+        part = np.argmin(margins, axis=1)
+        self.margin[rows], self.part[rows] = margins[np.arange(len(part)), part], part
+        self.computed[rows] = True
+
+    def look(self, rows: Array) -> None:
+        """Compute and store the margins of rows."""
+        for chunk in _chunks(rows):
+            self.note(chunk, self.check.margins(Placed.of(self.machine, self.way.rows(chunk))))
+
+    def strided(self, stride: int, share: float) -> ReachFinding:
+        """Survey every ``stride``-th row, then the rows between them where little margin may be left.
+
+        Args:
+            stride: step between the initial rows.
+            share: share of the least computed margin that skipped rows must have.
+        """
+        sum_of_changes = np.cumsum(self.change)
+        marks = np.unique(np.append(np.arange(0, len(self.way), stride), len(self.way) - 1))
+        self.look(marks)
+        start, end = marks[:-1], marks[1:]
+        while len(start):
+            bound = (self.margin[start] + self.margin[end] - (sum_of_changes[end] - sum_of_changes[start])) / 2
+            enough = max(self.check.comfort, share * self.margin[self.computed].min())
+            wide, near = end - start > 1, bound < enough
+            self._fill(start[wide & ~near], end[wide & ~near], bound[wide & ~near])
+            start, end = start[wide & near], end[wide & near]
+            middle = (start + end) // 2
+            self.look(middle)
+            start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+        return self.refined()
+
+    def _fill(self, start: Array, end: Array, bound: Array) -> None:
+        """Assign the rows between two rows the bound of the whole stretch and the part of the first one."""
+        count = end - start
+        rows = np.repeat(start + 1 - (np.cumsum(count) - count), count) + np.arange(int(count.sum()))
+        self.proven[rows] = np.repeat(bound, count)
+        rows = rows[~self.computed[rows]]
+        self.margin[rows], self.part[rows] = self.proven[rows], np.repeat(self.part[start], count - 1)
+
+    def refined(self) -> ReachFinding:
+        """Finding after refining between the rows where a violation may hide."""
+        first = np.concatenate([self.margin[:1], self.margin[:-1]])
+        bound = np.maximum((first + self.margin - self.change) / 2, self.proven)
+        cells = np.flatnonzero((bound < 0) & (first >= 0) & (self.margin >= 0))
+        for chunk in _chunks(cells):
+            least = self._halve(chunk, first[chunk], self.margin[chunk].copy())
+            bound[chunk] = np.where(least < 0, bound[chunk], least)
+        return self._finding(float(bound.min()))
+
+    def _halve(self, cells: Array, at_start: Array, at_end: Array) -> Array:
+        """Halve cells until each is settled; return the least remaining margin of each, (M,)."""
+        least = np.minimum(at_start, at_end)
+        owner = np.arange(len(cells))
+        start, width = np.zeros(len(cells)), 1.0
+        while len(owner):
+            change = width * self.change[cells[owner]]
+            bound = (at_start + at_end - change) / 2
+            unsure = bound < 0
+            np.minimum.at(least, owner[~unsure], bound[~unsure])
+            short = unsure & (change < self.check.resolution)
+            self._blame(cells, owner[short], np.minimum(bound[short], at_start[short]), None, least)
+            owner, start = owner[unsure & ~short], start[unsure & ~short]
+            at_start, at_end = at_start[unsure & ~short], at_end[unsure & ~short]
+            width /= 2
+            middle, part = self._at(cells[owner], start + width)
+            self._blame(cells, owner, middle, part, least)
+            # One violation settles a cell; the others are checked half by half.
+            going = least[owner] >= 0
+            owner, start = np.tile(owner[going], 2), np.concatenate([start[going], start[going] + width])
+            at_start, at_end = (
+                np.concatenate([at_start[going], middle[going]]),
+                np.concatenate([middle[going], at_end[going]]),
+            )
+        return least
+
+    def _at(self, cells: Array, share: Array) -> tuple[Array, Array]:
+        """Worst margins at shares of cells and the parts that have them, (M,) each."""
+        margin, part = np.empty(len(cells)), np.empty(len(cells), dtype=np.int32)
+        for chunk in _chunks(np.arange(len(cells))):
+            placed = Placed.of(self.machine, self.way.inside(cells[chunk], share[chunk]))
+            margins = self.check.margins(placed)
+            part[chunk] = np.argmin(margins, axis=1)
+            margin[chunk] = margins.min(axis=1)
+        return margin, part
+
+    def _blame(self, cells: Array, owner: Array, found: Array, part: Array | None, least: Array) -> None:
+        """Store margins found inside cells where they are the least so far."""
+        worse = found < self.margin[cells[owner]]
+        order = np.argsort(-found[worse], kind="stable")  # the least of several in one cell is written last
+        rows = cells[owner[worse]][order]
+        self.margin[rows] = found[worse][order]
+        if part is not None:
+            self.part[rows] = part[worse][order]
+        np.minimum.at(least, owner, found)
+
+
+_STRETCH = 8.0
+"""mm that tip and platform joints travel on a stretch; one cell if that is longer."""
+_MOST_GROUPS = 1024
+"""Most groups: beyond this some margin is small, and surveying along the path is as fast."""
+_NEARER = 0.8
+"""Share of the least joint distance on the path that the groups must keep."""
+_NO_STRUT = 1.0
+"""mm: keeps the slopes finite on any path."""
+
+
+def doubtful(machine: Machine, way: Way, checks_for: Callable[[float], tuple[Check, ...]]) -> tuple[int, ...]:
+    """Indices of the checks that are not proven to hold on the whole path.
+
+    Args:
+        machine: the machine the checks evaluate.
+        way: the pose path, at least one row.
+        checks_for: the checks, with slopes that hold where every strut's joints are at least this far apart, mm.
+    """
+    stretches = _Stretches.of(machine, way)
+    shortest = max(_NEARER * float(Placed.of(machine, way.rows(stretches.row)).distance.min()), _NO_STRUT)
+    checks = checks_for(shortest)
+    doubts = {number: np.ones(1, dtype=bool) for number in range(len(checks))}
+    violated = set()
+    for groups in _partitions(machine, way, stretches):
+        for number, doubt in list(doubts.items()):
+            doubts[number] = doubt = doubt[groups.parent]
+            margin, least = groups.bounds(machine, way, checks[number], np.flatnonzero(doubt), shortest)
+            doubt[doubt] = ~(least >= 0)
+            if margin.min() < 0:
+                violated.add(number)
+            if margin.min() < 0 or not doubt.any():
+                del doubts[number]
+        if not doubts:
+            break
+    return tuple(sorted(violated | doubts.keys()))
+
+
+@dataclass(frozen=True)
+class _Stretches:
+    """K stretches that cover the whole path, each around one of its rows.
+
+    Attributes:
+        row: (K,) the rows.
+        travel: (K,) upper bound of the tip travel from there to the farther end, mm.
+        turn: (K,) upper bound of the platform rotation over that travel, rad.
+    """
+
+    row: Array
+    travel: Array
+    turn: Array
+
+    @classmethod
+    def of(cls, machine: Machine, way: Way) -> _Stretches:
+        travel, turn = np.cumsum(way.travel), np.cumsum(way.turn())
+        number = np.floor((travel + _longest_arm(machine, way) * turn) / _STRETCH)
+        ends = np.unique(np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1, [len(way) - 1]]))
+        begin, end = ends[: max(len(ends) - 1, 1)], ends[min(len(ends) - 1, 1) :]  # a path of one row has no extent
+        row = (begin + end) // 2
+        farther = [np.maximum(sums[row] - sums[begin], sums[end] - sums[row]) for sums in (travel, turn)]
+        return cls(row, farther[0], farther[1])
+
+
+@dataclass(frozen=True)
+class _Groups:
+    """G groups of stretches.
+
+    Attributes:
+        parent: (G,) the group that each was split from.
+        anchor: (G,) the row in the middle of each.
+        travel: (G,) upper bound of the tip distance from the anchor to any pose of the group, mm.
+        turn: (G,) upper bound of the platform rotation over that distance, rad.
+        arm: upper bound of the distance of a platform joint from the tip, mm.
+    """
+
+    parent: Array
+    anchor: Array
+    travel: Array
+    turn: Array
+    arm: float
+
+    def bounds(self, machine: Machine, way: Way, check: Check, at: Array, shortest: float) -> tuple[Array, Array]:
+        """Margins at the anchors of some groups, and the lower bound of each group in margin or distance."""
+        placed = Placed.of(machine, way.rows(self.anchor[at]))
+        margin = check.margins(placed).min(axis=1)
+        travel, turn = self.travel[at], self.turn[at]
+        apart = placed.distance.min(axis=1) - (travel + turn * self.arm)
+        return margin, np.minimum(margin - (check.by_travel * travel + check.by_turn * turn), apart - shortest)
+
+
+def _partitions(machine: Machine, way: Way, stretches: _Stretches) -> Iterator[_Groups]:
+    """Yield all stretches as one group, then the groups split in two along their widest extent, and so on."""
+    arm = _longest_arm(machine, way)
+    tip, axis, spin, tool_length = way.rows(stretches.row)
+    place = np.column_stack([tip, arm * axis, arm * spin, tool_length])
+    group, parent = np.zeros(len(place), dtype=np.int64), np.zeros(1, dtype=np.int64)
+    while len(parent) <= _MOST_GROUPS:
+        order = np.argsort(group, kind="stable")
+        first = np.searchsorted(group[order], np.arange(len(parent)))
+        low, high = (
+            np.stack([extreme.reduceat(column[order], first) for column in place.T], axis=1)
+            for extreme in (np.minimum, np.maximum)
+        )
+        middle, widest = (low + high) / 2, np.argmax(high - low, axis=1)
+        anchor = np.lexsort((norm(place - middle[group]), group))[first]
+        begin = anchor[group]
+        # Seen from the platform, a tool change moves the tip at the anchor.
+        travel = norm(tip - tip[begin]) + np.abs(tool_length - tool_length[begin]) + stretches.travel
+        turn = turn_between(axis[begin], axis, spin - spin[begin]) + stretches.turn
+        farthest = [np.maximum.reduceat(column[order], first) for column in (travel, turn)]
+        yield _Groups(parent, stretches.row[anchor], farthest[0], farthest[1], arm)
+        beyond = place[np.arange(len(place)), widest[group]] > middle[group, widest[group]]
+        halves, group = np.unique(2 * group + beyond, return_inverse=True)
+        if len(halves) == len(parent):
+            return
+        parent = halves // 2
+
+
+def _longest_arm(machine: Machine, way: Way) -> float:
+    return float(arms_from_tip(machine, way.tool_length).max())

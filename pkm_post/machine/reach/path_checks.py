@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Workspace: whether the machine can follow a pose path; the paper's check before any controller output.
+
+Input: a pose path. Output: one finding for each check that the machine file has numbers for, in order of relevance.
+Checking strut lengths alone is not enough: singular poses can lie well inside the stroke.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.machine.kinematics.jacobian import stiffness_along
+from pkm_post.machine.reach.collision_mesh import Part
+from pkm_post.machine.reach.findings import ReachFinding, Subject, faults_of
+from pkm_post.machine.reach.interference import body_checks, part_checks, strut_checks
+from pkm_post.machine.reach.limit_checks import (
+    joint_checks,
+    pace_finding,
+    shortest_distance,
+    singularity_check,
+    stroke_checks,
+)
+from pkm_post.machine.reach.path_bounds import Check, doubtful, survey
+from pkm_post.machine.reach.pose_path import Way
+from pkm_post.model import Diagnostic, Machine, Trajectory
+
+_NO_STRUT = 1e-3
+"""Share of the shortest stroke: below it nothing is provable on a path, and its struts are far too short anyway."""
+
+
+def reach_findings(
+    machine: Machine,
+    way: Way,
+    part: Part | None = None,
+    duration: Array | None = None,
+    normal: Array | None = None,
+    least_stiffness: float = 0.0,
+) -> tuple[ReachFinding, ...]:
+    """Run all checks along a whole path.
+
+    Args:
+        machine: the limits; a check whose numbers it does not state is left out.
+        way: the pose path, N rows.
+        part: what spindle and holder must not touch.
+        duration: (N,) duration of each cell, s, for the check of strut speeds.
+        normal: (N, 3) unit normals of the surface, for the stiffness; ignored if the machine states no stiffness.
+        least_stiffness: required stiffness of the tip along the normals, N/mm.
+    """
+    shortest = _shortest(machine, way)
+    findings = survey(machine, way, all_checks(machine, way, shortest, part))
+    if duration is not None:
+        findings += (pace_finding(machine, way, shortest, duration),)
+    if normal is not None and machine.strut_stiffness is not None:
+        findings += (_stiffness_finding(machine, way, normal, least_stiffness),)
+    return findings
+
+
+def all_checks(machine: Machine, way: Way, shortest: float, part: Part | None) -> tuple[Check, ...]:
+    """All checks of a path, in the order of their codes.
+
+    Args:
+        machine: the geometry.
+        way: the pose path.
+        shortest: lower bound of the strut lengths on the path, mm.
+        part: what the tool must not meet; None leaves its checks out.
+    """
+    return (
+        *stroke_checks(machine, way, shortest),
+        *joint_checks(machine, way, shortest),
+        singularity_check(machine, way, shortest),
+        *strut_checks(machine, way, shortest),
+        *body_checks(machine, way),
+        *(part_checks(machine, way, shortest, part) if part is not None else ()),
+    )
+
+
+def _stiffness_finding(machine: Machine, way: Way, normal: Array, least: float) -> ReachFinding:
+    told = f"below {least:g} N/mm by {{by:.1f}}"
+    margin = stiffness_along(machine, way.rows(slice(None)), normal) - least
+    subject = Subject("stiffness along the normal", "K119", "N/mm", ("",), told)
+    return ReachFinding(subject, margin, np.zeros(len(way), dtype=np.int32), -np.inf)
+
+
+def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Array) -> tuple[Diagnostic, ...]:
+    """Diagnostics for a path that violates a limit: one for each operation and limit, at its worst.
+
+    The same as from ``reach_findings``, but margins are computed only where the slopes do not prove them positive:
+    first for poses around a few anchors, then along the path for the checks that remain open.
+
+    Args:
+        machine: the limits.
+        trajectory: source positions of the segments.
+        way: N poses in order along the trajectory.
+        segment: (N,) segment of each pose.
+    """
+    left = doubtful(machine, way, lambda shortest: all_checks(machine, way, shortest, None))
+    if not left:
+        return ()
+    checks = all_checks(machine, way, _shortest(machine, way), None)
+    found = survey(machine, way, tuple(checks[number] for number in left), faults_alone=True)
+    return faults_of(found, trajectory, segment)
+
+
+def _shortest(machine: Machine, way: Way) -> float:
+    return max(shortest_distance(machine, way), _NO_STRUT * max(machine.strut_stroke[0], 1.0))

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is proven by poses nearby holds at all poses of the way, and takes few of them."""
+
+import numpy as np
+import pytest
+from machines import screwed
+from pose_paths import bodied, counted, samples, upright, wandering, with_limit
+
+from pkm_post.machine.kinematics.placed_machine import Placed
+from pkm_post.machine.reach.path_bounds import doubtful
+from pkm_post.machine.reach.path_checks import all_checks
+from pkm_post.machine.reach.pose_path import Way
+
+SHARES = np.linspace(0.0, 1.0, 150)[1:]
+EXACT_ALONE = "K116"
+"""Planes tell a lower bound of a distance: at a pose it may be less than what is proven by others."""
+
+
+def scan(lines, step=0.5):
+    """A square of 100 mm, scanned in so many lines to and fro over a wave."""
+    along = np.linspace(-50, 50, int(100 / step) + 1)
+    x = np.concatenate([along[:: 1 - 2 * (line % 2)] for line in range(lines)])
+    y = np.repeat(np.linspace(-50, 50, lines), len(along))
+    tips = np.column_stack([x, y, 200 + 5 * np.sin(x / 15)])
+    return Way.straight(*upright(tips))
+
+
+def poses_for(way):
+    """How many poses the checks look at to prove that a way keeps all of them."""
+    looked_at = []
+
+    def checks_for(shortest):
+        checks, looks = counted(all_checks(bodied(), way, shortest, None))
+        looked_at.append(looks)
+        return checks
+
+    assert doubtful(bodied(), way, checks_for) == ()
+    return sum(map(sum, looked_at))
+
+
+@pytest.mark.parametrize("machine", [bodied(), screwed(bodied())], ids=["keyed", "screwed"])
+def test_what_is_proven_holds_everywhere(machine):
+    # Limits of all checks are set to what they have on random ways, less or more by a little: two tools, any attitude.
+    rng = np.random.default_rng(7)
+    proven = broken = 0
+    for _ in range(6):
+        corners = wandering(rng, 8, tilt_deg=20)
+        dense = Way.straight(*samples(corners, np.arange(1, 8), SHARES))
+        for way in (corners, dense):
+            placed = Placed.of(machine, dense.rows(slice(None)))
+            exact = [check.margins(placed).min() for check in all_checks(machine, way, 500.0, None)]
+            less = rng.uniform(-0.05, 0.3, len(exact)) * np.abs(exact)
+            limits = np.array(exact) - less
+
+            def checks_for(shortest, way=way, limits=limits):
+                return tuple(map(with_limit, all_checks(machine, way, shortest, None), limits))
+
+            left = doubtful(machine, way, checks_for)
+            for number, check in enumerate(checks_for(500.0)):
+                if less[number] < 0 and check.code != EXACT_ALONE:
+                    assert number in left, check.name
+            proven += len(exact) - len(left)
+            broken += int(np.sum(less < 0))
+    assert proven > 20 and broken > 5
+
+
+def test_many_lines_take_as_many_poses_as_few():
+    few, many = poses_for(scan(21)), poses_for(scan(201))
+    assert few < 500 and many < 1.5 * few
+
+
+def test_one_bad_row_among_many_is_doubtful():
+    way = scan(101)
+    tip = way.tip.copy()
+    tip[7000] += [400.0, 0.0, 0.0]
+    bad = Way.straight(tip, way.axis, way.spin, way.tool_length)
+    placed = Placed.of(bodied(), bad.rows(slice(7000, 7001)))
+    broken = {
+        number for number, check in enumerate(all_checks(bodied(), bad, 500.0, None)) if check.margins(placed).min() < 0
+    }
+    left = doubtful(bodied(), bad, lambda shortest: all_checks(bodied(), bad, shortest, None))
+    assert broken and broken <= set(left)
+
+
+def test_a_way_of_one_row_is_proven_by_itself():
+    way = Way.straight(*upright([[0.0, 0, 200]]))
+    assert poses_for(way) == len(all_checks(bodied(), way, 500.0, None))
