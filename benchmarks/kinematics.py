@@ -25,15 +25,18 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import numpy as np  # noqa: E402 - the threads are chosen first
 
-from pkm_post.machine.description.presets import find_machine  # noqa: E402
+from pkm_post.machine import (  # noqa: E402 - the path comes first
+    Part,  # noqa: E402 - the path comes first
+    Way,  # noqa: E402 - the path comes first
+    find_machine,  # noqa: E402
+    forward,  # noqa: E402 - the path comes first
+    jacobian_of_tip,
+    reach_findings,  # noqa: E402 - the path comes first
+    scaled_jacobian,
+    strut_lengths,  # noqa: E402 - the path comes first
+)
 from pkm_post.machine.description.reader import read_machine  # noqa: E402
-from pkm_post.machine.kinematics.forward import forward  # noqa: E402 - the path comes first
-from pkm_post.machine.kinematics.inverse import strut_lengths  # noqa: E402 - the path comes first
-from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, scaled_jacobian  # noqa: E402 - the path comes first
-from pkm_post.machine.reach.collision_mesh import Part  # noqa: E402 - the path comes first
 from pkm_post.machine.reach.limit_checks import smallest_singular_value  # noqa: E402
-from pkm_post.machine.reach.path_checks import reach_findings  # noqa: E402 - the path comes first
-from pkm_post.machine.reach.pose_path import Way  # noqa: E402 - the path comes first
 
 REPEATS = 7
 """Runs of each step; the fastest counts, as the others were disturbed."""

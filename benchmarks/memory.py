@@ -98,7 +98,7 @@ def memory(entry):
 
 def roomy_machine(folder):
     """The example machine with a controller whose memory the machine file does not limit."""
-    from pkm_post.machine.description.presets import find_machine
+    from pkm_post.machine import find_machine
 
     text = find_machine("example_6tps").read_text(encoding="utf-8")
     path = Path(folder) / "roomy.toml"

@@ -19,10 +19,15 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 from programs import program  # noqa: E402 - the path comes first
 
-from pkm_post.machine.best_position import best_position  # noqa: E402
-from pkm_post.machine.description.presets import machine_named  # noqa: E402
-from pkm_post.machine.spin.optimise import least_shares, optimise  # noqa: E402
-from pkm_post.machine.spin.policy import OBJECTIVES, Policy, Rule  # noqa: E402
+from pkm_post.machine import (  # noqa: E402
+    Policy,
+    Rule,
+    best_position,  # noqa: E402
+    least_shares,  # noqa: E402
+    machine_named,  # noqa: E402
+)
+from pkm_post.machine.spin.optimise import optimise  # noqa: E402
+from pkm_post.machine.spin.policy import OBJECTIVES  # noqa: E402
 from pkm_post.toolpath.placement import place  # noqa: E402
 
 

@@ -16,8 +16,12 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pkm_post.machine.description.presets import machine_named  # noqa: E402
-from pkm_post.machine.kinematics.strut_cubics import Ends, Inside, stray  # noqa: E402
+from pkm_post.machine import (  # noqa: E402
+    Ends,
+    Inside,
+    machine_named,  # noqa: E402
+)
+from pkm_post.machine.kinematics.strut_cubics import stray  # noqa: E402
 from pkm_post.planning import motion as planning  # noqa: E402 - the path comes first
 from pkm_post.planning.cubics import poses_at  # noqa: E402
 from pkm_post.planning.glimpse import glimpse  # noqa: E402

@@ -31,7 +31,7 @@ sys.path[:0] = [str(ROOT), str(HERE)]
 
 from decode import OPTIONS, PROGRAMS, write_program  # noqa: E402 - the path comes first
 
-from pkm_post.machine.description.presets import find_machine  # noqa: E402
+from pkm_post.machine import find_machine  # noqa: E402
 from pkm_post.machine.description.reader import read_machine  # noqa: E402
 from pkm_post.model import Kind, Trajectory  # noqa: E402
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS  # noqa: E402

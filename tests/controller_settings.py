@@ -3,7 +3,7 @@
 
 from dataclasses import replace
 
-from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine import machine_named
 from pkm_post.writing.controllers import CONTROLLERS
 
 ROUND = {"counts_per_mm": 10000.0, "zero_length": (500.0,) * 6, "approach_speed": 10.0}

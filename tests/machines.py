@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 from pkm_post.model import Machine, ToolChange
 
 INCH = 25.4
@@ -73,7 +73,7 @@ def direction(tilt_deg, azimuth_deg):
 
 def axis_and_spin(rotation):
     """The tool axis and spin that give a rotation matrix; for poses published as Euler angles."""
-    from pkm_post.machine.kinematics.inverse import platform_rotation
+    from pkm_post.machine import platform_rotation
 
     axis = rotation[:, 2]
     rest = platform_rotation(axis[None], np.zeros(1))[0].T @ rotation

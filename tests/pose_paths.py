@@ -6,8 +6,8 @@ import dataclasses
 import numpy as np
 from machines import direction, example
 
+from pkm_post.machine import Way
 from pkm_post.machine.kinematics.placed_machine import Placed
-from pkm_post.machine.reach.pose_path import Way
 from pkm_post.model.machine import Body, Box
 
 LENGTH = 120.0

@@ -8,8 +8,7 @@ from programs import random_job
 
 from pkm_post.certificate import certify
 from pkm_post.geometry import hermite_lengths
-from pkm_post.machine.description.presets import machine_named
-from pkm_post.machine.kinematics.forward import forward
+from pkm_post.machine import forward, machine_named
 from pkm_post.model import StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import motion as planning

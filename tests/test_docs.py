@@ -14,7 +14,7 @@ from test_floors import FLOORS
 
 from pkm_post.certificate import certify
 from pkm_post.geometry import unit
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import RULES

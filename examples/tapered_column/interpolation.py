@@ -75,7 +75,7 @@ def first_quadrant() -> tuple[Array, Array, float]:
     sys.path.insert(0, str(Path(__file__).parent))
     from build import Column, contacts, tool_path
 
-    from pkm_post.machine.description.presets import machine_named
+    from pkm_post.machine import machine_named
 
     column = Column()
     machine = machine_named("example_6tps")[0]

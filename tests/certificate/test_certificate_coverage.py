@@ -6,7 +6,7 @@ import pytest
 from programs import ON_PALLET, TOOLS, cone, program
 
 from pkm_post.certificate.coverage import coverage
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Extent, Topic, meaning

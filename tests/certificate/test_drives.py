@@ -13,7 +13,7 @@ from programs import program, random_job
 from pkm_post.certificate.drives import contour_error
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import hermite_lengths, norm
-from pkm_post.machine.kinematics.forward import forward
+from pkm_post.machine import forward
 
 STEP_S = 1e-4
 WIDE = (0.01, 0.05)

@@ -12,7 +12,7 @@ from machines import example
 from programs import ON_PALLET, cone
 
 from pkm_post.cli import main
-from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine import machine_named
 from pkm_post.model import Event, EventKind, Refused
 from pkm_post.posting.verify import verify
 from pkm_post.toolpath.placement import place

@@ -13,8 +13,7 @@ from pkm_post.certificate import certify, joints
 from pkm_post.certificate import instants as instants_module
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
-from pkm_post.machine.kinematics.forward import forward
-from pkm_post.machine.kinematics.jacobian import linearise
+from pkm_post.machine import forward, linearise
 from pkm_post.model import StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import motion as planning

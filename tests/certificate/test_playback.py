@@ -16,7 +16,7 @@ from pkm_post.certificate.playback import play
 from pkm_post.certificate.struts import off_plan
 from pkm_post.certificate.tool_at import Task
 from pkm_post.certificate.tool_course import ToolCourse
-from pkm_post.machine.kinematics.rates import strut_rates
+from pkm_post.machine import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import motion as planning

@@ -10,8 +10,7 @@ from posted_jobs import NARROW, UNEQUAL, WIDE, offset, preset
 from programs import ON_PALLET, cone, program, random_job, square_with_arc, steep_helices
 
 from pkm_post.certificate import certify, recovered
-from pkm_post.machine.kinematics.inverse import strut_lengths
-from pkm_post.machine.reach.path_checks import reach_faults
+from pkm_post.machine import reach_faults, strut_lengths
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors

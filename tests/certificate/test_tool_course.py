@@ -12,8 +12,7 @@ from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import hermite_lengths, hermite_speeds
 from pkm_post.geometry.vectors import length_of
-from pkm_post.machine.kinematics.forward import forward
-from pkm_post.machine.kinematics.jacobian import linearise
+from pkm_post.machine import forward, linearise
 
 SHARES = np.linspace(0, 1, 65)
 MOST_ROWS = 400

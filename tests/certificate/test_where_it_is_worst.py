@@ -9,8 +9,7 @@ from test_nothing_exceeds import TOLERANCES, certified
 
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
-from pkm_post.machine.kinematics.forward import forward
-from pkm_post.machine.kinematics.jacobian import linearise
+from pkm_post.machine import forward, linearise
 
 MOMENT = 1e-9
 """s: times are computed in seconds, those of the program are whole milliseconds."""

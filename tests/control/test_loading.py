@@ -26,9 +26,11 @@ from pkm_post.cli import main  # noqa: E402
 from pkm_post.control.loading import certified, job_to_load  # noqa: E402
 from pkm_post.control.simulator import Controller  # noqa: E402
 from pkm_post.geometry import hermite_accelerations, hermite_lengths  # noqa: E402
-from pkm_post.machine.description.presets import machine_named  # noqa: E402
-from pkm_post.machine.kinematics.forward import follow  # noqa: E402
-from pkm_post.machine.kinematics.inverse import platform_rotation  # noqa: E402
+from pkm_post.machine import (
+    follow,  # noqa: E402
+    machine_named,  # noqa: E402
+    platform_rotation,  # noqa: E402
+)
 from pkm_post.model import Event, EventKind, Refused  # noqa: E402
 from pkm_post.options.choices import Options  # noqa: E402
 from pkm_post.posting.steps import post  # noqa: E402

@@ -31,8 +31,7 @@ from pkm_post.control.link.status import read_status
 from pkm_post.control.simulator import Controller, Line, Server
 from pkm_post.control.simulator.moves import Cubic
 from pkm_post.geometry import hermite_lengths
-from pkm_post.machine.description.presets import machine_named
-from pkm_post.machine.kinematics.forward import forward
+from pkm_post.machine import forward, machine_named
 from pkm_post.planning import motion as planning
 from pkm_post.writing import trajectory_file
 from pkm_post.writing.controllers.pmac import settings_of

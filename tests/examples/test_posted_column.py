@@ -12,7 +12,7 @@ import pytest
 from Path.Post.Processor import PostProcessorFactory
 
 import pkm_post
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Kind
 from pkm_post.writing import trajectory_file

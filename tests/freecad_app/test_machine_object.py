@@ -10,7 +10,7 @@ from cam_jobs import add_operation, new_job, reopened
 
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.machine_object import create_machine, machine_of
-from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine import strut_lengths
 from pkm_post.model import Refused
 
 NANOMETRE = 1e-6

@@ -19,7 +19,7 @@ from pkm_post.freecad_app.arguments import job_arguments
 from pkm_post.freecad_app.post_job import find_job, post_as_the_job_says, post_document, post_job
 from pkm_post.freecad_app.progress import Progress, Stopped
 from pkm_post.freecad_app.symmetry import create_mirror
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 from pkm_post.model import Refused
 from pkm_post.options.choices import Options
 from pkm_post.system import read_document

@@ -7,7 +7,7 @@ from cam_jobs import ARC, FIVE_AXIS, ON_EXAMPLE, add_operation, add_tool_control
 
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.simulation import simulate_job
-from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine import strut_lengths
 from pkm_post.model import Refused
 
 NANOMETRE = 1e-6

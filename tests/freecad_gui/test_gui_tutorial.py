@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from verified_reports import certificates_agree
 
-from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine import machine_named
 from pkm_post.posting.verify import verify
 from pkm_post.writing import trajectory_file
 

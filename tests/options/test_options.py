@@ -6,7 +6,8 @@ import argparse
 import numpy as np
 import pytest
 
-from pkm_post.machine.spin.policy import OBJECTIVES, ZERO_TORSION, Policy, Rule
+from pkm_post.machine import ZERO_TORSION, Policy, Rule
+from pkm_post.machine.spin.policy import OBJECTIVES
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     SPIN_WORDS,

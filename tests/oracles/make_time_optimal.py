@@ -18,7 +18,7 @@ from toppra.algorithm import TOPPRA
 from toppra.constraint import DiscretizationType, JointAccelerationConstraint, JointVelocityConstraint
 from toppra.interpolator import AbstractGeometricPath
 
-from pkm_post.machine.kinematics.rates import strut_rates
+from pkm_post.machine import strut_rates
 
 TARGET = Path(__file__).resolve().parents[1] / "data" / "time_optimal.json"
 

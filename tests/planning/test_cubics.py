@@ -8,8 +8,8 @@ from machines import example
 from programs import ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.geometry import hermite_accelerations, hermite_speeds
-from pkm_post.machine.kinematics.rates import strut_rates
-from pkm_post.machine.kinematics.strut_cubics import Ends, Inside, stray
+from pkm_post.machine import Ends, Inside, strut_rates
+from pkm_post.machine.kinematics.strut_cubics import stray
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import cubics
 from pkm_post.planning import motion as planning

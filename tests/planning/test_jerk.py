@@ -8,7 +8,7 @@ import pytest
 from machines import example
 from programs import ON_PALLET, cone, program
 
-from pkm_post.machine.kinematics.rates import strut_rates
+from pkm_post.machine import strut_rates
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import motion as planning

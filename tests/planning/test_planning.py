@@ -6,7 +6,7 @@ from machines import example
 from programs import BALL, ON_PALLET, cone, program
 
 from pkm_post.geometry import hermite_accelerations, norm
-from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine import strut_lengths
 from pkm_post.model import Event, EventKind, Tool
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import motion as planning

@@ -9,9 +9,8 @@ import pytest
 
 from pkm_post.cli import main
 from pkm_post.geometry.vectors import unit
-from pkm_post.machine.description.presets import find_machine, presets, templates
+from pkm_post.machine import find_machine, jacobian_of_tip, presets, templates
 from pkm_post.machine.description.reader import read_machine
-from pkm_post.machine.kinematics.jacobian import jacobian_of_tip
 from pkm_post.model import Refused
 from pkm_post.posting.machine_check import at_home, home_faults, summary
 from pkm_post.posting.steps import post

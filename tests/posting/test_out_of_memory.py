@@ -16,7 +16,7 @@ from programs import cone
 
 import pkm_post
 from pkm_post.cli import main
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Refused
 from pkm_post.options import Options

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from programs import BALL, ON_PALLET, cone, program, random_job
 
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Event, EventKind, Kind, Refused, Tool
 from pkm_post.options.choices import Options

@@ -10,9 +10,7 @@ from machines import with_tool_change
 from programs import BALL, ON_PALLET, cone
 
 from pkm_post.cli import main
-from pkm_post.machine.description.presets import machine_named
-from pkm_post.machine.reach.report import reach
-from pkm_post.machine.spin.policy import Policy, Rule
+from pkm_post.machine import Policy, Rule, machine_named, reach
 from pkm_post.model import Event, EventKind
 from pkm_post.options.choices import Options
 from pkm_post.posting.placed import trajectory_of

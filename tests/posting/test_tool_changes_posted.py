@@ -17,10 +17,13 @@ from station import new_station  # noqa: E402
 
 from pkm_post.cli import main  # noqa: E402
 from pkm_post.control.link.job import read_job  # noqa: E402
-from pkm_post.machine.description.presets import find_machine  # noqa: E402
+from pkm_post.machine import (  # noqa: E402
+    Policy,
+    Rule,
+    find_machine,  # noqa: E402
+    strut_lengths,  # noqa: E402
+)
 from pkm_post.machine.description.reader import read_machine  # noqa: E402
-from pkm_post.machine.kinematics.inverse import strut_lengths  # noqa: E402
-from pkm_post.machine.spin.policy import Policy, Rule  # noqa: E402
 from pkm_post.model import Event, EventKind, Kind  # noqa: E402
 from pkm_post.options.choices import Options  # noqa: E402
 from pkm_post.posting.steps import post  # noqa: E402

@@ -11,7 +11,7 @@ from verified_reports import agree
 
 from pkm_post.certificate import certify, recovered
 from pkm_post.cli import main
-from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine import machine_named
 from pkm_post.model import Refused
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors

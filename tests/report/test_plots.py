@@ -7,7 +7,7 @@ import pytest
 from pictures import painted
 from programs import cone
 
-from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine import machine_named
 from pkm_post.posting.steps import post
 from pkm_post.report import plots
 from pkm_post.report.plots import _only, shown

@@ -11,7 +11,7 @@ from rig import SETTINGS, Wire, controller
 from pkm_post.control.link.faults import LinkLostError
 from pkm_post.control.link.readout import Readout, pose_text, state_text
 from pkm_post.control.link.status import MotorBits, Status, SystemBits, _status_of, read_status
-from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine import strut_lengths
 
 NANOMETRE = 1e-6
 GOOD = "880000000401"

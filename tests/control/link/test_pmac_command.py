@@ -12,7 +12,7 @@ from pkm_post.cli import main
 from pkm_post.control.link.ownership import lock_path
 from pkm_post.control.link.ports import port_named
 from pkm_post.control.simulator import Controller
-from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine import machine_named
 from pkm_post.model import StrutMotion
 from pkm_post.system.lock import try_lock
 from pkm_post.writing.controllers.pmac import program_text, settings_of, setup_text

@@ -14,7 +14,7 @@ from pkm_post.control.link.ready import check_setup
 from pkm_post.control.link.rotary_buffer import RotaryBuffer
 from pkm_post.control.link.status import read_status
 from pkm_post.control.simulator import Controller
-from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine import machine_named
 from pkm_post.writing.controllers.pmac import settings_of, setup_text
 
 MACHINE = "example_6tps"

@@ -15,7 +15,7 @@ from rig import Wire  # noqa: E402
 from pkm_post.control.link.job import read_job  # noqa: E402
 from pkm_post.control.numerical_control.control import NumericalControl  # noqa: E402
 from pkm_post.control.simulator import Controller, Line  # noqa: E402
-from pkm_post.machine.description.presets import machine_named  # noqa: E402
+from pkm_post.machine import machine_named  # noqa: E402
 from pkm_post.model import StrutMotion  # noqa: E402
 from pkm_post.writing.controllers.pmac import program_text, settings_of, setup_text  # noqa: E402
 

@@ -17,7 +17,7 @@ from pkm_post.control.numerical_control import moves
 from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.moves import Cartesian
 from pkm_post.control.numerical_control.single_block import blocks_of_program
-from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine import strut_lengths
 from pkm_post.model import ToolChange
 from pkm_post.posting.steps import post
 from pkm_post.writing.controllers import pmac

@@ -10,7 +10,7 @@ from rig import listed
 from pkm_post.control.link.faults import CancelledError, NotReadyError, PmacError
 from pkm_post.control.numerical_control.mdi import Reading
 from pkm_post.control.numerical_control.moves import Cartesian, OneStrut
-from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine import strut_lengths
 from pkm_post.model import Diagnostic
 
 MICRON = 1e-3

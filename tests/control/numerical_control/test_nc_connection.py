@@ -13,7 +13,7 @@ from pkm_post.control.numerical_control.connection import Target, connect, targe
 from pkm_post.control.numerical_control.homing import Phase
 from pkm_post.control.numerical_control.moves import Cartesian
 from pkm_post.control.numerical_control.training import HOMING, Training
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 
 LONGEST_S = 60.0
 FAST = 2.0

@@ -7,7 +7,7 @@ from machines import random_poses
 from station import MACHINE, TOOL
 
 from pkm_post.control.link.readout import spin_of, standing_pose
-from pkm_post.machine.kinematics.inverse import platform_rotation, strut_lengths
+from pkm_post.machine import platform_rotation, strut_lengths
 
 NANOMETRE = 1e-6
 COUNT = 30

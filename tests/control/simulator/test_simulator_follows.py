@@ -8,8 +8,7 @@ from programs import ON_PALLET, cone
 from simulated import make
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.machine.description.presets import machine_named
-from pkm_post.machine.kinematics.forward import forward
+from pkm_post.machine import forward, machine_named
 from pkm_post.options.choices import Options
 from pkm_post.planning import motion as planning
 from pkm_post.posting.steps import post

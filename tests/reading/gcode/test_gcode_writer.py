@@ -9,7 +9,7 @@ import pytest
 from programs import BALL, cone, program, random_job, square_with_arc
 
 from pkm_post.geometry import angle_between, norm
-from pkm_post.machine.kinematics.inverse import platform_rotation
+from pkm_post.machine import platform_rotation
 from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.reading.gcode import ReadOptions, read
 from pkm_post.reading.gcode.chords import CHORD_ERROR

@@ -9,8 +9,7 @@ from machines import example, with_tool_change
 from programs import BALL, ON_PALLET, TOOLS, program, random_changes
 
 from pkm_post.geometry import norm
-from pkm_post.machine.spin.apply import with_spin
-from pkm_post.machine.spin.policy import Policy, Rule
+from pkm_post.machine import Policy, Rule, with_spin
 from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.toolpath.placement import mirror, transform
 from pkm_post.toolpath.placement.place import place

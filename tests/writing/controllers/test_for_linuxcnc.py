@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 from programs import cone
 
-from pkm_post.machine.description.presets import machine_named
-from pkm_post.machine.kinematics.inverse import strut_lengths
-from pkm_post.machine.spin.policy import ZERO_TORSION, Policy, Rule
+from pkm_post.machine import ZERO_TORSION, Policy, Rule, machine_named, strut_lengths
 from pkm_post.model import Event, EventKind
 from pkm_post.model.diagnostics import errors
 from pkm_post.options.choices import LINUXCNC, Options

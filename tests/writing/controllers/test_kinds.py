@@ -3,9 +3,9 @@ import dataclasses
 
 import pytest
 
+from pkm_post.machine import machine_named
 from pkm_post.machine.description.fields import FIELDS
 from pkm_post.machine.description.forms import FormError
-from pkm_post.machine.description.presets import machine_named
 from pkm_post.posting import SUFFIX
 from pkm_post.writing.controllers import CONTROLLERS, TABLES, controller_of, part_names, part_siblings, pmac
 

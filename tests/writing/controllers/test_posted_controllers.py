@@ -9,7 +9,7 @@ import pytest
 from programs import cone
 from verified_reports import agree
 
-from pkm_post.machine.description.presets import machine_named
+from pkm_post.machine import machine_named
 from pkm_post.model import Event, EventKind, Refused
 from pkm_post.options import add_options, options_from
 from pkm_post.options.choices import LINUXCNC, Options

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from controller_settings import settings_for
 
-from pkm_post.machine.description.presets import find_machine, machine_named, presets
+from pkm_post.machine import find_machine, machine_named, presets
 from pkm_post.machine.description.reader import machine_of
 from pkm_post.writing.controllers import CONTROLLERS
 

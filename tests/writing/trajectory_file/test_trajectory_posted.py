@@ -3,7 +3,7 @@
 
 from programs import cone
 
-from pkm_post.machine.description.presets import find_machine
+from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model.certificate import Tolerances
 from pkm_post.options.choices import Options
