@@ -69,10 +69,10 @@ def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
         rotary = "size of the rotary buffer, as it was defined (%(default)s)"
         parser.add_argument("--rotary", type=count, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
     if name in ("run", "stream"):
-        from pkm_post.options import NEAR_MM
+        from pkm_post.options import START_TOLERANCE_MM
 
         near = "how far each strut and the tip may be from the first point (%(default)s)"
-        parser.add_argument("--near", type=positive, default=NEAR_MM, metavar="MM", help=near)
+        parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
     elif name == "abort":
         parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
     elif name == "monitor":

@@ -50,7 +50,7 @@ def carry_out(
 ) -> int:
     """Print a plan, execute it, and print the position reached; ``near`` is as for ``execute``."""
     from pkm_post.control import off_target, pose_text
-    from pkm_post.options import NEAR_MM
+    from pkm_post.options import START_TOLERANCE_MM
 
     for diagnostic in told:
         print(diagnostic, file=sys.stderr)
@@ -60,7 +60,7 @@ def carry_out(
     if namespace.check:
         return 0
     with held_at_the_end(session, target.settings):
-        control.execute(plan, NEAR_MM if near is None else near)
+        control.execute(plan, START_TOLERANCE_MM if near is None else near)
         if control.silence_s is not None:
             print(f"it rests within {control.silence_s:.1f} s if this computer falls silent, at 100 %", flush=True)
         status = wait_for_end(control, plan.seconds)
@@ -78,10 +78,10 @@ def wait_for_end(control: NumericalControl, seconds: float) -> Status:
 def ended_elsewhere(status: Status, lengths: Array) -> bool:
     """Whether a move ended away from its target lengths, which is printed."""
     from pkm_post.control import off_target
-    from pkm_post.options import NEAR_MM
+    from pkm_post.options import START_TOLERANCE_MM
 
     words = [_HELD] if status.held else list(status.words())
-    if not words and off_target(status, lengths) > NEAR_MM:
+    if not words and off_target(status, lengths) > START_TOLERANCE_MM:
         words = [f"it ended {off_target(status, lengths):.3f} mm of a strut from where it leads to"]
     print(*words, sep="\n", end="\n" if words else "", file=sys.stderr)
     return bool(words)

@@ -64,29 +64,31 @@ def _add_by_hand(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_step(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.options import NEAR_MM
+    from pkm_post.options import START_TOLERANCE_MM
 
     parser.add_argument("--block", type=count, default=1, metavar="N", help="begin at this block (%(default)s)")
     near = "how far each strut and the tip may be from where the first block begins (%(default)s)"
-    parser.add_argument("--near", type=positive, default=NEAR_MM, metavar="MM", help=near)
+    parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
     parser.set_defaults(tool_length=None, check=False)
     _add_number(parser)
 
 
 def _add_continue(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.options import NEAR_MM
+    from pkm_post.options import START_TOLERANCE_MM
 
     told = "which stop of the program it stands at, from 1"
     parser.add_argument("--stop", type=count, required=True, metavar="N", help=told)
     near = "how far each strut may be from where it stopped (%(default)s)"
-    parser.add_argument("--near", type=positive, default=NEAR_MM, metavar="MM", help=near)
+    parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
 
 
 def _add_number(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.options import OWN_PROGRAM
+    from pkm_post.options import MANUAL_MOVE_PROGRAM
 
     told = "number of the program in the controller that is used for it (%(default)s)"
-    parser.add_argument("--number", type=whole(1, _HIGHEST_PROGRAM), default=OWN_PROGRAM, metavar="PROG", help=told)
+    parser.add_argument(
+        "--number", type=whole(1, _HIGHEST_PROGRAM), default=MANUAL_MOVE_PROGRAM, metavar="PROG", help=told
+    )
 
 
 def _add_override(parser: argparse.ArgumentParser) -> None:

@@ -19,18 +19,18 @@ from pkm_post.cli.many import run_many
 from pkm_post.cli.progress_line import ProgressLine
 from pkm_post.cli.reading import add_reading, misplaced, reading_from
 from pkm_post.options import (
-    Item,
-    Source,
+    InputKind,
+    PostItem,
     add_options,
+    applicable_values,
     count,
-    fitting,
-    given_in,
+    explicit_values,
+    input_kind,
     job_stem,
-    lost_results,
-    lost_sources,
     missing_results,
+    overwritten_sources,
+    result_conflicts,
     solid_files,
-    source_of,
     whole_from,
 )
 from pkm_post.system import DamagedDocument, Job, memory_guard, read_document
@@ -96,19 +96,19 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
     if namespace.only is not None and namespace.only >= len(files):
         return [f"argument {_ONLY}: expected a number below {len(files)}, got {namespace.only}"]
     items = [item for file in files for item in _items(file, namespace.job, namespace.also)]
-    lost = [*lost_results(items), *lost_sources(files, items, namespace.out)]
+    lost = [*result_conflicts(items), *overwritten_sources(files, items, namespace.out)]
     return [*misplaced(namespace, files), *(f"{each}: post to different folders" for each in lost)]
 
 
-def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[Item]:
+def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[PostItem]:
     """Items of a file: a part program, or the jobs of a document, with their own optional outputs."""
     if file.suffix.lower() != _DOCUMENT:
-        return [Item(str(file), file.stem, also)]
+        return [PostItem(str(file), file.stem, also)]
     jobs = _jobs_in(file)
     if len(jobs) < 2:
-        return [Item(str(file), job_stem(file.stem, "", 1))]
+        return [PostItem(str(file), job_stem(file.stem, "", 1))]
     named = [job.label for job in jobs if wanted in (None, job.name, job.label)]
-    return [Item(f"{label} of {file}", job_stem(file.stem, label, len(jobs))) for label in named]
+    return [PostItem(f"{label} of {file}", job_stem(file.stem, label, len(jobs))) for label in named]
 
 
 def _jobs_in(document: Path) -> tuple[Job, ...]:
@@ -152,7 +152,7 @@ def _part_program(file: Path, namespace: argparse.Namespace, line: ProgressLine)
     posted = post_file(
         file,
         out=namespace.out,
-        arguments=fitting(given_in(namespace), source_of(file)),
+        arguments=applicable_values(explicit_values(namespace), input_kind(file)),
         reading=reading_from(namespace),
         log=line.print,
         progress=line.show,
@@ -166,7 +166,7 @@ def _document(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> 
     return post_document(
         file,
         out=namespace.out,
-        arguments=fitting(given_in(namespace), Source.JOB),
+        arguments=applicable_values(explicit_values(namespace), InputKind.JOB),
         job_name=namespace.job,
         log=line.print,
         progress=line.show,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.inside_freecad import needs_freecad, run_inside
 from pkm_post.cli.reading import add_reading, misplaced, reading_from
-from pkm_post.options import add_options, fitting, given_in, solid_files, source_of
+from pkm_post.options import add_options, applicable_values, explicit_values, input_kind, solid_files
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
@@ -82,7 +82,7 @@ def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]:
     from pkm_post.posting import prepared_file
     from pkm_post.reading import is_part_program
 
-    given = fitting(given_in(namespace), source_of(file))
+    given = applicable_values(explicit_values(namespace), input_kind(file))
     if is_part_program(file):
         yield prepared_file(file, reading=reading_from(namespace), arguments=given)
     else:

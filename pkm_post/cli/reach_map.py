@@ -12,9 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from pkm_post.options import accepting, number, offset, positive, tool_length
+from pkm_post.options import number, offset, positive, tool_length, validated
 
-_angle = accepting(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
+_angle = validated(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
 
 _MOST_PLACES = 1_000_000
 """A file with this many is some tens of megabytes."""

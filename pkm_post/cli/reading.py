@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.options import given_in, misfits, part_program_from, source_of
+from pkm_post.options import explicit_values, inapplicable_options, input_kind, part_program_from
 
 if TYPE_CHECKING:
     from pkm_post.reading import Reading
@@ -54,7 +54,7 @@ def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]
 
     beside = (name for name, default in _BESIDE.items() if getattr(namespace, name, default) != default)
     place = Place(str(files[0]) if len(files) == 1 else "arguments")
-    strangers = misfits((*given_in(namespace), *beside), {source_of(file) for file in files})
+    strangers = inapplicable_options((*explicit_values(namespace), *beside), {input_kind(file) for file in files})
     return [str(Diagnostic("L442", place, each)) for each in strangers]
 
 

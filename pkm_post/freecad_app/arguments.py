@@ -16,7 +16,15 @@ import Path.Preferences
 
 from pkm_post.freecad_app.document import document_name
 from pkm_post.model import Diagnostic, Place, Refused
-from pkm_post.options import Given, Source, TextParser, given_in, misfits, text_parser, typed
+from pkm_post.options import (
+    ArgumentValues,
+    InputKind,
+    TextParser,
+    explicit_values,
+    inapplicable_options,
+    parse_text,
+    text_parser,
+)
 from pkm_post.writing import Form
 
 PMAC, TRAJECTORY, LINUXCNC, GCODE = "hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"
@@ -46,13 +54,13 @@ _MORE: dict[str, dict[str, dict[str, Any]]] = {
 """Additional arguments of some post-processors."""
 
 
-def given_by(arguments: str | Given) -> Given:
+def given_by(arguments: str | ArgumentValues) -> ArgumentValues:
     """Parse a text into the options it sets, without defaults; already parsed options are returned unchanged.
 
     Raises:
         Refused: as ``job_arguments``.
     """
-    return given_in(parsed(arguments, Place("arguments"))) if isinstance(arguments, str) else arguments
+    return explicit_values(parsed(arguments, Place("arguments"))) if isinstance(arguments, str) else arguments
 
 
 def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.Namespace:
@@ -68,7 +76,7 @@ def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.N
     """
     place = Place(document_name(job.Document), job.Label)
     chosen = parsed(text, place, post_processor)
-    strangers = misfits(given_in(chosen), {Source.JOB})
+    strangers = inapplicable_options(explicit_values(chosen), {InputKind.JOB})
     if strangers:
         raise Refused([Diagnostic("J117", place, each) for each in strangers])
     return chosen
@@ -81,7 +89,7 @@ def parsed(text: str, place: Place, post_processor: str = PMAC) -> argparse.Name
         Refused: as ``job_arguments``.
     """
     try:
-        chosen = typed(text, _parser(post_processor))
+        chosen = parse_text(text, _parser(post_processor))
         if chosen.also and post_processor != PMAC:
             raise ValueError(f"--also is for {PMAC} alone in {text!r}")
     except ValueError as fault:

@@ -21,19 +21,19 @@ from pkm_post.freecad_app.tools import gauge_length
 from pkm_post.model import Diagnostic, Place
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
-    NOTHING_GIVEN,
-    Given,
+    NO_VALUES,
+    ArgumentValues,
+    InputKind,
     Options,
     Override,
-    Source,
+    argument_values,
+    explicit_values,
     flag_of,
-    given_in,
-    layered,
-    misfits,
+    format_value,
+    inapplicable_options,
     options_from,
+    overridden,
     overrides,
-    said_by,
-    shown,
     tool_lengths_from,
 )
 
@@ -63,7 +63,7 @@ class JobSettings:
 
 def settings_of(
     job: Any,
-    given: Given = NOTHING_GIVEN,
+    given: ArgumentValues = NO_VALUES,
     options: Options | None = None,
     post_processor: str = "",
     selection: Selection = EVERYTHING,
@@ -83,13 +83,13 @@ def settings_of(
         Refused: the arguments of the job are invalid, J117.
     """
     own = own_arguments(job, post_processor)
-    chosen = layered(_placed(job, own), given)
+    chosen = overridden(_placed(job, own), given)
     lengths = tool_lengths_from(chosen)
     found = (
         *_without_meaning(job, given),
-        *_replaced(job, given_in(own), given, options, selection),
+        *_replaced(job, explicit_values(own), given, options, selection),
         *_replaced_lengths(job, lengths),
-        *_unknown_tools(job, given_in(own), ()),
+        *_unknown_tools(job, explicit_values(own), ()),
         *_unknown_tools(job, given, beside),
     )
     return JobSettings(
@@ -120,29 +120,29 @@ def _placed(job: Any, own: argparse.Namespace) -> argparse.Namespace:
     def where(file: str) -> str:
         return str(folder / file) if folder is not None and (folder / file).is_file() else file
 
-    named = {name: value for name, value in given_in(own).items() if name in _FILES}
+    named = {name: value for name, value in explicit_values(own).items() if name in _FILES}
     files = {name: [(file, where(path)) for file, path in value] if isinstance(value, list) else where(value)
              for name, value in named.items() if name != "machine" or value.endswith(".toml")}  # fmt: skip
-    return argparse.Namespace(**(vars(own) | files | {"given": {**given_in(own), **files}}))
+    return argparse.Namespace(**(vars(own) | files | {"given": {**explicit_values(own), **files}}))
 
 
 _FILES = ("machine", "part", "stock", "fixture")
 """Options with file names; a machine may also be one included in PKM Post."""
 
 
-def _without_meaning(job: Any, given: Given) -> Iterator[Diagnostic]:
+def _without_meaning(job: Any, given: ArgumentValues) -> Iterator[Diagnostic]:
     """Yield L442 for each option that applies only to part programs."""
-    for each in misfits(given, {Source.JOB}):
+    for each in inapplicable_options(given, {InputKind.JOB}):
         yield Diagnostic("L442", Place(document_name(job.Document), job.Label), each)
 
 
 def _replaced(
-    job: Any, own: Given, given: Given, options: Options | None, selection: Selection
+    job: Any, own: ArgumentValues, given: ArgumentValues, options: Options | None, selection: Selection
 ) -> Iterator[Diagnostic]:
     """Yield J125 for each option that changes a setting of the job; a job always states a work offset."""
     place, fixture = Place(document_name(job.Document), job.Label), _fixture(job, selection)
     said = _with_fixture({"work_offset": FIXTURE_OF_THE_JOB} | dict(own), fixture)
-    whole = {} if options is None else said_by(options)
+    whole = {} if options is None else argument_values(options)
     for each in (
         *overrides(said, _with_fixture(given, fixture)),
         *overrides(said, _with_fixture(whole, fixture), whole=True),
@@ -150,7 +150,7 @@ def _replaced(
         yield Diagnostic("J125", place, str(each))
 
 
-def _with_fixture(layer: Given, fixture: str) -> Given:
+def _with_fixture(layer: ArgumentValues, fixture: str) -> ArgumentValues:
     at_fixture = str(layer.get("work_offset")) == FIXTURE_OF_THE_JOB
     return {**layer, "work_offset": fixture} if at_fixture else layer
 
@@ -162,18 +162,20 @@ def _replaced_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diagno
         kept, number = gauge_length(controller), int(controller.ToolNumber)
         if kept > 0.0 and lengths.get(number, kept) != kept:
             told = Override(
-                flag_of("tool_length"), f"GaugeLength {kept:.12g}", shown("tool_length", (number, lengths[number]))
+                flag_of("tool_length"),
+                f"GaugeLength {kept:.12g}",
+                format_value("tool_length", (number, lengths[number])),
             )
             yield Diagnostic("J125", Place(source, controller.Label), str(told))
 
 
-def _unknown_tools(job: Any, given: Given, beside: Sequence[Any]) -> Iterator[Diagnostic]:
+def _unknown_tools(job: Any, given: ArgumentValues, beside: Sequence[Any]) -> Iterator[Diagnostic]:
     """Yield J126 for each gauge length whose number no tool controller has."""
     here = {int(controller.ToolNumber) for controller in job.Tools.Group}
     known = here.union(int(controller.ToolNumber) for other in beside for controller in other.Tools.Group)
     for number, mm in given.get("tool_length", ()):
         if number not in known:
-            told = f"{flag_of('tool_length')} {shown('tool_length', (number, mm))}, {_tools(here)}"
+            told = f"{flag_of('tool_length')} {format_value('tool_length', (number, mm))}, {_tools(here)}"
             yield Diagnostic("J126", Place(document_name(job.Document), job.Label), told)
 
 

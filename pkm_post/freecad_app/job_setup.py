@@ -26,7 +26,7 @@ from pkm_post.freecad_app.mesh import mesh_of
 from pkm_post.freecad_app.tools import millimetres
 from pkm_post.machine import Part, find_machine, machine_named, placed_part
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Shank, Tolerances, Trajectory
-from pkm_post.options import Options, Override, flag_of, said_by, shown
+from pkm_post.options import Options, Override, argument_values, flag_of, format_value
 from pkm_post.posting import Prepared, Study, known_setup, study, told_offset, work_offset
 
 
@@ -87,8 +87,10 @@ def _elsewhere(
         yield Diagnostic("J125", place, str(told))
     offset, _ = work_offset(machine, settings.options)
     if offset is not None and not np.allclose(offset, options.work_offset, atol=_SAME_PLACE):
-        said = (shown("work_offset", said_by(each)["work_offset"]) for each in (settings.options, options))
-        yield Diagnostic("J125", place, str(Override(flag_of("work_offset"), *said)))
+        values = (
+            format_value("work_offset", argument_values(each)["work_offset"]) for each in (settings.options, options)
+        )
+        yield Diagnostic("J125", place, str(Override(flag_of("work_offset"), *values)))
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from pkm_post.freecad_app.job import NO_LENGTHS
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.model import Diagnostic, Place, Refused
-from pkm_post.options import READING, Given, Item, Options, job_stem, lost_results
+from pkm_post.options import READING_STEP, ArgumentValues, Options, PostItem, job_stem, result_conflicts
 from pkm_post.posting import SUFFIX, Log, Posted, Prepared, Progress, quiet, unwatched
 
 
@@ -33,7 +33,7 @@ def post_job(
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     log: Log = quiet,
     progress: Progress = unwatched,
-    arguments: str | Given = "",
+    arguments: str | ArgumentValues = "",
     beside: Sequence[Any] = (),
 ) -> Posted:
     """Post a CAM job. Unspecified settings are those of the job; replaced ones are reported as J125.
@@ -60,7 +60,7 @@ def post_job(
     return post_to(FilePath(out) / file_name(job), job, settings, log, progress)
 
 
-def _said(machine: str | FilePath | None, tool_lengths: Mapping[int, float]) -> Given:
+def _said(machine: str | FilePath | None, tool_lengths: Mapping[int, float]) -> ArgumentValues:
     """Machine and gauge lengths of a call, as if typed."""
     lengths = {"tool_length": list(tool_lengths.items())} if tool_lengths else {}
     return lengths | ({} if machine is None else {"machine": str(machine)})
@@ -84,7 +84,7 @@ def post_document(
     job_name: str | None = None,
     log: Log = quiet,
     progress: Progress = unwatched,
-    arguments: str | Given = "",
+    arguments: str | ArgumentValues = "",
 ) -> tuple[Posted, ...]:
     """Post one job of a saved document, or all of them.
 
@@ -107,7 +107,7 @@ def post_document(
         return tuple(post_job(job, machine, out, options, tool_lengths, log, progress, arguments, jobs) for job in jobs)
 
 
-def read_document(file: str | FilePath, given: Given, job_name: str | None = None) -> tuple[Prepared, ...]:
+def read_document(file: str | FilePath, given: ArgumentValues, job_name: str | None = None) -> tuple[Prepared, ...]:
     """Read the jobs of a saved document.
 
     Args:
@@ -167,7 +167,7 @@ def post_to(
     Raises:
         Refused: as ``post_job``.
     """
-    progress(READING, 0.0)
+    progress(READING_STEP, 0.0)
     job.Document.recompute()
     return prepared_job(job, settings).post(program_path, log, progress)
 
@@ -180,8 +180,8 @@ def file_name(job: Any) -> str:
     """
     document, jobs = job.Document, find_jobs(job.Document)
     stem = FilePath(document.FileName).stem or document.Label
-    items = {each.Name: Item(each.Label, job_stem(stem, each.Label, len(jobs))) for each in jobs}
-    lost = lost_results(list(items.values()))
+    items = {each.Name: PostItem(each.Label, job_stem(stem, each.Label, len(jobs))) for each in jobs}
+    lost = result_conflicts(list(items.values()))
     if lost:
         raise Refused([Diagnostic("F105", Place(document_name(document)), each) for each in lost])
     return items[job.Name].stem + SUFFIX

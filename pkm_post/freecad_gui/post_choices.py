@@ -24,7 +24,7 @@ from pkm_post.freecad_gui.post_fields import (
 )
 from pkm_post.machine import machine_named, presets
 from pkm_post.model import Place, Refused
-from pkm_post.options import ALSO, FIXTURE_OF_THE_JOB, HEADED, SPIN_WORDS
+from pkm_post.options import FIXTURE_OF_THE_JOB, RULES_WITH_HEADING, SIDE_OUTPUTS, SPIN_WORDS
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -105,7 +105,7 @@ class PostChoices(QtWidgets.QWidget):
         self.machine, self.work_offset = editable_box(presets()), editable_box(())
         self.tip_tolerance, self.axis_tolerance = quantity_field("mm"), quantity_field("deg")
         self.heading, self.spin = quantity_field("deg"), QtWidgets.QComboBox()
-        self.also = {name: QtWidgets.QCheckBox(translate("PostChoices", _ALSO[name])) for name in ALSO}
+        self.also = {name: QtWidgets.QCheckBox(translate("PostChoices", _ALSO[name])) for name in SIDE_OUTPUTS}
         self.also_box = below_each_other(self.also.values())
         self.more, self.folder = QtWidgets.QLineEdit(), QtWidgets.QLineEdit()
         for word in SPIN_WORDS:
@@ -152,7 +152,7 @@ class PostChoices(QtWidgets.QWidget):
             "--work-offset": self.work_offset.currentText().strip() or None,
             "--tip-tolerance": number_text(self.tip_tolerance),
             "--axis-tolerance": number_text(self.axis_tolerance),
-            "--spin": f"{spin}={number_text(self.heading)}" if spin in HEADED else spin,
+            "--spin": f"{spin}={number_text(self.heading)}" if spin in RULES_WITH_HEADING else spin,
             "--also": ",".join(name for name, box in self.also.items() if box.isChecked()) or None,
         }
         try:
@@ -169,7 +169,7 @@ class PostChoices(QtWidgets.QWidget):
         self.work_offset.setEditText(typed)
 
     def _show_heading(self, *_changed: int) -> None:
-        self.heading.setEnabled(self.spin.currentData() in HEADED)
+        self.heading.setEnabled(self.spin.currentData() in RULES_WITH_HEADING)
 
     def _ask_machine(self) -> None:
         title, kinds = translate("PostChoices", "Machine file"), translate("PostChoices", "Machine files")

@@ -25,7 +25,7 @@ from pkm_post.freecad_gui.post_steps import step_text
 from pkm_post.freecad_gui.task import Task
 from pkm_post.freecad_gui.workbench import ICONS
 from pkm_post.model import Refused
-from pkm_post.options import READING
+from pkm_post.options import READING_STEP
 from pkm_post.posting import Prepared
 from pkm_post.system import memory_guard
 
@@ -81,7 +81,7 @@ class PostPanel:
     def begin(self) -> None:
         """Store the choices, read the job, and start posting it."""
         self._show_running(True)
-        self._show_progress(READING, 0.0)
+        self._show_progress(READING_STEP, 0.0)
         QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
         try:
             with memory_guard(self.job.Label):

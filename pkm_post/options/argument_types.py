@@ -17,12 +17,12 @@ Converter = Callable[[str], Value]
 """Raises ``argparse.ArgumentTypeError`` with the expected and the actual text."""
 
 
-def accepting(convert: Converter[Value], fits: Callable[[Value], bool], expected: str) -> Converter[Value]:
+def validated(convert: Converter[Value], accepts: Callable[[Value], bool], expected: str) -> Converter[Value]:
     """Make a converter that accepts only some values.
 
     Args:
         convert: parses the text; a ValueError rejects it.
-        fits: whether the value is accepted.
+        accepts: whether the value is accepted.
         expected: description of accepted values, after "expected".
     """
 
@@ -31,27 +31,27 @@ def accepting(convert: Converter[Value], fits: Callable[[Value], bool], expected
             value = convert(text)
         except ValueError:
             raise _unexpected(expected, text) from None
-        if not fits(value):
+        if not accepts(value):
             raise _unexpected(expected, text)
         return value
 
     return converted
 
 
-number = accepting(float, math.isfinite, "a number")
+number = validated(float, math.isfinite, "a number")
 """Any number that is finite."""
-positive = accepting(number, lambda value: value > 0, "a number above 0")
+positive = validated(number, lambda value: value > 0, "a number above 0")
 """A length, speed or time that cannot be 0."""
 
 
 def between(least: float, most: float) -> Converter[float]:
     """Numbers from the least to the most, both inclusive."""
-    return accepting(float, lambda value: least <= value <= most, f"a number from {least} to {most}")
+    return validated(float, lambda value: least <= value <= most, f"a number from {least} to {most}")
 
 
 def above_zero(most: float) -> Converter[float]:
     """Numbers above 0, up to and including the most."""
-    return accepting(float, lambda value: 0 < value <= most, f"a number above 0 and up to {most}")
+    return validated(float, lambda value: 0 < value <= most, f"a number above 0 and up to {most}")
 
 
 LONGEST_TOOL, FARTHEST_OFFSET = 10_000, 1_000_000
@@ -70,12 +70,12 @@ def _digits(text: str) -> int:
 
 def whole(least: int, most: int, noun: str = "a whole number") -> Converter[int]:
     """Unsigned whole numbers from the least to the most, both inclusive; the noun appears in the error message."""
-    return accepting(_digits, lambda value: least <= value <= most, f"{noun} from {least} to {most}")
+    return validated(_digits, lambda value: least <= value <= most, f"{noun} from {least} to {most}")
 
 
 def whole_from(least: int, expected: str) -> Converter[int]:
     """Unsigned whole numbers, the least or more; ``expected`` appears in the error message."""
-    return accepting(_digits, lambda value: value >= least, expected)
+    return validated(_digits, lambda value: value >= least, expected)
 
 
 count = whole_from(1, "a whole number above 0")

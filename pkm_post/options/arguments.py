@@ -1,29 +1,26 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arguments: the table of user options, and the parsed values as options in mm and rad.
+"""Arguments: the table of user options, for the command line and for one text as in jobs and macros.
 
-Input: an argparse parser, which gets the arguments. Output: ``Options``. No degrees beyond this module.
+Input: an argparse parser, which gets the arguments, or a text quoted as in a shell. Output: parsed arguments, in the
+units of the user: mm, degrees, m/min. ``conversion`` makes options of them.
 """
 
 from __future__ import annotations
 
 import argparse
-import math
+import shlex
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any, NoReturn
 
 from pkm_post.options.argument_types import above_zero, between, number, numbered, offset, tool_length
-from pkm_post.options.layers import NOTHING, add_noted
+from pkm_post.options.layers import NOTHING, add_recorded
+from pkm_post.system import result_files
 
-if TYPE_CHECKING:
-    from pkm_post.machine import Policy
-    from pkm_post.model import Tolerances, Tool
-    from pkm_post.options.choices import Options
-    from pkm_post.reading import Reading
-    from pkm_post.toolpath import SurfaceSpeed
-
+SIDE_OUTPUTS = tuple(result_files.SIDE_OUTPUTS)
+"""Names of the optional files, in the order in which they are written."""
 FIXTURE_OF_THE_JOB = "job"
 """Name of the work offset that stands for the fixture of the CAM job."""
-READING = "reading"
+READING_STEP = "reading"
 """Name of the progress step before those of the pipeline."""
 
 Pose = tuple[float, float, float, float]
@@ -56,7 +53,7 @@ _SPINS = {
 }
 """Spin rules by name, each with its operand after ``=``."""
 _OBJECTIVES = ("stroke", "joints", "singular", "weighted")
-HEADED = tuple(rule for rule, value in _SPINS.items() if value == "DEG")
+RULES_WITH_HEADING = tuple(rule for rule, value in _SPINS.items() if value == "DEG")
 """Rules that need a heading."""
 SPIN_WORDS = (*(rule for rule in _SPINS if _SPINS[rule] != "OBJECTIVE"), *(f"optimise={one}" for one in _OBJECTIVES))
 """All choices for the spin, without headings."""
@@ -74,16 +71,12 @@ def _spin(text: str) -> tuple[str, float, str]:
     return rule, 0.0, value or _OBJECTIVES[0]
 
 
-ALSO = ("csv", "halstreamer", "linuxcnc")
-"""Optional files beside the program: two tables of the strut motion, and G-code for LinuxCNC's hexapod."""
-
-
 def _also(text: str) -> tuple[str, ...]:
     """Distinct names; the word for nothing cancels a job's choice."""
     chosen = text.split(",") if text != NOTHING else []
-    if not set(chosen) <= set(ALSO):
-        raise argparse.ArgumentTypeError(f"expected names out of {', '.join(ALSO)}, got {text!r}")
-    return tuple(name for name in ALSO if name in chosen)
+    if not set(chosen) <= set(SIDE_OUTPUTS):
+        raise argparse.ArgumentTypeError(f"expected names out of {', '.join(SIDE_OUTPUTS)}, got {text!r}")
+    return tuple(name for name in SIDE_OUTPUTS if name in chosen)
 
 
 CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "makino", "apt")
@@ -250,7 +243,8 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "metavar": "NAMES",
         "type": _also,
         "default": (),
-        "help": f"what to write beside the program, joined by commas: {', '.join(ALSO)}; or {NOTHING}, the default",
+        "help": f"what to write beside the program, joined by commas: {', '.join(SIDE_OUTPUTS)}; or {NOTHING},"
+        " the default",
     },
 }
 
@@ -275,93 +269,43 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
 
 def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
     for flag in flags:
-        add_noted(parser, flag, **_ARGUMENTS[flag])
+        add_recorded(parser, flag, **_ARGUMENTS[flag])
 
 
-def tolerances_from(namespace: argparse.Namespace) -> Tolerances:
-    """The tolerances of a parsed command line, in mm and rad."""
-    from pkm_post.model import Tolerances
+class TextParser(argparse.ArgumentParser):
+    """Raise a ``ValueError`` where a program of its own would print its usage and exit."""
 
-    return Tolerances(namespace.tip_tolerance, math.radians(namespace.axis_tolerance))
-
-
-def options_from(namespace: argparse.Namespace) -> Options:
-    """The options of a parsed command line, in mm and rad."""
-    from pkm_post.options.choices import MeshFiles, Options
-    from pkm_post.toolpath import OffsetOptions
-
-    offset, tolerances = namespace.work_offset, tolerances_from(namespace)
-    return Options(
-        work_offset=offset if isinstance(offset, str) else _pose(*offset),
-        tip_tolerance=tolerances.tip,
-        axis_tolerance=tolerances.axis,
-        spin=_policy(*namespace.spin),
-        contours=OffsetOptions(namespace.corners, namespace.leads, namespace.swallowed),
-        surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
-        also=namespace.also,
-        actual_tools=_cutters(namespace.actual_tool),
-        mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(dict(namespace.fixture).values())),
-    )
+    def error(self, message: str) -> NoReturn:
+        """Handle a parse error of argparse."""
+        raise ValueError(message)
 
 
-def solid_files(namespace: argparse.Namespace) -> list[str]:
-    """Files of part, stock and fixtures."""
-    named = [namespace.part, namespace.stock, *dict(namespace.fixture).values()]
-    return [file for file in named if file is not None]
+def text_parser(name: str = "options", description: str = "") -> TextParser:
+    """Parser of the common options, without abbreviations and built-in help."""
+    parser = TextParser(prog=name, description=description, add_help=False, allow_abbrev=False, usage=argparse.SUPPRESS)
+    vars(parser)["color"] = False  # Python 3.14 would colour the help on a terminal
+    add_options(parser)
+    return parser
 
 
-def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading:
-    """Reading options of a part program, beside the tool axis notation of its G-code."""
-    from pkm_post.reading import Reading
+def parse_text(text: str, parser: TextParser | None = None) -> argparse.Namespace:
+    """Parse options from a text; the others have their defaults.
 
-    return Reading(
-        axis_words,
-        tools_from(namespace),
-        namespace.unit,
-        namespace.contour_data,
-        dict(namespace.wear),
-        namespace.cl_dialect,
-        namespace.cycle_values,
-        allow_open_end=namespace.allow_open_end,
-    )
+    Raises:
+        ValueError: the text is invalid.
+    """
+    try:
+        return (parser or text_parser()).parse_args(shlex.split(text))
+    except ValueError as fault:
+        raise ValueError(f"{fault} in {text!r}") from fault
 
 
-def tools_from(namespace: argparse.Namespace) -> dict[int, Tool]:
-    """Cutters of a part program by tool number; the last of several for one tool."""
-    return _cutters(namespace.tools)
-
-
-def _cutters(sizes: Iterable[tuple[int, tuple[float, float | None]]]) -> dict[int, Tool]:
-    """Tools defined by diameter and corner radius only, mm."""
-    from pkm_post.model import Tool
-
-    return {
-        tool: Tool(tool, "", diameter, corner or 0.0, 0.0, corner_known=corner is not None)
-        for tool, (diameter, corner) in sizes
-    }
-
-
-def tool_lengths_from(namespace: argparse.Namespace) -> dict[int, float]:
-    """Gauge lengths by tool number, mm; the last of several for one tool."""
-    return dict(namespace.tool_length)
-
-
-def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
-    """The (4, 4) pose of {C} in {M}: an origin and a rotation about z."""
-    from pkm_post.toolpath import rotation
-
-    pose = rotation((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.radians(turn_deg))
-    pose[:3, 3] = x, y, z
-    return pose
-
-
-def _surface_speed(metres_per_minute: float | None, keep_chip_load: bool) -> SurfaceSpeed | None:
-    from pkm_post.toolpath import SurfaceSpeed
-
-    return None if metres_per_minute is None else SurfaceSpeed(metres_per_minute * 1000 / 60, keep_chip_load)
-
-
-def _policy(rule: str, heading_deg: float, objective: str) -> Policy:
-    from pkm_post.machine import Policy, Rule
-
-    return Policy(Rule(rule), heading=math.radians(heading_deg), objective=objective)
+PARITIES = {"none": "N", "odd": "O", "even": "E"}
+"""Parities of a serial line, with their names in pyserial."""
+START_TOLERANCE_MM = 0.05
+"""Largest distance of each strut and of the tool tip to the start of a program: the following errors of standing
+struts."""
+MANUAL_MOVE_PROGRAM = 999
+"""Program number of a manual move; jobs use others."""
+APPROACH_MM_S = 10.0
+"""Tip speed of the planned approach to the start of a program; for a turn in place, degrees per second."""

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, Policy
 from pkm_post.model import NOTHING_KNOWN, Setup, Tolerances, Tool
+from pkm_post.system import result_files
 from pkm_post.toolpath import OffsetOptions, SurfaceSpeed
-from pkm_post.writing import TABLES
 
 LINUXCNC = "linuxcnc"
 """The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is not a table of the motion."""
@@ -48,7 +48,7 @@ class Options:
         actual_tools: by number, tools whose cutters differ from those the program was made for; a program with
             surface normals is compensated for them.
         surface_speed: cutting speed to keep; None leaves the spindle as programmed.
-        also: additional outputs: names of ``controllers.TABLES``, and ``LINUXCNC``.
+        also: side outputs, keys of ``system.result_files.SIDE_OUTPUTS``.
         mesh_files: mesh files of the bodies in the collision check.
         setup: the set-up known without files, as from a CAM job.
     """
@@ -65,7 +65,7 @@ class Options:
     setup: Setup = NOTHING_KNOWN
 
     def __post_init__(self) -> None:
-        known = (*TABLES, LINUXCNC)
+        known = result_files.SIDE_OUTPUTS
         if not set(self.also) <= set(known):
             raise ValueError(f"also: expected names out of {', '.join(known)}, got {', '.join(self.also)}")
 

@@ -1,35 +1,38 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers: the options of a job, overridden one by one by those of a command line.
+"""Layers: the options of a job, overridden one by one by those of a command line, and the input that each applies to.
 
-Input: parsed arguments, each with a record of what was typed. Output: one layer merged over another, and every option
-whose value changes. A default overrides nothing.
+Input: parsed arguments, with the values that were given explicitly, and kinds of files. Output: one layer merged over
+another, every option whose value changes, and messages on options that do not apply. A default overrides nothing. An
+option that applies to none of the inputs is refused, not ignored.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Mapping
+import enum
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 NOTHING = "none"
-"""Cancels a job's choice, where nothing is the default."""
-Given = Mapping[str, Any]
-"""Typed values by attribute name."""
-NOTHING_GIVEN: Given = MappingProxyType({})
+"""Word that cancels a job's choice of an option without a default."""
+ArgumentValues = Mapping[str, Any]
+"""Explicitly given values by attribute name."""
+NO_VALUES: ArgumentValues = MappingProxyType({})
 
 
-def add_noted(parser: argparse.ArgumentParser, flag: str, action: str = "store", **words: Any) -> None:
-    """Add an option that is recorded in ``given`` when typed; a switch gets one with ``--no-`` that cancels it."""
+def add_recorded(parser: argparse.ArgumentParser, flag: str, action: str = "store", **words: Any) -> None:
+    """Add an option that is recorded in ``given`` when it is given; a switch gets a ``--no-`` form that cancels it."""
     if action == "store_true":
-        parser.add_argument(flag, f"--no-{flag[2:]}", action=_Noted, nargs=0, default=False, **words)
+        parser.add_argument(flag, f"--no-{flag[2:]}", action=_RecordedAction, nargs=0, default=False, **words)
     else:
-        parser.add_argument(flag, action=_Noted, **words)
+        parser.add_argument(flag, action=_RecordedAction, **words)
 
 
-class _Noted(argparse.Action):
-    """Store a value as argparse does, and record that it was typed; one with a list default may be repeated."""
+class _RecordedAction(argparse.Action):
+    """Store a value as argparse does, and record it as given; an option with a list default may be repeated."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, value: Any, flag: str | None = None
@@ -40,18 +43,18 @@ class _Noted(argparse.Action):
         elif self.nargs == 0:
             value = not str(flag).startswith("--no-")
         setattr(namespace, self.dest, value)
-        namespace.given = {**given_in(namespace), self.dest: value}
+        namespace.given = {**explicit_values(namespace), self.dest: value}
 
 
-def given_in(namespace: argparse.Namespace) -> Given:
-    """Typed values of parsed arguments; the rest of them are defaults."""
-    given: Given = getattr(namespace, "given", NOTHING_GIVEN)
+def explicit_values(namespace: argparse.Namespace) -> ArgumentValues:
+    """Explicitly given values of parsed arguments; the others are defaults."""
+    given: ArgumentValues = getattr(namespace, "given", NO_VALUES)
     return given
 
 
-def layered(below: argparse.Namespace, above: Given) -> argparse.Namespace:
-    """Merge typed values over parsed arguments; values by tool number are replaced for that tool only."""
-    given = {**given_in(below), **{name: _merged(vars(below).get(name), value) for name, value in above.items()}}
+def overridden(below: argparse.Namespace, above: ArgumentValues) -> argparse.Namespace:
+    """Parsed arguments with some values replaced; values by tool number are replaced for that tool only."""
+    given = {**explicit_values(below), **{name: _merged(vars(below).get(name), value) for name, value in above.items()}}
     return argparse.Namespace(**(vars(below) | given | {"given": given}))
 
 
@@ -65,7 +68,7 @@ class Override:
 
     Attributes:
         flag: its name.
-        before, after: old and new value, as typed.
+        before, after: old and new value, as after the option.
     """
 
     flag: str
@@ -76,7 +79,7 @@ class Override:
         return f"{self.flag} {self.after} instead of {self.before}"
 
 
-def overrides(below: Given, above: Given, whole: bool = False) -> Iterator[Override]:
+def overrides(below: ArgumentValues, above: ArgumentValues, whole: bool = False) -> Iterator[Override]:
     """Yield the options of one layer that change values of another one.
 
     Args:
@@ -89,18 +92,18 @@ def overrides(below: Given, above: Given, whole: bool = False) -> Iterator[Overr
             continue
         if isinstance(value, list):
             yield from _by_tool(name, dict(below[name]), dict(value), whole)
-        elif shown(name, value) != shown(name, below[name]):
-            yield Override(flag_of(name), shown(name, below[name]), shown(name, value))
+        elif format_value(name, value) != format_value(name, below[name]):
+            yield Override(flag_of(name), format_value(name, below[name]), format_value(name, value))
 
 
 def _by_tool(name: str, before: dict[int, Any], after: dict[int, Any], whole: bool) -> Iterator[Override]:
     """Yield the tools whose value changes."""
     for number, value in before.items():
-        said = shown(name, (number, value))
-        taken_back = NOTHING if whole else said
-        says = shown(name, (number, after[number])) if number in after else taken_back
-        if says != said:
-            yield Override(flag_of(name), said, says)
+        old = format_value(name, (number, value))
+        cancelled = NOTHING if whole else old
+        new = format_value(name, (number, after[number])) if number in after else cancelled
+        if new != old:
+            yield Override(flag_of(name), old, new)
 
 
 def flag_of(name: str) -> str:
@@ -112,9 +115,9 @@ _FLAGS = {"tools": "--tool"}
 """Options whose attribute has another name."""
 
 
-def shown(name: str, value: Any) -> str:
-    """Format a value as typed after its option; for a repeated option, that of one tool."""
-    return _SHOWN.get(name, _plain)(value)
+def format_value(name: str, value: Any) -> str:
+    """Format a value as it is written after its option; for a repeated option, that of one tool."""
+    return _FORMATS.get(name, _plain)(value)
 
 
 def _plain(value: Any) -> str:
@@ -129,8 +132,8 @@ def _plain(value: Any) -> str:
 
 def _by_number(entry: tuple[int, Any]) -> str:
     """Format the value of a tool; an unknown corner radius is left out."""
-    number, said = entry
-    known = [each for each in (said if isinstance(said, tuple) else [said]) if each is not None]
+    number, value = entry
+    known = [each for each in (value if isinstance(value, tuple) else [value]) if each is not None]
     return f"{number}={','.join(map(_plain, known))}"
 
 
@@ -141,9 +144,56 @@ def _spin(value: tuple[str, float, str]) -> str:
     return f"{rule}={_plain(heading)}" if rule.endswith("-in-plane") else rule
 
 
-_SHOWN: dict[str, Callable[[Any], str]] = {
+_FORMATS: dict[str, Callable[[Any], str]] = {
     "spin": _spin,
     **dict.fromkeys(("tool_length", "tools", "actual_tool", "wear"), _by_number),
     "fixture": lambda entry: str(entry[0]),
 }
-"""Formats of values that are not shown as they are."""
+"""Formats of values that ``_plain`` does not format."""
+
+
+class InputKind(enum.Enum):
+    """Kind of input that options are given for."""
+
+    GCODE = "G-code"
+    CLDATA = "CL data"
+    JOB = "CAM jobs"
+
+
+_PART_PROGRAMS = (InputKind.GCODE, InputKind.CLDATA)
+_KINDS: dict[str, tuple[InputKind, ...]] = {
+    "axis_words": (InputKind.GCODE,),
+    "dwell_unit": (InputKind.GCODE,),
+    "contour_data": (InputKind.CLDATA,),
+    "cl_dialect": (InputKind.CLDATA,),
+    "cycle_values": (InputKind.CLDATA,),
+    "tools": _PART_PROGRAMS,
+    "unit": _PART_PROGRAMS,
+    "allow_open_end": _PART_PROGRAMS,
+    "wear": _PART_PROGRAMS,  # L432 names the alternative when it is given for G-code
+    "job": (InputKind.JOB,),
+}
+"""Kinds of input of an option, by attribute; all others apply to every input."""
+
+
+def input_kind(file: Path) -> InputKind:
+    """Kind of a file by its suffix; anything but a part program is a document with jobs."""
+    from pkm_post.reading import SUFFIXES, is_part_program
+
+    if not is_part_program(file):
+        return InputKind.JOB
+    return InputKind.GCODE if SUFFIXES[file.suffix.lower()] is SUFFIXES[".ngc"] else InputKind.CLDATA
+
+
+def inapplicable_options(names: Iterable[str], kinds: Collection[InputKind]) -> list[str]:
+    """Messages on the options that apply to none of the inputs."""
+    return [
+        f"{flag_of(name)} is for {' and '.join(each.value for each in _KINDS[name])}"
+        for name in names
+        if name in _KINDS and not set(_KINDS[name]) & set(kinds)
+    ]
+
+
+def applicable_values(given: ArgumentValues, kind: InputKind) -> ArgumentValues:
+    """Options that apply to an input: with several files each option may be for some of them."""
+    return {name: value for name, value in given.items() if kind in _KINDS.get(name, InputKind)}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Result names: the files that posting may write, so that no result overwrites another one or a source.
+"""Result names: no result of a posting overwrites another one or a source.
 
-Input: the items to post, each with the stem of its results. Output: messages on what would be lost. Names that differ
-only in case count as equal, as on Windows, macOS and memory sticks. No file is opened, and NumPy is not needed.
+Input: the items to post, each with the stem of its results. Output: messages on conflicts. Names that differ only in
+case count as equal, as on Windows, macOS and memory sticks. No file is opened, and NumPy is not needed.
 """
 
 from __future__ import annotations
@@ -13,30 +13,29 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-_PROGRAM = ".pmc"
-_ALWAYS = (_PROGRAM, "-setup.pmc", "-setup.cfg", ".pkmt", "-report.json", "-report.png", "-manifest.json")
-"""Endings of result names after the stem, for any controller."""
-_PROMISED = (_PROGRAM, ".pkmt", "-report.json", "-manifest.json")
-"""Those that every posting writes, whatever its options."""
-_ALSO = {"csv": ".csv", "halstreamer": "-halstreamer.txt", "linuxcnc": "-linuxcnc.ngc"}
-"""Endings of files beside the program, by name in ``options.ALSO``."""
-_IN_PARTS = (_PROGRAM, _ALSO["halstreamer"])
+from pkm_post.system import result_files
+
+_REQUIRED = (result_files.PROGRAM, result_files.TRAJECTORY, result_files.REPORT, result_files.MANIFEST)
+"""Endings of the files that every posting writes, whatever its options."""
+_POSSIBLE = (*_REQUIRED, result_files.PICTURE, *result_files.SETUPS.values())
+"""Endings of the files that a posting without side outputs may write, for any controller."""
+_IN_PARTS = (result_files.PROGRAM, result_files.SIDE_OUTPUTS["halstreamer"])
 _PART = re.compile(r"(.*)-part[1-9][0-9]*(\.[a-z]+)")
 
 
 @dataclass(frozen=True)
-class Item:
+class PostItem:
     """One source of a motion program with its files.
 
     Attributes:
         name: display name of a file, or of a job in a document.
         stem: of its results.
-        also: optional files beside the program, names of ``options.ALSO``.
+        also: side outputs, keys of ``result_files.SIDE_OUTPUTS``.
     """
 
     name: str
     stem: str
-    also: Collection[str] = tuple(_ALSO)
+    also: Collection[str] = tuple(result_files.SIDE_OUTPUTS)
 
 
 def job_stem(document: str, label: str, jobs: int) -> str:
@@ -50,40 +49,40 @@ def job_stem(document: str, label: str, jobs: int) -> str:
     return re.sub(r"[^\w.-]+", "_", f"{document}-{label}" if jobs > 1 else document)
 
 
-def result_names(item: Item) -> list[str]:
+def result_names(item: PostItem) -> list[str]:
     """File names that posting may write, except those of the second and later parts."""
-    return [item.stem + ending for ending in (*_ALWAYS, *(_ALSO[name] for name in item.also))]
+    return [item.stem + ending for ending in (*_POSSIBLE, *(result_files.SIDE_OUTPUTS[name] for name in item.also))]
 
 
-def missing_results(items: Sequence[Item], out: Path) -> list[Path]:
-    """Promised results that are absent after posting.
+def missing_results(items: Sequence[PostItem], out: Path) -> list[Path]:
+    """Required results that are absent after posting.
 
     Args:
         items: what was posted.
         out: the folder for the results.
     """
-    promised = [out / f"{item.stem}{ending}" for item in items for ending in _PROMISED]
-    return [path for path in promised if not path.is_file()]
+    required = [out / f"{item.stem}{ending}" for item in items for ending in _REQUIRED]
+    return [path for path in required if not path.is_file()]
 
 
-def lost_results(items: Sequence[Item]) -> list[str]:
+def result_conflicts(items: Sequence[PostItem]) -> list[str]:
     """Messages on results that would be overwritten if all items were posted to one folder; empty if none."""
     made = [(item, name) for item in items for name in result_names(item)]
-    return list(dict.fromkeys([*_of_two(made), *_of_parts(items, made)]))
+    return list(dict.fromkeys([*_same_names(made), *_names_of_parts(items, made)]))
 
 
-def _of_two(made: Sequence[tuple[Item, str]]) -> Iterator[str]:
+def _same_names(made: Sequence[tuple[PostItem, str]]) -> Iterator[str]:
     """Messages on results that two items would write; one per name."""
-    owners: dict[str, Item] = {}
-    told = set()
+    owners: dict[str, PostItem] = {}
+    reported = set()
     for item, name in made:
         owner = owners.setdefault(name.casefold(), item)
-        if owner is not item and (id(owner), id(item)) not in told:
-            told.add((id(owner), id(item)))
+        if owner is not item and (id(owner), id(item)) not in reported:
+            reported.add((id(owner), id(item)))
             yield f"{owner.name} and {item.name} would both be posted as {name}"
 
 
-def _of_parts(items: Sequence[Item], made: Sequence[tuple[Item, str]]) -> Iterator[str]:
+def _names_of_parts(items: Sequence[PostItem], made: Sequence[tuple[PostItem, str]]) -> Iterator[str]:
     """Messages on results that coincide with a part of another item."""
     wholes = {(item.stem + ending).casefold(): item for item in items for ending in _IN_PARTS}
     for item, name in made:
@@ -93,7 +92,7 @@ def _of_parts(items: Sequence[Item], made: Sequence[tuple[Item, str]]) -> Iterat
             yield f"{item.name} would be posted as {name}, as would a part of {owner.name}"
 
 
-def lost_sources(files: Sequence[Path], items: Sequence[Item], out: Path) -> list[str]:
+def overwritten_sources(files: Sequence[Path], items: Sequence[PostItem], out: Path) -> list[str]:
     """Messages on sources that the results of other items would overwrite.
 
     Args:

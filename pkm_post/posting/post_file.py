@@ -16,20 +16,20 @@ from pkm_post.machine import machine_named
 from pkm_post.model import Diagnostic, Place, Program, Refused
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
-    READING,
-    Given,
+    READING_STEP,
+    ArgumentValues,
     Options,
     Override,
+    explicit_values,
     flag_of,
-    given_in,
-    layered,
-    misfits,
+    format_value,
+    inapplicable_options,
+    input_kind,
     options_from,
+    overridden,
+    parse_text,
     part_program_from,
-    shown,
-    source_of,
     tool_lengths_from,
-    typed,
 )
 from pkm_post.posting.frame import Posted
 from pkm_post.posting.prepared import Prepared
@@ -51,7 +51,7 @@ def post_file(
     reading: Reading = AS_WRITTEN,
     log: Log = quiet,
     progress: Progress = unwatched,
-    arguments: str | Given = "",
+    arguments: str | ArgumentValues = "",
 ) -> Posted:
     """Post a part program.
 
@@ -70,7 +70,7 @@ def post_file(
         Refused: something in the file, the machine file or the folder does not allow it; nothing was written.
         ValueError: the suffix of the file is not known, or there are both options and arguments.
     """
-    progress(READING, 0.0)
+    progress(READING_STEP, 0.0)
     prepared = prepared_file(file, machine, options, tool_lengths, reading, arguments)
     return prepared.post(Path(out) / f"{Path(file).stem}{SUFFIX}", log, progress)
 
@@ -81,18 +81,18 @@ def prepared_file(
     options: Options | None = None,
     tool_lengths: Mapping[int, float] = _NO_LENGTHS,
     reading: Reading = AS_WRITTEN,
-    arguments: str | Given = "",
+    arguments: str | ArgumentValues = "",
 ) -> Prepared:
     """A part program with its machine and all inputs of posting, and their diagnostics; arguments as ``post_file``."""
     if options is not None and arguments:
         raise ValueError("expected options or arguments, got both")
     given = _given(arguments, Path(file))
-    chosen = layered(typed(""), given)
+    chosen = overridden(parse_text(""), given)
     lengths = tool_lengths_from(chosen) | dict(tool_lengths)
     model, found = machine_named(chosen.machine if machine is None else machine)
     program, told = read_part_program(Path(file), replace(_said(reading, chosen), lengths=lengths))
     faults = [fault for fault in told if fault.code != _ASKED_FOR]
-    strangers = misfits(given, {source_of(Path(file))})
+    strangers = inapplicable_options(given, {input_kind(Path(file))})
     faults += [Diagnostic("L442", Place(str(file)), each) for each in strangers]
     if program is not None:
         faults += [*_replaced(program, lengths), *_unknown(program, lengths)]
@@ -101,14 +101,14 @@ def prepared_file(
     return Prepared(program, model, _at_first_fixture(options or options_from(chosen)), (*found, *faults))
 
 
-def _given(arguments: str | Given, file: Path) -> Given:
+def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:
     """The options given as arguments.
 
     Raises:
         Refused: they cannot be parsed, J117.
     """
     try:
-        return given_in(typed(arguments)) if isinstance(arguments, str) else arguments
+        return explicit_values(parse_text(arguments)) if isinstance(arguments, str) else arguments
     except ValueError as fault:
         raise Refused([Diagnostic("J117", Place(str(file)), str(fault))]) from fault
 
@@ -116,7 +116,9 @@ def _given(arguments: str | Given, file: Path) -> Given:
 def _said(reading: Reading, chosen: Namespace) -> Reading:
     """How to read a file; typed options override ``reading``."""
     typed_ones = part_program_from(chosen, reading.axis_words)
-    return replace(reading, **{name: getattr(typed_ones, name) for name in given_in(chosen) if hasattr(reading, name)})
+    return replace(
+        reading, **{name: getattr(typed_ones, name) for name in explicit_values(chosen) if hasattr(reading, name)}
+    )
 
 
 def _with_lengths(program: Program, lengths: Mapping[int, float]) -> Program:
@@ -141,7 +143,7 @@ def _unknown(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnos
 
 
 def _shown(number: int, lengths: Mapping[int, float]) -> str:
-    return shown("tool_length", (number, lengths[number]))
+    return format_value("tool_length", (number, lengths[number]))
 
 
 def _missing_lengths(program: Program) -> Iterator[Diagnostic]:

@@ -37,10 +37,10 @@ from pkm_post.posting.machine_check import home_faults
 from pkm_post.posting.placed import trajectory_of
 from pkm_post.posting.run import Findings, Log, Progress, Run, quiet, unwatched
 from pkm_post.report import plots, summary
-from pkm_post.system import memory_guard, staged, write_fault
+from pkm_post.system import memory_guard, result_files, staged, write_fault
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_seal, read_texts, trajectory_file
 
-SUFFIX = ".pmc"
+SUFFIX = result_files.PROGRAM
 """Suffix of a motion program."""
 _TRAJECTORY, _FEED_PLAN, _INTERPOLATION = "trajectory", "reach and feed plan", "interpolation"
 _COLLISIONS = "collisions"
@@ -135,7 +135,7 @@ def _all_steps(
 
 
 def _trajectory_hash(frame: Frame) -> str:
-    return manifest.fingerprint_of_file(frame.beside(".pkmt"))
+    return manifest.fingerprint_of_file(frame.beside(result_files.TRAJECTORY))
 
 
 def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
@@ -149,7 +149,7 @@ def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
 def _store(run: Run, frame: Frame, program: Program) -> Path:
     """Place a program and write its trajectory; return the path of the file."""
     placed = run.value(trajectory_of(program, frame.machine, frame.options))
-    stored = frame.beside(".pkmt")
+    stored = frame.beside(result_files.TRAJECTORY)
     trajectory_file.write(replace(placed, tolerances=frame.tolerances), stored)
     return stored
 
@@ -256,8 +256,8 @@ def _report(
     with run.step(_REPORT) as told:
         machine, tolerances = frame.machine, frame.tolerances
         report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files)
-        summary.write(report, frame.beside("-report.json"))
-        picture = frame.beside("-report.png")
+        summary.write(report, frame.beside(result_files.REPORT))
+        picture = frame.beside(result_files.PICTURE)
         run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))
         told.extend(summary.verdict(certificate))
     run.print([*reading, *report["certificate"]["meaning"]])

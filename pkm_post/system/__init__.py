@@ -6,6 +6,7 @@ The command line starts in a Python without NumPy: what needs NumPy is imported 
 
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.system import result_files
 from pkm_post.system.document import DocumentContent, Job, read_document
 from pkm_post.system.document_archive import DamagedDocument
 from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
@@ -28,6 +29,7 @@ __all__ = [
     "memory_diagnostic",
     "memory_guard",
     "read_document",
+    "result_files",
     "staged",
     "try_lock",
     "workers",

@@ -18,13 +18,14 @@ from typing import BinaryIO
 
 import pkm_post
 from pkm_post.model import Diagnostic, Place
+from pkm_post.system import result_files
 
 Findings = tuple[Diagnostic, ...]
 
-ENDING = "-manifest.json"
+ENDING = result_files.MANIFEST
 """Ending of a manifest name after the stem of the results."""
 _FORMAT = 1
-_BINARY = (".pkmt", ".png")
+_BINARY = (result_files.TRAJECTORY, ".png")
 """Suffixes of binary results."""
 _MOST_BYTES = 1 << 24
 """Largest manifest that is read: a hundred thousand program parts need less."""

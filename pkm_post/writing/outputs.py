@@ -15,15 +15,14 @@ from pathlib import Path, PurePath
 import numpy as np
 
 from pkm_post.model import Diagnostic, Kind, Place, Program, StrutMotion, Trajectory, pieces
-from pkm_post.writing.controllers import CONTROLLERS, TABLES, Table, part_names
+from pkm_post.system import result_files
+from pkm_post.writing.controllers import Table, part_names
 from pkm_post.writing.gcode import Form, write
 
 Findings = tuple[Diagnostic, ...]
 
 _CHARACTERS_AT_ONCE = 1 << 20
 """Characters written at once, which avoids a second copy of the whole text as bytes."""
-_FOR_LINUXCNC = "-linuxcnc.ngc"
-_SETUPS = tuple(controller.SETUP_SUFFIX for controller in CONTROLLERS.values())
 
 
 def left_over(program: Path, names: Collection[str], earlier: Collection[str] = ()) -> Findings:
@@ -37,7 +36,7 @@ def left_over(program: Path, names: Collection[str], earlier: Collection[str] = 
         names: the files of this posting in its folder.
         earlier: the files of the previous posting, as listed in its manifest.
     """
-    endings = (program.suffix, _FOR_LINUXCNC, *_SETUPS, *(table.SUFFIX for table in TABLES.values()))
+    endings = (program.suffix, *result_files.SETUPS.values(), *result_files.SIDE_OUTPUTS.values())
     kin = re.compile("|".join(_with_parts(program.stem + ending) for ending in endings))
     there = os.listdir(program.parent)
     found = sorted(name for name in there if (kin.fullmatch(name) or name in earlier) and name not in names)
@@ -82,7 +81,8 @@ def write_for_linuxcnc(path: Path, trajectory: Trajectory, tip_tolerance: float)
     """Write the trajectory for a control with its own kinematics and planner."""
     text, found = linuxcnc_text(trajectory, tip_tolerance)
     if text is not None:
-        path.with_name(path.stem + _FOR_LINUXCNC).write_text(text, encoding="ascii", newline="\n")
+        file = path.with_name(path.stem + result_files.SIDE_OUTPUTS["linuxcnc"])
+        file.write_text(text, encoding="ascii", newline="\n")
     return found
 
 

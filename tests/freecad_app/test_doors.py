@@ -26,7 +26,7 @@ from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.post_job import post_as_the_job_says
 from pkm_post.machine import find_machine, machine_named
 from pkm_post.model import Refused
-from pkm_post.options import given_in, options_from, tool_lengths_from, typed
+from pkm_post.options import explicit_values, options_from, parse_text, tool_lengths_from
 from pkm_post.posting import post
 
 CUT = ["G0 X0 Y0 Z30 I0 J0 K1", "G1 X0 Y0 Z25 I0 J0.28 K0.96 F20", "G1 X4 Y2 Z25 I0.28 J0 K0.96 F25", "G0 Z30 I0 J0 K1"]
@@ -71,7 +71,7 @@ def contents(folder):
 
 def by_pipeline(job, arguments, folder):
     """What these arguments and no others make of a job."""
-    chosen = typed(arguments)
+    chosen = parse_text(arguments)
     program, _ = read_job(job, tool_lengths_from(chosen))
     machine, _ = machine_named(chosen.machine)
     options = replace(options_from(chosen), setup=prepared_job(job, settings_of(job)).options.setup)
@@ -79,29 +79,29 @@ def by_pipeline(job, arguments, folder):
     return contents(folder)
 
 
-def by_cam(job, typed, folder):
+def by_cam(job, parse_text, folder):
     job.PostProcessorOutputFile = str(folder / "part.pmc")
     ((_, text),) = PostProcessorFactory.get_post_processor(job, "hexapod_pmac").export()
     assert (folder / "part.pmc").read_text(encoding="ascii") == text
 
 
-def by_command_line(job, typed, folder):
-    assert main(["post", job.Document.FileName, "--out", str(folder), *typed]) == 0
+def by_command_line(job, parse_text, folder):
+    assert main(["post", job.Document.FileName, "--out", str(folder), *parse_text]) == 0
 
 
-def by_panel(job, typed, folder):
+def by_panel(job, parse_text, folder):
     prepared_job(job, settings_of(job)).post(folder / "part.pmc")
 
 
-def by_macro(job, typed, folder):
-    pkm_post.post(job, out=folder, arguments=shlex.join(typed))
+def by_macro(job, parse_text, folder):
+    pkm_post.post(job, out=folder, arguments=shlex.join(parse_text))
 
 
-def by_macro_with_the_file(job, typed, folder):
-    pkm_post.post(job.Document.FileName, out=folder, arguments=shlex.join(typed))
+def by_macro_with_the_file(job, parse_text, folder):
+    pkm_post.post(job.Document.FileName, out=folder, arguments=shlex.join(parse_text))
 
 
-def as_the_job_says(job, typed, folder):
+def as_the_job_says(job, parse_text, folder):
     post_as_the_job_says(job, folder)
 
 
@@ -155,7 +155,7 @@ SAID_BY_EVERY_JOB = {"--work-offset", "--tool-length"}
 @pytest.mark.parametrize("where", WHERE)
 def test_the_actual_tool_is_that_of_the_job_or_the_one_typed(job, where):
     says(job, shlex.join(words(NORMALS, 0)) if where != "command line" else "")
-    given = given_in(typed(shlex.join(words(NORMALS, 1)))) if where != "job" else {}
+    given = explicit_values(parse_text(shlex.join(words(NORMALS, 1)))) if where != "job" else {}
     (tool,) = settings_of(job, given).options.actual_tools.values()
     assert tool.diameter == (9.5 if where == "job" else 9.0)
 

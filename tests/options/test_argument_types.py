@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from pkm_post.options.argument_types import (
     above_zero,
-    accepting,
     between,
     count,
     number,
     numbered,
     positive,
+    validated,
     whole,
     whole_from,
 )
@@ -93,7 +93,7 @@ def test_a_count_begins_at_one():
 def test_ranges_can_be_told_in_other_words():
     assert refused(whole(0, 65_535, "a port"), "65536") == "expected a port from 0 to 65535, got '65536'"
     assert refused(whole_from(1000, "1000 words or more"), "999") == "expected 1000 words or more, got '999'"
-    even = accepting(TEN, lambda value: value % 2 == 0, "an even number")
+    even = validated(TEN, lambda value: value % 2 == 0, "an even number")
     assert even("4") == 4
     assert refused(even, "3") == "expected an even number, got '3'"
     assert refused(even, "12") == "expected a whole number from 1 to 10, got '12'"

@@ -8,7 +8,7 @@ from option_examples import FLAGS, words
 
 from pkm_post.cli import main
 from pkm_post.model import Refused
-from pkm_post.options import Source, fitting, given_in, misfits, source_of, typed
+from pkm_post.options import InputKind, applicable_values, explicit_values, inapplicable_options, input_kind, parse_text
 from pkm_post.posting.post_file import post_file
 
 GCODE = "T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG4 P10\nG1 X10 Y0 Z20 F600\nG0 Z30\nM2\n"
@@ -27,20 +27,20 @@ def files(tmp_path, monkeypatch):
 
 
 def test_files_are_told_apart_by_their_names():
-    told = [source_of(Path(name)) for name in ("a.NGC", "a.mpf", "a.cls", "a.CL", "a.FCStd", "a")]
-    assert told == [Source.GCODE] * 2 + [Source.CLDATA] * 2 + [Source.JOB] * 2
+    told = [input_kind(Path(name)) for name in ("a.NGC", "a.mpf", "a.cls", "a.CL", "a.FCStd", "a")]
+    assert told == [InputKind.GCODE] * 2 + [InputKind.CLDATA] * 2 + [InputKind.JOB] * 2
 
 
 @pytest.mark.parametrize("flag", FLAGS)
-@pytest.mark.parametrize("source", Source)
+@pytest.mark.parametrize("source", InputKind)
 def test_each_option_fits_or_is_named(flag, source):
-    given = given_in(typed(" ".join(words(flag, 0))))
-    fits = not (flag in FOR_CLDATA and source is Source.GCODE) and not (
-        flag in FOR_PART_PROGRAMS and source is Source.JOB
+    given = explicit_values(parse_text(" ".join(words(flag, 0))))
+    fits = not (flag in FOR_CLDATA and source is InputKind.GCODE) and not (
+        flag in FOR_PART_PROGRAMS and source is InputKind.JOB
     )
-    assert [each.split()[0] for each in misfits(given, {source})] == ([] if fits else [flag])
-    assert fitting(given, source) == (given if fits else {})
-    assert misfits(given, set(Source)) == []
+    assert [each.split()[0] for each in inapplicable_options(given, {source})] == ([] if fits else [flag])
+    assert applicable_values(given, source) == (given if fits else {})
+    assert inapplicable_options(given, set(InputKind)) == []
 
 
 @pytest.mark.parametrize("command", ["check", "convert", "post", "reach"])

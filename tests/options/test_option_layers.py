@@ -9,15 +9,15 @@ import pytest
 from option_examples import ADDED, FLAGS, words
 
 from pkm_post.options import (
+    argument_values,
+    explicit_values,
     flag_of,
-    given_in,
-    layered,
+    format_value,
     options_from,
+    overridden,
     overrides,
-    said_by,
-    shown,
+    parse_text,
     tool_lengths_from,
-    typed,
 )
 from pkm_post.options.choices import Options
 
@@ -26,7 +26,7 @@ SEEDS = range(20)
 
 
 def options_of(text):
-    return vars(options_from(typed(text)))
+    return vars(options_from(parse_text(text)))
 
 
 def same(one, other):
@@ -49,53 +49,58 @@ def retyped(given):
             if isinstance(one, bool):
                 yield flag_of(name) if one else flag_of(name).replace("--", "--no-", 1)
             else:
-                yield f"{flag_of(name)}={shown(name, one)}"
+                yield f"{flag_of(name)}={format_value(name, one)}"
 
 
 @pytest.mark.parametrize("which", [0, 1])
 @pytest.mark.parametrize("flag", FLAGS)
 def test_what_is_shown_is_what_was_typed(flag, which):
-    given = given_in(typed(shlex.join(words(flag, which))))
+    given = explicit_values(parse_text(shlex.join(words(flag, which))))
     assert len(given) == 1
-    assert given_in(typed(shlex.join(retyped(given)))) == given
+    assert explicit_values(parse_text(shlex.join(retyped(given)))) == given
 
 
 def test_defaults_are_not_given():
-    assert given_in(typed("")) == {}
-    assert list(overrides(given_in(typed("--tip-tolerance 0.01 --machine a")), given_in(typed("")))) == []
+    assert explicit_values(parse_text("")) == {}
+    assert (
+        list(
+            overrides(explicit_values(parse_text("--tip-tolerance 0.01 --machine a")), explicit_values(parse_text("")))
+        )
+        == []
+    )
 
 
 @pytest.mark.parametrize("flag", sorted(ADDED))
 def test_what_is_added_replaces_nothing(flag):
-    job, given = (typed(shlex.join(words(flag, which))) for which in (0, 1))
-    (name,) = given_in(given)
-    assert vars(layered(job, given_in(given)))[name] == [*vars(job)[name], *vars(given)[name]]
-    assert list(overrides(given_in(job), given_in(given))) == []
+    job, given = (parse_text(shlex.join(words(flag, which))) for which in (0, 1))
+    (name,) = explicit_values(given)
+    assert vars(overridden(job, explicit_values(given)))[name] == [*vars(job)[name], *vars(given)[name]]
+    assert list(overrides(explicit_values(job), explicit_values(given))) == []
 
 
 @pytest.mark.parametrize("flag", [flag for flag in FLAGS if flag not in ADDED])
 def test_one_option_goes_before_and_all_others_stay(flag):
-    job = typed(shlex.join([word for each in FLAGS for word in words(each, 0)]))
-    given = given_in(typed(shlex.join(words(flag, 1))))
+    job = parse_text(shlex.join([word for each in FLAGS for word in words(each, 0)]))
+    given = explicit_values(parse_text(shlex.join(words(flag, 1))))
     (name,) = given
-    mixed = vars(layered(job, given))
-    assert mixed[name] == vars(typed(shlex.join(words(flag, 1))))[name]
+    mixed = vars(overridden(job, given))
+    assert mixed[name] == vars(parse_text(shlex.join(words(flag, 1))))[name]
     assert {each for each in mixed if mixed[each] != vars(job)[each]} == {name, "given"}
-    (told,) = overrides(given_in(job), given)
+    (told,) = overrides(explicit_values(job), given)
     assert told.flag == flag
-    assert list(overrides(given_in(job), given_in(job))) == []
+    assert list(overrides(explicit_values(job), explicit_values(job))) == []
 
 
 def test_what_is_said_of_one_tool_leaves_the_others():
-    job = typed("--tool-length 1=120 --tool-length 2=80 --actual-tool 3=9.5,1")
-    given = given_in(typed("--tool-length 2=85 --tool-length 4=60"))
-    assert tool_lengths_from(layered(job, given)) == {1: 120, 2: 85, 4: 60}
-    assert [str(each) for each in overrides(given_in(job), given)] == ["--tool-length 2=85 instead of 2=80"]
+    job = parse_text("--tool-length 1=120 --tool-length 2=80 --actual-tool 3=9.5,1")
+    given = explicit_values(parse_text("--tool-length 2=85 --tool-length 4=60"))
+    assert tool_lengths_from(overridden(job, given)) == {1: 120, 2: 85, 4: 60}
+    assert [str(each) for each in overrides(explicit_values(job), given)] == ["--tool-length 2=85 instead of 2=80"]
 
 
 def test_options_in_place_of_all_take_back_what_they_do_not_say():
-    job = given_in(typed("--actual-tool 3=9.5,1 --also csv --surface-speed 120"))
-    told = [str(each) for each in overrides(job, said_by(Options()), whole=True)]
+    job = explicit_values(parse_text("--actual-tool 3=9.5,1 --also csv --surface-speed 120"))
+    told = [str(each) for each in overrides(job, argument_values(Options()), whole=True)]
     assert sorted(told) == [
         "--actual-tool none instead of 3=9.5,1",
         "--also none instead of csv",
@@ -107,7 +112,7 @@ def test_options_in_place_of_all_take_back_what_they_do_not_say():
 def test_options_are_said_as_they_were_typed(seed):
     chance = random.Random(seed)
     chosen = shlex.join(word for flag in FLAGS if chance.random() < 0.6 for word in words(flag, chance.randrange(2)))
-    said = said_by(options_from(typed(chosen)))
+    said = argument_values(options_from(parse_text(chosen)))
     again = shlex.join(retyped({name: value for name, value in said.items() if value is not None}))
     assert same(options_of(again), options_of(chosen))
 
@@ -134,11 +139,11 @@ def test_mutated_options_are_refused_or_can_be_typed_again(seed):
             place = chance.randrange(len(text))
             text[place : place + chance.randrange(2)] = chance.choice(["", chance.choice(LETTERS)])
         try:
-            given = given_in(typed("".join(text)))
+            given = explicit_values(parse_text("".join(text)))
         except ValueError:
             refused += 1
             continue
         understood += 1
-        assert given_in(typed(shlex.join(retyped(given)))) == given, "".join(text)
+        assert explicit_values(parse_text(shlex.join(retyped(given)))) == given, "".join(text)
         assert np.isfinite(list(numbers_in(given.values()))).all()
     assert refused and understood

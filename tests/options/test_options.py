@@ -17,8 +17,8 @@ from pkm_post.options import (
     part_program_from,
     tool_lengths_from,
 )
-from pkm_post.options.arguments import tools_from
 from pkm_post.options.choices import Options
+from pkm_post.options.conversion import tools_from
 from pkm_post.reading import cldata
 from pkm_post.reading.sources import AS_WRITTEN
 from pkm_post.toolpath.compensation import OffsetOptions

@@ -8,19 +8,17 @@ from pathlib import Path
 import pytest
 
 from pkm_post.cli import main, post
-from pkm_post.options import ALSO
+from pkm_post.options import SIDE_OUTPUTS
 from pkm_post.options.result_names import (
-    _ALSO,
-    _ALWAYS,
-    _IN_PARTS,
-    Item,
+    _POSSIBLE,
+    PostItem,
     job_stem,
-    lost_results,
-    lost_sources,
+    overwritten_sources,
+    result_conflicts,
     result_names,
 )
-from pkm_post.posting.steps import SUFFIX
-from pkm_post.writing.controllers import TABLES, pmac, power_pmac
+from pkm_post.system import result_files
+from pkm_post.writing.controllers import CONTROLLERS, TABLES, power_pmac
 
 PART = "G21 G90 G17\nT1 M6\nS5000 M3\nG0 X0 Y0 Z300\nG1 X10 F600\nM5\nM30\n"
 OUT = Path("out")
@@ -35,25 +33,23 @@ def part(tmp_path):
 
 def test_everything_that_is_written_is_named(part, tmp_path):
     out = tmp_path / "out"
-    assert main(["post", str(part), "--out", str(out), "--tool-length", "1=120", "--also", ",".join(ALSO)]) == 0
+    assert main(["post", str(part), "--out", str(out), "--tool-length", "1=120", "--also", ",".join(SIDE_OUTPUTS)]) == 0
     written = {path.name for path in out.iterdir()}
-    named = set(result_names(Item("part.ngc", "part")))
+    named = set(result_names(PostItem("part.ngc", "part")))
     assert named - written == {"part" + power_pmac.SETUP_SUFFIX}
     assert written <= named
 
 
-def test_endings_are_those_of_controllers_and_tables():
-    assert set(_ALSO) == set(ALSO)
-    assert {pmac.SETUP_SUFFIX, power_pmac.SETUP_SUFFIX, SUFFIX} < set(_ALWAYS)
-    assert {name: table.SUFFIX for name, table in TABLES.items()}.items() <= _ALSO.items()
-    assert set(_IN_PARTS) <= {SUFFIX, *_ALSO.values()}
+def test_every_side_output_and_controller_has_its_ending():
+    assert set(TABLES) < set(result_files.SIDE_OUTPUTS)
+    assert set(CONTROLLERS) == set(result_files.SETUPS)
 
 
-def lost(files, out=OUT, also=ALSO):
+def lost(files, out=OUT, also=SIDE_OUTPUTS):
     """What posting these would lose, as the command line asks for it."""
     files = list(map(Path, files))
     items = [item for file in files for item in post._items(file, None, also)]
-    return [*lost_results(items), *lost_sources(files, items, out)]
+    return [*result_conflicts(items), *overwritten_sources(files, items, out)]
 
 
 LOST = {
@@ -153,11 +149,11 @@ def test_whatever_is_not_refused_has_names_of_its_own(seed):
     """Second opinion: all names that can be written, parts as well, as a file system that knows no case sees them."""
     chance = random.Random(seed)
     labels = ["".join(chance.choices(["a", "A", "_", " ", "-part2", "-setup", "-report", "1"], k=3)) for _ in range(4)]
-    items = [Item(label, job_stem("d", label, 4)) for label in labels]
+    items = [PostItem(label, job_stem("d", label, 4)) for label in labels]
     written = []
     for item in items:
-        names = {f"{item.stem}{ending}" for ending in (*_ALWAYS, *_ALSO.values())}
+        names = {f"{item.stem}{ending}" for ending in (*_POSSIBLE, *result_files.SIDE_OUTPUTS.values())}
         names |= {f"{item.stem}-part{n}{e}" for n in (2, 3) for e in (".pmc",)}
         names |= {f"{item.stem}-halstreamer-part{n}.txt" for n in (2, 3)}
         written += [name.lower() for name in names]
-    assert bool(lost_results(items)) == (len(set(written)) < len(written))
+    assert bool(result_conflicts(items)) == (len(set(written)) < len(written))

@@ -20,7 +20,7 @@ from pkm_post.control.link.ready import check_start
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Status, read_status
 from pkm_post.model import Machine
-from pkm_post.options import NEAR_MM
+from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
 
 OVERRIDE_S = 5.0
@@ -37,7 +37,7 @@ def run(
     settings: PmacSettings,
     program: Program,
     first: Array,
-    near: float = NEAR_MM,
+    near: float = START_TOLERANCE_MM,
     machine: Machine | None = None,
 ) -> Status:
     """Start a program from its beginning.

@@ -18,7 +18,7 @@ from pkm_post.control.link.session import Session
 from pkm_post.control.link.start_pose import start_faults
 from pkm_post.control.link.status import MOTORS, Array, Status
 from pkm_post.model import Machine
-from pkm_post.options import NEAR_MM
+from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
 
 _UNSIGNED = r"(?:\d+\.?\d*|\.\d+)"
@@ -47,7 +47,7 @@ def check_setup(session: Session, settings: PmacSettings, stroke: tuple[float, f
         raise NotReadyError(reasons)
 
 
-def check_start(status: Status, first: Array, near: float = NEAR_MM, machine: Machine | None = None) -> None:
+def check_start(status: Status, first: Array, near: float = START_TOLERANCE_MM, machine: Machine | None = None) -> None:
     """Check that a program may start: struts homed, in closed loop, without faults, standing near its first point.
 
     Args:

@@ -26,7 +26,7 @@ from pkm_post.control.link.rotary import Progress, RotaryStream
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array
 from pkm_post.model import Machine
-from pkm_post.options import NEAR_MM
+from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
 
 _log = logging.getLogger(__name__)
@@ -55,7 +55,7 @@ def stream(
     program: Program,
     first: Array,
     words: int,
-    near: float = NEAR_MM,
+    near: float = START_TOLERANCE_MM,
     progress: Progress = lambda done, sent, all_lines: None,
     is_cancelled: Callable[[], bool] = lambda: False,
     machine: Machine | None = None,

@@ -17,7 +17,7 @@ from pkm_post.control.numerical_control.training import Training
 from pkm_post.control.numerical_control.worker import Worker
 from pkm_post.machine import machine_named
 from pkm_post.model import Diagnostic, Machine
-from pkm_post.options import OWN_PROGRAM
+from pkm_post.options import MANUAL_MOVE_PROGRAM
 from pkm_post.writing import pmac, power_pmac
 
 
@@ -124,4 +124,4 @@ def connect(target: Target, tool_length: float, simulated_speed: float = 1.0) ->
 
 def _own_number(of_jobs: int) -> int:
     """A program number for manual moves that differs from that of the jobs."""
-    return OWN_PROGRAM if of_jobs != OWN_PROGRAM else OWN_PROGRAM - 1
+    return MANUAL_MOVE_PROGRAM if of_jobs != MANUAL_MOVE_PROGRAM else MANUAL_MOVE_PROGRAM - 1

@@ -40,7 +40,7 @@ from pkm_post.control.numerical_control.plan import Plan, planned
 from pkm_post.control.numerical_control.single_block import Blocks, Shown
 from pkm_post.control.numerical_control.watchdog import Watchdog
 from pkm_post.model import Diagnostic, Machine, Tolerances, Trajectory
-from pkm_post.options import APPROACH_MM_S, NEAR_MM, OWN_PROGRAM
+from pkm_post.options import APPROACH_MM_S, MANUAL_MOVE_PROGRAM, START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
 
 Findings = tuple[Diagnostic, ...]
@@ -82,7 +82,7 @@ class NumericalControl:
         machine: Machine,
         settings: PmacSettings,
         tool_length: float,
-        number: int = OWN_PROGRAM,
+        number: int = MANUAL_MOVE_PROGRAM,
     ) -> None:
         """Create the control; the session connects on first use if it is not open.
 
@@ -180,7 +180,7 @@ class NumericalControl:
             raise NotReadyError(["no pose of the platform that small steps from home lead to is that of the start"])
         return self._planned(*moves.approach(self._machine, here, start, self.tool_length, feed))
 
-    def execute(self, plan: Plan, near: float = NEAR_MM) -> Status:
+    def execute(self, plan: Plan, near: float = START_TOLERANCE_MM) -> Status:
         """Load a plan, verify its listing and start it; as ``execute.execute``.
 
         The controller holds a jog by itself once ``poll``, ``renew`` and ``wait_for_rest`` are no longer called.
@@ -218,12 +218,12 @@ class NumericalControl:
         check_setup(self._session, self._settings, self._machine.strut_stroke)
         return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.is_waited_for())
 
-    def start(self, job: Job, near: float = NEAR_MM) -> Status:
+    def start(self, job: Job, near: float = START_TOLERANCE_MM) -> Status:
         """Start a loaded program from its beginning; as ``operate.run``."""
         order = self._session, self._settings, job.program, job.first, near, self._machine
         return self._owning("run", lambda: operate.run(*order))
 
-    def go_on(self, job: Job, stop: int, near: float = NEAR_MM) -> Status:
+    def go_on(self, job: Job, stop: int, near: float = START_TOLERANCE_MM) -> Status:
         """Continue a program after the stop (M0, M1) at which it stands, numbered from 1; as ``stops.go_on``."""
         return self._owning("run", lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
 

@@ -21,13 +21,15 @@ from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Status, read_status
 from pkm_post.control.numerical_control.watchdog import Watchdog, watchdog_of
 from pkm_post.model import Machine
-from pkm_post.options import NEAR_MM
+from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
 
 _POLL_S = 0.05
 
 
-def execute(session: Session, machine: Machine, settings: PmacSettings, job: Job, near: float = NEAR_MM) -> Status:
+def execute(
+    session: Session, machine: Machine, settings: PmacSettings, job: Job, near: float = START_TOLERANCE_MM
+) -> Status:
     """Load a program and start it.
 
     Args:

@@ -19,7 +19,7 @@ from pkm_post.control.link.readout import Pose, spin_of
 from pkm_post.geometry import Array, hermite_lengths
 from pkm_post.machine import Solution, Way, faults_of, follow, platform_rotation, reach_findings
 from pkm_post.model import Certificate, Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, errors
-from pkm_post.options import OWN_PROGRAM
+from pkm_post.options import MANUAL_MOVE_PROGRAM
 from pkm_post.planning import motion as planning
 from pkm_post.report import heading
 from pkm_post.writing import pmac
@@ -63,7 +63,7 @@ def planned(
     machine: Machine,
     settings: pmac.PmacSettings,
     tolerances: Tolerances,
-    number: int = OWN_PROGRAM,
+    number: int = MANUAL_MOVE_PROGRAM,
 ) -> tuple[Plan | None, Findings]:
     """Plan a trajectory, or return every obstacle.
 

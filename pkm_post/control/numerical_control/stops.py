@@ -21,7 +21,7 @@ from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Status
 from pkm_post.control.numerical_control.execute import execute
 from pkm_post.model import EventKind, Machine, StrutMotion
-from pkm_post.options import NEAR_MM
+from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings, parted, program_text
 
 
@@ -86,7 +86,7 @@ def same(one: StrutMotion, other: StrutMotion) -> bool:
 
 
 def go_on(
-    session: Session, machine: Machine, settings: PmacSettings, job: Job, number: int, near: float = NEAR_MM
+    session: Session, machine: Machine, settings: PmacSettings, job: Job, number: int, near: float = START_TOLERANCE_MM
 ) -> Status:
     """Load the part of a program after a stop and start it.
 

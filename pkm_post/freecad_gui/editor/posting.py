@@ -22,7 +22,7 @@ from pkm_post.freecad_gui.post_steps import step_text
 from pkm_post.freecad_gui.preferences import GROUP, default_arguments
 from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Place, Refused
-from pkm_post.options import given_in, part_program_from
+from pkm_post.options import explicit_values, part_program_from
 from pkm_post.posting import post_file
 from pkm_post.reading import Reading
 
@@ -67,7 +67,7 @@ class Posting(QtCore.QObject):
             QtWidgets.QMessageBox.warning(self._window, self._title, str(refused))
             self.ended.emit()
             return
-        out, given = folder or file.parent, given_in(chosen)
+        out, given = folder or file.parent, explicit_values(chosen)
         call = partial(post_file, file, out=out, reading=_with_typed(reading, chosen), arguments=given)
         task = Task(lambda: call(progress=task.tell), self)
         self._task, self._progress = task, self._bar(task)

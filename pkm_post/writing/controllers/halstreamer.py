@@ -17,9 +17,10 @@ import numpy as np
 
 from pkm_post.geometry import hermite_accelerations, hermite_lengths
 from pkm_post.model import Array, Diagnostic, Event, Place, StrutMotion, freeze
+from pkm_post.system import result_files
 from pkm_post.writing.controllers.stretches import Stretch, stretches
 
-SUFFIX = "-halstreamer.txt"
+SUFFIX = result_files.SIDE_OUTPUTS["halstreamer"]
 PERIOD_MS = 1
 """The servo period of LinuxCNC's own configurations."""
 DECIMALS = 6

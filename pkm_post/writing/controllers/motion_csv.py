@@ -14,8 +14,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
+from pkm_post.system import result_files
 
-SUFFIX = ".csv"
+SUFFIX = result_files.SIDE_OUTPUTS["csv"]
 
 _NAMES = [
     "time_ms",

@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 
 from pkm_post.model import Diagnostic, StrutMotion
+from pkm_post.system import result_files
 from pkm_post.writing.controllers.pmac.memory import memory_faults
 from pkm_post.writing.controllers.pmac.program import program_parts, program_text
 from pkm_post.writing.controllers.pmac.rotary import rotary_opening, rotary_text
@@ -32,7 +33,7 @@ __all__ = [
     "stated_part",
 ]
 
-SETUP_SUFFIX = "-setup.pmc"
+SETUP_SUFFIX = result_files.SETUPS["turbo_pmac"]
 
 
 def faults(motion: StrutMotion, settings: PmacSettings, file: str) -> tuple[Diagnostic, ...]:

@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 
 from pkm_post.model import Diagnostic, StrutMotion
+from pkm_post.system import result_files
 from pkm_post.writing.controllers.power_pmac.program import program_parts, program_text
 from pkm_post.writing.controllers.power_pmac.settings import PowerPmacSettings, settings_of
 from pkm_post.writing.controllers.power_pmac.setup import setup_text
@@ -24,7 +25,7 @@ __all__ = [
     "stated_part",
 ]
 
-SETUP_SUFFIX = "-setup.cfg"
+SETUP_SUFFIX = result_files.SETUPS["power_pmac"]
 
 
 def faults(motion: StrutMotion, settings: PowerPmacSettings, file: str) -> tuple[Diagnostic, ...]:

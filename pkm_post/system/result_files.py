@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Result files: the endings of the files that one posting may write, after the stem of their names.
+
+Every room takes the endings from here: the writer of a file, and the check that no result replaces another file.
+"""
+
+from __future__ import annotations
+
+PROGRAM = ".pmc"
+TRAJECTORY = ".pkmt"
+REPORT = "-report.json"
+PICTURE = "-report.png"
+MANIFEST = "-manifest.json"
+SETUPS = {"turbo_pmac": "-setup.pmc", "power_pmac": "-setup.cfg"}
+"""Set-up files by ``controller.kind`` of the machine file."""
+SIDE_OUTPUTS = {"csv": ".csv", "halstreamer": "-halstreamer.txt", "linuxcnc": "-linuxcnc.ngc"}
+"""Optional files by the names of ``--also``: two tables of the strut motion, and G-code for LinuxCNC's hexapod."""
