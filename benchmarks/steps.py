@@ -22,7 +22,7 @@ from pkm_post.machine import (  # noqa: E402
     machine_named,  # noqa: E402
 )
 from pkm_post.machine.kinematics.strut_cubics import stray  # noqa: E402
-from pkm_post.planning import motion as planning  # noqa: E402 - the path comes first
+from pkm_post.planning import interpolate, plan_feed  # noqa: E402 - the path comes first
 from pkm_post.planning.cubics import poses_at  # noqa: E402
 from pkm_post.planning.glimpse import glimpse  # noqa: E402
 from pkm_post.writing import trajectory_file  # noqa: E402 - the path comes first
@@ -57,9 +57,8 @@ def main():
     machine, machine_faults = machine_named(chosen.machine)
     if trajectory is None or machine is None:
         sys.exit("\n".join(map(str, (*faults, *machine_faults))))
-    path = planning.tool_path(trajectory, trajectory.tolerances)
-    schedule, _ = planning.plan_feed(path, trajectory, machine)
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, trajectory.tolerances)
+    feed_plan, _ = plan_feed(trajectory, machine, trajectory.tolerances)
+    path, schedule, motion = feed_plan.path, feed_plan.schedule, interpolate(feed_plan).motion
     told("by error", motion.time_ms, path, schedule, machine)
     for step in FIXED_MS:
         fixed = np.unique(np.concatenate([np.arange(0, schedule.rests_ms[-1], step), schedule.rests_ms]))

@@ -11,7 +11,7 @@ from pkm_post.geometry import hermite_lengths
 from pkm_post.machine import forward, machine_named
 from pkm_post.model import StrutMotion
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan
 from pkm_post.toolpath.placement.place import place
 
 NARROW, WIDE, UNEQUAL = (1e-3, 1e-3), (0.2, 2.0), (1e-3, 2.0)
@@ -50,12 +50,10 @@ def of(machine, program, tolerances, decimals=(6, 4)):
     trajectory, faults = place(program, machine, offset(machine))
     if faults:
         return None
-    path = planning.tool_path(trajectory, asked)
-    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    made, faults = plan(trajectory, machine, asked)
     if faults:
         return None
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, asked)
-    exact = planning.strut_motion(motion, machine)
+    motion, exact = made.motion, made.struts
     length, speed = (np.round(one, digits) for one, digits in zip((exact.length, exact.speed), decimals, strict=True))
     struts = StrutMotion(exact.time_ms, length, speed, exact.events)
     certificate, found = certify(struts, "x.pmc", trajectory, machine, motion, asked)

@@ -18,7 +18,7 @@ from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import RULES
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan
 from pkm_post.toolpath.placement import place
 from pkm_post.writing.controllers import pmac
 
@@ -136,12 +136,13 @@ def test_codes_exist(page):
 
 def test_wrong_names_and_dead_links_are_found_and_right_ones_pass(tmp_path):
     page = tmp_path / "page.md"
-    page.write_text("`feed/blend.py` `pkm_post.planning.blends.STEP` `model.Machine.colour` [x](gone.md)")
-    assert list(wrong_names(page)) == ["feed/blend.py", "pkm_post.planning.blends.STEP", "model.Machine.colour"]
+    page.write_text("`feed/path.py` `pkm_post.planning.tool_path.PATH` `model.Machine.colour` [x](gone.md)")
+    assert list(wrong_names(page)) == ["feed/path.py", "pkm_post.planning.tool_path.PATH", "model.Machine.colour"]
     assert list(dead_links(page)) == ["gone.md"]
-    page.write_text(
-        "`planning/blends.py` `pkm_post.planning.blends.step` `planning.Schedule.of` `model.Machine.name` [x](page.md)"
+    names = (
+        "`planning/tool_path.py` `pkm_post.planning.tool_path.ToolPath` `planning.FeedPlan.path` `model.Machine.name`"
     )
+    page.write_text(f"{names} [x](page.md)")
     assert not list(wrong_names(page)) and not list(dead_links(page))
 
 
@@ -167,10 +168,8 @@ def test_the_journey_is_one_that_was_made():
     tolerances = Tolerances(1e-3, np.radians(1e-3))
     made = program([[0, 0, 50], [4, 3, 50]], unit(np.array([[0, 0, 1], [0.173648, 0, 0.984808]])), feed=10.0, events=())
     trajectory, _ = place(made, machine, machine.work_offsets["G54"])
-    path = planning.tool_path(trajectory, tolerances)
-    schedule, _ = planning.plan_feed(path, trajectory, machine)
-    motion = planning.interpolate(path, schedule, (), machine, tolerances)
-    struts = planning.strut_motion(motion, machine)
+    planned, _ = plan(trajectory, machine, tolerances)
+    motion, struts = planned.motion, planned.struts
     settings = pmac.PmacSettings.of(machine.controller)
     written = pmac.program_text(struts, settings, [])
     played, _ = pmac.read_program(written, settings, "journey.pmc")

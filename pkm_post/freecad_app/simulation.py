@@ -19,7 +19,7 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, norm, unit
 from pkm_post.machine import Pose, Reach, ReachFinding, reach
 from pkm_post.model import RULES, EventKind, Machine, Motion, Place, Refused, Severity, StrutMotion, Tool, Trajectory
-from pkm_post.planning import motion as planning
+from pkm_post.planning import interpolate, plan_feed
 
 _AT_ONCE = 16384
 """Cubics per pass: the working arrays of one pass stay in the processor's cache."""
@@ -206,16 +206,14 @@ def simulate_job(job: Any, machine_object: Any = None) -> Simulation:
 def simulation_of(placed: JobOnMachine) -> Simulation:
     """Plan the motion of a job on its machine."""
     trajectory, machine, tolerances = placed.trajectory, placed.machine, placed.tolerances
-    with Progress(translate("PKM_Simulate", "Simulation"), 4) as bar:
-        path = planning.tool_path(trajectory, tolerances)
-        bar.step()
-        schedule, faults = planning.plan_feed(path, trajectory, machine)
-        if schedule is None:  # the reach check reports all other faults, less precisely
+    with Progress(translate("PKM_Simulate", "Simulation"), 3) as bar:
+        feed_plan, faults = plan_feed(trajectory, machine, tolerances)
+        if feed_plan is None:  # the reach check reports all other faults, less precisely
             raise Refused(faults)
         bar.step()
-        motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
+        plan = interpolate(feed_plan)
         bar.step()
-        planned = Simulation(trajectory, machine, motion, planning.strut_motion(motion, machine), ())
+        planned = Simulation(trajectory, machine, plan.motion, plan.struts, ())
         problems = _problems(reach(trajectory, machine, placed.part), planned)
         bar.step()
     return replace(planned, problems=problems)

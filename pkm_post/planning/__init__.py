@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Planning: corner blending, look-ahead, feed profile and knots, from a trajectory to strut motion."""
 
-from pkm_post.planning import motion
 from pkm_post.planning.knots import LONGEST_MS
-from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.tool_path import ToolPath
+from pkm_post.planning.motion import FeedPlan, Plan, interpolate, plan, plan_feed, strut_motion
 
 __all__ = [
     "LONGEST_MS",
-    "Schedule",
-    "ToolPath",
-    "motion",
+    "FeedPlan",
+    "Plan",
+    "interpolate",
+    "plan",
+    "plan_feed",
+    "strut_motion",
 ]

@@ -1,19 +1,32 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planning: from a trajectory to tool poses in time, and from those to strut motion.
+"""Motion: the order of planning, from a trajectory to tool poses in time and to the motion of the struts.
 
-Machine limits are first computed as arrays along the path: the planner is independent of the machine, and kinematics
-is independent of the planner. This module connects the two.
+Enters: a trajectory, a machine and the requested tolerances. Leaves: first a ``FeedPlan``, position along the path with
+rounded corners by time; then a ``Plan``, tool poses and strut lengths at the knots. Each stage takes the result of the
+one before it. Machine limits are computed as arrays along the path: the feed profile is independent of the machine, and
+kinematics is independent of the feed. Units: mm, s, rad.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import Way, reach_faults, strut_rates
-from pkm_post.model import Diagnostic, Event, Machine, Motion, StrutMotion, Tolerances, Trajectory, in_pieces, locked
+from pkm_post.model import (
+    Diagnostic,
+    Event,
+    Machine,
+    Motion,
+    StrutMotion,
+    Tolerances,
+    Trajectory,
+    errors,
+    in_pieces,
+    locked,
+)
 from pkm_post.planning.cubics import Cubics, poses_at
 from pkm_post.planning.glimpse import glimpse_within
 from pkm_post.planning.jerk import Ceilings, for_jerk
@@ -52,6 +65,54 @@ _MARKS_AT_ONCE = 512
 """Marks in a stretch of the motion, about a minute, whose knots are determined separately."""
 
 
+@dataclass(frozen=True)
+class FeedPlan:
+    """The feed along a path.
+
+    Attributes:
+        path: the path with rounded corners.
+        schedule: position along the path by time.
+        events: auxiliary instructions by trajectory row.
+        machine: the machine to move.
+        tolerances: the requested tolerances.
+    """
+
+    path: ToolPath
+    schedule: Schedule
+    events: tuple[Event, ...]
+    machine: Machine
+    tolerances: Tolerances
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The planned motion at the knots, the whole milliseconds at which the controller gets points.
+
+    Attributes:
+        motion: tool poses and their rates.
+        struts: strut lengths and speeds.
+    """
+
+    motion: Motion
+    struts: StrutMotion
+
+
+def plan(
+    trajectory: Trajectory, machine: Machine, tolerances: Tolerances
+) -> tuple[Plan | None, tuple[Diagnostic, ...]]:
+    """Plan the feed and interpolate it; None with diagnostics if a pose is out of reach or the motion takes too long.
+
+    Args:
+        trajectory: the programmed trajectory, at least one segment.
+        machine: geometry and limits.
+        tolerances: the requested tolerances.
+    """
+    feed_plan, diagnostics = plan_feed(trajectory, machine, tolerances)
+    if feed_plan is None or errors(diagnostics):
+        return None, diagnostics
+    return interpolate(feed_plan), diagnostics
+
+
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
     """The path with rounded corners that the tool follows."""
     return ToolPath.of(trajectory, _for_corners(trajectory, tolerances.tip), _FOR_CORNERS * tolerances.axis)
@@ -69,19 +130,20 @@ def _for_corners(trajectory: Trajectory, asked: float) -> Array:
 
 
 def plan_feed(
-    path: ToolPath, trajectory: Trajectory, machine: Machine
-) -> tuple[Schedule | None, tuple[Diagnostic, ...]]:
-    """The schedule of a path, None if the motion takes too long; and diagnostics of unreachable poses.
+    trajectory: Trajectory, machine: Machine, tolerances: Tolerances
+) -> tuple[FeedPlan | None, tuple[Diagnostic, ...]]:
+    """The feed along the path, None if the motion takes too long; and diagnostics of unreachable poses.
 
     Args:
-        path: the path with rounded corners.
-        trajectory: provides the places of faults.
+        trajectory: the programmed trajectory, at least one segment.
         machine: geometry and limits.
+        tolerances: the requested tolerances.
     """
+    path = tool_path(trajectory, tolerances)
     most = PathBounds.of(path)
     faults = reach_faults(machine, trajectory, *_way(path, stations(path, bent(path, most))))
     try:
-        return _schedule(path, machine, most), faults
+        return FeedPlan(path, _schedule(path, machine, most), trajectory.events, machine, tolerances), faults
     except _TooLongError as fault:
         found = f"{fault.seconds:.6g} s, at most {LONGEST_MOTION:g} s"
         return None, (*faults, Diagnostic("K145", trajectory.place(fault.segment), found))
@@ -156,47 +218,46 @@ def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Arr
     return duration, window_ms, (ceilings.s, ceilings.rest, square)
 
 
-def interpolate(
-    path: ToolPath, schedule: Schedule, events: tuple[Event, ...], machine: Machine, tolerances: Tolerances
-) -> Motion:
-    """Tool poses at the knots, the whole milliseconds at which the controller gets points.
+def interpolate(feed_plan: FeedPlan) -> Plan:
+    """The motion of tool and struts at the knots.
 
     Where points exceed the block rate of the controller, the motion is replanned with a lower feed.
-
-    Args:
-        path: the path with rounded corners.
-        schedule: position along the path by time.
-        events: auxiliary instructions by trajectory row.
-        machine: determines how far the controller's cubics deviate between two points.
-        tolerances: the requested tolerances.
     """
-    motion, factor = _interpolated(path, schedule, events, machine, tolerances)
+    motion, factor = _interpolated(feed_plan)
     for _ in range(_MOST_ROUNDS):
         if (factor == 1).all():
             break
-        path = replace(path, feed=slower_feed(path.feed, path.segments.extent, schedule.joint_time, factor))
+        path, joint_time = feed_plan.path, feed_plan.schedule.joint_time
+        path = replace(path, feed=slower_feed(path.feed, path.segments.extent, joint_time, factor))
         try:
-            schedule = _schedule(path, machine, PathBounds.of(path))
+            schedule = _schedule(path, feed_plan.machine, PathBounds.of(path))
         except _TooLongError:
             break
-        motion, factor = _interpolated(path, schedule, events, machine, tolerances)
-    return motion
+        feed_plan = replace(feed_plan, path=path, schedule=schedule)
+        motion, factor = _interpolated(feed_plan)
+    return Plan(motion, strut_motion(motion, feed_plan.machine))
 
 
-def _interpolated(
-    path: ToolPath, schedule: Schedule, events: tuple[Event, ...], machine: Machine, tolerances: Tolerances
-) -> tuple[Motion, Array]:
-    """The motion of a schedule; and the speed factors of segments that the controller requires, (N,)."""
+def _interpolated(feed_plan: FeedPlan) -> tuple[Motion, Array]:
+    """The motion of the tool; and the speed factors of segments that the controller requires, (N,)."""
+    path, schedule, machine = feed_plan.path, feed_plan.schedule, feed_plan.machine
     marks, shortest = even_marks(schedule.rests_ms), machine.shortest_interval
     stretches = [marks[first : first + _MARKS_AT_ONCE + 1] for first in range(0, len(marks) - 1, _MARKS_AT_ONCE)]
 
     def knots_of(stretch: Array) -> tuple[Array, Array]:
-        cubics = Cubics(path, schedule, machine, tolerances, stretch)
-        found = knots(stretch, schedule.edges_ms, cubics.error, shortest)
-        return found[:-1], _too_coarse(found, cubics, shortest)
+        cubics = Cubics(path, schedule, machine, feed_plan.tolerances, stretch)
+        times = knots(stretch, schedule.edges_ms, cubics.error, shortest)
+        return times[:-1], _too_coarse(times, cubics, shortest)
 
     times, coarse = zip(*workers().map(knots_of, stretches), strict=True)
     time_ms = locked(np.concatenate([*times, marks[-1:]]))
+    motion = _motion(feed_plan, time_ms)
+    return motion, _slower(motion, np.concatenate(coarse, axis=1), machine.block_rate)
+
+
+def _motion(feed_plan: FeedPlan, time_ms: Array) -> Motion:
+    """Tool poses and their rates at whole ms."""
+    path, schedule = feed_plan.path, feed_plan.schedule
 
     def columns(rows: slice) -> tuple[Array, ...]:
         poses = poses_at(path, schedule, time_ms[rows])
@@ -206,7 +267,7 @@ def _interpolated(
     tip, axis, spin, tip_rate, axis_rate, spin_rate, tool_length, segment = in_pieces(
         len(time_ms), _KNOTS_AT_ONCE, columns
     )
-    motion = Motion(
+    return Motion(
         time_ms=time_ms,
         tip=tip,
         axis=axis,
@@ -217,9 +278,8 @@ def _interpolated(
         tool_length=tool_length,
         segment=segment,
         joint_time=schedule.joint_time,
-        events=_by_knot(events, schedule, time_ms),
+        events=_by_knot(feed_plan.events, schedule, time_ms),
     )
-    return motion, _slower(motion, np.concatenate(coarse, axis=1), machine.block_rate)
 
 
 def _too_coarse(found: Array, cubics: Cubics, shortest: int) -> Array:

@@ -29,8 +29,7 @@ from pkm_post.model import (
     errors,
 )
 from pkm_post.options import LINUXCNC, Options
-from pkm_post.planning import Schedule, ToolPath
-from pkm_post.planning import motion as planning
+from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
 from pkm_post.posting.frame import Frame, Posted
 from pkm_post.posting.known_setup import known_setup
 from pkm_post.posting.machine_check import home_faults
@@ -161,29 +160,26 @@ def _written_program(
 
     Schedule and struts are freed before the program is read back: a long one needs the memory.
     """
-    motion, struts, covered = _planned(run, frame, trajectory, setup)
-    return motion, _motion_program(run, frame, trajectory, struts), covered
+    plan, covered = _planned(run, frame, trajectory, setup)
+    return plan.motion, _motion_program(run, frame, trajectory, plan.struts), covered
 
 
-def _planned(
-    run: Run, frame: Frame, trajectory: Trajectory, setup: Setup
-) -> tuple[Motion, StrutMotion, tuple[Coverage, ...]]:
+def _planned(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
     """Tool poses and strut lengths by time, and the coverage."""
-    tool_path, schedule = _feed_plan(run, frame, trajectory)
+    feed_plan = _feed_plan(run, frame, trajectory)
     covered = _collisions(run, frame, trajectory, setup)
-    return *_interpolation(run, frame, trajectory, tool_path, schedule), covered
+    return _interpolation(run, frame, feed_plan), covered
 
 
-def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> tuple[ToolPath, Schedule]:
+def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> FeedPlan:
     """The path with rounded corners, and its schedule."""
-    with run.step(_FEED_PLAN) as told:
-        tool_path = planning.tool_path(trajectory, frame.tolerances)
-        schedule, faults = planning.plan_feed(tool_path, trajectory, frame.machine)
+    with run.step(_FEED_PLAN) as notes:
+        feed_plan, faults = plan_feed(trajectory, frame.machine, frame.tolerances)
         if errors(faults):  # if home itself is out of reach, moving the part does not help
             faults = (*home_faults(frame.machine, frame.machine.name), *faults)
-        schedule = run.value((schedule, faults))
-        told.append(f"{schedule.rests_ms[-1] / 1000:.1f} s of motion")
-    return tool_path, schedule
+        feed_plan = run.value((feed_plan, faults))
+        notes.append(f"{feed_plan.schedule.rests_ms[-1] / 1000:.1f} s of motion")
+    return feed_plan
 
 
 def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) -> tuple[Coverage, ...]:
@@ -195,16 +191,13 @@ def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) ->
     return collisions.coverage
 
 
-def _interpolation(
-    run: Run, frame: Frame, trajectory: Trajectory, tool_path: ToolPath, schedule: Schedule
-) -> tuple[Motion, StrutMotion]:
+def _interpolation(run: Run, frame: Frame, feed_plan: FeedPlan) -> Plan:
     """Tool poses and strut lengths by time, valid for the controller."""
-    with run.step(_INTERPOLATION) as told:
-        motion = planning.interpolate(tool_path, schedule, trajectory.events, frame.machine, frame.tolerances)
-        struts = planning.strut_motion(motion, frame.machine)
-        run.accept(frame.controller.faults(struts, frame.settings, frame.path.name))
-        told.append(f"{len(motion)} points")
-    return motion, struts
+    with run.step(_INTERPOLATION) as notes:
+        plan = interpolate(feed_plan)
+        run.accept(frame.controller.faults(plan.struts, frame.settings, frame.path.name))
+        notes.append(f"{len(plan.motion)} points")
+    return plan
 
 
 def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: StrutMotion) -> list[str]:

@@ -12,7 +12,7 @@ from pkm_post.certificate.certify import _SWING
 from pkm_post.geometry import hermite_speeds
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan, strut_motion
 from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -22,11 +22,9 @@ TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 def planned(jerk=np.inf, job=lambda: cone(80, turns=0.25), tolerances=TOLERANCES):
     machine = dataclasses.replace(example(), strut_jerk=jerk)
     trajectory, _ = place(job(), machine, ON_PALLET)
-    path = planning.tool_path(trajectory, tolerances)
-    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    made, faults = plan(trajectory, machine, tolerances)
     assert not faults
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
-    return machine, trajectory, motion, planning.strut_motion(motion, machine)
+    return machine, trajectory, made.motion, made.struts
 
 
 def verdict(struts=None, machine=None, tolerances=TOLERANCES):
@@ -132,16 +130,12 @@ def test_turning_back_too_early_is_found():
     machine = example()
     there_and_back = program([[0, 0, 60], [0, 0, 50], [20, 0, 50], [0, 0, 50]])
     trajectory, _ = place(there_and_back, machine, ON_PALLET)
-    path = planning.tool_path(trajectory, TOLERANCES)
-    schedule, _ = planning.plan_feed(path, trajectory, machine)
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
+    motion = plan(trajectory, machine, TOLERANCES)[0].motion
     short = dataclasses.replace(motion, tip=np.minimum(motion.tip, [19.9, np.inf, np.inf]))
     turned = motion.tip[:, 0] > 19.9
     short = dataclasses.replace(short, tip_rate=np.where(turned[:, None], 0.0, motion.tip_rate))
     assert turned.any()
-    _, faults = certify(
-        planning.strut_motion(short, machine), "x.pmc", trajectory, machine, motion, Tolerances(0.01, 1e-3)
-    )
+    _, faults = certify(strut_motion(short, machine), "x.pmc", trajectory, machine, motion, Tolerances(0.01, 1e-3))
     assert "V110" in {fault.code for fault in faults}
 
 

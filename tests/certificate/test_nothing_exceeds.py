@@ -16,7 +16,7 @@ from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
 from pkm_post.machine import forward, linearise
 from pkm_post.model import StrutMotion
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan
 from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -47,12 +47,10 @@ def certified(job):
     trajectory, faults = place(made(job), machine, ON_PALLET)
     if faults:
         return None
-    path = planning.tool_path(trajectory, TOLERANCES)
-    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    planned, faults = plan(trajectory, machine, TOLERANCES)
     if faults:
         return None
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
-    exact = planning.strut_motion(motion, machine)
+    motion, exact = planned.motion, planned.struts
     struts = StrutMotion(exact.time_ms, np.round(exact.length, 6), np.round(exact.speed, 4), exact.events)
     certificate, _ = certify(struts, "x.pmc", trajectory, machine, motion, TOLERANCES)
     return machine, trajectory, motion, struts, certificate

@@ -19,7 +19,7 @@ from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.machine import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan
 from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -44,11 +44,9 @@ JOBS = {"lines that turn": lambda: cone(120), "arcs and a helix": square_with_ar
 def planned(job):
     machine = example()
     trajectory, _ = place(JOBS[job](), machine, ON_PALLET)
-    path = planning.tool_path(trajectory, TOLERANCES)
-    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    made, faults = plan(trajectory, machine, TOLERANCES)
     assert not faults
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
-    struts = planning.strut_motion(motion, machine)
+    motion, struts = made.motion, made.struts
     printed = StrutMotion(struts.time_ms, np.round(struts.length, 6), np.round(struts.speed, 4), struts.events)
     return machine, trajectory, motion, printed
 

@@ -14,7 +14,7 @@ from pkm_post.machine import reach_faults, strut_lengths
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
-from pkm_post.planning import motion as planning
+from pkm_post.planning import interpolate, plan_feed, strut_motion
 from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -26,14 +26,12 @@ def machine():
 
 
 def planned(trajectory, machine, tolerances, feed=1.0):
-    path = planning.tool_path(trajectory, tolerances)
-    path = replace(path, feed=feed * path.feed)
-    schedule, faults = planning.plan_feed(path, trajectory, machine)
-    return planning.interpolate(path, schedule, trajectory.events, machine, tolerances), faults
+    feed_plan, faults = plan_feed(replace(trajectory, feed=feed * trajectory.feed), machine, tolerances)
+    return interpolate(feed_plan).motion, faults
 
 
 def printed(motion, machine):
-    struts = planning.strut_motion(motion, machine)
+    struts = strut_motion(motion, machine)
     return StrutMotion(struts.time_ms, struts.length.round(6), struts.speed.round(4) + 0.0, struts.events)
 
 

@@ -32,7 +32,7 @@ from pkm_post.control.simulator import Controller, Line, Server
 from pkm_post.control.simulator.moves import Cubic
 from pkm_post.geometry import hermite_lengths
 from pkm_post.machine import forward, machine_named
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan
 from pkm_post.writing import trajectory_file
 from pkm_post.writing.controllers.pmac import settings_of
 
@@ -165,9 +165,7 @@ def deviations(machine, program, times, lengths):
     trajectory, faults = trajectory_file.read(program.with_suffix(".pkmt"))
     assert not faults, faults
     tolerances = trajectory.tolerances
-    path = planning.tool_path(trajectory, tolerances)
-    schedule, _ = planning.plan_feed(path, trajectory, machine)
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
+    motion = plan(trajectory, machine, tolerances)[0].motion
     knot = np.clip(np.searchsorted(motion.time_ms, times, side="right") - 1, 0, len(motion) - 2)
     pose = forward(
         machine, lengths, motion.tool_length[knot + 1], motion.tip[knot], motion.axis[knot], motion.spin[knot]

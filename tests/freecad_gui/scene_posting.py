@@ -163,14 +163,14 @@ def lacking(*_, **__):
 @step
 def lack_of_memory_is_told_and_leaves_nothing():
     from pkm_post.freecad_gui import command, post_panel
-    from pkm_post.planning import motion as planning
+    from pkm_post.planning import motion
 
     document, folder = saved("lacking")
     panel, told, boxes = open_panel(document), [], []
     with mock.patch.object(post_panel, "prepared_job", lacking):  # in the thread of the window
         panel.post()
     told.append(panel.rows())
-    with mock.patch.object(planning, "tool_path", lacking):  # beside it
+    with mock.patch.object(motion, "tool_path", lacking):  # beside it
         panel.post()
     told.append(panel.rows())
     close()

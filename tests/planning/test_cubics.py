@@ -11,8 +11,7 @@ from pkm_post.geometry import hermite_accelerations, hermite_speeds
 from pkm_post.machine import Ends, Inside, strut_rates
 from pkm_post.machine.kinematics.strut_cubics import stray
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import cubics
-from pkm_post.planning import motion as planning
+from pkm_post.planning import cubics, interpolate, motion, plan_feed
 from pkm_post.planning.cubics import Cubics, poses_at
 from pkm_post.planning.knots import even_marks, knots
 from pkm_post.planning.schedule import by_time
@@ -42,11 +41,15 @@ JOBS = PATHS | {"three axes": upright_scan}
 
 def planned(make, machine=None):
     machine = machine or example()
+    feed_plan = feed_plan_of(make, machine)
+    return machine, feed_plan.path, feed_plan.schedule
+
+
+def feed_plan_of(make, machine):
     trajectory, _ = place(make(), machine, ON_PALLET)
-    path = planning.tool_path(trajectory, TOLERANCES)
-    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    feed_plan, faults = plan_feed(trajectory, machine, TOLERANCES)
     assert not faults
-    return machine, trajectory, path, schedule
+    return feed_plan
 
 
 def cubics_of(machine, path, schedule, marks):
@@ -73,7 +76,7 @@ def dense(machine, path, schedule, start, end):
 @pytest.mark.parametrize("make", JOBS.values(), ids=JOBS)
 @pytest.mark.parametrize("singular", [0.0, 0.2], ids=["drift measured", "drift bounded"])
 def test_dense_instants_find_little_more_than_was_seen(make, singular):
-    machine, _, path, schedule = planned(make, dataclasses.replace(STROKED, least_singular_value=singular))
+    machine, path, schedule = planned(make, dataclasses.replace(STROKED, least_singular_value=singular))
     start, end = intervals(schedule, 1500)
     error, there_is = cubics_of(machine, path, schedule, schedule.rests_ms).error(start, end), np.zeros(len(start))
     for first in range(0, len(start), 100):
@@ -95,14 +98,14 @@ def test_a_point_that_sticks_out_is_seen_wherever_it_is():
         z = np.full(len(x), 60.0)
         z[row] += 1.5 * TOLERANCES.tip
         made = program(np.column_stack([x, 0 * x, z]))
-        machine, _, path, schedule = planned(lambda made=made: made, agile)
+        machine, path, schedule = planned(lambda made=made: made, agile)
         start = np.floor(1000 * schedule.joint_time[row]).astype(np.int64) - np.arange(10, 90)
         assert cubics_of(machine, path, schedule, schedule.rests_ms).error(start, start + 100).min() > 2
 
 
 def test_the_tip_is_not_faster_than_the_feed_by_more_than_the_swing():
-    machine, trajectory, path, schedule = planned(cone)
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
+    feed_plan = feed_plan_of(cone, example())
+    path, motion = feed_plan.path, interpolate(feed_plan).motion
     wide = np.flatnonzero(np.diff(motion.time_ms) > 1)
     ends = motion.tip[wide], motion.tip_rate[wide], motion.tip[wide + 1], motion.tip_rate[wide + 1]
     speed = hermite_speeds(*ends, np.diff(motion.time_ms)[wide] / 1000, DENSE)
@@ -113,7 +116,7 @@ def test_the_tip_is_not_faster_than_the_feed_by_more_than_the_swing():
 @pytest.mark.parametrize("limit", ["strut_speed", "strut_acceleration"])
 @pytest.mark.parametrize("make", JOBS.values(), ids=JOBS)
 def test_a_strut_beyond_its_limit_is_told(make, limit):
-    machine, _, path, schedule = planned(make)
+    machine, path, schedule = planned(make)
     start, end = intervals(schedule)
     slow = dataclasses.replace(machine, **{limit: 10.0})
     error = cubics_of(slow, path, schedule, schedule.rests_ms).error(start, end)
@@ -130,7 +133,7 @@ def test_a_strut_beyond_its_limit_is_told(make, limit):
 @pytest.mark.parametrize("make", PATHS.values(), ids=PATHS)
 @pytest.mark.parametrize("places", [40, 1000])
 def test_passes_of_other_sizes_find_the_same(monkeypatch, make, places):
-    machine, _, path, schedule = planned(make)
+    machine, path, schedule = planned(make)
     start, end = intervals(schedule)
     expected = cubics_of(machine, path, schedule, schedule.rests_ms).error(start, end)
     monkeypatch.setattr(cubics, "_PLACES_AT_ONCE", places)
@@ -139,7 +142,7 @@ def test_passes_of_other_sizes_find_the_same(monkeypatch, make, places):
 
 
 def test_what_is_kept_of_ends_does_not_matter():
-    machine, _, path, schedule = planned(cone)
+    machine, path, schedule = planned(cone)
     start, end = intervals(schedule)
     kept = cubics_of(machine, path, schedule, schedule.rests_ms)
     kept.error(start[::2], end[::2])
@@ -150,21 +153,21 @@ def test_what_is_kept_of_ends_does_not_matter():
 @pytest.mark.parametrize("make", PATHS.values(), ids=PATHS)
 @pytest.mark.parametrize("at_once", [1, 3, 10**6])
 def test_stretches_of_other_lengths_give_the_same_motion(monkeypatch, make, at_once):
-    machine, trajectory, path, schedule = planned(make)
-    expected = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
-    monkeypatch.setattr(planning, "_MARKS_AT_ONCE", at_once)
-    found = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
+    feed_plan = feed_plan_of(make, example())
+    expected = interpolate(feed_plan).motion
+    monkeypatch.setattr(motion, "_MARKS_AT_ONCE", at_once)
+    found = interpolate(feed_plan).motion
     for field in dataclasses.fields(found):
         np.testing.assert_array_equal(getattr(found, field.name), getattr(expected, field.name))
 
 
 @pytest.mark.parametrize("workers", [1, 5])
 def test_the_number_of_threads_does_not_matter(monkeypatch, workers):
-    machine, trajectory, path, schedule = planned(cone)
-    monkeypatch.setattr(planning, "_MARKS_AT_ONCE", 4)
-    expected = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
-    monkeypatch.setattr(planning, "workers", lambda: ThreadPoolExecutor(workers))
-    found = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
+    feed_plan = feed_plan_of(cone, example())
+    monkeypatch.setattr(motion, "_MARKS_AT_ONCE", 4)
+    expected = interpolate(feed_plan).motion
+    monkeypatch.setattr(motion, "workers", lambda: ThreadPoolExecutor(workers))
+    found = interpolate(feed_plan).motion
     np.testing.assert_array_equal(found.time_ms, expected.time_ms)
     np.testing.assert_array_equal(found.tip, expected.tip)
 

@@ -11,7 +11,7 @@ from programs import ON_PALLET, cone, program
 from pkm_post.machine import strut_rates
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan_feed
 from pkm_post.planning.course import Course
 from pkm_post.planning.jerk import Ceilings, _least_of_covers, for_jerk
 from pkm_post.planning.profile import speed_profile
@@ -26,10 +26,9 @@ JERK = 1e5
 def planned(made, jerk=JERK, tolerance=1e-2):
     machine = dataclasses.replace(example(), strut_jerk=jerk)
     trajectory, _ = place(made, machine, ON_PALLET)
-    path = planning.tool_path(trajectory, Tolerances(tolerance, np.radians(tolerance)))
-    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    feed_plan, faults = plan_feed(trajectory, machine, Tolerances(tolerance, np.radians(tolerance)))
     assert not faults
-    return machine, path, schedule
+    return machine, feed_plan.path, feed_plan.schedule
 
 
 def square_wave():
@@ -59,8 +58,8 @@ def test_the_jerk_of_every_strut_keeps_its_limit(made):
 def test_the_jerk_of_the_tip_keeps_its_limit(made):
     machine = dataclasses.replace(example(), tip_jerk=5e4)
     trajectory, _ = place(made, machine, ON_PALLET)
-    path = planning.tool_path(trajectory, Tolerances(1e-2, 1e-3))
-    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    feed_plan, _ = plan_feed(trajectory, machine, Tolerances(1e-2, 1e-3))
+    path, schedule = feed_plan.path, feed_plan.schedule
     step = 1e-4
     time = np.arange(0, schedule.rests_ms[-1] / 1000, step)
     s, speed, acceleration = schedule.at(time)

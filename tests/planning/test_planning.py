@@ -9,7 +9,7 @@ from pkm_post.geometry import hermite_accelerations, norm
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Event, EventKind, Tool
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan, plan_feed
 from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -18,11 +18,9 @@ TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 def planned(made, machine=None):
     machine = machine or example()
     trajectory, _ = place(made, machine, ON_PALLET)
-    path = planning.tool_path(trajectory, TOLERANCES)
-    schedule, faults = planning.plan_feed(path, trajectory, machine)
+    made_plan, faults = plan(trajectory, machine, TOLERANCES)
     assert not faults
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, TOLERANCES)
-    return trajectory, motion, planning.strut_motion(motion, machine)
+    return trajectory, made_plan.motion, made_plan.struts
 
 
 def accelerations(struts):
@@ -40,8 +38,8 @@ def test_motion_starts_at_home_at_rest_and_ends_at_rest():
 def test_speeds_are_the_derivatives_of_the_lengths():
     machine = example()
     trajectory, _ = place(cone(), machine, ON_PALLET)
-    path = planning.tool_path(trajectory, TOLERANCES)
-    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    feed_plan, _ = plan_feed(trajectory, machine, TOLERANCES)
+    path, schedule = feed_plan.path, feed_plan.schedule
     _, motion, struts = planned(cone())
 
     def lengths_at(time):
@@ -93,12 +91,12 @@ def test_lengths_do_not_jump_at_a_tool_change():
 def test_unreachable_poses_are_named_by_operation_and_line():
     made = program([[0, 0, 60], [10, 0, 60], [600, 0, 60], [10, 0, 60]])
     trajectory, _ = place(made, example(), ON_PALLET)
-    path = planning.tool_path(trajectory, TOLERANCES)
-    _, faults = planning.plan_feed(path, trajectory, example())
-    told = [str(fault) for fault in faults]
+    none, faults = plan(trajectory, example(), TOLERANCES)
+    assert none is None
+    texts = [str(fault) for fault in faults]
     assert {fault.code for fault in faults} >= {"K102"}
-    assert all(text.startswith("part.FCStd: Finish: line ") for text in told)
-    assert any("line 3: error K102: a strut would be too long: strut" in text for text in told)
+    assert all(text.startswith("part.FCStd: Finish: line ") for text in texts)
+    assert any("line 3: error K102: a strut would be too long: strut" in text for text in texts)
 
 
 def test_a_path_through_a_singular_pose_is_refused():
@@ -106,5 +104,5 @@ def test_a_path_through_a_singular_pose_is_refused():
     tilt = np.radians([0.0, 0, 30])
     axis = np.column_stack([0 * tilt, np.sin(tilt), np.cos(tilt)])
     trajectory, _ = place(program([[0, 0, 60], [0, 0, 50], [30, 0, 50]], axis), machine, ON_PALLET)
-    _, faults = planning.plan_feed(planning.tool_path(trajectory, TOLERANCES), trajectory, machine)
+    _, faults = plan_feed(trajectory, machine, TOLERANCES)
     assert [fault.code for fault in faults] == ["K105"]

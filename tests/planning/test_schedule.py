@@ -5,7 +5,7 @@ from programs import ON_PALLET, cone, program
 
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan_feed
 from pkm_post.planning.knots import LONGEST_MS, knots
 from pkm_post.planning.stations import stations
 from pkm_post.toolpath.placement.place import place
@@ -15,10 +15,9 @@ NO_EDGES = np.array([], dtype=np.int64)
 
 def schedule_of(made):
     trajectory, _ = place(made, example(), ON_PALLET)
-    path = planning.tool_path(trajectory, Tolerances(1e-3, np.radians(1e-3)))
-    schedule, faults = planning.plan_feed(path, trajectory, example())
+    feed_plan, faults = plan_feed(trajectory, example(), Tolerances(1e-3, np.radians(1e-3)))
     assert not faults
-    return trajectory, path, schedule
+    return trajectory, feed_plan.path, feed_plan.schedule
 
 
 def stop_and_go():

@@ -9,9 +9,9 @@ from machines import example
 from programs import ON_PALLET, cone, program, random_job
 
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
-from pkm_post.planning import speed_limits
+from pkm_post.planning import motion, plan_feed, speed_limits
 from pkm_post.planning.limits import limits, rough_limits
+from pkm_post.planning.motion import tool_path
 from pkm_post.planning.path_bounds import PathBounds
 from pkm_post.planning.profile import cell_times, speed_profile
 from pkm_post.planning.speed_limits import (
@@ -57,7 +57,7 @@ SCREENED = {"at the feed": 0.7, "slow machine": 0.1, "five axes": 0.9}
 def path_of(job):
     made, machine = job
     trajectory, _ = place(made, machine, ON_PALLET)
-    return planning.tool_path(trajectory, TOLERANCES), trajectory, machine
+    return tool_path(trajectory, TOLERANCES), trajectory, machine
 
 
 def rough_limits_of(path, machine):
@@ -77,7 +77,7 @@ def everywhere(path, machine):
 @pytest.mark.parametrize("name", JOBS)
 def test_the_screened_plan_is_the_whole_plan(name):
     path, trajectory, machine = path_of(JOBS[name])
-    schedule, _ = planning.plan_feed(path, trajectory, machine)
+    schedule = plan_feed(trajectory, machine, TOLERANCES)[0].schedule
     marks, square, plan = everywhere(path, machine)
     whole = float(cell_times(marks.s, plan).sum())
     stretched = 1e-3 * (len(schedule.rests_ms) - 1)
@@ -108,11 +108,11 @@ def test_rough_limits_are_below_the_true_ones(name):
 
 @pytest.mark.parametrize("block", [5, 64])
 def test_blocks_do_not_show(block, monkeypatch):
-    path, trajectory, machine = path_of(JOBS["slow machine"])
-    whole, _ = planning.plan_feed(path, trajectory, machine)
-    monkeypatch.setattr(planning, "_STATIONS_AT_ONCE", block)
+    _, trajectory, machine = path_of(JOBS["slow machine"])
+    whole = plan_feed(trajectory, machine, TOLERANCES)[0].schedule
+    monkeypatch.setattr(motion, "_STATIONS_AT_ONCE", block)
     monkeypatch.setattr(speed_limits, "_STATIONS_AT_ONCE", block)
-    cut, _ = planning.plan_feed(path, trajectory, machine)
+    cut = plan_feed(trajectory, machine, TOLERANCES)[0].schedule
     np.testing.assert_array_equal(cut.course.s, whole.course.s)
     np.testing.assert_allclose(cut.course.speed, whole.course.speed, rtol=1e-9, atol=1e-9)
     np.testing.assert_array_equal(cut.rests_ms, whole.rests_ms)
@@ -123,7 +123,7 @@ def test_between_the_joints_of_a_segment_that_is_not_bent_the_path_is_straight(t
     rng, found = np.random.default_rng(11), []
     for _ in range(6):
         trajectory, _ = place(random_job(rng), example(), ON_PALLET)
-        path = planning.tool_path(trajectory, Tolerances(tolerance, tolerance / 50))
+        path = tool_path(trajectory, Tolerances(tolerance, tolerance / 50))
         straight = np.flatnonzero(~bent(path, PathBounds.of(path)))
         found.append(len(straight) / len(path.feed))
         share = np.linspace(0, 1, 101)

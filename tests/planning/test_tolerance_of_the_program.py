@@ -10,7 +10,8 @@ from programs import ON_PALLET, program
 
 from pkm_post.certificate import certify
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning import interpolate, plan_feed, strut_motion
+from pkm_post.planning.motion import tool_path
 from pkm_post.report import summary
 from pkm_post.toolpath.placement.place import place
 
@@ -28,14 +29,13 @@ def placed(tolerance, **more):
 
 
 def planned(trajectory):
-    path = planning.tool_path(trajectory, ASKED)
-    schedule, faults = planning.plan_feed(path, trajectory, example())
+    feed_plan, faults = plan_feed(trajectory, example(), ASKED)
     assert not faults
-    return path, planning.interpolate(path, schedule, trajectory.events, example(), ASKED)
+    return feed_plan.path, interpolate(feed_plan).motion
 
 
 def certified(trajectory, motion, tolerances=ASKED):
-    struts = planning.strut_motion(motion, example())
+    struts = strut_motion(motion, example())
     certificate, faults = certify(struts, "part.pmc", trajectory, example(), motion, tolerances)
     return certificate, faults
 
@@ -45,7 +45,7 @@ def worst(certificate, code):
 
 
 def test_the_lower_tolerance_of_two_rows_rounds_their_corner():
-    path = planning.tool_path(placed([0, 0.05, 0.05, 0, 0.0002, 0.05]), ASKED)
+    path = tool_path(placed([0, 0.05, 0.05, 0, 0.0002, 0.05]), ASKED)
     most = np.array([0.05 - 0.6 * ASKED.tip, 0.4 * ASKED.tip, 0.4 * 0.0002, 0.4 * 0.0002])
     np.testing.assert_allclose(path.blend[2:-1], most / (OFFSET * RIGHT_ANGLE), rtol=1e-12)
 
@@ -110,7 +110,7 @@ def test_the_report_has_the_points_of_rest_and_the_tolerances_of_the_program():
     trajectory = placed([0, 0.05, 0.05, 0, 0.02, 0.02], exact_stop=[False, True, False, True, False, False])
     _, motion = planned(trajectory)
     certificate, _ = certified(trajectory, motion)
-    struts = planning.strut_motion(motion, example())
+    struts = strut_motion(motion, example())
     report = summary.report(trajectory, example(), certificate, ASKED, struts, motion)
     assert report["tolerances"]["tip_of_program_mm"] == [0.02, 0.05]
     held = report["hold_points"]

@@ -9,7 +9,7 @@ from programs import ON_PALLET, cone, program
 
 from pkm_post.model import Kind
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion as planning
+from pkm_post.planning.motion import tool_path
 from pkm_post.planning.stations import stations
 from pkm_post.toolpath.placement.place import place
 
@@ -44,9 +44,7 @@ def stations_of(name, limits):
     trajectory, _ = place(
         dataclasses.replace(made, feed=np.where(made.kind == Kind.RAPID, np.nan, 200.0)), machine, ON_PALLET
     )
-    path = planning.tool_path(
-        dataclasses.replace(trajectory, exact_stop=_at_the_end(trajectory)), Tolerances(0.1, 0.01)
-    )
+    path = tool_path(dataclasses.replace(trajectory, exact_stop=_at_the_end(trajectory)), Tolerances(0.1, 0.01))
     return machine, path, stations(path)
 
 

@@ -12,8 +12,7 @@ import pytest
 
 from pkm_post.certificate import drives, fault_causes, joints, struts, tool_course
 from pkm_post.options.choices import Options
-from pkm_post.planning import motion as planning
-from pkm_post.planning import profile, schedule, speed_limits
+from pkm_post.planning import motion, profile, schedule, speed_limits
 from pkm_post.posting.post_file import post_file
 from pkm_post.posting.run import give_back_memory
 from pkm_post.reading.sources import Reading
@@ -24,9 +23,9 @@ from pkm_post.writing.trajectory_file import parts
 from pkm_post.writing.trajectory_file import reader as trajectory_reader
 
 PIECES = (
-    (planning, "_KNOTS_AT_ONCE"),
-    (planning, "_STATIONS_AT_ONCE"),
-    (planning, "_MARKS_AT_ONCE"),
+    (motion, "_KNOTS_AT_ONCE"),
+    (motion, "_STATIONS_AT_ONCE"),
+    (motion, "_MARKS_AT_ONCE"),
     (speed_limits, "_STATIONS_AT_ONCE"),
     (profile, "_AT_ONCE"),
     (schedule, "_AT_ONCE"),

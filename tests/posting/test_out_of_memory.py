@@ -109,9 +109,9 @@ def test_memory_runs_out_in_each_module_once(files, tmp_path, capsys):
 
 STEPS = {
     "trajectory": "trajectory_of",
-    "reach and feed plan": "planning.motion.tool_path",
+    "reach and feed plan": "plan_feed",
     "collisions": "find_collisions",
-    "interpolation": "planning.interpolate",
+    "interpolation": "interpolate",
     "motion program": "summary.heading",
     "certificate": "certify",
     "report": "summary.report",

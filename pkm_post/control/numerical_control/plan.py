@@ -20,7 +20,7 @@ from pkm_post.geometry import Array, hermite_lengths
 from pkm_post.machine import Solution, Way, faults_of, follow, platform_rotation, reach_findings
 from pkm_post.model import Certificate, Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, errors
 from pkm_post.options import MANUAL_MOVE_PROGRAM
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan
 from pkm_post.report import heading
 from pkm_post.writing import pmac
 
@@ -99,20 +99,17 @@ def planned(
 def _program(
     trajectory: Trajectory, machine: Machine, settings: pmac.PmacSettings, tolerances: Tolerances
 ) -> tuple[str | None, Motion | None, Findings]:
-    path = planning.tool_path(trajectory, tolerances)
-    schedule, told = planning.plan_feed(path, trajectory, machine)
-    if schedule is None or errors(told):
+    made, told = plan(trajectory, machine, tolerances)
+    if made is None:
         return None, None, told
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
-    struts = planning.strut_motion(motion, machine)
-    told += pmac.faults(struts, settings, trajectory.source)
+    told += pmac.faults(made.struts, settings, trajectory.source)
     if errors(told):
         return None, None, told
-    parts = pmac.program_parts(struts, settings, heading(trajectory))
+    parts = pmac.program_parts(made.struts, settings, heading(trajectory))
     if len(parts) > 1:
         found = f"{len(parts)} programs of {settings.memory_words} words"
         return None, None, (*told, Diagnostic("C204", Place(trajectory.source), found))
-    return parts[0], motion, told
+    return parts[0], made.motion, told
 
 
 def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[Pose | None, Findings]:

@@ -10,7 +10,7 @@ from simulated import make
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.machine import forward, machine_named
 from pkm_post.options.choices import Options
-from pkm_post.planning import motion as planning
+from pkm_post.planning import plan
 from pkm_post.posting.steps import post
 from pkm_post.writing import trajectory_file
 
@@ -57,9 +57,7 @@ def test_the_simulated_machine_keeps_to_the_programmed_path(posted, followed):
     since, places = followed
     trajectory, _ = trajectory_file.read(made.program.with_suffix(".pkmt"))
     tolerances = trajectory.tolerances
-    path = planning.tool_path(trajectory, tolerances)
-    schedule, _ = planning.plan_feed(path, trajectory, machine)
-    motion = planning.interpolate(path, schedule, trajectory.events, machine, tolerances)
+    motion = plan(trajectory, machine, tolerances)[0].motion
     time = since + np.arange(len(places))
     inside = time <= motion.time_ms[-1]
     time, places = time[inside], places[inside]
