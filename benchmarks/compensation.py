@@ -18,7 +18,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from pkm_post.geometry.nurbs import NurbsSurface  # noqa: E402
-from pkm_post.geometry.nurbs_nearest import nearest  # noqa: E402
+from pkm_post.geometry.projection import nearest_on_nurbs  # noqa: E402
 from pkm_post.model import Event, EventKind, Kind, Program, Tool  # noqa: E402
 from pkm_post.toolpath.compensation import (  # noqa: E402 - the path comes first
     Cutter,
@@ -129,7 +129,7 @@ def main():
     surface = sheet()
     u, v = np.random.default_rng(1).uniform(0, 1, (2, few))
     beside = surface.points(u, v) + [0.0, 0.0, 0.05]
-    report("feet on a bicubic surface", few, lambda: nearest(surface, beside))
+    report("feet on a bicubic surface", few, lambda: nearest_on_nurbs(surface, beside))
     fewer = max(1, count // 100)
     path_points, path_normals, path_axes = contacts(fewer)
     tips, _ = tip_from_contact(path_points, path_normals, path_axes, BULL_NOSE)

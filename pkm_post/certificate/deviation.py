@@ -11,7 +11,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry import Array, across, along, among, angle_between, arc_points, cross, dot, norm, taken, towards
+from pkm_post.geometry import (
+    Array,
+    across,
+    along,
+    angle_between,
+    arc_points,
+    cross,
+    distinct,
+    dot,
+    norm,
+    take_rows,
+    towards,
+)
 from pkm_post.model import Kind, Tolerances, Trajectory, both_by_row, uniform
 
 _NEARLY_CLOSED = 4.0
@@ -53,24 +65,24 @@ class TrajectoryRuler:
         """
         if not len(segment):
             return np.empty((3, 0))
-        trajectory, (segments, at) = self._trajectory, among(segment)
+        trajectory, (segments, at) = self._trajectory, distinct(segment)
         before, turn = self._tip_before[segments], self._axis_turn[segments]
         chord = trajectory.tip[segments] - before
-        away = tip - taken(before, at)
+        away = tip - take_rows(before, at)
         curved = np.flatnonzero((trajectory.kind[segments] == Kind.ARC)[at])
-        start = taken(self._axis_before[segments], at)
+        start = take_rows(self._axis_before[segments], at)
         turns = bool(turn.any())
         by_tip, by_axis = self._weights(segments)
-        share = dot(away, taken(by_tip[:, None] * _over_square(chord), at))
+        share = dot(away, take_rows(by_tip[:, None] * _over_square(chord), at))
         if len(curved):
             share[curved] = by_tip[at[curved]] * self._share_of_arc(tip[curved], axis[curved], segment[curved])
         if turns:
-            share += dot(towards(start, axis), taken(by_axis[:, None] * _over_square(turn), at))
+            share += dot(towards(start, axis), take_rows(by_axis[:, None] * _over_square(turn), at))
         share = np.clip(share, 0.0, 1.0)
-        off = away - share[:, None] * taken(chord, at)
+        off = away - share[:, None] * take_rows(chord, at)
         if len(curved):
             off[curved] = tip[curved] - self._on_arc(segment[curved], share[curved])
-        expected = along(start, share[:, None] * taken(turn, at)) if turns else start
+        expected = along(start, share[:, None] * take_rows(turn, at)) if turns else start
         return np.stack([norm(off), angle_between(axis, expected), self.tip_tolerance[segments][at]])
 
     def share_of(self, tip: Array, axis: Array, segment: Array) -> tuple[Array, Array]:

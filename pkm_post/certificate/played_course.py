@@ -12,7 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, dot, hermite_accelerations, hermite_column_speeds, hermite_columns, untwisted
+from pkm_post.geometry import (
+    Array,
+    dot,
+    hermite_accelerations,
+    hermite_column_speeds,
+    hermite_columns,
+    torsion_free_axes,
+)
 from pkm_post.machine import attitude_rates, follow, jacobian_of_tip, platform_rotation, solve_regular
 from pkm_post.model import Machine, StrutMotion, Trajectory
 
@@ -76,6 +83,6 @@ class PlayedCourse:
 
 def _spin(rotation: Array, start: float) -> Array:
     """The continuous spin of platforms along their path, (N,), starting near ``start``."""
-    x, y = untwisted(np.ascontiguousarray(rotation[:, :, 2]))
+    x, y = torsion_free_axes(np.ascontiguousarray(rotation[:, :, 2]))
     spin = np.unwrap(np.arctan2(dot(rotation[:, :, 0], y), dot(rotation[:, :, 0], x)))
     return np.asarray(spin + 2 * np.pi * np.round((start - spin[0]) / (2 * np.pi)))

@@ -19,7 +19,20 @@ import Part
 from numpy.typing import ArrayLike
 
 from pkm_post.freecad_app.progress import Stopped
-from pkm_post.geometry import Array, Closed, NurbsSurface, cross, elementary, nearest, norm, within
+from pkm_post.geometry import (
+    Array,
+    Closed,
+    NurbsSurface,
+    cone_feet,
+    cross,
+    cylinder_feet,
+    nearest_on_nurbs,
+    norm,
+    plane_feet,
+    points_within,
+    sphere_feet,
+    torus_feet,
+)
 
 _SINGULAR = 1e-9
 """Sine of the angle between both derivatives, times their lengths in mm: below this a surface has no normal."""
@@ -64,25 +77,25 @@ def finder(face: Any) -> Callable[[Array], Feet]:
     return find
 
 
-def _formula(surface: Any) -> Callable[[Array], elementary.Feet] | None:
+def _formula(surface: Any) -> Callable[[Array], tuple[Array, Array]] | None:
     """The closed form for an OpenCASCADE surface, if it has one."""
     kind = surface.TypeId
     if kind == "Part::GeomPlane":
-        return partial(elementary.plane_feet, origin=_vector(surface.Position), axis=_vector(surface.Axis))
+        return partial(plane_feet, origin=_vector(surface.Position), axis=_vector(surface.Axis))
     if kind == "Part::GeomSphere":
-        return partial(elementary.sphere_feet, centre=_vector(surface.Center), radius=surface.Radius)
+        return partial(sphere_feet, centre=_vector(surface.Center), radius=surface.Radius)
     about = {"axis": _vector(surface.Axis)} if hasattr(surface, "Axis") else {}
     if kind == "Part::GeomCylinder":
-        return partial(elementary.cylinder_feet, centre=_vector(surface.Center), radius=surface.Radius, **about)
+        return partial(cylinder_feet, centre=_vector(surface.Center), radius=surface.Radius, **about)
     if kind == "Part::GeomCone":
-        return partial(elementary.cone_feet, apex=_vector(surface.Apex), half_angle=abs(surface.SemiAngle), **about)
+        return partial(cone_feet, apex=_vector(surface.Apex), half_angle=abs(surface.SemiAngle), **about)
     if kind == "Part::GeomToroid" and surface.MajorRadius > surface.MinorRadius:
         sizes = {"major": surface.MajorRadius, "minor": surface.MinorRadius}
-        return partial(elementary.torus_feet, centre=_vector(surface.Center), **sizes, **about)
+        return partial(torus_feet, centre=_vector(surface.Center), **sizes, **about)
     return None
 
 
-def _by_formula(face: Any, formula: Callable[[Array], elementary.Feet]) -> Callable[[Array], Feet]:
+def _by_formula(face: Any, formula: Callable[[Array], tuple[Array, Array]]) -> Callable[[Array], Feet]:
     """The closed form, with normals oriented as the face is."""
     u, v = _middle(face)
     _, own = formula(_vector(face.valueAt(u, v))[None])
@@ -104,7 +117,7 @@ def _by_poles(face: Any) -> Callable[[Array], Feet]:
     low, high = surface.bounds.T
 
     def find(points: Array) -> Feet:
-        at, known = nearest(surface, points, closed)
+        at, known = nearest_on_nurbs(surface, points, closed)
         if not own:
             known &= (((at > low) & (at < high)) | np.array(closed)).all(axis=1)
         feet, along_u, along_v = surface.derivatives(*at.T, order=1)
@@ -200,7 +213,7 @@ def _in_domain(face: Any, at: Array) -> Array:
     u, v = at.T
     u = first_u + np.mod(u - first_u, surface.UPeriod()) if surface.isUPeriodic() else u
     v = first_v + np.mod(v - first_v, surface.VPeriod()) if surface.isVPeriodic() else v
-    inside, doubt = within(np.column_stack([u, v]), *_edges(face))
+    inside, doubt = points_within(np.column_stack([u, v]), *_edges(face))
     for row in np.flatnonzero(doubt).tolist():
         inside[row] = face.isPartOfDomain(*at[row].tolist()) or _beside_edge(face, *at[row].tolist())
     return inside

@@ -1,14 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Geometry: arrays in, arrays out; independent of machines, tools and files."""
 
-from pkm_post.geometry import elementary
-from pkm_post.geometry.arcs import across, arc_length, arc_points, arc_sweep
-from pkm_post.geometry.cells import cells
-from pkm_post.geometry.cylinder_triangle import nearest_of_triangle
-from pkm_post.geometry.distances import segment_to_box, segment_to_cylinder, segment_to_segment
-from pkm_post.geometry.gather import among, numbered, taken
-from pkm_post.geometry.great_circle import along, along_rates, angle_between, towards
-from pkm_post.geometry.hermite import (
+from pkm_post.geometry.curves import (
+    arc_length,
+    arc_points,
+    arc_sweep,
     hermite_accelerations,
     hermite_column_speeds,
     hermite_columns,
@@ -16,13 +12,49 @@ from pkm_post.geometry.hermite import (
     hermite_powers,
     hermite_speeds,
 )
+from pkm_post.geometry.cylinders import (
+    TRIANGLE_EDGES,
+    Cylinders,
+    half_extents,
+    nearest_on_triangle,
+    separation,
+)
+from pkm_post.geometry.distances import segment_to_box, segment_to_cylinder, segment_to_segment
 from pkm_post.geometry.nurbs import NurbsSurface
-from pkm_post.geometry.nurbs_nearest import Closed, nearest
-from pkm_post.geometry.outline import within
-from pkm_post.geometry.separation import TRIANGLE_EDGES, Cylinders, cylinder_to_corners, separate, shadow
-from pkm_post.geometry.torsion import fill_frame, tilt, torsion, turn_by_tilt, untwisted
-from pkm_post.geometry.triangles import cut_small, inside, is_closed
-from pkm_post.geometry.vectors import Array, cross, dot, length_of, norm, unit
+from pkm_post.geometry.orientation import (
+    along,
+    along_rates,
+    angle_between,
+    tilt,
+    torsion,
+    torsion_free_axes,
+    towards,
+    turn_by_tilt,
+    write_frames,
+)
+from pkm_post.geometry.polygons import grid_points_inside, is_closed, points_within, subdivide
+from pkm_post.geometry.projection import (
+    Closed,
+    cone_feet,
+    cylinder_feet,
+    nearest_on_nurbs,
+    plane_feet,
+    sphere_feet,
+    torus_feet,
+)
+from pkm_post.geometry.vectors import (
+    Array,
+    across,
+    cross,
+    distinct,
+    dot,
+    expand_counts,
+    grid_cells,
+    length_of,
+    norm,
+    take_rows,
+    unit,
+)
 
 __all__ = [
     "TRIANGLE_EDGES",
@@ -33,42 +65,45 @@ __all__ = [
     "across",
     "along",
     "along_rates",
-    "among",
+    "distinct",
     "angle_between",
     "arc_length",
     "arc_points",
     "arc_sweep",
-    "cells",
+    "grid_cells",
     "cross",
-    "cut_small",
-    "cylinder_to_corners",
+    "subdivide",
     "dot",
-    "elementary",
-    "fill_frame",
+    "cone_feet",
+    "cylinder_feet",
+    "plane_feet",
+    "sphere_feet",
+    "torus_feet",
+    "write_frames",
     "hermite_accelerations",
     "hermite_column_speeds",
     "hermite_columns",
     "hermite_lengths",
     "hermite_powers",
     "hermite_speeds",
-    "inside",
+    "grid_points_inside",
     "is_closed",
     "length_of",
-    "nearest",
-    "nearest_of_triangle",
+    "nearest_on_nurbs",
+    "nearest_on_triangle",
     "norm",
-    "numbered",
+    "expand_counts",
     "segment_to_box",
     "segment_to_cylinder",
     "segment_to_segment",
-    "separate",
-    "shadow",
-    "taken",
+    "separation",
+    "half_extents",
+    "take_rows",
     "tilt",
     "torsion",
     "towards",
     "turn_by_tilt",
     "unit",
-    "untwisted",
-    "within",
+    "torsion_free_axes",
+    "points_within",
 ]

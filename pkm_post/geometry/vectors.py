@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Vectors: products and lengths along the last dimension of (..., 3) arrays."""
+"""Vectors in (..., 3) arrays: products, lengths, selection of rows, and grouping of points by proximity.
+
+Some functions return vectors stored column by column: arithmetic on (N, 3) arrays then runs along N.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -26,6 +30,18 @@ def length_of(x: Array, y: Array, z: Array) -> Array:
     return np.asarray(np.sqrt(x * x + y * y + z * z))
 
 
+def cross(left: Array, right: Array) -> Array:
+    """Vector products of (..., 3) vectors, written out: several times faster than np.cross on small rows."""
+    x, y, z = left[..., 0], left[..., 1], left[..., 2]
+    u, v, w = right[..., 0], right[..., 1], right[..., 2]
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+
+
+def across(vectors: Array, axis: Array) -> Array:
+    """The components of (..., 3) vectors perpendicular to unit axes."""
+    return vectors - dot(vectors, axis)[..., None] * axis
+
+
 def unit(vectors: Array) -> Array:
     """The (..., 3) vectors divided by their lengths; a new array.
 
@@ -38,8 +54,48 @@ def unit(vectors: Array) -> Array:
     return vectors / lengths[..., None]
 
 
-def cross(left: Array, right: Array) -> Array:
-    """Vector products of (..., 3) vectors, written out: several times faster than np.cross on small rows."""
-    x, y, z = left[..., 0], left[..., 1], left[..., 2]
-    u, v, w = right[..., 0], right[..., 1], right[..., 2]
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+def distinct(numbers: Array) -> tuple[Array, Array]:
+    """The distinct numbers, ascending, and for each given number, (N,), its row among them.
+
+    Args:
+        numbers: (N,) at least one; memory is proportional to the difference of the largest and the smallest.
+    """
+    first = numbers.min()
+    used = np.zeros(numbers.max() - first + 1, dtype=bool)
+    used[numbers - first] = True
+    return first + np.flatnonzero(used), (np.cumsum(used) - 1)[numbers - first]
+
+
+def expand_counts(count: Array) -> tuple[Array, Array]:
+    """Rows 0 to N - 1, each repeated by its count, and numbers from 0 within each row, (M,) each.
+
+    Args:
+        count: (N,) repetitions.
+    """
+    row = np.repeat(np.arange(len(count)), count)
+    return row, np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+
+
+def take_rows(vectors: Array, rows: Array) -> Array:
+    """Rows of (M, 3) vectors, (N, 3), stored column by column."""
+    return np.take(np.ascontiguousarray(vectors.T), rows, axis=1).T
+
+
+def grid_cells(points: Array, about: int) -> list[Array]:
+    """Rows of the points, by cell of a grid in space.
+
+    Args:
+        points: (N, 3), roughly on a surface: the number of grid cells along a side is chosen for that case.
+        about: target number of points per cell.
+
+    Returns:
+        For each non-empty cell the rows of its points, ascending.
+    """
+    if not len(points):
+        return []
+    low, extent = points.min(axis=0), float(np.ptp(points, axis=0).max())
+    lines = max(1, round(math.sqrt(len(points) / about)))
+    cell = np.floor((points - low) * (lines / extent if extent > 0 else 0.0)).astype(np.int64)
+    key = (cell[:, 0] * (lines + 1) + cell[:, 1]) * (lines + 1) + cell[:, 2]
+    order = np.argsort(key, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(key[order])) + 1)

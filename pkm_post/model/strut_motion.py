@@ -45,7 +45,7 @@ class StrutMotion:
         return len(self.time_ms)
 
     def cubics(self, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
-        """Cubics that begin at some knots, in the form of ``geometry.hermite``.
+        """Cubics that begin at some knots, in the form of ``geometry.curves``.
 
         Args:
             rows: (N,) the knots; none of them is the last.

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, along, among, taken
+from pkm_post.geometry import Array, along, distinct, take_rows
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.toolpath import Segments
 
@@ -72,7 +72,7 @@ def glimpse_within(path: ToolPath, segment: Array, u: Array) -> Glimpse:
     if path.attitude is None:
         turn = seg.spin_rate[segment]
         spin = seg.spin[segment] + u * turn + side * gone * (seg.spin_rate[other] - turn)
-        axis, tool_length = _axes(seg, *among(joint), -side * away, gone), path.tool_length[segment]
+        axis, tool_length = _axes(seg, *distinct(joint), -side * away, gone), path.tool_length[segment]
     else:
         axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
     seen = Glimpse(tip.T, axis, spin, way.T, tool_length, segment)
@@ -91,11 +91,11 @@ def _axes(seg: Segments, joints: Array, at: Array, x: Array, gone: Array) -> Arr
     """Tool axes at distances x from the joints ``joints[at]``, with H(-|x|)."""
     before, after = np.maximum(joints - 1, 0), np.minimum(joints, len(seg) - 1)
     if not (seg.axis_rate[before].any() or seg.axis_rate[after].any()):
-        return taken(seg.axis[before], at)
+        return take_rows(seg.axis[before], at)
     axis, rate, _ = seg.axis_at(before, np.where(joints > 0, seg.extent[before], 0.0))
     change = seg.axis_rate[after] - rate
-    tangent = x[:, None] * taken(rate, at) + (gone + np.maximum(x, 0.0))[:, None] * taken(change, at)
-    return along(taken(axis, at), tangent)
+    tangent = x[:, None] * take_rows(rate, at) + (gone + np.maximum(x, 0.0))[:, None] * take_rows(change, at)
+    return along(take_rows(axis, at), tangent)
 
 
 def _overwrite(seen: Glimpse, rows: Array, path: ToolPath, u: Array) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pkm_post.geometry import Array, numbered
+from pkm_post.geometry import Array, expand_counts
 
 LONGEST_MS = 128
 """The initial width: the narrower, the less error goes unnoticed between the places where it is measured."""
@@ -54,7 +54,7 @@ def _even(rests_ms: Array) -> tuple[Array, Array]:
     """Even intervals of at most ``LONGEST_MS`` between the rests."""
     span = np.diff(rests_ms)
     pieces = -(-span // LONGEST_MS)
-    run, number = numbered(pieces)
+    run, number = expand_counts(pieces)
     start = rests_ms[run] + number * span[run] // pieces[run]
     return start, rests_ms[run] + (number + 1) * span[run] // pieces[run]
 

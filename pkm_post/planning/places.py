@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from pkm_post.geometry import Array, numbered
+from pkm_post.geometry import Array, expand_counts
 
 _ROUNDING = 1e-9
 """Tolerance on a number of gaps, so that rounding does not add one."""
@@ -76,18 +76,18 @@ class Intervals:
 
     def at_joints(self, joint_time: Array) -> Places:
         """The joints inside the intervals."""
-        row, number = numbered(self.last - self.first)
+        row, number = expand_counts(self.last - self.first)
         joint = self.first[row] + number
         return self._places(row, joint_time[joint], joint)
 
     def between_joints(self, joint_time: Array, gaps: int) -> Places:
         """At least one place on each segment; with the joints, no gap exceeds 1 / ``gaps`` of the interval."""
-        row, number = numbered(self.last - self.first + 1)
+        row, number = expand_counts(self.last - self.first + 1)
         segment = self.first[row] + number
         begin = np.where(number > 0, joint_time[segment - 1], (self.start / 1000)[row])
         way = np.minimum(joint_time[segment], (self.end / 1000)[row]) - begin
         parts = np.maximum(2, np.ceil(gaps * way / self.duration[row] - _ROUNDING).astype(np.int64))
-        piece, number = numbered(parts - 1)
+        piece, number = expand_counts(parts - 1)
         time = begin[piece] + way[piece] * ((number + 1) / parts[piece])
         return self._places(row[piece], time, segment[piece])
 

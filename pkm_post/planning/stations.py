@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, numbered
+from pkm_post.geometry import Array, expand_counts
 from pkm_post.planning.tool_path import ToolPath
 
 _CELLS_IN_HALF_BLEND = 4
@@ -62,7 +62,7 @@ def stations(path: ToolPath, close: Array | None = None) -> Stations:
     ).ravel()
     begin = np.column_stack([0 * entry, entry, extent - leave]).ravel()
     width = np.column_stack([entry, middle, leave]).ravel()
-    part, number = numbered(cells)
+    part, number = expand_counts(cells)
     segment = part // 3
     u = begin[part] + width[part] * ((number + 1) / cells[part])
     last = np.append(segment[1:] != segment[:-1], True)

@@ -11,7 +11,7 @@ from cam_jobs import add_operation, new_job
 from pkm_post.freecad_app.job_setup import job_setup, study_job
 from pkm_post.freecad_app.post_job import post_as_the_job_says
 from pkm_post.freecad_app.tools import set_gauge_length
-from pkm_post.geometry.triangles import is_closed, volume
+from pkm_post.geometry.polygons import is_closed, volume
 from pkm_post.model import Refused
 
 CLEARANCE, HOLDER = 2.0, 25.0

@@ -9,7 +9,7 @@ import Part
 import pytest
 
 from pkm_post.cli import main
-from pkm_post.geometry.triangles import is_closed, volume
+from pkm_post.geometry.polygons import is_closed, volume
 from pkm_post.reading.mesh_file import read_mesh
 
 MICRON = 1e-3

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, Cylinders, cut_small, dot, nearest_of_triangle
+from pkm_post.geometry import Array, Cylinders, dot, nearest_on_triangle, subdivide
 from pkm_post.machine.collisions.moving_bodies import Mover
 from pkm_post.machine.kinematics.inverse import Pose
 from pkm_post.machine.reach.collision_mesh import Part, pairs_within
@@ -170,7 +170,7 @@ def _exactly(cylinders: Cylinders, part: Part, allowed: Array, rounding: Array) 
         open_yet = few & (bound < np.minimum(distance, allowed)[pose] + rounding[pose]) & (distance > 0)[pose]
         rows, others = pose[open_yet], triangle[open_yet]
         for some in _chunks(len(rows), _PAIRS):
-            found, where = nearest_of_triangle(cylinders.take(rows[some]), part.triangles[others[some]])
+            found, where = nearest_on_triangle(cylinders.take(rows[some]), part.triangles[others[some]])
             found = np.maximum(found - rounding[rows[some]], 0.0)
             best = np.lexsort((found, rows[some]))
             best = best[np.append(True, np.diff(rows[some][best]) > 0)]
@@ -220,7 +220,7 @@ class Obstacle:
         """An obstacle from a mesh in the work frame."""
         triangles = placed(mesh, machine_from_work)
         size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
-        return cls(name, mesh.source, Part.of(cut_small(triangles, max(size, 1e-3) / _PIECES)), len(mesh.triangles))
+        return cls(name, mesh.source, Part.of(subdivide(triangles, max(size, 1e-3) / _PIECES)), len(mesh.triangles))
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, dot, inside, numbered
+from pkm_post.geometry import Array, dot, expand_counts, grid_points_inside
 from pkm_post.machine.collisions.moving_bodies import Profile
 from pkm_post.machine.reach.pose_path import Way
 
@@ -55,7 +55,7 @@ class Grid:
         size = np.maximum(high - low, 1e-3)
         step = float(max((size.prod() / _POINTS) ** (1 / 3), size.max() / 1000))
         x, y, z = (np.arange(a + _OFF_EDGES * min(step, b - a), b, step) for a, b in zip(low, high, strict=True))
-        return cls((x, y, z), step, inside(triangles, x, y, z))
+        return cls((x, y, z), step, grid_points_inside(triangles, x, y, z))
 
     def points(self, number: Array) -> Array:
         """Coordinates of points by number, (K, 3)."""
@@ -96,7 +96,7 @@ class Swept:
         change = way.travel[cells] + way.angle[cells] * farthest
         step = max(step, float(change.sum()) * pairs / _MOST_PAIRS) / 2
         count = np.maximum(np.ceil(change / step), 1).astype(np.int64)
-        row, number = numbered(count)
+        row, number = expand_counts(count)
         run = np.append(np.diff(cells[row]) > 1, True)
         stride = np.floor(np.cumsum((change / count)[row]) / step)
         kept = np.flatnonzero(run | np.append(np.diff(stride) > 0, True))
@@ -208,7 +208,7 @@ def _near(grid: Grid, swept: Swept, profile: Profile, more: float) -> Iterator[t
             begin.append(ends[0])
             count.append(ends[1] - ends[0])
         for rows in _batches(np.prod(count, axis=0)):
-            row, number = numbered(np.prod(count, axis=0)[rows])
+            row, number = expand_counts(np.prod(count, axis=0)[rows])
             pose = rows[row]
             number, z = np.divmod(number, count[2][pose])
             x, y = np.divmod(number, count[1][pose])

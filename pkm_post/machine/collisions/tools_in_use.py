@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, dot, numbered
+from pkm_post.geometry import Array, dot, expand_counts
 from pkm_post.machine.collisions.contacts import Contacts, Driven
 from pkm_post.machine.collisions.moving_bodies import Profile, cutter_profile
 from pkm_post.model import Kind, Setup, Shank, Tool, largest_corner
@@ -100,7 +100,7 @@ def _reaches(driven: Driven, used: InUse, cells: Array, point: Array) -> bool:
     high, out = _in_tool(way.tip[cells], way.axis[cells], point)
     cells = cells[(high > -change) & (high < profile.height[-1] + change) & (out < wide + change)]
     change = way.travel[cells] + way.angle[cells] * profile.farthest
-    row, number = numbered(np.maximum(np.ceil(change / _STEP), 1).astype(np.int64))
+    row, number = expand_counts(np.maximum(np.ceil(change / _STEP), 1).astype(np.int64))
     share = (number + 1) / np.maximum(np.ceil(change / _STEP), 1)[row]
     tip, axis, _, _ = way.inside(cells[row], share)
     return bool(profile.contains(*_in_tool(tip, axis, point), _STEP).any())

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry import Array, cross, dot, fill_frame, length_of, norm, untwisted
+from pkm_post.geometry import Array, cross, dot, length_of, norm, torsion_free_axes, write_frames
 from pkm_post.machine.kinematics.screw import screw_correction
 from pkm_post.model import Machine
 
@@ -32,7 +32,7 @@ def platform_rotation(axis: Array, spin: Array) -> Array:
     Raises:
         ValueError: a tool axis points straight down, where the shortest rotation is not unique.
     """
-    x, y = untwisted(axis)
+    x, y = torsion_free_axes(axis)
     cosine, sine = np.cos(spin)[:, None], np.sin(spin)[:, None]
     return np.stack([cosine * x + sine * y, cosine * y - sine * x, axis], axis=-1)
 
@@ -168,7 +168,7 @@ def _fill(
     """Write the 17 numbers of each pose, (17, N): p, R^T p, |p|^2, 1, and the columns of R in sequence."""
     p, turned, x, y, k = numbers[0:3], numbers[3:6], numbers[8:11], numbers[11:14], numbers[14:17]
     k[:] = axis.T
-    fill_frame(x, y, k, spin)
+    write_frames(x, y, k, spin)
     np.multiply(machine.spindle_nose + tool_length, k, out=p)
     p += tip.T
     p -= middle[:, None]

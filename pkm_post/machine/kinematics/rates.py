@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry import Array, cross, dot, fill_frame, norm
+from pkm_post.geometry import Array, cross, dot, norm, write_frames
 from pkm_post.machine.kinematics.inverse import (
     angular_rates,
     arms_from_tip,
@@ -71,7 +71,7 @@ def _numbers(machine: Machine, middle: Array, poses: Poses, rows: slice, turn: t
         np.multiply(reach, k[order], out=p[order])
         p[order] += tip[rows].T
     p[0] -= middle[:, None]
-    fill_frame(x[0], y[0], k[0], poses.spin[rows])
+    write_frames(x[0], y[0], k[0], poses.spin[rows])
     velocity, acceleration = (np.ascontiguousarray(rates.T) for rates in turn)
     for column in (x, y):
         column[1] = _cross(velocity, column[0])

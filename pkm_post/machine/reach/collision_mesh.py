@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import TRIANGLE_EDGES, Array, Cylinders, cross, dot, norm, separate, shadow
+from pkm_post.geometry import TRIANGLE_EDGES, Array, Cylinders, cross, dot, half_extents, norm, separation
 from pkm_post.machine.kinematics.placed_machine import corners_of
 from pkm_post.model import Box
 
@@ -146,7 +146,7 @@ def _lowered(
     """
     lowest = np.full(len(least), np.inf)
     while True:
-        offset = dot(cylinders.middle, plane) + shadow(cylinders, plane)
+        offset = dot(cylinders.middle, plane) + half_extents(cylinders, plane)
         x, y, z = (np.einsum("kj,kj->k", part.triangles[triangle, corner], plane[pose]) for corner in range(3))
         bound = np.maximum(bound, np.minimum(np.minimum(x, y), z) - offset[pose])
         near = bound < least[pose] - _HAIR
@@ -173,4 +173,4 @@ def _from_balls(cylinders: Cylinders, balls: tuple[Array, Array], pose: Array, b
 
 def _measure(cylinders: Cylinders, part: Part, pose: Array, triangle: Array) -> tuple[Array, Array]:
     """Distances (K,) and normals (K, 3) of planes between cylinders and triangles, pair by pair."""
-    return separate(cylinders.take(pose), part.triangles[triangle], part.faces[triangle], TRIANGLE_EDGES)
+    return separation(cylinders.take(pose), part.triangles[triangle], part.faces[triangle], TRIANGLE_EDGES)

@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from pkm_post.geometry import Array, cylinder_to_corners, segment_to_box, segment_to_cylinder, segment_to_segment
+from pkm_post.geometry import Array, segment_to_box, segment_to_cylinder, segment_to_segment, separation
 from pkm_post.machine.kinematics.inverse import arms_from_tip
 from pkm_post.machine.kinematics.placed_machine import (
     Pieces,
@@ -124,7 +124,7 @@ def _body_to_fixtures(body: Body, placed: Placed) -> Array:
     count = len(placed)
     faces, cylinders = np.broadcast_to(np.eye(3), (count, 3, 3)), cylinders_of(placed, body)
     columns = [
-        cylinder_to_corners(cylinders, np.broadcast_to(corners_of(box), (count, 8, 3)), faces, _BOX_EDGES)
+        separation(cylinders, np.broadcast_to(corners_of(box), (count, 8, 3)), faces, _BOX_EDGES)[0]
         for box in placed.machine.fixtures
     ]
     return np.stack(columns, axis=1) - placed.machine.clearance

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, angle_between, cells, dot, norm, unit
+from pkm_post.geometry import Array, angle_between, dot, grid_cells, norm, unit
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.compensation.profile import Profile
 
@@ -98,7 +98,7 @@ class Sweep:
         """
         best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
         done = 0
-        for rows in cells(points, _POINTS_PER_CELL):
+        for rows in grid_cells(points, _POINTS_PER_CELL):
             best[rows], row[rows] = self._in_cell(points[rows], tolerance)
             done += len(rows)
             if progress is not None:
@@ -109,7 +109,7 @@ class Sweep:
         """The distances and rows of points in one cell."""
         best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
         near_all = self._near_steps(points)
-        for rows in cells(points, _POINTS_TOGETHER) if len(near_all) else []:
+        for rows in grid_cells(points, _POINTS_TOGETHER) if len(near_all) else []:
             near = self._nearer(points[rows], near_all)
             size = max(1, _AT_ONCE // max(1, len(near)))
             for part in (rows[start : start + size] for start in range(0, len(rows) if len(near) else 0, size)):

@@ -14,7 +14,7 @@ from enum import Enum
 
 import numpy as np
 
-from pkm_post.geometry import along, angle_between, towards, untwisted
+from pkm_post.geometry import along, angle_between, torsion_free_axes, towards
 from pkm_post.model import Array
 from pkm_post.reading import axis_of
 
@@ -110,7 +110,7 @@ def _filled(azimuth: Array, at_pole: Array) -> Array:
 
 def _roll_pitch_yaw(axis: Array, spin: Array) -> Array:
     """A, B, C in degrees, (N, 3), of R(k, psi) = Rmin(k) Rz(psi): without torsion where no spin is known."""
-    straight, across = untwisted(axis)
+    straight, across = torsion_free_axes(axis)
     cosine, sine = np.cos(np.nan_to_num(spin))[:, None], np.sin(np.nan_to_num(spin))[:, None]
     x, y = cosine * straight + sine * across, cosine * across - sine * straight
     pitch, yaw = np.arcsin(np.clip(-x[:, 2], -1, 1)), np.arctan2(x[:, 1], x[:, 0])

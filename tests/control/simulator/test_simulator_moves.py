@@ -6,7 +6,7 @@ import pytest
 
 from pkm_post.control.simulator.moves import Blended, Cubic, ramps_of, share
 from pkm_post.control.simulator.profiles import endless, go_to, stop
-from pkm_post.geometry import hermite
+from pkm_post.geometry import curves as hermite
 
 PICOMETRE = 1e-9  # mm
 RNG = np.random.default_rng(7)

@@ -6,7 +6,7 @@ import pytest
 from simulated import PROGRAM_SETTINGS, curved_motion
 
 from pkm_post.control.simulator.numerals import kept
-from pkm_post.geometry.hermite import hermite_lengths
+from pkm_post.geometry.curves import hermite_lengths
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.writing.controllers.pmac import program_text
 

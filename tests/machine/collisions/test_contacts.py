@@ -9,7 +9,7 @@ from machines import direction, example
 from meshes import ball, box
 
 from pkm_post.geometry.distances import point_to_cylinder, segment_to_segment
-from pkm_post.geometry.triangles import cut_small
+from pkm_post.geometry.polygons import subdivide
 from pkm_post.machine.collisions.contacts import contacts, contacts_at_ends
 from pkm_post.machine.collisions.moving_bodies import Piece, of_body, of_struts, of_tool
 from pkm_post.machine.kinematics.placed_machine import Pieces, Placed
@@ -33,7 +33,7 @@ def straight(tips, axes=None, length=LENGTH, spins=0.0):
 
 
 def found(way, mover, mesh, clearance, longest=25.0):
-    return contacts(way, mover, Part.of(cut_small(mesh, longest)), clearance, np.zeros(len(way), dtype=int))
+    return contacts(way, mover, Part.of(subdivide(mesh, longest)), clearance, np.zeros(len(way), dtype=int))
 
 
 @pytest.mark.parametrize("clearance", [0.5, 3.0])
@@ -101,7 +101,7 @@ def test_rounding_grows_a_piece_all_round():
 
 def points_of(mesh, apart):
     """Points of triangles, no point of the surface farther from one of them than ``apart``."""
-    small = cut_small(mesh, apart)
+    small = subdivide(mesh, apart)
     return np.unique(small.reshape(-1, 3).round(9), axis=0)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pkm_post.geometry import arc_sweep
-from pkm_post.geometry.arcs import arc_length, arc_points
+from pkm_post.geometry.curves import arc_length, arc_points
 from pkm_post.model import Kind
 from pkm_post.model.diagnostics import errors
 from pkm_post.reading.cldata import ReadOptions, read

@@ -9,7 +9,7 @@ from machines import rotation_about
 from programs import cone, program, square_with_arc
 
 from pkm_post.geometry import arc_points, arc_sweep, norm
-from pkm_post.geometry.arcs import arc_length
+from pkm_post.geometry.curves import arc_length
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.toolpath.placement import mirror, mirrors, rotation, transform
 

@@ -8,7 +8,7 @@ from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.geometry import angle_between, arc_sweep, norm, unit
-from pkm_post.geometry.arcs import arc_length
+from pkm_post.geometry.curves import arc_length
 from pkm_post.model import Event, EventKind, Kind, Tool, Trajectory
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS

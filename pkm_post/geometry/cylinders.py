@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Separation: lower bound of the distance of a cylinder and a polyhedron by a separating plane.
+"""Cylinders: distances of solid cylinders with flat ends from convex polyhedra and triangles. Lengths in mm.
 
-For any direction n, the bodies are no closer than their projections on n. The tested directions are those in which
-bodies touch: normals of faces, the axis of the cylinder, across the axis and an edge, and from the cylinder to a
-corner. Faces, flat ends, sides and corners are exact. For a rim at an edge, the points of the edges nearest to the rim
-are tested as well, in two iterations; the true distance may exceed the result, but is never less. Where the bodies
-overlap, the result is negative. Lengths in mm.
+``separation`` gives a lower bound from a separating plane. For any direction n, the bodies are no closer than their
+projections on n. The tested directions are those in which bodies touch: normals of faces, the axis of the cylinder,
+across the axis and an edge, and from the cylinder to a corner. Faces, flat ends, sides and corners are exact. For a rim
+at an edge, the points of the edges nearest to the rim are tested as well, in two iterations; the true distance may
+exceed the result, but is never less. Where the bodies overlap, the result is negative.
+
+``nearest_on_triangle`` is slower and exact to a tenth of a micron. The distance from the cylinder is convex over the
+plane of the triangle, so its minimum is that of the whole plane if it is inside the triangle, else on an edge.
 """
 
 from __future__ import annotations
@@ -14,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pkm_post.geometry.distances import nearest_to_cylinder, point_to_cylinder
 from pkm_post.geometry.vectors import Array, cross, dot, norm
 
 TRIANGLE_EDGES = np.array([[0, 1], [1, 2], [2, 0]])
@@ -46,13 +50,8 @@ class Cylinders:
         return Cylinders(self.middle[rows], self.axis[rows], self.half[rows], self.radius[rows])
 
 
-def cylinder_to_corners(cylinders: Cylinders, corners: Array, faces: Array, edges: Array) -> Array:
-    """Lower bounds of the distances of N cylinders from N convex bodies, (N,); arguments as in ``separate``."""
-    return separate(cylinders, corners, faces, edges)[0]
-
-
-def separate(cylinders: Cylinders, corners: Array, faces: Array, edges: Array) -> tuple[Array, Array]:
-    """The same bounds with their directions (N, 3) from cylinder to body.
+def separation(cylinders: Cylinders, corners: Array, faces: Array, edges: Array) -> tuple[Array, Array]:
+    """Lower bounds of the distances of N cylinders from N convex bodies, (N,), and directions (N, 3) to the bodies.
 
     Args:
         cylinders: the cylinders.
@@ -89,7 +88,7 @@ def _widest_gap(cylinders: Cylinders, from_middle: Array, tried: Array) -> tuple
     return gap[rows, best], sign[:, None] * directions[rows, best]
 
 
-def shadow(cylinders: Cylinders, direction: Array) -> Array:
+def half_extents(cylinders: Cylinders, direction: Array) -> Array:
     """Half extents of the cylinders in unit directions (N, 3), (N,)."""
     return _shadow(dot(direction, cylinders.axis), cylinders.half, cylinders.radius)
 
@@ -120,3 +119,59 @@ def _nearest_on(start: Array, end: Array, point: Array) -> Array:
     way = end - start
     share = dot(point - start, way) / np.maximum(dot(way, way), _SHORT)
     return start + np.clip(share, 0.0, 1.0)[..., None] * way
+
+
+_FLAT = 1e-12
+"""mm^2: a triangle of less area has no plane and is represented by its edges."""
+
+
+def nearest_on_triangle(cylinders: Cylinders, triangles: Array) -> tuple[Array, Array]:
+    """Distances of N cylinders from N triangles, (N,), and the nearest points of these, (N, 3); 0 where they meet.
+
+    Args:
+        cylinders: N cylinders with flat ends; the radius may be 0, and so may the length.
+        triangles: (N, 3, 3) corners, one triangle for each cylinder.
+    """
+    frame = _frames(cylinders.axis)
+    corners = (triangles - cylinders.middle[:, None]) @ frame.transpose(0, 2, 1)
+    radius, half = cylinders.radius, cylinders.half
+    points = nearest_to_cylinder(corners, np.roll(corners, -1, axis=1), radius[:, None], -half[:, None], half[:, None])
+    points = np.concatenate([points, _nearest_in_plane(corners, radius, half)[:, None]], axis=1)
+    distance = point_to_cylinder(points, radius[:, None], -half[:, None], half[:, None])
+    distance[:, 3] = np.where(_inside(corners, points[:, 3]), distance[:, 3], np.inf)
+    best = np.argmin(distance, axis=1)
+    rows = np.arange(len(best))
+    found = (points[rows, best][:, None] @ frame)[:, 0] + cylinders.middle
+    return distance[rows, best], found
+
+
+def _frames(axis: Array) -> Array:
+    """Rotations (N, 3, 3) whose rows are two directions across each axis and the axis."""
+    least = np.argmin(np.abs(axis), axis=1)
+    x = cross(axis, np.eye(3)[least])
+    x /= norm(x)[:, None]
+    return np.stack([x, cross(axis, x), axis], axis=1)
+
+
+def _nearest_in_plane(corners: Array, radius: Array, half: Array) -> Array:
+    """A nearest point of the plane of each triangle to the cylinder, (N, 3), in the cylinder's frame."""
+    normal = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = norm(normal)
+    normal = np.divide(normal, length[:, None], out=np.zeros_like(normal), where=length[:, None] > _FLAT)
+    across = np.hypot(normal[:, 0], normal[:, 1])
+    share = np.divide(radius, across, out=np.zeros_like(across), where=across > _FLAT)
+    farthest = np.column_stack([share * normal[:, 0], share * normal[:, 1], np.copysign(half, normal[:, 2])])
+    height, reach = dot(normal, corners[:, 0]), dot(normal, farthest)
+    # The farthest point and its opposite are in the cylinder, and so is the intersection of the plane with their
+    # segment.
+    part = np.clip(np.divide(height, reach, out=np.zeros_like(height), where=reach > 0), -1.0, 1.0)
+    on_body = part[:, None] * farthest
+    return on_body + (height - dot(normal, on_body))[:, None] * normal
+
+
+def _inside(corners: Array, points: Array) -> Array:
+    """Whether points of the planes are in the triangles, (N,); False for triangles of no area."""
+    edges = np.roll(corners, -1, axis=1) - corners
+    normal = cross(edges[:, 0], edges[:, 1])
+    sides = dot(cross(edges, points[:, None] - corners), normal[:, None])
+    return (sides >= 0).all(axis=1) & (norm(normal) > _FLAT)

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Nearest points on NURBS surfaces: feet of perpendiculars from many points at once.
+"""Projection: feet of perpendiculars from points to surfaces. Lengths in mm.
 
-Takes a surface and points in mm; returns parameters (u, v) of the feet, and flags of the converged ones. Samples of the
-surface give the initial guess, Newton's method on the squared distance the foot. Where the surface ends before the
-perpendicular, the foot is on the border.
+On plane, sphere, cylinder, cone and torus, all unbounded, the foot is in closed form: feet (N, 3) and unit normals
+(N, 3), NaN where a point has no unique foot, on the axis of a cylinder for example. Normals point away from the axis or
+the centre, those of a plane along its axis.
+
+On a NURBS surface, samples give the initial guess and Newton's method on the squared distance the parameters (u, v) of
+the foot. Where the surface ends before the perpendicular, the foot is on the border.
 """
 
 from __future__ import annotations
@@ -12,30 +15,82 @@ import math
 
 import numpy as np
 
-from pkm_post.geometry.cells import cells
 from pkm_post.geometry.nurbs import NurbsSurface
-from pkm_post.geometry.vectors import Array, dot
+from pkm_post.geometry.vectors import Array, dot, grid_cells, norm
 
+Feet = tuple[Array, Array]
 _SAMPLES = 6000
 """Most samples of the surface."""
-
 _SAMPLES_PER_POLE = 4
 """Samples per pole along a direction."""
-
 _POINTS_PER_CELL = 200
 """Approximate number of points on a surface that are compared with samples at a time."""
-
 _ITERATIONS = 30
 _SMALL = 1e-5
 """Newton step in mm that is taken even if the distance grows: this close to the minimum, growth is rounding."""
-
 _ARRIVED = 1e-8
 """Newton step in mm that is the last one: its error is of the order of its square."""
-
 Closed = tuple[bool, bool]
 
 
-def nearest(surface: NurbsSurface, points: Array, closed: Closed = (False, False)) -> tuple[Array, Array]:
+def plane_feet(points: Array, origin: Array, axis: Array) -> Feet:
+    """Feet on the plane through the origin across the unit axis."""
+    normals = np.broadcast_to(axis, points.shape)
+    return points - dot(points - origin, normals)[:, None] * normals, normals
+
+
+def sphere_feet(points: Array, centre: Array, radius: float) -> Feet:
+    """Feet on a sphere."""
+    normals = _direction(points - centre)
+    return centre + radius * normals, normals
+
+
+def cylinder_feet(points: Array, centre: Array, axis: Array, radius: float) -> Feet:
+    """Feet on the cylinder about the unit axis through the centre."""
+    along, across = _parts(points - centre, axis)
+    normals = _direction(across)
+    return centre + along[:, None] * axis + radius * normals, normals
+
+
+def cone_feet(points: Array, apex: Array, axis: Array, half_angle: float) -> Feet:
+    """Feet on the double cone about the unit axis, on the same side of the apex as the point.
+
+    Args:
+        points: (N, 3).
+        apex: (3,).
+        axis: (3,) unit axis.
+        half_angle: angle between axis and surface, 0 < half_angle < pi/2, rad.
+    """
+    along, across = _parts(points - apex, axis)
+    side = np.where(along < 0, -1.0, 1.0)
+    outward = _direction(across)
+    sine, cosine = math.sin(half_angle), math.cos(half_angle)
+    line = sine * outward + (cosine * side)[:, None] * axis
+    normals = cosine * outward - (sine * side)[:, None] * axis
+    return apex + dot(points - apex, line)[:, None] * line, normals
+
+
+def torus_feet(points: Array, centre: Array, axis: Array, major: float, minor: float) -> Feet:
+    """Feet on the torus about the unit axis: tube of radius minor around a circle of radius major."""
+    _, across = _parts(points - centre, axis)
+    middle = centre + major * _direction(across)
+    normals = _direction(points - middle)
+    return middle + minor * normals, normals
+
+
+def _parts(vectors: Array, axis: Array) -> tuple[Array, Array]:
+    along = vectors @ axis
+    return along, vectors - along[:, None] * axis
+
+
+def _direction(vectors: Array) -> Array:
+    """Unit vectors, NaN for those too short to have a direction."""
+    length = norm(vectors)
+    unit: Array = vectors / np.where(length > 1e-9, length, np.nan)[:, None]
+    return unit
+
+
+def nearest_on_nurbs(surface: NurbsSurface, points: Array, closed: Closed = (False, False)) -> tuple[Array, Array]:
     """Parameters of the points of a surface nearest to given points.
 
     Args:
@@ -58,7 +113,7 @@ def nearest(surface: NurbsSurface, points: Array, closed: Closed = (False, False
             break
         step = _step(found, points[open_rows], at[open_rows], bounds, closed) * scale[open_rows, None]
         moved = _within(at[open_rows] + step, bounds, closed)
-        length = np.abs(step[:, 0]) * _length(found[1]) + np.abs(step[:, 1]) * _length(found[2])
+        length = np.abs(step[:, 0]) * norm(found[1]) + np.abs(step[:, 1]) * norm(found[2])
         last = (length < _ARRIVED) & (scale[open_rows] == 1.0)
         trial = surface.derivatives(*moved.T)
         better = _square(trial[0] - points[open_rows]) <= _square(found[0] - points[open_rows])
@@ -69,6 +124,25 @@ def nearest(surface: NurbsSurface, points: Array, closed: Closed = (False, False
         arrived[open_rows[last]] = True
         open_rows, found = open_rows[~last], found[:, ~last]
     return at, arrived
+
+
+def _seeds(surface: NurbsSurface, points: Array) -> Array:
+    """Parameters (N, 2) of the nearest samples.
+
+    Points of one cell are processed together: a sample farther from the cell centre than the nearest one, by more than
+    twice the radius of the cell, is not the nearest to any of them.
+    """
+    parameters, grid = samples(surface)
+    chosen = np.zeros(len(points), dtype=np.int64)
+    for rows in grid_cells(points, _POINTS_PER_CELL):
+        some = points[rows]
+        middle = (some.min(axis=0) + some.max(axis=0)) / 2
+        radius = norm(some - middle).max()
+        from_middle = norm(grid - middle)
+        near = np.flatnonzero(from_middle <= from_middle.min() + 2 * radius)
+        moved = grid[near] - middle
+        chosen[rows] = near[np.argmin(_square(moved) - 2 * (some - middle) @ moved.T, axis=1)]
+    return parameters[chosen]
 
 
 def samples(surface: NurbsSurface) -> tuple[Array, Array]:
@@ -84,25 +158,6 @@ def _evenly(breaks: Array, count: int) -> Array:
     """About ``count`` parameters, equally many in each span."""
     inside = max(2, math.ceil(count / (len(breaks) - 1)))
     return np.interp(np.arange((len(breaks) - 1) * inside + 1) / inside, np.arange(len(breaks)), breaks)
-
-
-def _seeds(surface: NurbsSurface, points: Array) -> Array:
-    """Parameters (N, 2) of the nearest samples.
-
-    Points of one cell are processed together: a sample farther from the cell centre than the nearest one, by more than
-    twice the radius of the cell, is not the nearest to any of them.
-    """
-    parameters, grid = samples(surface)
-    chosen = np.zeros(len(points), dtype=np.int64)
-    for rows in cells(points, _POINTS_PER_CELL):
-        some = points[rows]
-        middle = (some.min(axis=0) + some.max(axis=0)) / 2
-        radius = _length(some - middle).max()
-        from_middle = _length(grid - middle)
-        near = np.flatnonzero(from_middle <= from_middle.min() + 2 * radius)
-        moved = grid[near] - middle
-        chosen[rows] = near[np.argmin(_square(moved) - 2 * (some - middle) @ moved.T, axis=1)]
-    return parameters[chosen]
 
 
 def _step(found: Array, points: Array, at: Array, bounds: Array, closed: Closed) -> Array:
@@ -138,7 +193,3 @@ def _within(at: Array, bounds: Array, closed: Closed) -> Array:
 
 def _square(vectors: Array) -> Array:
     return dot(vectors, vectors)
-
-
-def _length(vectors: Array) -> Array:
-    return np.sqrt(_square(vectors))

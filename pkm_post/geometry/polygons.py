@@ -1,34 +1,23 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Triangles: meshes (T, 3, 3): subdivision, closedness, volume, and points inside.
+"""Polygons: triangle meshes (T, 3, 3) and plane outlines: subdivision, closedness, volume, and points inside.
 
-Units: mm.
+An outline is a set of segments in any order and sense. Units: mm.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from pkm_post.geometry.gather import numbered
-from pkm_post.geometry.vectors import Array, cross, dot, norm
+from pkm_post.geometry.vectors import Array, cross, dot, expand_counts, norm
 
 _CORNER = 1e-5
 """mm within which corners coincide."""
 _POINTS_AT_ONCE = 4_000_000
-
-
-def cut_small(triangles: Array, longest: float) -> Array:
-    """The same surface in triangles with no edge longer than ``longest``."""
-    done = []
-    while len(triangles):
-        edges = norm(np.roll(triangles, -1, axis=1) - triangles)
-        long = edges.max(axis=1) > longest
-        done.append(triangles[~long])
-        triangles, edges = triangles[long], edges[long]
-        first = np.argmax(edges, axis=1)[:, None] + np.arange(3)
-        a, b, c = np.take_along_axis(triangles, (first % 3)[..., None], axis=1).transpose(1, 0, 2)
-        middle = (a + b) / 2
-        triangles = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
-    return np.concatenate(done) if done else triangles
+_TOGETHER = 256
+"""Points whose rays are traced at a time: neighbours along the second coordinate, with few segments to cross."""
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 
 def is_closed(triangles: Array) -> bool:
@@ -49,7 +38,22 @@ def volume(triangles: Array) -> float:
     return float(dot(a, cross(b, c)).sum() / 6)
 
 
-def inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
+def subdivide(triangles: Array, longest: float) -> Array:
+    """The same surface in triangles with no edge longer than ``longest``."""
+    done = []
+    while len(triangles):
+        edges = norm(np.roll(triangles, -1, axis=1) - triangles)
+        long = edges.max(axis=1) > longest
+        done.append(triangles[~long])
+        triangles, edges = triangles[long], edges[long]
+        first = np.argmax(edges, axis=1)[:, None] + np.arange(3)
+        a, b, c = np.take_along_axis(triangles, (first % 3)[..., None], axis=1).transpose(1, 0, 2)
+        middle = (a + b) / 2
+        triangles = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate(done) if done else triangles
+
+
+def grid_points_inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
     """Points of a grid inside a closed mesh, (X, Y, Z); overlapping solids count as one.
 
     From each point in the plane a ray goes up: a point is outside if as many triangles below it face up as face down. A
@@ -62,14 +66,14 @@ def inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
         y: (Y,) likewise.
         z: (Z,) likewise.
     """
-    column, height, up = _crossings(triangles, x, y)
+    column, height, up = _crossings_of_vertical_rays(triangles, x, y)
     first_above = np.searchsorted(z, height)
     winding = np.zeros((len(x) * len(y), len(z) + 1), dtype=np.int32)
     np.add.at(winding, (column, first_above), up)
     return (np.cumsum(winding[:, :-1], axis=1) != 0).reshape(len(x), len(y), len(z))
 
 
-def _crossings(triangles: Array, x: Array, y: Array) -> tuple[Array, Array, Array]:
+def _crossings_of_vertical_rays(triangles: Array, x: Array, y: Array) -> tuple[Array, Array, Array]:
     """Intersections of vertical rays with triangles: ray number, height, and 1 or -1 by orientation, (K,) each."""
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     begin, end = (
@@ -79,7 +83,7 @@ def _crossings(triangles: Array, x: Array, y: Array) -> tuple[Array, Array, Arra
     count = end - begin
     found = [(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0, dtype=np.int32))]
     for rows in _batches(count.prod(axis=1)):
-        row, number = numbered(count[rows].prod(axis=1))
+        row, number = expand_counts(count[rows].prod(axis=1))
         row = rows[row]
         at_x, at_y = begin[row, 0] + number // count[row, 1], begin[row, 1] + number % count[row, 1]
         point = np.column_stack([x[at_x], y[at_y]])
@@ -108,3 +112,49 @@ def _batches(work: Array) -> list[Array]:
     rows = np.flatnonzero(work)
     number = np.cumsum(work[rows]) // _POINTS_AT_ONCE
     return np.split(rows, np.flatnonzero(np.diff(number)) + 1) if len(rows) else []
+
+
+def points_within(points: Array, segments: Array, margins: Array) -> tuple[Flags, Flags]:
+    """Flags of points within closed lines, excluding holes, and of points too close to a line to decide.
+
+    From inside, a ray along the first coordinate crosses the lines an odd number of times.
+
+    Args:
+        points: (N, 2).
+        segments: (S, 4) starts and ends; together they are closed lines.
+        margins: (S,) distance from a segment within which a point is in doubt.
+
+    Returns:
+        Inside (N,) and in doubt (N,).
+    """
+    grid_points_inside, doubt = np.zeros(len(points), dtype=np.bool_), np.zeros(len(points), dtype=np.bool_)
+    order = np.argsort(points[:, 1], kind="stable")
+    low = np.minimum(segments[:, 1], segments[:, 3]) - margins
+    high = np.maximum(segments[:, 1], segments[:, 3]) + margins
+    for start in range(0, len(points), _TOGETHER):
+        rows = order[start : start + _TOGETHER]
+        level = points[rows, 1]
+        some = np.flatnonzero((high >= level[0]) & (low <= level[-1]))
+        grid_points_inside[rows] = _crossings_of_rays(points[rows], segments[some]) % 2 == 1
+        doubt[rows] = (_distances(points[rows], segments[some]) <= margins[some]).any(axis=1)
+    return grid_points_inside, doubt
+
+
+def _crossings_of_rays(points: Array, segments: Array) -> Array:
+    """Number of segments that cross the ray of each point, (N,)."""
+    x, y = points[:, :1], points[:, 1:]
+    x0, y0, x1, y1 = segments.T
+    passes = (y0 > y) != (y1 > y)
+    rise = np.where(y1 != y0, y1 - y0, 1.0)
+    count: Array = np.sum(passes & (x0 + (y - y0) * (x1 - x0) / rise > x), axis=1)
+    return count
+
+
+def _distances(points: Array, segments: Array) -> Array:
+    """Distances of points to segments, (N, S)."""
+    start, way = segments[:, :2], segments[:, 2:] - segments[:, :2]
+    away = points[:, None] - start
+    square = np.einsum("sj,sj->s", way, way)
+    share = np.einsum("nsj,sj->ns", away, way) / np.where(square > 0.0, square, 1.0)
+    across = away - np.clip(share, 0.0, 1.0)[..., None] * way
+    return np.sqrt(np.einsum("nsj,nsj->ns", across, across))

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
+import pytest
+from machines import direction, rotation_about
 
-from pkm_post.geometry import along, along_rates, angle_between, dot, norm, towards, unit
+from pkm_post.geometry import along, along_rates, angle_between, dot, norm, torsion, torsion_free_axes, towards, unit
 
 
 def random_units(rng, count):
@@ -44,3 +46,39 @@ def test_rates_against_finite_differences_across_the_series_switch():
     np.testing.assert_allclose(norm(here), 1, atol=1e-14)
     np.testing.assert_allclose(first, (direction(step) - direction(-step)) / (2 * step), atol=1e-6)
     np.testing.assert_allclose(curve, (direction(step) - 2 * here + direction(-step)) / step**2, atol=1e-4)
+
+
+def axes(count=50):
+    random = np.random.default_rng(8)
+    return direction(random.uniform(0, 170, count), random.uniform(0, 360, count)).T
+
+
+def test_the_frame_is_the_shortest_rotation_from_upright():
+    # By Rodrigues' formula about z x k, by the angle between them.
+    for axis, x, y in zip(axes(), *torsion_free_axes(axes()), strict=True):
+        about, angle = unit(np.cross([0, 0, 1], axis)[None])[0], np.arccos(axis[2])
+        for start, found in (([1.0, 0, 0], x), ([0, 1.0, 0], y)):
+            turned = (
+                np.cos(angle) * np.array(start)
+                + np.sin(angle) * np.cross(about, start)
+                + (1 - np.cos(angle)) * (about @ start) * about
+            )
+            assert found == pytest.approx(turned)
+
+
+def test_the_torsion_of_a_frame_is_the_turn_it_was_given():
+    random = np.random.default_rng(9)
+    axis, psi = axes(), random.uniform(-3, 3, 50)
+    x, y = torsion_free_axes(axis)
+    turned = np.cos(psi)[:, None] * x + np.sin(psi)[:, None] * y
+    assert torsion(axis, 2.5 * turned + 0.7 * axis) == pytest.approx(psi)
+
+
+def test_a_turn_about_z_alone_is_all_torsion():
+    rotation = rotation_about(2, 40.0)
+    assert np.degrees(torsion(rotation[:, 2][None], rotation[:, 0][None])) == pytest.approx([40.0])
+
+
+def test_straight_down_has_no_shortest_rotation():
+    with pytest.raises(ValueError, match="straight down"):
+        torsion_free_axes(np.array([[0.0, 0.0, -1.0]]))

@@ -1,16 +1,57 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cubic Hermite segments: the motion of a controller between two position-velocity-time points.
+"""Curves: circular arcs and helices, and cubic Hermite segments.
 
-p(t) = p0 + v0 t + c2 t^2 + c3 t^3 with c2 = (3 d - (2 v0 + v1) T) / T^2, c3 = (-2 d + (v0 + v1) T) / T^3, d = p1 - p0:
-the unique cubic with these end conditions. Positions and speeds are (N, 6), durations T (N,); the elapsed share of the
-duration is (M,), the same for all, or (N, M), which gives (N, M, 6).
+An arc turns right-handed about its unit axis. A Hermite segment is the motion of a controller between two
+position-velocity-time points: p(t) = p0 + v0 t + c2 t^2 + c3 t^3 with c2 = (3 d - (2 v0 + v1) T) / T^2,
+c3 = (-2 d + (v0 + v1) T) / T^3, d = p1 - p0, the unique cubic with these end conditions. Its positions and speeds are
+(N, 6), the durations T (N,); the share of the duration is (M,), the same for all, or (N, M), which gives (N, M, 6).
+Functions of columns take (C, N) instead, which is faster for long programs.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry.vectors import Array
+from pkm_post.geometry.vectors import Array, across, cross, dot, norm
+
+_SAME_DIRECTION = 1e-9
+"""Angle in rad below which start and end count as the same point of the circle: a full circle."""
+
+
+def arc_sweep(start: Array, end: Array, centre: Array, axis: Array) -> Array:
+    """Sweep angles of arcs from start to end, 0 < sweep <= 2 pi; a full circle where both have the same direction.
+
+    Args:
+        start: (..., 3) start points.
+        end: (..., 3) end points; for a helix shifted along the axis.
+        centre: (..., 3) points on the axis.
+        axis: (..., 3) unit axes.
+    """
+    first = across(start - centre, axis)
+    last = across(end - centre, axis)
+    sweep = np.arctan2(dot(cross(first, last), axis), dot(first, last))
+    return np.where(sweep <= _SAME_DIRECTION, sweep + 2 * np.pi, sweep)
+
+
+def arc_points(start: Array, centre: Array, axis: Array, angle: Array, rise: Array) -> Array:
+    """Points of an arc that has turned by ``angle`` and risen by ``rise`` along the axis since ``start``.
+
+    Args:
+        start: (..., 3) start points.
+        centre: (..., 3) points on the axis.
+        axis: (..., 3) unit axes.
+        angle: (...) rad.
+        rise: (...) mm.
+    """
+    radius = across(start - centre, axis)
+    turned = np.cos(angle)[..., None] * radius + np.sin(angle)[..., None] * cross(axis, radius)
+    return start - radius + turned + rise[..., None] * axis
+
+
+def arc_length(start: Array, end: Array, centre: Array, axis: Array) -> Array:
+    """Lengths of arcs and helices, mm, with the mean of start and end radius."""
+    radius = (norm(across(start - centre, axis)) + norm(across(end - centre, axis))) / 2
+    return np.hypot(radius * arc_sweep(start, end, centre, axis), dot(end - start, axis))
 
 
 def _coefficients(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array]:
