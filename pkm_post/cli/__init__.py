@@ -14,8 +14,8 @@ import sys
 from collections.abc import Sequence
 
 import pkm_post
-from pkm_post.cli import machine, part_programs, pmac, post, reach, reach_map, verify
-from pkm_post.cli.inside_freecad import INTERRUPTED
+from pkm_post.cli import machine, pmac, post, programs, reach
+from pkm_post.cli.processes import INTERRUPTED
 from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 __all__ = ["main"]
@@ -38,10 +38,10 @@ def main(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except MEMORY_FAULTS as fault:
-        told = memory_diagnostic(fault, "pkm_post") or _not_installed(fault)
-        if told is None:
+        diagnostic = memory_diagnostic(fault, "pkm_post") or _not_installed(fault)
+        if diagnostic is None:
             raise
-        print(told, file=sys.stderr)
+        print(diagnostic, file=sys.stderr)
         return 1
     return code
 
@@ -75,6 +75,6 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python3 -m pkm_post", description=pkm_post.__doc__)
     parser.add_argument("--version", action="version", version=f"PKM Post {pkm_post.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for module in (post, verify, reach, reach_map, part_programs, machine, pmac):
+    for module in (post, reach, programs, machine, pmac):
         module.add_commands(commands)
     return parser

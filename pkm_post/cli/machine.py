@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from pkm_post.cli.terminal import print_diagnostics
 
 
 def add_commands(commands: Any) -> None:
@@ -41,8 +42,7 @@ def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     machine, diagnostics = machine_named(namespace.file)
     if machine is not None:
         diagnostics = machine_faults(machine, namespace.file)
-    for diagnostic in diagnostics:
-        print(diagnostic, file=sys.stderr)
+    print_diagnostics(diagnostics)
     if machine is None or errors(diagnostics):
         return 1
     print(f"{machine.name}: complete")
@@ -54,8 +54,7 @@ def _calibrate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.machine import calibrate_file
 
     report, diagnostics = calibrate_file(namespace.file, namespace.measurements, namespace.out)
-    for diagnostic in diagnostics:
-        print(diagnostic, file=sys.stderr)
+    print_diagnostics(diagnostics)
     if report is None:
         return 1
     print(report)

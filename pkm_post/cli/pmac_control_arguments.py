@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 
-from pkm_post.cli.reading import NO_AXIS_WORDS, axis_words
+from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
 from pkm_post.options import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 
 _HIGHEST_PROGRAM = 999

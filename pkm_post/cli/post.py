@@ -9,17 +9,22 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inside_freecad import command_inside, command_outside, is_inside, needs_freecad, run_inside, told
-from pkm_post.cli.many import run_many
-from pkm_post.cli.progress_line import ProgressLine
-from pkm_post.cli.reading import add_reading, misplaced, reading_from
+from pkm_post.cli.inputs import add_reading, misplaced, reading_from
+from pkm_post.cli.processes import (
+    command_inside,
+    command_outside,
+    diagnostic_text,
+    is_inside,
+    needs_freecad,
+    run_inside,
+    run_parallel,
+)
+from pkm_post.cli.terminal import ProgressLine, print_diagnostics
 from pkm_post.options import (
-    InputKind,
     PostItem,
     add_options,
     applicable_values,
@@ -66,7 +71,7 @@ def add_commands(commands: Any) -> None:
 def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     faults = _faults(namespace)
     if faults:
-        print(*faults, sep="\n", file=sys.stderr)
+        print_diagnostics(faults)
         return 2
     files = namespace.files if namespace.only is None else [namespace.files[namespace.only]]
     return _post_files(files, namespace, arguments) or _all_there(files, namespace)
@@ -85,8 +90,9 @@ def _all_there(files: Sequence[Path], namespace: argparse.Namespace) -> int:
     """Check that the promised results exist, whichever process wrote them; return the exit code."""
     items = [item for file in files for item in _items(file, namespace.job, namespace.also)]
     missing = missing_results(items, namespace.out)
-    for path in missing:
-        print(told("F142", str(path), "it is not there, though posting ended well"), file=sys.stderr)
+    print_diagnostics(
+        diagnostic_text("F142", str(path), "it is not there, though posting ended well") for path in missing
+    )
     return int(bool(missing))
 
 
@@ -126,55 +132,36 @@ def _post_in_processes(files: Sequence[Path], solids: Sequence[str], arguments: 
     for number, file in enumerate(files):
         start = command_inside if is_inside() or needs_freecad([file], solids) else command_outside
         commands.append(start([name, f"{_ONLY}={number}", *others]))
-    return run_many(commands, at_a_time, "posted") if all(commands) else 1
+    return run_parallel(commands, at_a_time, "posted") if all(commands) else 1
 
 
 def _post_one(file: Path, namespace: argparse.Namespace) -> int:
     """Post a file, print the results or the faults, and return the exit code."""
     from pkm_post.model import Refused
-    from pkm_post.reading import is_part_program
 
-    post, line = _part_program if is_part_program(file) else _document, ProgressLine(file.name)
+    line = ProgressLine(file.name)
     try:
         with line, memory_guard(str(file)):
-            results = post(file, namespace, line)
+            results = _post_with(file, namespace, line)
     except Refused as refused:
-        print(refused, file=sys.stderr)
+        print_diagnostics([refused])
         return 1
-    for result in results:
-        _tell(result)
+    for posted in results:
+        print_diagnostics(posted.diagnostics)
+        print(*posted.files, sep="\n")
     return 0
 
 
-def _part_program(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> tuple[Posted, ...]:
+def _post_with(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> tuple[Posted, ...]:
+    """Post a part program, or the jobs of a document."""
     from pkm_post.posting import post_file
+    from pkm_post.reading import is_part_program
 
-    posted = post_file(
-        file,
-        out=namespace.out,
-        arguments=applicable_values(explicit_values(namespace), input_kind(file)),
-        reading=reading_from(namespace),
-        log=line.print,
-        progress=line.show,
-    )
-    return (posted,)
-
-
-def _document(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> tuple[Posted, ...]:
+    out, given = namespace.out, applicable_values(explicit_values(namespace), input_kind(file))
+    if is_part_program(file):
+        reading = reading_from(namespace)
+        return (post_file(file, out=out, arguments=given, reading=reading, log=line.print, progress=line.show),)
     from pkm_post.freecad_app.post_job import post_document
 
-    return post_document(
-        file,
-        out=namespace.out,
-        arguments=applicable_values(explicit_values(namespace), InputKind.JOB),
-        job_name=namespace.job,
-        log=line.print,
-        progress=line.show,
-    )
-
-
-def _tell(posted: Posted) -> None:
-    for diagnostic in posted.diagnostics:
-        print(diagnostic, file=sys.stderr)
-    for path in posted.files:
-        print(path)
+    job = namespace.job
+    return post_document(file, out=out, arguments=given, job_name=job, log=line.print, progress=line.show)

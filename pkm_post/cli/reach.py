@@ -1,26 +1,49 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command ``reach``: whether a machine can follow a program, and where it could do so better."""
+"""The commands ``reach`` and ``reach-map``: what a machine can reach.
+
+``reach`` says whether it can follow a program, and where on the machine it could do so better; ``reach-map`` gives the
+feasible tool tilt over the work volume.
+"""
 
 from __future__ import annotations
 
 import argparse
 import json
-import sys
+import math
+import os
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inside_freecad import needs_freecad, run_inside
-from pkm_post.cli.reading import add_reading, misplaced, reading_from
-from pkm_post.options import add_options, applicable_values, explicit_values, input_kind, solid_files
+from pkm_post.cli.inputs import add_reading, print_misplaced, read_machine, reading_from
+from pkm_post.cli.processes import needs_freecad, run_inside
+from pkm_post.cli.terminal import print_diagnostics
+from pkm_post.options import (
+    add_options,
+    applicable_values,
+    explicit_values,
+    input_kind,
+    number,
+    offset,
+    positive,
+    solid_files,
+    tool_length,
+    validated,
+)
 
 if TYPE_CHECKING:
-    from pkm_post.model import Diagnostic
     from pkm_post.posting import Prepared
 
 
+_angle = validated(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
+
+_MAX_POINTS = 1_000_000
+"""A file with this many is some tens of megabytes."""
+
+
 def add_commands(commands: Any) -> None:
-    """Add the command to a parser."""
+    """Add the commands to a parser."""
     reaching = commands.add_parser("reach", help="say whether a machine can follow FreeCAD documents and part programs")
     reaching.add_argument("files", nargs="+", type=Path, metavar="FILE")
     reaching.add_argument("--job", metavar="NAME", help="this job of the document only, by name or label")
@@ -38,6 +61,17 @@ def add_commands(commands: Any) -> None:
     add_reading(reaching)
     reaching.set_defaults(run=_reach)
 
+    mapping = commands.add_parser("reach-map", help="how far the tool may lean at each place of the work volume")
+    mapping.add_argument("machine", metavar="NAME_OR_FILE")
+    mapping.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the CSV and the picture")
+    mapping.add_argument(
+        "--length", type=tool_length, default=120.0, metavar="MM", help="gauge length (default: %(default)s)"
+    )
+    for name, default in (("x", "-300:300:50"), ("y", "-300:300:50"), ("z", "0:500:100")):
+        mapping.add_argument(f"--{name}", type=_range, default=default, metavar="FROM:TO:STEP", help="mm, %(default)s")
+    mapping.add_argument("--widest", type=_angle, default=60.0, metavar="DEG", help="largest angle (%(default)s)")
+    mapping.set_defaults(run=_map)
+
 
 def _freedoms(text: str) -> str:
     if set(text) - set("xyzabc"):
@@ -46,34 +80,32 @@ def _freedoms(text: str) -> str:
 
 
 def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    faults = misplaced(namespace, namespace.files)
-    if faults:
-        print(*faults, sep="\n", file=sys.stderr)
+    if print_misplaced(namespace, namespace.files):
         return 2
     if needs_freecad(namespace.files, solid_files(namespace)):
         return run_inside(arguments)
     from pkm_post.model import Refused, errors
     from pkm_post.posting import study
 
-    failed, found = False, []
+    failed, studies = False, []
     for file in namespace.files:
         try:
             programs = list(_programs(file, namespace))
         except Refused as refused:
             programs, failed = [], True
-            _tell(refused.diagnostics)
-        for prepared in programs:
-            told = prepared.found
-            if not errors(told):
-                made, more = study(*prepared.sound, prepared.options, namespace.place)
-                told += more
-                found += [made] if made else []
-            _tell(told)
-            failed |= bool(errors(told))
+            print_diagnostics(refused.diagnostics)
+        for program in programs:
+            diagnostics = program.found
+            if not errors(diagnostics):
+                result, faults = study(*program.sound, program.options, namespace.place)
+                diagnostics += faults
+                studies += [result] if result else []
+            print_diagnostics(diagnostics)
+            failed |= bool(errors(diagnostics))
     if namespace.json:
-        print(json.dumps([made.as_dict() for made in found], indent=2))
+        print(json.dumps([result.as_dict() for result in studies], indent=2))
     else:
-        print("\n".join(made.text() for made in found))
+        print("\n".join(result.text() for result in studies))
     return int(failed)
 
 
@@ -91,6 +123,43 @@ def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]:
         yield from read_document(file, given, namespace.job)
 
 
-def _tell(diagnostics: Sequence[Diagnostic]) -> None:
-    for diagnostic in diagnostics:
-        print(diagnostic, file=sys.stderr)
+def _range(text: str) -> list[float]:
+    words = text.split(":")
+    if len(words) != 3:
+        raise argparse.ArgumentTypeError(f"expected FROM:TO:STEP, got {text!r}")
+    first, last, step = offset(words[0]), offset(words[1]), positive(words[2])
+    steps = (last - first) / step * (1 + 1e-12)
+    if not 0 <= steps < _MAX_POINTS:
+        raise argparse.ArgumentTypeError(f"expected FROM:TO:STEP with 1 to {_MAX_POINTS} places, got {text!r}")
+    return [first + place * step for place in range(math.floor(steps) + 1)]
+
+
+def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    import numpy as np
+
+    from pkm_post.machine import reach_map
+    from pkm_post.report import draw_reach
+    from pkm_post.system import staged, write_fault
+
+    if math.prod(map(len, (namespace.x, namespace.y, namespace.z))) > _MAX_POINTS:
+        print_diagnostics([f"expected --x, --y and --z with at most {_MAX_POINTS} places together"])
+        return 2
+    machine = read_machine(namespace.machine)
+    if machine is None:
+        return 1
+    grid = np.meshgrid(namespace.x, namespace.y, namespace.z, indexing="ij")
+    places = np.column_stack([column.ravel() for column in grid])
+    with ThreadPoolExecutor(min(os.cpu_count() or 1, 8)) as executor:
+        tilts = reach_map(machine, places, namespace.length, math.radians(namespace.widest), executor=executor)
+    stem = f"{Path(namespace.machine).stem}-reach"
+    try:
+        with staged(namespace.out) as folder:
+            (folder / f"{stem}.csv").write_text(tilts.as_csv(), encoding="ascii", newline="\n")
+            print_diagnostics(draw_reach(folder / f"{stem}.png", machine.name, tilts.tip, tilts.cone))
+            names = sorted(path.name for path in folder.iterdir())
+    except OSError as fault:
+        print_diagnostics([write_fault(namespace.out, fault)])
+        return 1
+    for name in names:
+        print(namespace.out / name)
+    return 0

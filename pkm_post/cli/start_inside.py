@@ -31,6 +31,6 @@ if __name__ == "__main__":
     if "pkm_post" not in sys.modules:
         _import_package()
     from pkm_post.cli import main
-    from pkm_post.cli.inside_freecad import as_ended_inside
+    from pkm_post.cli.processes import inner_exit_code
 
-    sys.exit(as_ended_inside(main(sys.argv[1:])))
+    sys.exit(inner_exit_code(main(sys.argv[1:])))

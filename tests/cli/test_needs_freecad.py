@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pkm_post.cli import inside_freecad
+from pkm_post.cli import processes
 
 
 @pytest.mark.parametrize(
@@ -19,10 +19,10 @@ from pkm_post.cli import inside_freecad
     ],
 )
 def test_names_say_it(monkeypatch, files, solids, needed):
-    monkeypatch.setattr(inside_freecad, "is_inside", lambda: False)
-    assert inside_freecad.needs_freecad([Path(file) for file in files], solids) is needed
+    monkeypatch.setattr(processes, "is_inside", lambda: False)
+    assert processes.needs_freecad([Path(file) for file in files], solids) is needed
 
 
 def test_nothing_is_needed_inside(monkeypatch):
-    monkeypatch.setattr(inside_freecad, "is_inside", lambda: True)
-    assert not inside_freecad.needs_freecad([Path("a.FCStd")], ["wall.step"])
+    monkeypatch.setattr(processes, "is_inside", lambda: True)
+    assert not processes.needs_freecad([Path("a.FCStd")], ["wall.step"])

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from interpreter import PYTHON
 
-from pkm_post.cli import inside_freecad
-from pkm_post.cli.inside_freecad import as_ended_inside, command_inside, freecad_command, judged
+from pkm_post.cli import processes
+from pkm_post.cli.processes import command_inside, freecad_command, inner_exit_code, outcome
 
 ADDON = Path(__file__).parents[2]
 
@@ -58,12 +58,12 @@ def test_a_freecad_that_crashes(tmp_path):
 
 @pytest.mark.parametrize("code", [1, 2, 130])
 def test_the_exit_code_of_the_command_is_that_of_the_command_inside(tmp_path, code):
-    ran = started(tmp_path, script(tmp_path / "inside", f"exit {as_ended_inside(code)}"))
+    ran = started(tmp_path, script(tmp_path / "inside", f"exit {inner_exit_code(code)}"))
     assert (ran.returncode, ran.stderr) == (code, "")
 
 
 def test_results_that_are_not_there_where_the_command_ended_well(tmp_path):
-    well = script(tmp_path / "inside", f"exit {as_ended_inside(0)}")
+    well = script(tmp_path / "inside", f"exit {inner_exit_code(0)}")
     is_refused(started(tmp_path, well), "F142", "part.pmc", "part.pkmt", "part-report.json", "part-manifest.json")
     (tmp_path / "out").mkdir()
     for name in ("part.pmc", "part.pkmt", "part-manifest.json"):
@@ -82,7 +82,7 @@ def test_a_batch(tmp_path):
     assert ran.stderr.count("error F140") == 2
     ran = started(tmp_path, script(tmp_path / "other", "exit 0"), "--jobs", "2", files=files)
     is_refused(ran, "F141")
-    well = script(tmp_path / "inside", f"exit {as_ended_inside(0)}")
+    well = script(tmp_path / "inside", f"exit {inner_exit_code(0)}")
     is_refused(started(tmp_path, well, "--jobs", "2", files=files), "F142", "a.pmc", "b.pmc")
 
 
@@ -104,8 +104,8 @@ def test_windows_runs_no_script_of_bash(tmp_path):
 
 
 def test_no_freecad_at_all(monkeypatch, capsys):
-    monkeypatch.setattr(inside_freecad, "freecad_command", lambda: [])
-    assert inside_freecad.run_inside(["post", "part.FCStd"]) == 1
+    monkeypatch.setattr(processes, "freecad_command", lambda: [])
+    assert processes.run_inside(["post", "part.FCStd"]) == 1
     assert "error F140" in capsys.readouterr().err
 
 
@@ -119,5 +119,5 @@ def test_what_is_not_started_for_freecad_ends_as_it_ends(monkeypatch):
     monkeypatch.setenv("FREECADCMD", "freecadcmd")
     inside = command_inside(["post", "part.FCStd"])
     assert inside[0] == "freecadcmd" and inside[-2:] == ["post", "part.FCStd"]
-    assert [judged(["python3"], code) for code in (0, 1, 64)] == [(0, ""), (1, ""), (64, "")]
-    assert [judged(inside, as_ended_inside(code)) for code in (0, 1, 2, 130)] == [(0, ""), (1, ""), (2, ""), (130, "")]
+    assert [outcome(["python3"], code) for code in (0, 1, 64)] == [(0, ""), (1, ""), (64, "")]
+    assert [outcome(inside, inner_exit_code(code)) for code in (0, 1, 2, 130)] == [(0, ""), (1, ""), (2, ""), (130, "")]

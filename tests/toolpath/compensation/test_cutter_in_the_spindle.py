@@ -8,7 +8,7 @@ import pytest
 from cutters import cloud, frame_with_z
 
 from pkm_post.cli import main
-from pkm_post.cli.reading import add_reading, reading_from
+from pkm_post.cli.inputs import add_reading, reading_from
 from pkm_post.options import add_options, options_from
 from pkm_post.posting.post_file import prepared_file
 from pkm_post.toolpath.compensation import Cutter, compensate

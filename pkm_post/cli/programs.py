@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands ``check`` and ``convert``: read part programs, and report on them or write them in another form."""
+"""The commands ``check``, ``convert`` and ``verify``: examine programs, or write them in another form.
+
+``check`` and ``convert`` read part programs; ``verify`` compares a motion program with its trajectory file.
+"""
 
 from __future__ import annotations
 
 import argparse
-import sys
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pkm_post.cli.reading import add_reading, misplaced, one_of, part_program, reading_from
-from pkm_post.options import add_part_program
+from pkm_post.cli.inputs import add_reading, one_of, part_program, print_misplaced, read_machine, reading_from
+from pkm_post.cli.terminal import print_diagnostics
+from pkm_post.options import add_machine, add_part_program
 
 
 def add_commands(commands: Any) -> None:
@@ -32,6 +36,13 @@ def add_commands(commands: Any) -> None:
     add_part_program(converting)
     converting.set_defaults(run=_convert)
 
+    verifying = commands.add_parser("verify", help="say whether a motion program still does what was posted")
+    verifying.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+    verifying.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
+    verifying.add_argument("--json", action="store_true", help="write the whole report as JSON")
+    add_machine(verifying)
+    verifying.set_defaults(run=_verify)
+
 
 def _target(text: str) -> str:
     from pkm_post.writing import TARGETS
@@ -39,18 +50,10 @@ def _target(text: str) -> str:
     return one_of(TARGETS, text)
 
 
-def _tell_misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> bool:
-    """Print the options that do not apply to the files; return whether there are any."""
-    faults = misplaced(namespace, files)
-    for fault in faults:
-        print(fault, file=sys.stderr)
-    return bool(faults)
-
-
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.reading import check
 
-    if _tell_misplaced(namespace, namespace.files):
+    if print_misplaced(namespace, namespace.files):
         return 2
     results = [check.check(file, reading_from(namespace)) for file in namespace.files]
     print(check.as_json(results) if namespace.json else check.as_text(results))
@@ -61,13 +64,34 @@ def _convert(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.model import errors
     from pkm_post.writing import convert
 
-    if _tell_misplaced(namespace, [namespace.file]):
+    if print_misplaced(namespace, [namespace.file]):
         return 2
     reading = reading_from(namespace)
     diagnostics = convert(namespace.file, namespace.to, namespace.out, reading, inch=namespace.inch)
-    for diagnostic in diagnostics:
-        print(diagnostic, file=sys.stderr)
+    print_diagnostics(diagnostics)
     if errors(diagnostics):
         return 1
     print(namespace.out)
+    return 0
+
+
+def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.model import Refused
+    from pkm_post.posting import verify
+
+    machine = read_machine(namespace.machine)
+    if machine is None:
+        return 1
+    try:
+        report, warnings = verify(namespace.program, namespace.against, machine)
+    except Refused as refused:
+        print_diagnostics([refused])
+        return 1
+    print_diagnostics(warnings)
+    if namespace.json:
+        print(json.dumps(report, indent=2))
+    else:
+        for finding in report["certificate"]["findings"]:
+            print(f"{finding['what']}: {finding['value']:g} of {finding['limit']:g} {finding['unit']}".rstrip())
+        print(*report["certificate"]["meaning"], f"{namespace.program}: the certificate holds", sep="\n")
     return 0

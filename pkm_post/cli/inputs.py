@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arguments that name a part program and add what it does not state itself."""
+"""Inputs: the machine and the part programs that a command line names, and how to read them.
+
+Each function converts arguments of ``argparse``. NumPy is imported only where it is needed: a command that runs again
+inside FreeCAD starts without it.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +14,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import explicit_values, inapplicable_options, input_kind, part_program_from
 
 if TYPE_CHECKING:
+    from pkm_post.model import Machine
     from pkm_post.reading import Reading
 
 NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
-_BESIDE = {"axis_words": NO_AXIS_WORDS, "dwell_unit": "s", "job": None}
+_FOR_SOME_FILES = {"axis_words": NO_AXIS_WORDS, "dwell_unit": "s", "job": None}
 """Arguments that apply to some files only and are not among ``options``, with their defaults."""
 
 
@@ -52,10 +58,26 @@ def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]
     except ImportError:  # no NumPy, or one for another Python: this command reruns inside FreeCAD, and checks there
         return []
 
-    beside = (name for name, default in _BESIDE.items() if getattr(namespace, name, default) != default)
+    chosen = (name for name, default in _FOR_SOME_FILES.items() if getattr(namespace, name, default) != default)
     place = Place(str(files[0]) if len(files) == 1 else "arguments")
-    strangers = inapplicable_options((*explicit_values(namespace), *beside), {input_kind(file) for file in files})
-    return [str(Diagnostic("L442", place, each)) for each in strangers]
+    messages = inapplicable_options((*explicit_values(namespace), *chosen), {input_kind(file) for file in files})
+    return [str(Diagnostic("L442", place, message)) for message in messages]
+
+
+def print_misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> bool:
+    """Print the options that apply to none of the files; return whether there are any."""
+    faults = misplaced(namespace, files)
+    print_diagnostics(faults)
+    return bool(faults)
+
+
+def read_machine(name: str) -> Machine | None:
+    """The machine with this name or file, or None; its diagnostics are printed."""
+    from pkm_post.machine import machine_named
+
+    machine, diagnostics = machine_named(name)
+    print_diagnostics(diagnostics)
+    return machine
 
 
 def part_program(text: str) -> Path:
@@ -78,7 +100,7 @@ def one_of(allowed: Collection[str], text: str) -> str:
 
 
 def axis_words(text: str) -> str:
-    """Tool axis notation, for ``argparse``, which also converts a default, possibly without NumPy."""
+    """Notation of the tool axis; ``argparse`` also converts the default, possibly without NumPy."""
     if text == NO_AXIS_WORDS:
         return text
     from pkm_post.reading import AXIS_WORDS

@@ -1,26 +1,34 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Progress line: the last line of a terminal shows the current step and share; elsewhere there is no output.
+"""Terminal: diagnostics on stderr, and the progress line, the last line of a terminal.
 
-Input: steps and shares. A line on stderr is overwritten, and cleared when there is something to print.
+The line shows the current step and its share. It is overwritten, and cleared when there is something to print. Where
+stderr is not a terminal there is no line.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 
 _CLEAR = "\r\x1b[K"
+
+
+def print_diagnostics(diagnostics: Iterable[object]) -> None:
+    """Print diagnostics or other messages on stderr, one a line."""
+    for diagnostic in diagnostics:
+        print(diagnostic, file=sys.stderr)
 
 
 class ProgressLine:
     """Progress line of one task.
 
     Args:
-        subject: of the task.
+        subject: name of the task.
     """
 
     def __init__(self, subject: str) -> None:
         self._subject = subject
-        self._is_seen = sys.stderr.isatty()
+        self._is_terminal = sys.stderr.isatty()
 
     def __enter__(self) -> ProgressLine:
         """Show the line during the task."""
@@ -35,15 +43,15 @@ class ProgressLine:
         self._write(f"{_CLEAR}{self._subject}: {step} {share:.0%}" if step else _CLEAR)
 
     def print(self, line: str) -> None:
-        """Print a permanent line."""
+        """Print a permanent line on stdout."""
         self._write(_CLEAR)
-        print(line, flush=self._is_seen)
+        print(line, flush=self._is_terminal)
 
     def clear(self) -> None:
         """Clear the line."""
         self._write(_CLEAR)
 
     def _write(self, text: str) -> None:
-        if self._is_seen:
+        if self._is_terminal:
             sys.stderr.write(text)
             sys.stderr.flush()

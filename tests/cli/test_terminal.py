@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from pkm_post.cli.progress_line import ProgressLine
+from pkm_post.cli.terminal import ProgressLine
 
 
 class Terminal(io.StringIO):

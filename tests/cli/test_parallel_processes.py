@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from interpreter import PYTHON
 
-from pkm_post.cli.many import run_many
+from pkm_post.cli.processes import run_parallel
 
 ADDON = Path(__file__).parents[2]
 G_CODE = """\
@@ -35,13 +35,13 @@ def says(text, error="", code=0, seconds=0.0):
 
 
 def test_outputs_are_in_order_whatever_ends_first(capfd):
-    assert run_many([says("first", seconds=0.5), says("second"), says("third")], 3, "said") == 0
+    assert run_parallel([says("first", seconds=0.5), says("second"), says("third")], 3, "said") == 0
     assert capfd.readouterr().out.split() == ["first", "second", "third"]
 
 
 @pytest.mark.parametrize("at_a_time", [1, 2])
 def test_a_failure_does_not_stop_the_others_and_decides_the_code(capfd, at_a_time):
-    assert run_many([says("one"), says("two", "no", 2), says("three")], at_a_time, "said") == 1
+    assert run_parallel([says("one"), says("two", "no", 2), says("three")], at_a_time, "said") == 1
     told = capfd.readouterr()
     assert told.out.split() == ["one", "two", "three"]
     assert told.err.split() == ["no"]
@@ -55,9 +55,9 @@ def test_at_most_so_many_at_a_time(tmp_path):
     told = subprocess.run(
         [PYTHON, "-c", f"""
 import sys
-from pkm_post.cli.many import run_many
+from pkm_post.cli.processes import run_parallel
 commands = [[sys.executable, "-c", {script!r}, {str(tmp_path)!r}, str(number)] for number in range(6)]
-sys.exit(run_many(commands, 2, "counted"))
+sys.exit(run_parallel(commands, 2, "counted"))
 """],
         env=os.environ | {"PYTHONPATH": str(ADDON)}, capture_output=True, text=True, check=True,
     )  # fmt: skip
@@ -119,8 +119,8 @@ def test_an_interrupt_ends_all(tmp_path):
     sleep = f"import os, pathlib, time; pathlib.Path({str(tmp_path)!r}, str(os.getpid())).touch(); time.sleep(60)"
     script = f"""
 import sys
-from pkm_post.cli.many import run_many
-sys.exit(run_many([[sys.executable, "-c", {sleep!r}]] * 3, 2, "slept"))
+from pkm_post.cli.processes import run_parallel
+sys.exit(run_parallel([[sys.executable, "-c", {sleep!r}]] * 3, 2, "slept"))
 """
     parent = subprocess.Popen(
         [PYTHON, "-c", script], env=os.environ | {"PYTHONPATH": str(ADDON)},
