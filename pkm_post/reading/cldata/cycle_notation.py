@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cycles: an interpreted CYCLE statement of any CAM system, in mm, mm/s and s.
+"""Cycles, and the notation of each CAM system for them: kinds, words, and datums of their numbers.
 
-Heights are along the tool axis, relative to the hole point: depth is positive downwards, all others upwards.
+The same word can mean different heights in different systems; docs/cl-data.md gives the source of each reading. Files
+of dialects without their own vocabulary (CATIA's depends on the post-processor table) are read by the words they use.
+
+Lengths of a ``Cycle`` are in mm, times in s, feeds in mm/s. Heights are along the tool axis, relative to the hole
+point: depth is positive downwards, all others upwards.
 """
 
 from __future__ import annotations
@@ -11,7 +15,7 @@ from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
-class Strokes:
+class CycleKind:
     """Stroke pattern of a kind of cycle.
 
     Attributes:
@@ -23,10 +27,10 @@ class Strokes:
     feed_out: bool = False
 
 
-DRILL = Strokes()
-DEEP = Strokes("out")
-BREAK_CHIP = Strokes("break")
-REAM = Strokes(feed_out=True)
+DRILL = CycleKind()
+DEEP = CycleKind("out")
+BREAK_CHIP = CycleKind("break")
+REAM = CycleKind(feed_out=True)
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,7 @@ class Cycle:
     """One cycle.
 
     Attributes:
-        strokes: stroke pattern.
+        kind: stroke pattern.
         depth: of the bottom below the point.
         clearance: height of lateral moves.
         start: height at which feed starts, at most the clearance.
@@ -46,7 +50,7 @@ class Cycle:
         feed: mm/s.
     """
 
-    strokes: Strokes
+    kind: CycleKind
     depth: float
     clearance: float
     start: float
@@ -64,58 +68,58 @@ MANUAL = "MANUAL"
 
 
 @dataclass(frozen=True)
-class CycleWords:
+class CycleNotation:
     """The cycle notation of one CAM system.
 
     Attributes:
-        maker: displayed name.
+        system: displayed name.
         kinds: the words of a kind, joined by commas, and its strokes.
         words: meaning of the number after a word: "depth"; "clearance", height of lateral moves; "advance", distance
             below the clearance at which feed starts; "return", height to which the tool returns; "step"; "first step";
             "dwell", s; "turns", spindle revolutions to dwell.
         down: 1 where depths count positive downwards, -1 where they are heights above the point.
         initial: number after "return" that means the height before the cycle; None for none.
-        left_out: words with a different meaning in one kind, which is not supported.
+        excluded: words with a different meaning in one kind, which is not supported.
     """
 
-    maker: str
-    kinds: Mapping[str, Strokes]
+    system: str
+    kinds: Mapping[str, CycleKind]
     words: Mapping[str, str]
     down: float = 1.0
     initial: float | None = None
-    left_out: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    excluded: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def known_words(self, kind: str) -> set[str]:
         """The words known in cycles of a kind."""
-        return set(self.words) - self.left_out.get(kind, frozenset())
+        return set(self.words) - self.excluded.get(kind, frozenset())
 
     def words_for(self, meaning: str) -> str:
         """The words with one meaning, for messages."""
-        return " or ".join(word for word, said in self.words.items() if said == meaning)
+        return " or ".join(word for word, known in self.words.items() if known == meaning)
 
 
-NX = CycleWords(
+NX = CycleNotation(
     "NX",
     {"DRILL": DRILL, "DRILL,DEEP": DEEP, "DRILL,BRKCHP": BREAK_CHIP, "DRILL,CSINK": DRILL, "BORE": REAM},
     {"FEDTO": "depth", "RAPTO": "clearance", "CLEAR": "clearance", "RTRCTO": "return", "STEP": "step",
      "DWELL": "dwell", "REV": "turns"},
     down=-1.0,
 )  # fmt: skip
-CREO = CycleWords(
+CREO = CycleNotation(
     "Creo",
     {"DRILL": DRILL, "FACE": DRILL, "CSINK": DRILL, "DEEP": DEEP, "BRKCHP": BREAK_CHIP, "REAM": REAM},
     {"DEPTH": "depth", "CLEAR": "clearance", "RAPTO": "advance", "RETURN": "return", "STEP": "step",
      "DWELL": "dwell", "REV": "turns"},
     initial=0.0,
-    left_out={"BRKCHP": frozenset({"DWELL", "REV"})},
+    excluded={"BRKCHP": frozenset({"DWELL", "REV"})},
 )  # fmt: skip
-CAMWORKS = CycleWords(
+CAMWORKS = CycleNotation(
     "CAMWorks",
     {"DRILL": DRILL, "DEEP": DEEP, "DEEP2": DEEP},
     {"FEDTO": "depth", "RAPTO": "clearance", "RTRCTO": "return", "INCR": "step", "SUBPECK": "step",
      "1STPECK": "first step", "DWELL": "dwell"},
 )  # fmt: skip
-NCCS = CycleWords(
+NCCS = CycleNotation(
     "NCCS PostWorks",
     {"DRILL": DRILL, "FACE": DRILL, "REAM": REAM},
     {"FEDTO": "depth", "RAPTO": "clearance", "RTRCTO": "return", "DWELL": "dwell"},
@@ -124,26 +128,26 @@ TAPPING = frozenset({"TAP", "RIGID", "REVERS"})
 """Spindle-synchronised cycles of any CAM system."""
 _OF_DIALECT = {"nx": NX, "creo": CREO, "solidworks": CAMWORKS}
 _ALL = (NX, CREO, CAMWORKS, NCCS)
-_CAMWORKS_ALONE = {"DEEP2", "INCR", "SUBPECK", "1STPECK"}
+_ONLY_CAMWORKS = {"DEEP2", "INCR", "SUBPECK", "1STPECK"}
 
 
-def words_of_dialect(dialect: str) -> CycleWords | None:
+def notation_of_dialect(dialect: str) -> CycleNotation | None:
     """The cycle notation of a dialect, None if unknown."""
     return _OF_DIALECT.get(dialect)
 
 
-def words_by_use(used: Collection[str]) -> CycleWords:
+def notation_by_words(used: Collection[str]) -> CycleNotation:
     """Infer the cycle notation from the words used, where the dialect does not determine it."""
-    if _CAMWORKS_ALONE & set(used):
+    if _ONLY_CAMWORKS & set(used):
         return CAMWORKS
     return NCCS if {"FEDTO", "RTRCTO"} & set(used) else CREO
 
 
-def known_to_some(word: str) -> bool:
-    """Whether any CAM system uses a word: with the words beside it, it then has another meaning or none."""
+def is_known_word(word: str) -> bool:
+    """Whether any CAM system uses a word."""
     return word == AUTO or any(word in one.words for one in _ALL)
 
 
-def kind_of_some(kind: str) -> bool:
+def is_known_kind(kind: str) -> bool:
     """Whether any CAM system has cycles of a kind."""
     return any(kind in one.kinds for one in _ALL)

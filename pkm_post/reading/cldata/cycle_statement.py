@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Holes: convert a CYCLE statement of any CAM system to a cycle.
+"""CYCLE statements of any CAM system.
 
-Enters: a statement. Leaves: a cycle of the course, in mm and mm/s.
+Enters: a statement. Leaves: the active cycle, in mm and mm/s. Each number of a CYCLE is identified by its preceding
+word. For numbers without a word before the first one an option gives the meaning: CATIA writes them according to the
+post-processor table.
 """
 
 from __future__ import annotations
@@ -16,21 +18,25 @@ from pkm_post.reading.cldata.cycle_notation import (
     MANUAL,
     TAPPING,
     Cycle,
-    CycleWords,
-    Strokes,
-    kind_of_some,
-    known_to_some,
-    words_by_use,
-    words_of_dialect,
+    CycleKind,
+    CycleNotation,
+    is_known_kind,
+    is_known_word,
+    notation_by_words,
+    notation_of_dialect,
 )
-from pkm_post.reading.cldata.feeds import FEED_WORDS, feed_of, shown
-from pkm_post.reading.cldata.state import Course
+from pkm_post.reading.cldata.feeds import FEED_WORDS, feed_of
+from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement
 
-Item = float | str | Statement | None
+_MAX_PECKS = 10000
+_RETURNS = ("INIT", "CLEAR")
+"""CAMWorks: the tool returns to the height before the cycle, or RTRCTO if written, or to the clearance."""
+
+_Item = float | str | Statement | None
 
 
-class CycleError(Exception):
+class _CycleError(Exception):
     """A CYCLE statement is rejected, with a code and what was found."""
 
     def __init__(self, code: str, found: str) -> None:
@@ -39,11 +45,11 @@ class CycleError(Exception):
 
 
 @dataclass
-class CycleItems:
+class _CycleItems:
     """Parser of the items of one statement.
 
     Attributes:
-        words: vocabulary of the CAM system.
+        notation: of the CAM system.
         kind: kind of the cycle.
         guessed: the CAM system is inferred from these words only.
         positions: meanings of numbers without a word, in order; a depth among them counts down from the point.
@@ -53,7 +59,7 @@ class CycleItems:
         by_position: numbers follow the kind without words.
     """
 
-    words: CycleWords
+    notation: CycleNotation
     kind: str
     guessed: bool
     positions: tuple[str, ...] = ()
@@ -62,174 +68,172 @@ class CycleItems:
     to_initial: bool = False
     by_position: bool = False
     _unit: str = ""
-    _waiting: str = ""
-    _placed: int = 0
+    _pending: str = ""
+    _next: int = 0
 
-    def read(self, items: Iterable[Item]) -> None:
+    def read(self, items: Iterable[_Item]) -> None:
         """Read the items after the kind.
 
         Raises:
-            CycleError: an item is not understood.
+            _CycleError: an item is not understood.
         """
         present = [item for item in items if item is not None]
         self.by_position = bool(present) and isinstance(present[0], float)
         if self.by_position and not self.positions:
-            raise CycleError("L420", f"CYCLE/{self.kind},{present[0]:g}")
+            raise _CycleError("L420", f"CYCLE/{self.kind},{present[0]:g}")
         for item in present:
             if isinstance(item, Statement):
-                raise CycleError("L412", f"{item.word}, {self._expected()}")
+                raise _CycleError("L412", f"{item.word}, {self._expected()}")
             if isinstance(item, str):
                 self._word(item)
             else:
                 self._number(item)
-        self._no_word_waits()
+        self._check_no_pending_word()
         if self.by_position and "feed" in self.values:
             self.feed = self._unit, self.values.pop("feed")
 
     def _word(self, word: str) -> None:
         """Process a word: the name of the next number, a unit, or a standalone word."""
-        if self.words.down < 0 and word == AUTO and self._means("return"):
-            self.to_initial, self._waiting = True, ""
-        elif self.words.down < 0 and word == MANUAL and not self._waiting and "return" in self.values:
+        if self.notation.down < 0 and word == AUTO and self._pending_means("return"):
+            self.to_initial, self._pending = True, ""
+        elif self.notation.down < 0 and word == MANUAL and not self._pending and "return" in self.values:
             pass
-        elif word == "REV" and self._means("dwell"):
-            self._waiting = word
+        elif word == "REV" and self._pending_means("dwell"):
+            self._pending = word
         else:
-            if word not in FEED_WORDS and word not in self.words.known_words(self.kind):
+            if word not in FEED_WORDS and word not in self.notation.known_words(self.kind):
                 self._refuse(word)
-            self._no_word_waits()
+            self._check_no_pending_word()
             if word in FEED_WORDS:
                 self._unit = word
-            self._waiting = "" if self.by_position and word in FEED_WORDS else word
+            self._pending = "" if self.by_position and word in FEED_WORDS else word
 
-    def _means(self, meaning: str) -> bool:
+    def _pending_means(self, meaning: str) -> bool:
         """Whether the pending word has a given meaning."""
-        return self.words.words.get(self._waiting) == meaning
+        return self.notation.words.get(self._pending) == meaning
 
     def _number(self, number: float) -> None:
         """Process a number."""
-        name, self._waiting = self._waiting, ""
+        name, self._pending = self._pending, ""
         if name in FEED_WORDS:
             if self.feed is not None:
-                raise CycleError("L412", f"{name},{number:g}, a second feed")
+                raise _CycleError("L412", f"{name},{number:g}, a second feed")
             self.feed = name, number
             return
-        meaning = self.words.words[name] if name else self._next_position(number)
+        meaning = self.notation.words[name] if name else self._next_meaning(number)
         if not name and meaning == "depth":
-            number *= self.words.down
+            number *= self.notation.down
         if meaning in self.values:
-            raise CycleError("L412", f"{name},{number:g}, a second {meaning}")
+            raise _CycleError("L412", f"{name},{number:g}, a second {meaning}")
         self.values[meaning] = number
 
-    def _next_position(self, number: float) -> str:
+    def _next_meaning(self, number: float) -> str:
         """Meaning of the next number without a word."""
-        if self._placed >= len(self.positions):
-            raise CycleError("L412", f"{number:g}, {self._expected()}")
-        self._placed += 1
-        return self.positions[self._placed - 1]
+        if self._next >= len(self.positions):
+            raise _CycleError("L412", f"{number:g}, {self._expected()}")
+        self._next += 1
+        return self.positions[self._next - 1]
 
-    def _no_word_waits(self) -> None:
-        if self._waiting:
-            raise CycleError("L412", f"{self._waiting} without a number")
+    def _check_no_pending_word(self) -> None:
+        if self._pending:
+            raise _CycleError("L412", f"{self._pending} without a number")
 
     def _refuse(self, word: str) -> None:
-        if self.guessed and known_to_some(word):
-            raise CycleError("L419", f"{word} beside the words of {self.words.maker}")
-        raise CycleError("L412", f"{word}, {self._expected()}")
+        if self.guessed and is_known_word(word):
+            raise _CycleError("L419", f"{word} among the words of {self.notation.system}")
+        raise _CycleError("L412", f"{word}, {self._expected()}")
 
     def _expected(self) -> str:
-        return f"expected one of {', '.join(sorted(self.words.known_words(self.kind) | FEED_WORDS))}"
+        return f"expected one of {', '.join(sorted(self.notation.known_words(self.kind) | FEED_WORDS))}"
 
 
-MOST_PECKS = 10000
-_RETURNS = ("INIT", "CLEAR")
-"""CAMWorks: the tool returns to the height before the cycle, or RTRCTO if written, or to the clearance."""
-
-
-def cycle(course: Course, row: int, statement: Statement) -> None:
+def cycle(state: ReaderState, row: int, statement: Statement) -> None:
     """CYCLE/kind,items; INIT and CLEAR set the return height; ON and OFF."""
     word = next(iter(statement.words), "")
     if word == "OFF":
-        course.cycles.append((row, None))
-    elif word == "ON" and course.cycle is not None:
-        course.cycles.append((row, course.cycle))
-    elif word in _RETURNS and len(statement.items) == 1 and words_of_dialect(course.dialect.name) in (None, CAMWORKS):
-        course.cycle_return = word
+        state.cycles.append((row, None))
+    elif word == "ON" and state.cycle is not None:
+        state.cycles.append((row, state.cycle))
+    elif word in _RETURNS and len(statement.items) == 1 and notation_of_dialect(state.dialect.name) in (None, CAMWORKS):
+        state.cycle_return = word
     else:
         try:
-            course.cycle, words = _understood(course, statement)
-            course.cycles.append((row, course.cycle))
-            course.cycles_read.setdefault(words, []).append(row)
-        except CycleError as fault:
-            course.tell(fault.code, row, fault.found)
+            state.cycle, interpretation = _interpret(state, statement)
+            state.cycles.append((row, state.cycle))
+            state.cycles_read.setdefault(interpretation, []).append(row)
+        except _CycleError as fault:
+            state.report(fault.code, row, fault.found)
 
 
-def cycles_told(course: Course) -> list[str]:
+def cycle_descriptions(state: ReaderState) -> list[str]:
     """Describe how the cycles of a file were interpreted: one line per CAM system."""
-    told = []
-    for words, rows in course.cycles_read.items():
+    descriptions = []
+    for interpretation, rows in state.cycles_read.items():
         more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
-        told.append(f"CYCLE in line {course.statements.place(rows[0])[0]}{more}: {words}")
-    return told
+        descriptions.append(f"CYCLE in line {state.statements.place(rows[0])[0]}{more}: {interpretation}")
+    return descriptions
 
 
-def _understood(course: Course, statement: Statement) -> tuple[Cycle, str]:
+def _interpret(state: ReaderState, statement: Statement) -> tuple[Cycle, str]:
     """The cycle of a statement, and a description of its interpretation."""
-    ours = words_of_dialect(course.dialect.name)
-    words = ours or words_by_use(statement.words)
-    kind = _kind(statement, words, guessed=ours is None)
-    items = CycleItems(words, kind, ours is None, course.options.cycle_values)
+    known = notation_of_dialect(state.dialect.name)
+    notation = known or notation_by_words(statement.words)
+    guessed = known is None
+    kind = _kind(statement, notation, guessed)
+    items = _CycleItems(notation, kind, guessed, state.options.cycle_values)
     items.read(statement.items[len(kind.split(",")) :])
     _check_signs(items)
-    found = _cycle(course, words.kinds[kind], items)
-    wrong = _wrong(found, words)
-    if wrong:
-        raise CycleError("L412", f"CYCLE/{kind}: {wrong}")
-    return found, f"words of {words.maker}, {_evidence(course, ours is None, items)}"
+    cycle = _cycle(state, notation.kinds[kind], items)
+    fault = _fault_of(cycle, notation)
+    if fault:
+        raise _CycleError("L412", f"CYCLE/{kind}: {fault}")
+    return cycle, f"words of {notation.system}, {_evidence(state, guessed, items)}"
 
 
-def _evidence(course: Course, guessed: bool, items: CycleItems) -> str:
+def _evidence(state: ReaderState, guessed: bool, items: _CycleItems) -> str:
     """Why the words of a cycle are attributed to a CAM system."""
-    by = "by themselves" if guessed else "as the option says" if course.options.dialect else "by the dialect"
+    by = "by themselves" if guessed else "as the option says" if state.options.dialect else "by the dialect"
     numbers = ", ".join(items.positions)
     return f"{by}; numbers are {numbers}, as the option says" if items.by_position else by
 
 
-def _kind(statement: Statement, words: CycleWords, guessed: bool) -> str:
+def _kind(statement: Statement, notation: CycleNotation, guessed: bool) -> str:
     """The kind of a cycle, one or two words."""
     first = [item for item in statement.items[:2] if isinstance(item, str)]
     candidates = [",".join(first), *first[:1]]
     if TAPPING & set(first):
-        raise CycleError("L440", f"CYCLE/{candidates[0]}")
+        raise _CycleError("L440", f"CYCLE/{candidates[0]}")
     for kind in candidates:
-        if kind in words.kinds:
+        if kind in notation.kinds:
             return kind
-    if guessed and any(map(kind_of_some, candidates)):
-        raise CycleError("L419", f"CYCLE/{shown(statement)}: {candidates[-1]} with the words of {words.maker}")
-    raise CycleError("L401", f"CYCLE/{shown(statement)}")
+    if guessed and any(map(is_known_kind, candidates)):
+        raise _CycleError(
+            "L419", f"CYCLE/{statement.items_text()}: {candidates[-1]} with the words of {notation.system}"
+        )
+    raise _CycleError("L401", f"CYCLE/{statement.items_text()}")
 
 
-def _check_signs(items: CycleItems) -> None:
+def _check_signs(items: _CycleItems) -> None:
     """Make the depth positive; reject a bottom that is not below the point, and other heights that are."""
     values = items.values
-    written = values.get("depth", items.words.down)
-    values["depth"] = written * items.words.down if "depth" in values else math.nan
+    written = values.get("depth", items.notation.down)
+    values["depth"] = written * items.notation.down if "depth" in values else math.nan
     if values["depth"] <= 0 and items.guessed:
-        raise CycleError("L419", f"depth {written:g}, above the point for {items.words.maker}")
+        raise _CycleError("L419", f"depth {written:g}, above the point for {items.notation.system}")
     wrong = [f"{name} {value:g}" for name, value in values.items() if value < 0 or (name == "depth" and not value)]
     if wrong:
-        raise CycleError("L412", f"CYCLE/{items.kind}: {', '.join(wrong)}")
+        raise _CycleError("L412", f"CYCLE/{items.kind}: {', '.join(wrong)}")
 
 
-def _cycle(course: Course, strokes: Strokes, items: CycleItems) -> Cycle:
+def _cycle(state: ReaderState, kind: CycleKind, items: _CycleItems) -> Cycle:
     """The cycle defined by the values; NaN where a value is missing."""
-    values, scale = items.values, course.scale
+    values, scale = items.values, state.scale
     clearance = values.get("clearance", math.nan) * scale
-    returns = "return" in values and course.cycle_return != "CLEAR"
-    before = values["return"] == items.words.initial if returns else course.cycle_return == "INIT"
-    pecks = strokes.pecks != "none"
+    returns = "return" in values and state.cycle_return != "CLEAR"
+    before = values["return"] == items.notation.initial if returns else state.cycle_return == "INIT"
+    pecks = kind.pecks != "none"
     return Cycle(
-        strokes=strokes,
+        kind=kind,
         depth=values["depth"] * scale,
         clearance=clearance,
         start=clearance - values.get("advance", 0.0) * scale,
@@ -237,30 +241,32 @@ def _cycle(course: Course, strokes: Strokes, items: CycleItems) -> Cycle:
         to_initial=items.to_initial or before,
         step=values.get("step", math.nan) * scale if pecks else 0.0,
         first_step=values.get("first step", 0.0) * scale if pecks else 0.0,
-        dwell=_dwell(course, values),
-        feed=_feed(course, items.feed),
+        dwell=_dwell(state, values),
+        feed=_feed(state, items.feed),
     )
 
 
-def _dwell(course: Course, values: Mapping[str, float]) -> float:
+def _dwell(state: ReaderState, values: Mapping[str, float]) -> float:
     """The dwell at the bottom in s; infinite for revolutions of a stopped spindle."""
     turns = values.get("turns", 0.0)
-    return turns * 60 / course.speed if turns and course.speed else math.inf if turns else values.get("dwell", 0.0)
+    if not turns:
+        return values.get("dwell", 0.0)
+    return turns * 60 / state.spindle_speed if state.spindle_speed else math.inf
 
 
-def _feed(course: Course, given: tuple[str, float] | None) -> float:
+def _feed(state: ReaderState, given: tuple[str, float] | None) -> float:
     """The feed of the cycle in mm/s, NaN if absent; the feed of other moves is unchanged."""
     if given is None:
-        return math.nan if course.feed is None or course.feed.inverse else course.feed.value
-    per_turn = course.feed_per_turn
-    feed = feed_of(course, given[0] or course.feed_word, given[1])
-    course.feed_per_turn = per_turn
+        return math.nan if state.feed is None or state.feed.inverse else state.feed.value
+    per_turn = state.feed_per_turn
+    feed = feed_of(state, given[0] or state.feed_word, given[1])
+    state.feed_per_turn = per_turn
     return math.nan if feed.inverse else feed.value
 
 
-def _wrong(cycle: Cycle, words: CycleWords) -> str:
+def _fault_of(cycle: Cycle, notation: CycleNotation) -> str:
     """Why the cycle cannot be executed, empty if it can."""
-    missing = [words.words_for(name) for name in ("depth", "clearance", "step") if math.isnan(getattr(cycle, name))]
+    missing = [notation.words_for(name) for name in ("depth", "clearance", "step") if math.isnan(getattr(cycle, name))]
     if missing:
         return f"{', '.join(missing)} is missing"
     if not cycle.feed > 0:
@@ -269,6 +275,6 @@ def _wrong(cycle: Cycle, words: CycleWords) -> str:
         return f"the feed begins {-cycle.start:g} mm below the point"
     if not math.isfinite(cycle.dwell):
         return "it dwells for turns of a spindle at rest"
-    if cycle.strokes.pecks != "none" and not cycle.step * MOST_PECKS > cycle.depth:
+    if cycle.kind.pecks != "none" and not cycle.step * _MAX_PECKS > cycle.depth:
         return f"the step is {cycle.step:g} mm"
     return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults of statements: reported with line and column, what was found and what was expected, in words.
+"""Faults of CL data: line and column, what was found and what was expected, in words.
 
 Enters: lark errors, or invalid statements. Leaves: diagnostics in file order, at most a hundred; the last one states
 the number of the others. Warnings do not count.
@@ -12,13 +12,13 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pkm_post.model import RULES, Diagnostic, Place, Severity
-from pkm_post.reading.cldata.logical_lines import JOINT, Lines
+from pkm_post.reading.cldata.logical_lines import JOINT, LogicalLines
 from pkm_post.reading.grammar import Fault, in_words
 
 if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
 
-MOST_TOLD = 100
+MAX_REPORTED = 100
 """Errors reported individually; the rest are only counted."""
 
 EXPECTED: dict[str, tuple[str, ...]] = {
@@ -42,20 +42,20 @@ class Faults:
 
     def __init__(self, file: str) -> None:
         self._file = file
-        self._told: list[Diagnostic] = []
+        self._reported: list[Diagnostic] = []
         self._errors = 0
 
     def add(self, code: str, place: tuple[int, int], found: str) -> None:
         """Add a fault; place is line and column, (0, 0) for the whole file."""
         if RULES[code].severity is Severity.ERROR:
             self._errors += 1
-            if self._errors > MOST_TOLD:
+            if self._errors > MAX_REPORTED:
                 return
-        self._told.append(Diagnostic(code, Place(self._file, line=place[0], column=place[1]), found))
+        self._reported.append(Diagnostic(code, Place(self._file, line=place[0], column=place[1]), found))
 
-    def add_line(self, lines: Lines, index: int, explain: Callable[[str], Fault]) -> None:
+    def add_line(self, lines: LogicalLines, index: int, explain: Callable[[str], Fault]) -> None:
         """Add the fault of an invalid line; the cause is determined only if it is reported."""
-        if self._errors >= MOST_TOLD:
+        if self._errors >= MAX_REPORTED:
             self._errors += 1
             return
         fault = explain(lines.text[index])
@@ -67,10 +67,12 @@ class Faults:
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The reported diagnostics, in file order."""
-        told = sorted(self._told, key=lambda one: (one.place.line, one.place.column, one.code, one.found))
-        untold = self._errors - MOST_TOLD
-        more = [Diagnostic("L199", Place(self._file), f"and {untold} more")] if untold > 0 else []
-        return (*told, *more)
+        reported = sorted(
+            self._reported, key=lambda fault: (fault.place.line, fault.place.column, fault.code, fault.found)
+        )
+        others = self._errors - MAX_REPORTED
+        more = [Diagnostic("L199", Place(self._file), f"and {others} more")] if others > 0 else []
+        return (*reported, *more)
 
 
 def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:

@@ -10,7 +10,7 @@ import math
 
 from pkm_post.model import EventKind
 from pkm_post.reading.cldata.options import UNITS
-from pkm_post.reading.cldata.state import Course, Feed
+from pkm_post.reading.cldata.state import Feed, ReaderState
 from pkm_post.reading.cldata.statements import Statement
 
 MM_PER_MINUTE: dict[str, float | None] = {"MMPM": 1.0, "IPM": 25.4, "FPM": 304.8, "PERMIN": None}
@@ -26,99 +26,105 @@ _SPINDLE_WORDS = frozenset({"RPM", "ON", "OFF", "ORIENT", "LOCK", "NEUTRL", "RAN
 _COOLANT = {"ON": 1.0, "FLOOD": 1.0, "MIST": 2.0, "TAP": 1.0, "THRU": 1.0, "OFF": 0.0}
 
 
-def feed_of(course: Course, word: str, value: float) -> Feed:
+def feed_of(state: ReaderState, word: str, value: float) -> Feed:
     """The feed of a value with its unit word; stores a feed per revolution."""
-    course.feed_per_turn = 0.0
+    state.feed_per_turn = 0.0
     if word == "INVERS":
         return Feed(value / 60, inverse=True)
     table = MM_PER_TURN if word in MM_PER_TURN else MM_PER_MINUTE
     stated = table[word]
-    mm = value * (course.scale if stated is None or _unit_overridden(course, stated) else stated)
+    mm = value * (state.scale if stated is None or _unit_overridden(state, stated) else stated)
     if table is MM_PER_TURN:
-        course.feed_per_turn = mm
-        return Feed(mm * course.speed / 60)
+        state.feed_per_turn = mm
+        return Feed(mm * state.spindle_speed / 60)
     return Feed(mm / 60)
 
 
-def _unit_overridden(course: Course, stated: float) -> bool:
+def _unit_overridden(state: ReaderState, stated: float) -> bool:
     """Whether a feed is in the file unit while the options override it with another."""
-    unit = course.file_unit.name
-    return course.options.units not in (None, unit) and stated == UNITS.get(unit)
+    unit = state.file_unit.name
+    return state.options.units not in (None, unit) and stated == UNITS.get(unit)
 
 
-def fedrat(course: Course, row: int, statement: Statement) -> None:
+def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
     """FEDRAT/value[,unit], in any order; FEDRAT/INVERS,AUTO is an output setting for posts and has no effect."""
     items = _without_pairs(statement, frozenset({"LENGTH"}))
     numbers = [item for item in items if isinstance(item, float)]
     words = [item for item in items if isinstance(item, str)]
     units = [word for word in words if word in FEED_WORDS]
     if len(numbers) > 1 or len(units) > 1 or not set(words) <= FEED_WORDS | _FEED_MODES:
-        course.tell("L402", row, f"FEDRAT/{shown(statement)}, expected one number and one of {_list(FEED_WORDS)}")
+        state.report(
+            "L402", row, f"FEDRAT/{statement.items_text()}, expected one number and one of {_list(FEED_WORDS)}"
+        )
     elif numbers and not numbers[0] > 0:
-        course.tell("L403", row, f"feed {numbers[0]:g}")
+        state.report("L403", row, f"feed {numbers[0]:g}")
     elif numbers:
-        course.feed_word = units[0] if units else course.feed_word
-        course.set_feed(row, feed_of(course, course.feed_word, numbers[0]))
+        state.feed_word = units[0] if units else state.feed_word
+        state.set_feed(row, feed_of(state, state.feed_word, numbers[0]))
     elif not words:
-        course.tell("L402", row, "FEDRAT, expected a number")
+        state.report("L402", row, "FEDRAT, expected a number")
 
 
-def rapid(course: Course, row: int, statement: Statement) -> None:
+def rapid(state: ReaderState, row: int, statement: Statement) -> None:
     """RAPID: applies to the next motion only."""
-    course.rapids.append(row)
+    state.rapids.append(row)
 
 
-def spindl(course: Course, row: int, statement: Statement) -> None:
+def spindl(state: ReaderState, row: int, statement: Statement) -> None:
     """SPINDL/speed, unit and sense in any order; SPINDL/OFF and ON."""
     items = _without_pairs(statement, _SPINDLE_PAIRS)
     numbers = [item for item in items if isinstance(item, float)]
     words = {item for item in items if isinstance(item, str)}
     if len(numbers) > 1 or not words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS} or not statement.items:
-        course.tell("L402", row, f"SPINDL/{shown(statement)}, expected one number, RPM, SFM or SMM, CLW or CCLW")
+        state.report("L402", row, f"SPINDL/{statement.items_text()}, expected one number, RPM, SFM or SMM, CLW or CCLW")
         return
-    sense = next((_SENSES[word] for word in ("CLW", "CCLW") if word in words), course.turning or 1.0)
-    if numbers and not _new_speed(course, row, numbers[0], words):
+    sense = next((_SENSES[word] for word in ("CLW", "CCLW") if word in words), state.spindle_sense or 1.0)
+    if numbers and not _new_speed(state, row, numbers[0], words):
         return
-    still = bool(words & {"OFF", "ORIENT", "LOCK", "NEUTRL"}) or (not words and not numbers)
-    course.turning = 0.0 if still and not numbers else sense
-    course.events.append((row, EventKind.SPINDLE, course.turning * course.speed if course.turning else 0.0))
-    if course.feed_per_turn:
-        course.set_feed(row, Feed(course.feed_per_turn * course.speed / 60))
+    stopped = bool(words & {"OFF", "ORIENT", "LOCK", "NEUTRL"}) or (not words and not numbers)
+    state.spindle_sense = 0.0 if stopped and not numbers else sense
+    state.events.append(
+        (row, EventKind.SPINDLE, state.spindle_sense * state.spindle_speed if state.spindle_sense else 0.0)
+    )
+    if state.feed_per_turn:
+        state.set_feed(row, Feed(state.feed_per_turn * state.spindle_speed / 60))
 
 
-def _new_speed(course: Course, row: int, value: float, words: set[str]) -> bool:
+def _new_speed(state: ReaderState, row: int, value: float, words: set[str]) -> bool:
     """Set a speed in 1/min; False if it is invalid."""
     surface = next((_SURFACE_SPEEDS[word] for word in ("SMM", "SFM") if word in words), None)
-    if value < 0 or (surface is not None and course.diameter <= 0):
-        course.tell("L403", row, f"speed {value:g}" + ("" if surface is None else " of a cutter of unknown diameter"))
+    if value < 0 or (surface is not None and state.diameter <= 0):
+        state.report("L403", row, f"speed {value:g}" + ("" if surface is None else " of a cutter of unknown diameter"))
         return False
-    course.speed = value if surface is None else value * surface / (math.pi * course.diameter)
+    state.spindle_speed = value if surface is None else value * surface / (math.pi * state.diameter)
     return True
 
 
-def coolnt(course: Course, row: int, statement: Statement) -> None:
+def coolnt(state: ReaderState, row: int, statement: Statement) -> None:
     """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; a following pressure is ignored."""
     word = next(iter(statement.words), "")
     if word not in _COOLANT:
-        course.tell("L402", row, f"COOLNT/{shown(statement)}, expected {_list(_COOLANT)}")
+        state.report("L402", row, f"COOLNT/{statement.items_text()}, expected {_list(_COOLANT)}")
         return
-    course.events.append((row, EventKind.COOLANT, _COOLANT[word]))
+    state.events.append((row, EventKind.COOLANT, _COOLANT[word]))
 
 
-def delay(course: Course, row: int, statement: Statement) -> None:
+def delay(state: ReaderState, row: int, statement: Statement) -> None:
     """DELAY/seconds or DELAY/turns,REV."""
     numbers, turns = statement.numbers, "REV" in statement.words
     if len(numbers) != 1 or not set(statement.words) <= {"REV"}:
-        course.tell("L402", row, f"{statement.word}/{shown(statement)}, expected seconds, or turns and REV")
-    elif numbers[0] < 0 or (turns and not course.speed):
-        course.tell("L403", row, f"{statement.word} {numbers[0]:g}" + (" turns at rest" if turns else ""))
+        state.report("L402", row, f"{statement.word}/{statement.items_text()}, expected seconds, or turns and REV")
+    elif numbers[0] < 0 or (turns and not state.spindle_speed):
+        state.report(
+            "L403", row, f"{statement.word} {numbers[0]:g}" + (" revolutions of a stopped spindle" if turns else "")
+        )
     else:
-        course.events.append((row, EventKind.DWELL, numbers[0] * 60 / course.speed if turns else numbers[0]))
+        state.events.append((row, EventKind.DWELL, numbers[0] * 60 / state.spindle_speed if turns else numbers[0]))
 
 
-def stop(course: Course, row: int, statement: Statement) -> None:
+def stop(state: ReaderState, row: int, statement: Statement) -> None:
     """STOP and OPSTOP."""
-    course.events.append((row, EventKind.STOP, 1.0 if statement.word == "OPSTOP" else 0.0))
+    state.events.append((row, EventKind.STOP, 1.0 if statement.word == "OPSTOP" else 0.0))
 
 
 def _without_pairs(statement: Statement, names: frozenset[str]) -> list[object]:
@@ -134,14 +140,6 @@ def _without_pairs(statement: Statement, names: frozenset[str]) -> list[object]:
         else:
             after = False
     return items
-
-
-def shown(statement: Statement) -> str:
-    """Items approximately as written."""
-    return ",".join(
-        f"{item:.10g}" if isinstance(item, float) else item if isinstance(item, str) else "()" if item else ""
-        for item in statement.items
-    )[:60]
 
 
 def _list(words: object) -> str:

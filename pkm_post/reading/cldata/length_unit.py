@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Length unit: determine the length unit of a file, and the words that define it.
+"""Length unit of a file, and the words that define it.
 
 Enters: the statements and the text. Leaves: a unit, or why there is none. UNITS decides. Without it the unit of the
 feeds applies, or a comment that names the units; if these disagree or are absent, the unit is unknown.
@@ -16,7 +16,7 @@ from pkm_post.reading.cldata.statements import Statements
 
 UNIT_WORDS: dict[str, str] = {"MM": "mm", "INCHES": "inch", "INCH": "inch", "IN": "inch"}
 """Operands of UNITS."""
-_FEED_WORDS: dict[str, str] = {
+_UNIT_OF_FEED: dict[str, str] = {
     **dict.fromkeys(("MMPM", "MMPR"), "mm"),
     **dict.fromkeys(("IPM", "IPR", "FPM", "FPR"), "inch"),
 }
@@ -34,15 +34,15 @@ class LengthUnit:
 
     Attributes:
         name: a key of ``options.UNITS``; empty if the file does not define it.
-        words: the defining words and their location; or why there is no unit.
+        evidence: the defining words and their location; or why there is no unit.
         stated: whether UNITS defines it.
-        doubt: a feed of the other unit, empty if there is none.
+        contradiction: a feed of the other unit, empty if there is none.
     """
 
     name: str
-    words: str
+    evidence: str
     stated: bool = False
-    doubt: str = ""
+    contradiction: str = ""
 
 
 def length_unit(statements: Statements, text: str) -> LengthUnit:
@@ -53,16 +53,16 @@ def length_unit(statements: Statements, text: str) -> LengthUnit:
         text: the same with its comments.
     """
     end = next(iter(_rows(statements, "FINI")), len(statements))
-    feeds = _first_words(statements, _WITH_FEEDS, _FEED_WORDS, end)
+    feeds = _first_words(statements, _WITH_FEEDS, _UNIT_OF_FEED, end)
     stated = _first_words(statements, ("UNITS", "UNIT"), UNIT_WORDS, end)
     if stated:
         row, name = min((row, name) for name, (row, _) in stated.items())
         other = next((words for unit, (_, words) in feeds.items() if unit != name), "")
-        return LengthUnit(name, stated[name][1], stated=True, doubt=other)
+        return LengthUnit(name, stated[name][1], stated=True, contradiction=other)
     votes = {name: words for name, (_, words) in feeds.items()}
-    for found in _UNITS_COMMENT.finditer(text):
-        name = "mm" if found[1].upper().startswith("M") else "inch"
-        votes.setdefault(name, f"the comment in line {text.count(chr(10), 0, found.start()) + 1}")
+    for comment in _UNITS_COMMENT.finditer(text):
+        name = "mm" if comment[1].upper().startswith("M") else "inch"
+        votes.setdefault(name, f"the comment in line {text.count(chr(10), 0, comment.start()) + 1}")
     if len(votes) == 1:
         return LengthUnit(*next(iter(votes.items())))
     words = " and ".join(votes.values()) or "no feed in MMPM or IPM"
@@ -71,8 +71,8 @@ def length_unit(statements: Statements, text: str) -> LengthUnit:
 
 def _rows(statements: Statements, word: str) -> list[int]:
     """The statements with a major word."""
-    forms = [index for index, form in enumerate(statements.forms) if form.word == word]
-    rows: list[int] = np.flatnonzero(np.isin(statements.form, forms)).tolist()
+    templates = [index for index, template in enumerate(statements.templates) if template.word == word]
+    rows: list[int] = np.flatnonzero(np.isin(statements.template, templates)).tolist()
     return rows
 
 
@@ -80,12 +80,12 @@ def _first_words(
     statements: Statements, majors: tuple[str, ...], table: dict[str, str], end: int
 ) -> dict[str, tuple[int, str]]:
     """By unit, the first statement before a row that contains one of its words, and the words."""
-    found: dict[str, tuple[int, str]] = {}
-    for index, form in enumerate(statements.forms):
-        words = [item for item in form.items if isinstance(item, str) and item in table] if form.word in majors else []
-        rows = np.flatnonzero(statements.form == index)[:1].tolist() if words else []
-        for row in rows:
+    first: dict[str, tuple[int, str]] = {}
+    for index, template in enumerate(statements.templates):
+        items = template.items if template.word in majors else ()
+        words = [item for item in items if isinstance(item, str) and item in table]
+        for row in np.flatnonzero(statements.template == index)[:1].tolist() if words else []:
             unit, line = table[words[0]], statements.place(row)[0]
-            if row < end and row < found.get(unit, (end, ""))[0]:
-                found[unit] = row, f"{form.word}/{words[0]} in line {line}"
-    return found
+            if row < end and row < first.get(unit, (end, ""))[0]:
+                first[unit] = row, f"{template.word}/{words[0]} in line {line}"
+    return first

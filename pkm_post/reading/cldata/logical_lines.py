@@ -37,7 +37,7 @@ _POINTS_COMMENT = re.compile(
 )
 """NX comment on the meaning of the points of a tool path."""
 _CIRCLE_COMMENT = re.compile(r"\$\$[ \t]*(?=(?:CIRCLE|CYLNDR)[ \t]*/[-+.,\dE \t]+$)", re.MULTILINE | re.IGNORECASE)
-_TEXT_GOES_ON = re.compile(
+_CONTINUED_TEXT = re.compile(
     r"^[ \t]*(?:PARTNO|PPRINT|INSERT|LETTER|DISPLY|TPRINT|REMARK)\b[^\n]*~[ \t]*\n(?:[^\n]*~[ \t]*\n)*",
     re.MULTILINE | re.IGNORECASE,
 )
@@ -52,7 +52,7 @@ _PERCENT = re.compile(r"^[ \t]*%[ \t]*$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
-class Lines:
+class LogicalLines:
     """The statements of a file as text.
 
     Attributes:
@@ -76,13 +76,13 @@ def without_long_lines(text: bytes | str) -> tuple[bytes | str, list[tuple[int, 
     whole = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
     if b"\r" in whole:
         whole = whole.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    parts, too_long, done, number = [], [], 0, 1
+    parts, too_long, end, number = [], [], 0, 1
     for start, stop in _long_lines(whole):
-        number += whole.count(b"\n", done, start)
+        number += whole.count(b"\n", end, start)
         too_long.append((number, stop - start))
-        parts.append(whole[done:start])
-        done = stop
-    return (b"".join([*parts, whole[done:]]), too_long) if too_long else (text, [])
+        parts.append(whole[end:start])
+        end = stop
+    return (b"".join([*parts, whole[end:]]), too_long) if too_long else (text, [])
 
 
 def _long_lines(text: bytes) -> Iterator[tuple[int, int]]:
@@ -109,34 +109,34 @@ def decoded(text: bytes | str) -> str:
     return whole.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").translate(_RESERVED)
 
 
-def logical_lines(text: str) -> Lines:
+def logical_lines(text: str) -> LogicalLines:
     """The statements of a decoded text."""
     text = _QUOTED_OR_COMMENT.sub(_without_quoted_dollar, text) if "'" in text or '"' in text else text
     text = _CATIA_FRAME.sub(_frame_statement, text)
-    text = _DATA_COMMENT.sub(lambda found: " " * len(found[0]), text)
-    text = _POINTS_COMMENT.sub(lambda found: f"{found[1]}_POINTS/{'CENTRE' if found[2] else 'CONTOUR'}", text)
+    text = _DATA_COMMENT.sub(lambda match: " " * len(match[0]), text)
+    text = _POINTS_COMMENT.sub(lambda match: f"{match[1]}_POINTS/{'CENTRE' if match[2] else 'CONTOUR'}", text)
     text = _CIRCLE_COMMENT.sub(_circle_statement, text)
     if "~" in text:
-        text = _TEXT_GOES_ON.sub(lambda found: _TILDE.sub(JOINT, found[0]), text)
+        text = _CONTINUED_TEXT.sub(lambda match: _TILDE.sub(JOINT, match[0]), text)
     text = _CONTINUED.sub(rf"\1{JOINT}", text)
     text = _PERCENT.sub("", _COMMENT.sub("", text)).replace(_DOLLAR, "$")
     lines = text.split("\n")
     heights = np.array([line.count(JOINT) for line in lines], dtype=np.int64) + 1
-    return Lines(lines, np.cumsum(heights) - heights + 1)
+    return LogicalLines(lines, np.cumsum(heights) - heights + 1)
 
 
-def _without_quoted_dollar(found: re.Match[str]) -> str:
+def _without_quoted_dollar(match: re.Match[str]) -> str:
     """Hide $ in quoted text, where it is literal; leave a comment unchanged."""
-    return found[0] if found[0].startswith("$$") else found[0].replace("$", _DOLLAR)
+    return match[0] if match[0].startswith("$$") else match[0].replace("$", _DOLLAR)
 
 
-def _circle_statement(found: re.Match[str]) -> str:
+def _circle_statement(match: re.Match[str]) -> str:
     """Rewrite a circle in a comment line as the start of a statement, _CIRCLE or _CYLNDR."""
-    before = found.string[found.string.rfind("\n", 0, found.start()) + 1 : found.start()]
-    return found[0] if before.strip() else " " * (len(found[0]) - 1) + "_"
+    before = match.string[match.string.rfind("\n", 0, match.start()) + 1 : match.start()]
+    return match[0] if before.strip() else " " * (len(match[0]) - 1) + "_"
 
 
-def _frame_statement(found: re.Match[str]) -> str:
+def _frame_statement(match: re.Match[str]) -> str:
     """Rewrite CATIA's frame in comments as a statement that spans the same lines."""
-    values = ",".join(re.findall(r"[-+.\dEe]+", found[1]))
-    return f"CATIA0/{values}" + JOINT * (found[0].count("\n") - 1) + "\n"
+    values = ",".join(re.findall(r"[-+.\dEe]+", match[1]))
+    return f"CATIA0/{values}" + JOINT * (match[0].count("\n") - 1) + "\n"

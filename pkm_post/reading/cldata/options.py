@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Options of reading CL data: settings that files omit or state wrongly."""
+"""Options of reading CL data: the dialects of CAM systems, and settings that files omit or state wrongly."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ class Dialect:
     Attributes:
         name: key in ``DIALECTS``.
         title: the CAM systems that write it.
-        signs: regular expression for line starts unique to this dialect.
+        marks: regular expression for line starts unique to this dialect.
         hand: "right" or "left": sense of rotation of an arc about its given axis; "vote" if unknown.
         frames: major words that define the frame of the points; in other dialects such words are informative only.
         insert_is_tool: INSERT names the tool.
-        pted: further points follow on separate lines, without GOTO, and comments may hold circles.
+        goto_continues: further points follow on separate lines, without GOTO, and comments may hold circles.
         tight_arcs_are_centre: an arc under CUTCOM too tight for the tool to follow as a contour proves that the points
             are the tool centre; in other dialects the tool may equally be too large.
     """
 
     name: str
     title: str
-    signs: str
+    marks: str
     hand: str
     frames: frozenset[str] = frozenset()
     insert_is_tool: bool = False
-    pted: bool = False
+    goto_continues: bool = False
     tight_arcs_are_centre: bool = False
 
 
@@ -41,7 +41,7 @@ DIALECTS: dict[str, Dialect] = {
     dialect.name: dialect
     for dialect in (
         Dialect("nx", "NX CLSF", r"TOOL PATH/|END-OF-PATH|PAINT/PATH|MSYS[ \t]*/|TLDATA[ \t]*/", "left",
-                frozenset({"MSYS"}), pted=True),
+                frozenset({"MSYS"}), goto_continues=True),
         Dialect("creo", "Creo, Pro/ENGINEER NCL", r"\$\$\*[ \t]+Pro/CLfile|\$\$->|REMARK[ \t]*->", "right",
                 frozenset({"CSYS"})),
         Dialect("catia", "CATIA aptsource",
@@ -50,20 +50,20 @@ DIALECTS: dict[str, Dialect] = {
         Dialect("solidworks", "SolidWorks CAM, CAMWorks APT", r"CSI_SET_|TRNTYP/|UNIT/", "right", insert_is_tool=True,
                 tight_arcs_are_centre=True),
         Dialect("makino", "Makino FF APT-CL", r"PPRINT/APTCL-SPEC,MAKINO|PPRINT/BEGIN-SECTION", "left"),
-        Dialect("apt", "NCL, APT", r"(?!)", "vote", frozenset({"MSYS", "CSYS", "CATIA0"}), pted=True),
+        Dialect("apt", "NCL, APT", r"(?!)", "vote", frozenset({"MSYS", "CSYS", "CATIA0"}), goto_continues=True),
     )
 }  # fmt: skip
 """The dialects by name, the most specific ones first."""
 
-_WHERE = 200_000
+_SEARCHED = 200_000
 """Characters of a file searched to detect its dialect."""
 
 
 def detect(text: str) -> Dialect:
     """The dialect matched by most lines at the start of a text; "apt" if none matches."""
-    head = text[:_WHERE]
+    head = text[:_SEARCHED]
     counts = {
-        name: len(re.findall(rf"^[ \t]*(?:{dialect.signs})", head, re.MULTILINE | re.IGNORECASE))
+        name: len(re.findall(rf"^[ \t]*(?:{dialect.marks})", head, re.MULTILINE | re.IGNORECASE))
         for name, dialect in DIALECTS.items()
     }
     best = max(counts, key=lambda name: counts[name])

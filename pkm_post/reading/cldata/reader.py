@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reader: the processing sequence from CL data to a program.
+"""Reader: the steps from CL data to a program.
 
 Enters: the text of a file. Leaves: a ``Program`` in mm, mm/s and the work frame, and all faults. With an error there is
 no program.
@@ -10,21 +10,21 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Program
-from pkm_post.reading.cldata.arcs import fit_arcs
-from pkm_post.reading.cldata.cutcom import contour_offsets
-from pkm_post.reading.cldata.cycle_statement import cycles_told
+from pkm_post.reading.cldata.arcs import resolve_arcs
+from pkm_post.reading.cldata.cutcom import cutcom_offsets
+from pkm_post.reading.cldata.cycle_statement import cycle_descriptions
 from pkm_post.reading.cldata.faults import Faults
-from pkm_post.reading.cldata.interpreter import walk
+from pkm_post.reading.cldata.interpreter import interpret
 from pkm_post.reading.cldata.length_unit import length_unit
 from pkm_post.reading.cldata.logical_lines import LONGEST_LINE, decoded, logical_lines, without_long_lines
 from pkm_post.reading.cldata.options import DIALECTS, ReadOptions, detect
-from pkm_post.reading.cldata.points import Points, ValueNames, all_points, bulk_rows, resolve
-from pkm_post.reading.cldata.program import program_of
-from pkm_post.reading.cldata.state import Course
+from pkm_post.reading.cldata.points import Points, ValueNames, all_points, bulk_rows, resolve_points
+from pkm_post.reading.cldata.program import build_program
+from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import scan
-from pkm_post.reading.cldata.tools import keep
+from pkm_post.reading.cldata.tools import record_tool
 
-LARGE_INCHES = 2000.0
+_LARGE_INCHES = 2000.0
 """mm; a larger part in inches is more likely in mm."""
 
 
@@ -54,54 +54,53 @@ def read(
     statements = scan(logical_lines(whole), faults)
     bulk, names = bulk_rows(statements, options, dialect)
     unit = length_unit(statements, whole)
-    course = Course(statements, dialect, options, faults, np.flatnonzero(bulk), np.cumsum(bulk), unit)
-    program = _program(course, bulk, names, file)
+    state = ReaderState(statements, dialect, options, faults, np.flatnonzero(bulk), np.cumsum(bulk), unit)
+    program = _program(state, bulk, names, file)
     return (None if faults.any_errors() else program), faults.diagnostics()
 
 
-def _program(course: Course, bulk: Array, names: ValueNames, file: str) -> Program | None:
+def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> Program | None:
     """The program of the statements; None on errors."""
-    counted = walk(course, bulk)
-    points = all_points(course, counted, names)
-    if not course.faults.any_errors() and not len(points.row):
-        course.faults.add("L413", (0, 0), "no GOTO")
-    if course.faults.any_errors():
+    points = all_points(state, interpret(state, bulk), names)
+    if not state.faults.any_errors() and not len(points.row):
+        state.faults.add("L413", (0, 0), "no GOTO")
+    if state.faults.any_errors():
         return None
-    frames = resolve(course, points)
-    if course.faults.any_errors():
+    frames = resolve_points(state, points)
+    if state.faults.any_errors():
         return None
-    arcs = fit_arcs(course, points, frames)
-    if course.faults.any_errors():
+    arcs = resolve_arcs(state, points, frames)
+    if state.faults.any_errors():
         return None
-    unit = _unit(course, points)
-    _lengths(course)
-    offsets, reading = contour_offsets(course, points, frames, arcs)
-    if course.faults.any_errors():
+    unit = _describe_unit(state, points)
+    _check_tool_lengths(state)
+    offsets, reading = cutcom_offsets(state, points, frames, arcs)
+    if state.faults.any_errors():
         return None
-    return program_of(course, points, arcs, file, offsets, [*unit, *cycles_told(course), *reading])
+    return build_program(state, points, arcs, file, offsets, [*unit, *cycle_descriptions(state), *reading])
 
 
-def _unit(course: Course, points: Points) -> list[str]:
+def _describe_unit(state: ReaderState, points: Points) -> list[str]:
     """Describe how the length unit was determined without UNITS; report a doubtful or missing unit."""
-    if course.options.units is not None:
-        return [f"lengths are in {course.options.units}, as the option says"]
-    unit, size = course.file_unit, float(np.ptp(points.position, axis=0).max())
+    if state.options.units is not None:
+        return [f"lengths are in {state.options.units}, as the option says"]
+    unit, size = state.file_unit, float(np.ptp(points.position, axis=0).max())
     if not unit.name:
-        course.faults.add("L431", (0, 0), unit.words)
+        state.faults.add("L431", (0, 0), unit.evidence)
         return []
     if not unit.stated:
-        course.faults.add("L410", (0, 0), f"there is no UNITS; {unit.name}, by {unit.words}")
-    if unit.doubt:
-        course.faults.add("L410", (0, 0), f"{unit.words}, but {unit.doubt}: each is taken as it says")
-    if course.unit == "inch" and size > LARGE_INCHES:
-        found = f"{unit.words}, and the path is {size / 25.4:.6g} inches = {size:.6g} mm wide"
-        course.faults.add("L410", (0, 0), found)
-    return [] if unit.stated else [f"lengths are in {unit.name}, by {unit.words}"]
+        state.faults.add("L410", (0, 0), f"there is no UNITS; {unit.name}, by {unit.evidence}")
+    if unit.contradiction:
+        state.faults.add("L410", (0, 0), f"{unit.evidence}, but {unit.contradiction}: each is taken in its own unit")
+    if state.unit == "inch" and size > _LARGE_INCHES:
+        found = f"{unit.evidence}, and the path is {size / 25.4:.6g} inches = {size:.6g} mm wide"
+        state.faults.add("L410", (0, 0), found)
+    return [] if unit.stated else [f"lengths are in {unit.name}, by {unit.evidence}"]
 
 
-def _lengths(course: Course) -> None:
+def _check_tool_lengths(state: ReaderState) -> None:
     """Report tools of unknown length."""
-    keep(course)
-    for number, tool in sorted(course.tools.items()):
+    record_tool(state)
+    for number, tool in sorted(state.tools.items()):
         if not tool.length > 0:
-            course.faults.add("L411", (0, 0), f"tool {number}")
+            state.faults.add("L411", (0, 0), f"tool {number}")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Course: the state that the statements of a file set, in file order, during sequential reading.
+"""Reader state: the modal state that statements set, in file order, and the records they leave.
 
 Each change is recorded with its statement row; the affected motions are found later, all at once. Lengths are in mm and
-times in s from here on; points stay as written until then.
+times in s; points, axes and arcs stay as written.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pkm_post.reading.cldata.cycle_notation import Cycle
 from pkm_post.reading.cldata.faults import Faults
 from pkm_post.reading.cldata.length_unit import LengthUnit
 from pkm_post.reading.cldata.options import UNITS, Dialect, ReadOptions
-from pkm_post.reading.cldata.statements import Statements
+from pkm_post.reading.cldata.statements import Statement, Statements
 
 Vector = tuple[float, ...]
 
@@ -37,9 +37,9 @@ class Arc:
         radius: as written, NaN if not given.
         angle: sweep in rad, NaN if not given.
         turns: full turns before the remaining sweep.
-        way: sense of rotation: 1 right-handed about its axis, -1 left-handed, 0 if not given.
+        sense: sense of rotation: 1 right-handed about its axis, -1 left-handed, 0 if not given.
         seen_from_tool: the sense is about the tool axis, regardless of the direction of the arc axis.
-        shorter: the arc is less than half a turn.
+        minor: the arc is less than half a turn.
     """
 
     centre: Vector
@@ -47,9 +47,9 @@ class Arc:
     radius: float = float("nan")
     angle: float = float("nan")
     turns: int = 0
-    way: float = 0.0
+    sense: float = 0.0
     seen_from_tool: bool = False
-    shorter: bool = False
+    minor: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,12 +85,11 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Said:
-    """Statement of the file about its points under CUTCOM: "centre" or "contour", its wording, and its row."""
+class PointMeaning:
+    """Statement of the file about its points under CUTCOM: "centre" or "contour", and its wording."""
 
     points: str
     words: str
-    row: int
 
 
 @dataclass(frozen=True)
@@ -103,7 +102,7 @@ class Cutcom:
         plane: the coordinate normal to the named plane; None if no plane is named.
         tool: tool number.
         radius: tool radius, mm; 0 if unknown.
-        said: stated meaning of the points, None if the file states none.
+        point_meaning: as stated by the file, None if it states none.
     """
 
     row: int
@@ -111,15 +110,17 @@ class Cutcom:
     plane: int | None
     tool: int
     radius: float
-    said: Said | None
+    point_meaning: PointMeaning | None
 
 
 @dataclass
-class Course:
-    """State during reading, and recorded changes, each with its statement row.
+class ReaderState:
+    """Modal state during reading, and the recorded changes, each with its statement row.
 
-    ``goto_rows`` are the rows of plain GOTO statements, ``gotos_before`` is their count before each row; ``file_unit``
-    is the length unit stated in the file.
+    Attributes:
+        goto_rows: rows of the plain GOTO statements.
+        gotos_before: (N,) their count up to each row.
+        file_unit: the length unit of the file.
     """
 
     statements: Statements
@@ -135,13 +136,13 @@ class Course:
     feed_word: str = "PERMIN"
     feed_per_turn: float = 0.0
     feed: Feed | None = None
-    speed: float = 0.0
-    turning: float = 0.0
+    spindle_speed: float = 0.0
+    spindle_sense: float = 0.0
     tool: int = 0
-    insert: str = ""
+    inserted_name: str = ""
     tool_name: str = ""
     tool_changed: int = -1
-    motions_settled: int = 0
+    motions_recorded: int = 0
     motions_at_change: int = 0
     diameter: float = 0.0
     corner: float = 0.0
@@ -149,12 +150,12 @@ class Course:
     bottom_angle: float = 0.0
     side_angle: float = 0.0
     length: float = 0.0
-    points_said: Said | None = None
+    point_meaning: PointMeaning | None = None
     cycle_return: str = ""
     cycle: Cycle | None = None
-    local: Array | None = None
+    machining_frame: Array | None = None
     shift: Array | None = None
-    work_from_given: Array | None = None
+    work_from_file: Array | None = None
     tangent: Vector | None = None
     part_surface: Plane | None = None
     slope: float = 0.0
@@ -182,9 +183,18 @@ class Course:
         self.scale = UNITS[self.unit]
         self.scales.append((-1, self.scale))
 
-    def tell(self, code: str, row: int, found: str) -> None:
+    def report(self, code: str, row: int, found: str) -> None:
         """Report a fault of a statement."""
         self.faults.add(code, self.statements.place(row), found)
+
+    def expect_values(self, row: int, statement: Statement, *counts: int) -> list[float]:
+        """The values of a statement; empty, with a fault, unless their number is one of the counts."""
+        values = statement.values
+        if len(values) in counts:
+            return values
+        expected = " or ".join(map(str, counts))
+        self.report("L402", row, f"{statement.word}/{statement.items_text()}, expected {expected} values")
+        return []
 
     def set_feed(self, row: int, feed: Feed) -> None:
         """Set the feed from here on."""

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Statements: the content of a file, one row per statement, with all numbers in one column.
+"""Statements: scan logical lines to a table, one row per statement, with all numbers in one column.
 
-Most statements of a file differ only in their numbers. Their common part, the form, is stored once; a row holds the
-index of its form and the range of its numbers. Numbers are as written: program units, degrees.
+Enters: logical lines. Leaves: the table, and the lexical and syntax faults. Numbers are as written: program units,
+degrees.
+
+Most statements of a file differ only in their numbers. Each number is replaced by a marker; the rest of the line is its
+shape. The grammar of record parses one real line of each shape to a template, and the numbers of all lines are
+converted at once. So no line is accepted unless the grammar accepts its shape, and most lines are not parsed
+individually.
 """
 
 from __future__ import annotations
@@ -16,12 +21,21 @@ import numpy as np
 
 from pkm_post.model import Array
 from pkm_post.reading.cldata.faults import Faults, fault_of
-from pkm_post.reading.cldata.logical_lines import JOINT, LONGEST_LINE, MARK, Lines
+from pkm_post.reading.cldata.logical_lines import JOINT, LONGEST_LINE, MARK, LogicalLines
 from pkm_post.reading.grammar import STATEMENT, Fault
 
 if TYPE_CHECKING:
     from lark import Token, Tree, UnexpectedInput
 
+LONGEST_STATEMENT = 20000
+"""Characters of a statement, not counting numbers."""
+DEEPEST_NESTING = 20
+"""Nesting depth of parentheses in a statement."""
+
+_NUMBER = re.compile(r"(?<![\w.+-])[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[Ee][+-]?[0-9]++)?+(?![\w.+-])")
+_STRING = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"")
+_HIDDEN_DIGITS = str.maketrans({str(digit): chr(0xE000 + digit) for digit in range(10)})
+_BLANKS = f" \t{JOINT}"
 _TEXT = re.compile(r"\s*(?:TOOL[ \t]+PATH|OPERATION[ \t]+NAME|\w+)(.*)", re.DOTALL | re.IGNORECASE)
 _LABEL = re.compile(r"N\d+")
 
@@ -56,14 +70,21 @@ class Statement:
         """The words among the items."""
         return [item for item in self.items if isinstance(item, str)]
 
+    def items_text(self) -> str:
+        """The items approximately as written, for messages."""
+        return ",".join(
+            f"{item:.10g}" if isinstance(item, float) else item if isinstance(item, str) else "()" if item else ""
+            for item in self.items
+        )[:60]
+
 
 @dataclass(frozen=True)
-class Form:
+class Template:
     """Common part of statements that differ only in their numbers.
 
     Attributes:
         word: the major word, several joined by commas; empty for a line of numbers.
-        items: words and nested forms; ``float`` itself marks a number, None an empty item.
+        items: words and nested templates; ``float`` itself marks a number, None an empty item.
         takes_text: whether the rest of the line is text.
     """
 
@@ -72,11 +93,11 @@ class Form:
     takes_text: bool = False
 
     @property
-    def plain(self) -> bool:
+    def only_numbers(self) -> bool:
         """Whether all items are numbers."""
         return bool(self.items) and all(item is float for item in self.items)
 
-    def filled(self, numbers: Iterator[float]) -> Statement:
+    def fill(self, numbers: Iterator[float]) -> Statement:
         """Fill in the numbers of a statement."""
         return Statement(self.word, tuple(_filled(item, numbers) for item in self.items))
 
@@ -84,8 +105,8 @@ class Form:
 def _filled(item: object, numbers: Iterator[float]) -> float | str | Statement | None:
     if item is float:
         return next(numbers)
-    if isinstance(item, Form):
-        return item.filled(numbers)
+    if isinstance(item, Template):
+        return item.fill(numbers)
     return cast("str | None", item)
 
 
@@ -94,103 +115,65 @@ class Statements:
     """The statements of a file.
 
     Attributes:
-        forms: the forms.
-        form: (N,) index of the form of each statement.
+        templates: the templates.
+        template: (N,) index of the template of each statement.
         index: (N,) its logical line.
         number_start: (N + 1,) the numbers of row i are ``numbers[number_start[i]:number_start[i + 1]]``.
         numbers: (K,) as written.
         lines: the source text.
     """
 
-    forms: tuple[Form, ...]
-    form: Array
+    templates: tuple[Template, ...]
+    template: Array
     index: Array
     number_start: Array
     numbers: Array
-    lines: Lines
+    lines: LogicalLines
 
     def __len__(self) -> int:
-        return len(self.form)
+        return len(self.template)
 
     def statement(self, row: int) -> Statement:
         """One statement with its numbers."""
-        form: Form = self.forms[self.form[row]]
-        if form.takes_text:
-            found = _TEXT.match(self.lines.text[self.index[row]])
-            return Statement(form.word, text=found[1].replace(JOINT, "").strip(" \t/:") if found else "")
-        return form.filled(iter(self.numbers[self.number_start[row] : self.number_start[row + 1]].tolist()))
+        template: Template = self.templates[self.template[row]]
+        if template.takes_text:
+            match = _TEXT.match(self.lines.text[self.index[row]])
+            return Statement(template.word, text=match[1].replace(JOINT, "").strip(" \t/:") if match else "")
+        return template.fill(iter(self.numbers[self.number_start[row] : self.number_start[row + 1]].tolist()))
 
     def word(self, row: int) -> str:
         """The major word of one statement, empty if absent."""
-        return self.forms[self.form[row]].word
+        return self.templates[self.template[row]].word
 
     def place(self, row: int) -> tuple[int, int]:
         """Line and column of the first word of a statement."""
         text = self.lines.text[self.index[row]]
-        return self.lines.place(int(self.index[row]), len(text) - len(text.lstrip(f" \t{JOINT}")))
+        return self.lines.place(int(self.index[row]), len(text) - len(text.lstrip(_BLANKS)))
 
 
-def form_of(tree: Tree[Token]) -> Form:
-    """The form of a parsed statement."""
-    if tree.data == "bare":
-        return Form("", (float,) * len(tree.children))
-    if tree.data == "text":
-        return Form(" ".join(str(tree.children[0]).upper().split()), (), takes_text=True)
-    _, head, items = cast("tuple[object, Tree[Token], Tree[Token] | None]", tree.children)
-    words = [str(word).upper() for word in head.children]
-    if len(words) > 1 and _LABEL.fullmatch(words[0]):
-        del words[0]
-    children = items.children if items is not None else []
-    return Form(",".join(words), tuple(_item(cast("Tree[Token] | None", child)) for child in children))
-
-
-def _item(tree: Tree[Token] | None) -> object:
-    """Convert an item of the parse tree to an item of a form."""
-    if tree is None:
-        return None
-    if tree.data == "number":
-        return float
-    if tree.data == "setting":
-        return Form(str(tree.children[0]).upper(), (float,))
-    if tree.data == "nested":
-        return form_of(cast("Tree[Token]", tree.children[0]))
-    return str(tree.children[0]).upper()
-
-
-LONGEST = 20000
-"""Characters of a statement, not counting numbers."""
-DEEPEST = 20
-"""Nesting depth of parentheses in a statement."""
-
-_NUMBER = re.compile(r"(?<![\w.+-])[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[Ee][+-]?[0-9]++)?+(?![\w.+-])")
-_STRING = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"")
-_HIDDEN_DIGITS = str.maketrans({str(digit): chr(0xE000 + digit) for digit in range(10)})
-_BLANKS = f" \t{JOINT}"
-
-
-def scan(lines: Lines, faults: Faults) -> Statements:
+def scan(lines: LogicalLines, faults: Faults) -> Statements:
     """Scan logical lines to statements.
 
     Args:
         lines: the text.
         faults: collects its faults.
     """
-    lines = _without_long_ones(lines, faults)
+    lines = _without_long_statements(lines, faults)
     body = _without_quoted_numbers("\n".join(lines.text))
     shapes = _NUMBER.sub(MARK, body).split("\n")
     known: dict[str, int] = {}
     shape = np.array([known.setdefault(one, len(known)) for one in shapes], dtype=np.int64)
     first = np.unique(shape, return_index=True)[1].tolist()
-    parsed = [parsed_line(text, lines.text[line]) for text, line in zip(known, first, strict=True)]
+    parsed = [_parse_line(text, lines.text[line]) for text, line in zip(known, first, strict=True)]
     marks = np.array([text.count(MARK) for text in known], dtype=np.int64)[shape]
-    good = np.array([isinstance(one, Form) for one in parsed], dtype=np.bool_)
+    good = np.array([isinstance(one, Template) for one in parsed], dtype=np.bool_)
     filled = np.array([bool(text.strip(_BLANKS)) for text in known], dtype=np.bool_)
     for line in np.flatnonzero((~good & filled)[shape]).tolist():
-        faults.add_line(lines, line, lambda text: _fault_again(text))
+        faults.add_line(lines, line, _fault_of_line)
     return _table(lines, _values(body), shape, marks, parsed, good)
 
 
-def _without_long_ones(lines: Lines, faults: Faults) -> Lines:
+def _without_long_statements(lines: LogicalLines, faults: Faults) -> LogicalLines:
     """Blank the lines that became too long when joined."""
     too_long = [index for index, text in enumerate(lines.text) if len(text) > LONGEST_LINE]
     if not too_long:
@@ -203,31 +186,31 @@ def _without_long_ones(lines: Lines, faults: Faults) -> Lines:
     return replace(lines, text=kept)
 
 
-def parsed_line(shape: str, text: str) -> Form | Fault | UnexpectedInput | None:
-    """The form of a line, its fault, or None if it is empty."""
+def _parse_line(shape: str, text: str) -> Template | Fault | UnexpectedInput | None:
+    """The template of a line, its fault, or None if it is empty."""
     if not shape.strip(_BLANKS):
         return None
-    if len(shape) > LONGEST:
+    if len(shape) > LONGEST_STATEMENT:
         return Fault("L104", 0, f"{len(text)} characters")
-    if shape.count("(") > DEEPEST:
-        return Fault("L205", text.index("("), f"{shape.count('(')} parentheses, at most {DEEPEST}")
+    if shape.count("(") > DEEPEST_NESTING:
+        return Fault("L205", text.index("("), f"{shape.count('(')} parentheses, at most {DEEPEST_NESTING}")
     tree = STATEMENT.parse(text)
-    return tree if isinstance(tree, Exception) else form_of(tree)
+    return tree if isinstance(tree, Exception) else template_of(tree)
 
 
-def _fault_again(text: str) -> Fault:
+def _fault_of_line(text: str) -> Fault:
     """The fault of one line of an invalid shape."""
-    result = parsed_line(_NUMBER.sub(MARK, _without_quoted_numbers(text)), text)
+    result = _parse_line(_NUMBER.sub(MARK, _without_quoted_numbers(text)), text)
     if isinstance(result, Fault):
         return result
-    if result is None or isinstance(result, Form):
+    if result is None or isinstance(result, Template):
         raise ValueError(f"expected a faulty statement, got {text!r}")
     return fault_of(text, result)
 
 
 def _without_quoted_numbers(text: str) -> str:
     """Hide digits in quotes: quoted text contains no numbers."""
-    return _STRING.sub(lambda found: found[0].translate(_HIDDEN_DIGITS), text)
+    return _STRING.sub(lambda quoted: quoted[0].translate(_HIDDEN_DIGITS), text)
 
 
 def _values(body: str) -> Array:
@@ -237,17 +220,43 @@ def _values(body: str) -> Array:
 
 
 def _table(
-    lines: Lines, values: Array, shape: Array, marks: Array, parsed: Sequence[object], good: Array
+    lines: LogicalLines, values: Array, shape: Array, marks: Array, parsed: Sequence[object], good: Array
 ) -> Statements:
     """The table of the lines that are statements."""
     rows = np.flatnonzero(good[shape])
     used = np.repeat(good[shape], marks)
-    forms = tuple(one for one in parsed if isinstance(one, Form))
     return Statements(
-        forms=forms,
-        form=(np.cumsum(good) - 1)[shape[rows]],
+        templates=tuple(one for one in parsed if isinstance(one, Template)),
+        template=(np.cumsum(good) - 1)[shape[rows]],
         index=rows,
         number_start=np.concatenate([[0], np.cumsum(marks[rows])]).astype(np.int64),
         numbers=values[used],
         lines=lines,
     )
+
+
+def template_of(tree: Tree[Token]) -> Template:
+    """The template of a parsed statement."""
+    if tree.data == "bare":
+        return Template("", (float,) * len(tree.children))
+    if tree.data == "text":
+        return Template(" ".join(str(tree.children[0]).upper().split()), (), takes_text=True)
+    _, head, items = cast("tuple[object, Tree[Token], Tree[Token] | None]", tree.children)
+    words = [str(word).upper() for word in head.children]
+    if len(words) > 1 and _LABEL.fullmatch(words[0]):
+        del words[0]
+    children = items.children if items is not None else []
+    return Template(",".join(words), tuple(_item(cast("Tree[Token] | None", child)) for child in children))
+
+
+def _item(tree: Tree[Token] | None) -> object:
+    """Convert an item of the parse tree to an item of a template."""
+    if tree is None:
+        return None
+    if tree.data == "number":
+        return float
+    if tree.data == "setting":
+        return Template(str(tree.children[0]).upper(), (float,))
+    if tree.data == "nested":
+        return template_of(cast("Tree[Token]", tree.children[0]))
+    return str(tree.children[0]).upper()

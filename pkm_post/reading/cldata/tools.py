@@ -11,94 +11,93 @@ import math
 from dataclasses import replace
 
 from pkm_post.model import EventKind, Tool, angles_fit, corner_reach, largest_corner
-from pkm_post.reading.cldata.feeds import shown
-from pkm_post.reading.cldata.state import Course
+from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement
 
-_TOUCHING = 2e-3
+_TANGENT_TOLERANCE = 2e-3
 """Tolerance in mm of e and f from those of a tangent corner: files round to three decimals."""
 
 
-def cutter(course: Course, row: int, statement: Statement) -> None:
+def cutter(state: ReaderState, row: int, statement: Statement) -> None:
     """CUTTER/d[,r[,e,f,a,b,h]], angles in degrees; e and f follow from the others."""
     numbers = statement.numbers
     if not numbers or statement.words:
-        course.tell("L402", row, f"CUTTER/{shown(statement)}, expected d[,r[,e,f,a,b,h]]")
+        state.report("L402", row, f"CUTTER/{statement.items_text()}, expected d[,r[,e,f,a,b,h]]")
         return
-    d, r, e, f, a, b = _filled(numbers, 6)
-    if not _new_cutter(course, row, d, r, a, b):
+    d, r, e, f, a, b = _padded(numbers, 6)
+    if not _new_cutter(state, row, d, r, a, b):
         return
-    course.corner_known = len(numbers) > 1
+    state.corner_known = len(numbers) > 1
     if len(numbers) >= 4:
-        _check_corner(course, row, e * course.scale, f * course.scale)
+        _check_corner(state, row, e * state.scale, f * state.scale)
 
 
-def tldata(course: Course, row: int, statement: Statement) -> None:
+def tldata(state: ReaderState, row: int, statement: Statement) -> None:
     """TLDATA/MILL,d,r,length,taper,tip,... and TLDATA/DRILL,MILL,d,...: only the diameter of the latter."""
     numbers = statement.numbers
     if not numbers:
-        course.tell("L402", row, f"TLDATA/{shown(statement)}, expected a diameter")
+        state.report("L402", row, f"TLDATA/{statement.items_text()}, expected a diameter")
         return
-    told = numbers[:1] if "DRILL" in statement.words else numbers
-    d, r, _, taper, tip = _filled(told, 5)
-    if _new_cutter(course, row, d, r, tip, taper):
-        course.corner_known = len(told) > 1
+    given = numbers[:1] if "DRILL" in statement.words else numbers
+    d, r, _, taper, tip = _padded(given, 5)
+    if _new_cutter(state, row, d, r, tip, taper):
+        state.corner_known = len(given) > 1
 
 
-def _check_corner(course: Course, row: int, e: float, f: float) -> None:
+def _check_corner(state: ReaderState, row: int, e: float, f: float) -> None:
     """Report e or f that does not belong to the corner tangent to bottom and side."""
-    a, b, r = course.bottom_angle, course.side_angle, course.corner
-    touching_e = course.diameter / 2 - r * corner_reach(a, b)
-    touching_f = touching_e * math.tan(a) + r / math.cos(a)
-    if abs(e - touching_e) > _TOUCHING or abs(f - touching_f) > _TOUCHING:
-        found = f"e {e:g} mm, f {f:g} mm; touching are e {touching_e:.6g} mm, f {touching_f:.6g} mm"
-        course.tell("L418", row, found)
+    a, b, r = state.bottom_angle, state.side_angle, state.corner
+    tangent_e = state.diameter / 2 - r * corner_reach(a, b)
+    tangent_f = tangent_e * math.tan(a) + r / math.cos(a)
+    if abs(e - tangent_e) > _TANGENT_TOLERANCE or abs(f - tangent_f) > _TANGENT_TOLERANCE:
+        found = f"e {e:g} mm, f {f:g} mm; tangent are e {tangent_e:.6g} mm, f {tangent_f:.6g} mm"
+        state.report("L418", row, found)
 
 
-def _filled(numbers: list[float], count: int) -> tuple[float, ...]:
+def _padded(numbers: list[float], count: int) -> tuple[float, ...]:
     """The first numbers of a statement, 0 for missing ones."""
     return (*numbers[:count], *(0.0,) * (count - len(numbers)))
 
 
-def _new_cutter(course: Course, row: int, diameter: float, corner: float, bottom: float, side: float) -> bool:
+def _new_cutter(state: ReaderState, row: int, diameter: float, corner: float, bottom: float, side: float) -> bool:
     """Whether the cutter is possible; if so, it becomes the active one."""
-    diameter, corner = diameter * course.scale, corner * course.scale
+    diameter, corner = diameter * state.scale, corner * state.scale
     bottom_angle, side_angle = math.radians(bottom), math.radians(side)
     if not angles_fit(bottom_angle, side_angle):
-        course.tell("L403", row, f"bottom angle {bottom:g} degrees, side angle {side:g} degrees")
+        state.report("L403", row, f"bottom angle {bottom:g} degrees, side angle {side:g} degrees")
         return False
     largest = largest_corner(diameter, bottom_angle, side_angle)
     if diameter < 0 or not 0 <= corner <= largest + 1e-3:
-        course.tell("L403", row, f"diameter {diameter:g} mm, corner radius {corner:g} mm")
+        state.report("L403", row, f"diameter {diameter:g} mm, corner radius {corner:g} mm")
         return False
-    settle(course, row)
-    course.diameter, course.corner = diameter, min(corner, largest)
-    course.bottom_angle, course.side_angle = bottom_angle, side_angle
-    course.tool_name = course.insert
+    record_tool_if_used(state, row)
+    state.diameter, state.corner = diameter, min(corner, largest)
+    state.bottom_angle, state.side_angle = bottom_angle, side_angle
+    state.tool_name = state.inserted_name
     return True
 
 
-def load(course: Course, row: int, statement: Statement) -> None:
+def load(state: ReaderState, row: int, statement: Statement) -> None:
     """LOADTL/n[,LENGTH,l], LOAD/TOOL,n and TOOLNO/n: a tool change; only one if two of them occur."""
     items = statement.items
     if statement.word == "LOAD" and items[:1] != ("TOOL",):
-        course.tell("L401", row, f"LOAD/{shown(statement)}")
+        state.report("L401", row, f"LOAD/{statement.items_text()}")
         return
     number = next(iter(items[1:] if statement.word == "LOAD" else items), None)
     if not isinstance(number, float) or number != int(number) or not 0 <= number < 2**31:
-        course.tell("L402", row, f"{statement.word}/{shown(statement)}, expected the number of a tool")
+        state.report("L402", row, f"{statement.word}/{statement.items_text()}, expected the number of a tool")
         return
-    settle(course, row)
-    length = _after(statement, "LENGTH") * course.scale
-    if int(number) == course.tool_changed and course.motions_settled == course.motions_at_change:
-        course.length = length or course.length
+    record_tool_if_used(state, row)
+    length = _after(statement, "LENGTH") * state.scale
+    if int(number) == state.tool_changed and state.motions_recorded == state.motions_at_change:
+        state.length = length or state.length
         return
-    course.tool = course.tool_changed = int(number)
-    course.motions_at_change = course.motions_settled
-    course.length = length
-    if course.tool not in course.tools:
-        keep(course)
-    course.events.append((row, EventKind.TOOL_CHANGE, float(course.tool)))
+    state.tool = state.tool_changed = int(number)
+    state.motions_at_change = state.motions_recorded
+    state.length = length
+    if state.tool not in state.tools:
+        record_tool(state)
+    state.events.append((row, EventKind.TOOL_CHANGE, float(state.tool)))
 
 
 def _after(statement: Statement, word: str) -> float:
@@ -109,27 +108,27 @@ def _after(statement: Statement, word: str) -> float:
     return 0.0
 
 
-def insert(course: Course, row: int, statement: Statement) -> None:
+def insert(state: ReaderState, row: int, statement: Statement) -> None:
     """INSERT/text: in SolidWorks the tool name before its CUTTER; elsewhere text for the NC program."""
-    if course.dialect.insert_is_tool:
-        course.insert = statement.text
+    if state.dialect.insert_is_tool:
+        state.inserted_name = statement.text
 
 
-def settle(course: Course, row: int) -> None:
+def record_tool_if_used(state: ReaderState, row: int) -> None:
     """Record the active tool if there were motions since its last change."""
-    motions = int(course.gotos_before[row]) + sum(not point.start for _, point in course.points)
-    if motions != course.motions_settled:
-        course.motions_settled = motions
-        keep(course)
+    motions = int(state.gotos_before[row]) + sum(not point.start for _, point in state.points)
+    if motions != state.motions_recorded:
+        state.motions_recorded = motions
+        record_tool(state)
 
 
-def keep(course: Course) -> None:
+def record_tool(state: ReaderState) -> None:
     """Record the tool as currently known."""
-    stands_for = course.options.default_tool
-    given = course.options.tools.get(course.tool)
-    length = course.length or (stands_for.length if stands_for else 0.0)
-    shape = (course.diameter, course.corner, length, course.bottom_angle, course.side_angle)
-    known = Tool(course.tool, course.tool_name, *shape, course.corner_known)
+    default = state.options.default_tool
+    given = state.options.tools.get(state.tool)
+    length = state.length or (default.length if default else 0.0)
+    shape = (state.diameter, state.corner, length, state.bottom_angle, state.side_angle)
+    known = Tool(state.tool, state.tool_name, *shape, state.corner_known)
     if given is not None:
         known = replace(given, name=given.name or known.name, length=given.length or known.length)
-    course.tools[course.tool] = known
+    state.tools[state.tool] = known

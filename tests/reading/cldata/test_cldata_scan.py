@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pkm_post.reading.cldata import read
 from pkm_post.reading.cldata.faults import Faults
 from pkm_post.reading.cldata.logical_lines import JOINT, decoded, logical_lines
-from pkm_post.reading.cldata.statements import form_of, scan
+from pkm_post.reading.cldata.statements import scan, template_of
 from pkm_post.reading.grammar import STATEMENT
 
 BLANKS = st.sampled_from(["", " ", "  ", " $\n"])
@@ -46,7 +46,7 @@ def test_the_fast_way_and_the_grammar_agree(written):
     assert len(table) == len(written)
     for row, one in enumerate(written):
         tree = STATEMENT.parse(one.replace("$\n", JOINT))
-        assert table.statement(row) == form_of(tree).filled(iter(leaves(tree)))
+        assert table.statement(row) == template_of(tree).fill(iter(leaves(tree)))
 
 
 def test_numbers_are_those_of_the_text_to_the_last_bit():
@@ -54,7 +54,7 @@ def test_numbers_are_those_of_the_text_to_the_last_bit():
     text = "".join(f"GOTO/{','.join(map(repr, row))}\n" for row in values.tolist())
     table = scan(logical_lines(text), Faults("part.cl"))
     assert np.array_equal(table.numbers.reshape(-1, 6), values)
-    assert len(table.forms) == 1
+    assert len(table.templates) == 1
 
 
 def test_quoted_numbers_and_foreign_digits_are_no_numbers():
@@ -71,7 +71,7 @@ def test_continued_statements_keep_their_lines():
 
 def test_text_goes_on_behind_a_tilde():
     table = scan(logical_lines("TPRINT/one, ~\ntwo ~  \nthree\nGOTO/1,2,3\nPPRINT a ~ b\nRAPID"), Faults("part.cl"))
-    assert [form.word for form in table.forms] == ["TPRINT", "GOTO", "PPRINT", "RAPID"]
+    assert [template.word for template in table.templates] == ["TPRINT", "GOTO", "PPRINT", "RAPID"]
     assert table.statement(0).text == "one, two three"
     assert table.statement(2).text == "a ~ b"
     assert [table.place(row)[0] for row in range(4)] == [1, 4, 5, 6]
