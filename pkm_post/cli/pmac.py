@@ -10,20 +10,127 @@ from __future__ import annotations
 import argparse
 import logging
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pkm_post.cli import pmac_control, pmac_control_arguments, pmac_simulate
-from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, JobTarget, Target
-from pkm_post.cli.pmac_stream import ROTARY_WORDS
-from pkm_post.options import above_zero, between, count, positive, tool_length
+from pkm_post.cli import pmac_manual, pmac_simulate
+from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, ROTARY_WORDS, JobTarget, Target
+from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
+from pkm_post.options import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 
 if TYPE_CHECKING:
     from pkm_post.control import Port, Session
     from pkm_post.model import Diagnostic
+
+_HIGHEST_PROGRAM = 999
+"""Numbers from 1000 on are the subprograms of the codes."""
+_percent = above_zero(100)
+_way = between(-LONGEST_TOOL, LONGEST_TOOL)
+_turn = between(-360, 360)
+
+
+def add_own(parser: argparse.ArgumentParser, name: str) -> None:
+    """Add the arguments of an action."""
+    if name in _OWN:
+        _OWN[name](parser)
+
+
+def _add_home(parser: argparse.ArgumentParser) -> None:
+    told = "line that starts the homing of this machine, as its builder says, such as 'ENABLE PLC 3'"
+    parser.add_argument("--trigger", type=_trigger, metavar="LINE", help=f"{told} (only tell which struts have homes)")
+
+
+def _add_jog(parser: argparse.ArgumentParser) -> None:
+    for name in ("x", "y", "z"):
+        parser.add_argument(f"--{name}", type=_way, default=0.0, metavar="MM", help=f"the tip along {name.upper()}")
+    for name in ("x", "y"):
+        told = f"the tool axis about {name.upper()}, the tip stands"
+        parser.add_argument(f"--tilt-{name}", type=_turn, default=0.0, metavar="DEG", help=told)
+    parser.add_argument("--spin", type=_turn, default=0.0, metavar="DEG", help="the platform about the tool axis")
+    parser.add_argument("--strut", type=int, choices=range(1, 7), help="one strut instead of the tool")
+    parser.add_argument("--by", type=_way, default=0.0, metavar="MM", help="how much longer that strut becomes")
+    told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
+    parser.add_argument("--feed", type=positive, default=300.0, metavar="MM/MIN", help=told)
+    _add_by_hand(parser)
+
+
+def _add_mdi(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("line", metavar="LINE", help="a line of G-code; it stands by itself")
+    parser.add_argument("--work-offset", default="G54", metavar="NAME", help="frame of the line (%(default)s)")
+    told = "how the line says the tool axis; none leaves it as it is (%(default)s)"
+    parser.add_argument("--axis-words", type=axis_words, default=NO_AXIS_WORDS, metavar="WORDS", help=told)
+    _add_by_hand(parser)
+
+
+def _add_approach(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.options import APPROACH_MM_S
+
+    told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
+    parser.add_argument("--feed", type=positive, default=60 * APPROACH_MM_S, metavar="MM/MIN", help=told)
+    _add_by_hand(parser)
+
+
+def _add_by_hand(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--tool-length", type=tool_length, metavar="MM", help="gauge length (that of the rest pose)")
+    parser.add_argument("--check", action="store_true", help="plan and check it, and send nothing")
+    _add_number(parser)
+
+
+def _add_step(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.options import START_TOLERANCE_MM
+
+    parser.add_argument("--block", type=count, default=1, metavar="N", help="begin at this block (%(default)s)")
+    near = "how far each strut and the tip may be from where the first block begins (%(default)s)"
+    parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
+    parser.set_defaults(tool_length=None, check=False)
+    _add_number(parser)
+
+
+def _add_continue(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.options import START_TOLERANCE_MM
+
+    told = "which stop of the program it stands at, from 1"
+    parser.add_argument("--stop", type=count, required=True, metavar="N", help=told)
+    near = "how far each strut may be from where it stopped (%(default)s)"
+    parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
+
+
+def _add_number(parser: argparse.ArgumentParser) -> None:
+    from pkm_post.options import MANUAL_MOVE_PROGRAM
+
+    told = "number of the program in the controller that is used for it (%(default)s)"
+    parser.add_argument(
+        "--number", type=whole(1, _HIGHEST_PROGRAM), default=MANUAL_MOVE_PROGRAM, metavar="PROG", help=told
+    )
+
+
+def _add_override(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("percent", type=_percent, metavar="PERCENT", help="a number above 0 and up to 100")
+
+
+def _trigger(text: str) -> str:
+    from pkm_post.control import check_trigger
+
+    try:
+        check_trigger(text)
+    except ValueError as fault:
+        raise argparse.ArgumentTypeError(str(fault)) from None
+    return text
+
+
+_OWN: dict[str, Callable[[argparse.ArgumentParser], None]] = {
+    "home": _add_home,
+    "jog": _add_jog,
+    "mdi": _add_mdi,
+    "approach": _add_approach,
+    "step": _add_step,
+    "continue": _add_continue,
+    "override": _add_override,
+}
+
 
 Value = TypeVar("Value")
 
@@ -35,7 +142,7 @@ def add_commands(commands: Any) -> None:
     """Add the command ``pmac`` with its actions to a parser."""
     pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC, or simulate one")
     actions = pmac.add_subparsers(required=True, metavar="ACTION")
-    for name, (action, text, needs) in (ACTIONS | pmac_control.ACTIONS).items():
+    for name, (action, text, needs) in (ACTIONS | pmac_manual.ACTIONS).items():
         parser = actions.add_parser(name, help=text)
         _add_port(parser)
         parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
@@ -44,7 +151,7 @@ def add_commands(commands: Any) -> None:
             told = "take the program though nothing shows that it is certified for this machine; that is logged"
             parser.add_argument("--uncertified", action="store_true", help=told)
         _add_own(parser, name)
-        pmac_control_arguments.add_own(parser, name)
+        add_own(parser, name)
         parser.set_defaults(run=_run, action=action, name=name, needs=needs)
     pmac_simulate.add_action(actions)
 
@@ -114,18 +221,18 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     except PmacError as fault:
         print(fault, file=sys.stderr)
         if isinstance(fault, LinkLostError):
-            pmac_control.tell_emergency(namespace.name, connected)
+            pmac_manual.print_emergency_steps(namespace.name, connected)
         return 1
     except KeyboardInterrupt:
         print("interrupted; the controller goes on with what it does", file=sys.stderr)
         if namespace.name in _STOPS:
-            pmac_control.tell_emergency(namespace.name, connected)
+            pmac_manual.print_emergency_steps(namespace.name, connected)
         return 1
 
 
 def _session(namespace: argparse.Namespace) -> Session:
     """Open a session on the given port."""
-    from pkm_post.control import Leftover, Session
+    from pkm_post.control import OpenBufferPolicy, Session
 
     port = replace(
         namespace.port,
@@ -134,7 +241,7 @@ def _session(namespace: argparse.Namespace) -> Session:
         handshake=namespace.rtscts,
         known_hosts=namespace.known_hosts,
     )
-    leftover = Leftover.STOP if namespace.name in _STOPS else Leftover.LEAVE
+    leftover = OpenBufferPolicy.STOP if namespace.name in _STOPS else OpenBufferPolicy.LEAVE
     return Session(port, namespace.patience, leftover=leftover)
 
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 import argparse
 import re
+import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.pmac_stop import abort, held_at_the_end, hold
-from pkm_post.cli.pmac_stream import stream
+from pkm_post.cli.pmac_stop import abort, held_at_the_end, hold, signals_interrupt
 
 if TYPE_CHECKING:
     from pkm_post.control import Job, Session, Status
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from pkm_post.writing import PmacSettings
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
+    from pkm_post.control import Session
 
 _IDENTITY = ("TYPE", "VER", "CID", "SIZE", "I42", "I68")
 _IDENTITY_OF_POWER_PMAC = ("CID", "Sys.MaxCoords")
@@ -112,14 +115,16 @@ def start(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
     with held_at_the_end(session, target.settings):
-        return _tell(operate.run(session, target.settings, job.program, job.first, namespace.near, target.machine))
+        return _tell(
+            operate.start_program(session, target.settings, job.program, job.first, namespace.near, target.machine)
+        )
 
 
 def resume(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Resume after a hold."""
     from pkm_post.control import operate
 
-    return _tell(operate.resume(session, target.settings))
+    return _tell(operate.resume_program(session, target.settings))
 
 
 def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:
@@ -138,10 +143,10 @@ def _tell(status: Status) -> int:
 
 def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Print pose and state until the user interrupts."""
-    from pkm_post.control import Readout, pose_text, read_status, state_text
+    from pkm_post.control import ToolPoseReadout, pose_text, read_status, state_text
 
     length = namespace.tool_length
-    readout = Readout(target.machine, target.machine.rest_tool_length if length is None else length)
+    readout = ToolPoseReadout(target.machine, target.machine.rest_tool_length if length is None else length)
     before = _CLEAR_SCREEN if sys.stdout.isatty() else ""
     began = due = time.monotonic()
     try:
@@ -157,7 +162,7 @@ def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> 
 
 def terminal(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
     """Send each line once; all but known queries and stops need the right to move the machine."""
-    from pkm_post.control import NotOwnerError, PmacError, take
+    from pkm_post.control import NotOwnerError, PmacError, claim
 
     refused = False
     for line in sys.stdin:
@@ -165,12 +170,68 @@ def terminal(session: Session, target: Target | None, namespace: argparse.Namesp
             continue
         try:
             if session.keeper is None and not _NEEDS_NO_RIGHT.fullmatch(line.strip()):
-                take(session, "terminal")
+                claim(session, "terminal")
             print("\n".join(session.order(line.strip())) or "done", flush=True)
         except (PmacError, ValueError) as fault:
             refused |= isinstance(fault, NotOwnerError)
             print(fault, flush=True)
     return int(refused)
+
+
+ROTARY_WORDS = 2600
+"""Default size of the rotary buffer: 200 lines of 13 words."""
+
+
+def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
+    """Run the program from the rotary buffer."""
+    from pkm_post.control import check_setup, stream
+
+    check_setup(session, target.settings, target.machine.strut_stroke)
+    job = target.job
+    progress = _show_stream_progress if sys.stderr.isatty() else _no_stream_progress
+    with signals_interrupt(), _interrupted_once() as is_cancelled:
+        done = stream(
+            session,
+            target.settings,
+            job.program,
+            job.first,
+            namespace.rotary,
+            namespace.near,
+            progress,
+            is_cancelled,
+            target.machine,
+        )
+    print(f"{done.lines} lines carried out in {done.segments} segments, SHA-256 {done.digest}")
+    if done.resumptions:
+        print(f"the link failed {done.resumptions} times, and the program was gone on with from a rest")
+    return 0
+
+
+def _show_stream_progress(done: int, sent: int, lines: int) -> None:
+    end = "\n" if done == lines else ""
+    print(f"\r{done} of {lines} lines let go, {sent} sent", end=end, file=sys.stderr, flush=True)
+
+
+def _no_stream_progress(done: int, sent: int, lines: int) -> None:
+    """Ignore progress where the output is not a terminal."""
+
+
+@contextmanager
+def _interrupted_once() -> Iterator[Callable[[], bool]]:
+    """Yield whether the user has pressed Ctrl-C; the second time raises KeyboardInterrupt."""
+    pressed: list[int] = []
+
+    def press(number: int, frame: FrameType | None) -> None:
+        if pressed:
+            raise KeyboardInterrupt
+        pressed.append(number)
+        print("\nthe machine stops where it rests next; Ctrl-C again stops it now", file=sys.stderr, flush=True)
+
+    before = signal.signal(signal.SIGINT, press)
+    try:
+        yield lambda: bool(pressed)
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {

@@ -80,7 +80,7 @@ def _set_up(controller: Controller, file: Path) -> bool:
 
     A set-up from a posting is refused if it has changed since. Without a manifest it may be any other file of lines.
     """
-    from pkm_post.control import MEANINGS, Line
+    from pkm_post.control import ERROR_TEXTS, SerialPort
     from pkm_post.model import errors
     from pkm_post.writing import manifest, read_text
 
@@ -90,10 +90,10 @@ def _set_up(controller: Controller, file: Path) -> bool:
         print(fault, file=sys.stderr)
     if content is None or faults:
         return False
-    port = Line(controller)
+    port = SerialPort(controller)
     for place, text in enumerate(content.splitlines(), start=1):
         number = port.refusal(text)
         if number:
-            print(f"{file}:{place}: ERR{number:03d}, {MEANINGS[number]}: {text}", file=sys.stderr)
+            print(f"{file}:{place}: ERR{number:03d}, {ERROR_TEXTS[number]}: {text}", file=sys.stderr)
             return False
     return True

@@ -53,9 +53,9 @@ def _print(session: Session, status: Status) -> int:
 @contextmanager
 def advised() -> Iterator[None]:
     """Print advice for the operator if the stop inside has not ended in time."""
-    from pkm_post.control import ADVICE_S
+    from pkm_post.control import REST_DEADLINE_S
 
-    timer = threading.Timer(ADVICE_S, _advise)
+    timer = threading.Timer(REST_DEADLINE_S, _advise)
     timer.daemon = True
     timer.start()
     try:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Control: the link to a controller, its simulator, and numerical control."""
 
-from pkm_post.control.link import operate, stopping
+from pkm_post.control.link import run as operate
+from pkm_post.control.link import stopping
+from pkm_post.control.link.channel import OpenBufferPolicy
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import (
+from pkm_post.control.link.errors import (
     CancelledError,
     LinkLostError,
     NotOwnerError,
@@ -11,103 +13,110 @@ from pkm_post.control.link.faults import (
     PmacError,
     RefusedError,
 )
-from pkm_post.control.link.greeting import Leftover
-from pkm_post.control.link.job import Job
-from pkm_post.control.link.motion import is_busy, settled_status
-from pkm_post.control.link.ownership import owned, take
+from pkm_post.control.link.ownership import claim, owned
 from pkm_post.control.link.ports import Port, port_named
-from pkm_post.control.link.readout import Pose, Readout, activity_text, pose_text, state_text
-from pkm_post.control.link.ready import check_setup
+from pkm_post.control.link.program import Job
+from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Array, Bits, Status, read_status
+from pkm_post.control.link.status import Array, Bits, Status, is_busy, read_status, settled_status
+from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S
 from pkm_post.control.link.stream import stream
+from pkm_post.control.link.tool_pose import Pose, ToolPoseReadout, activity_text, pose_text, state_text
 from pkm_post.control.loading import job_to_load
-from pkm_post.control.numerical_control.connection import Connection, Target, connect, target_of
-from pkm_post.control.numerical_control.control import NumericalControl, State
-from pkm_post.control.numerical_control.emergency import ADVICE_S, NOT_AT_REST, STEPS
-from pkm_post.control.numerical_control.execute import off_target
-from pkm_post.control.numerical_control.homing import Homing, Phase, check_trigger, missing_homes, start_homing
-from pkm_post.control.numerical_control.mdi import Reading
-from pkm_post.control.numerical_control.moves import Cartesian, Jog, OneStrut
-from pkm_post.control.numerical_control.permissions import Desk, Order, Why, facts, may_move, refusal
+from pkm_post.control.numerical_control.connection import (
+    SIMULATED_HOMING,
+    Connection,
+    ConnectionTarget,
+    connect,
+    connection_target,
+)
+from pkm_post.control.numerical_control.control import ControlState, NumericalControl
+from pkm_post.control.numerical_control.execute import continue_after_stop, program_stops, target_deviation
+from pkm_post.control.numerical_control.homing import Homing, HomingPhase, check_trigger, missing_homes, start_homing
+from pkm_post.control.numerical_control.interlocks import (
+    Interlock,
+    OperatorCommand,
+    PanelState,
+    active_interlocks,
+    blocking_interlock,
+    may_move,
+)
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, Jog, MdiSettings, StrutJog
 from pkm_post.control.numerical_control.plan import Plan
-from pkm_post.control.numerical_control.single_block import Blocks, Shown, blocks_of_program
-from pkm_post.control.numerical_control.stops import go_on, stops_of
-from pkm_post.control.numerical_control.training import HOMING
-from pkm_post.control.simulator.controller import Controller
-from pkm_post.control.simulator.errors import MEANINGS
-from pkm_post.control.simulator.line import Line
-from pkm_post.control.simulator.serve import Server
-from pkm_post.control.simulator.settings import LEAST_MEMORY, SimulatorSettings
+from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks, read_blocks
+from pkm_post.control.simulator.controller import LEAST_MEMORY, Controller, SimulatorSettings
+from pkm_post.control.simulator.errors import ERROR_TEXTS
+from pkm_post.control.simulator.serial_port import SerialPort
+from pkm_post.control.simulator.server import Server
 
 __all__ = [
-    "ADVICE_S",
-    "HOMING",
+    "REST_DEADLINE_S",
+    "SIMULATED_HOMING",
     "LEAST_MEMORY",
-    "MEANINGS",
+    "ERROR_TEXTS",
     "NOT_AT_REST",
-    "STEPS",
+    "EMERGENCY_STEPS",
     "Array",
     "Bits",
-    "Blocks",
+    "ProgramBlocks",
     "CancelledError",
-    "Cartesian",
+    "CartesianJog",
     "Connection",
     "Controller",
-    "Desk",
+    "PanelState",
     "Homing",
     "Job",
     "Jog",
-    "Leftover",
-    "Line",
+    "OpenBufferPolicy",
+    "SerialPort",
     "LinkLostError",
     "NotOwnerError",
     "NotReadyError",
     "NumericalControl",
-    "OneStrut",
-    "Order",
-    "Phase",
+    "StrutJog",
+    "OperatorCommand",
+    "HomingPhase",
     "Plan",
     "PmacError",
     "PmacSettings",
     "Port",
     "Pose",
-    "Reading",
-    "Readout",
+    "MdiSettings",
+    "ToolPoseReadout",
     "RefusedError",
     "Server",
     "Session",
-    "Shown",
+    "BlockDisplay",
     "SimulatorSettings",
-    "State",
+    "ControlState",
     "Status",
-    "Target",
-    "Why",
+    "ConnectionTarget",
+    "Interlock",
     "activity_text",
-    "blocks_of_program",
+    "read_blocks",
     "check_setup",
     "check_trigger",
     "connect",
     "download",
-    "facts",
-    "go_on",
+    "active_interlocks",
+    "continue_after_stop",
     "is_busy",
     "job_to_load",
     "may_move",
     "missing_homes",
-    "off_target",
+    "target_deviation",
     "operate",
     "owned",
     "port_named",
     "pose_text",
     "read_status",
-    "refusal",
+    "blocking_interlock",
     "settled_status",
     "start_homing",
     "state_text",
     "stopping",
-    "stops_of",
+    "program_stops",
     "stream",
-    "take",
-    "target_of",
+    "claim",
+    "connection_target",
 ]

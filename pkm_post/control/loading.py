@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pkm_post.control.link.job import Job, read_job
+from pkm_post.control.link.program import Job, read_job
 from pkm_post.model import Diagnostic, Machine, Place, Refused
 from pkm_post.posting import verify_texts
 from pkm_post.writing import PmacSettings, controller_of, manifest, program_seal, read_text, read_texts

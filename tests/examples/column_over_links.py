@@ -21,15 +21,15 @@ import numpy as np
 from best_segment import deviation_from_any
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.control.link import operate
+from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
-from pkm_post.control.link.job import read_job
 from pkm_post.control.link.ports import port_named
-from pkm_post.control.link.ready import check_setup
+from pkm_post.control.link.program import read_job
+from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import read_status
-from pkm_post.control.simulator import Controller, Line, Server
-from pkm_post.control.simulator.moves import Cubic
+from pkm_post.control.simulator import Controller, SerialPort, Server
+from pkm_post.control.simulator.moves import PvtMove
 from pkm_post.geometry import hermite_lengths
 from pkm_post.machine import forward, machine_named
 from pkm_post.planning import plan
@@ -59,7 +59,7 @@ class Recorded(Controller):
         super()._tick(ms)
         system = self.systems[0]
         move = system.path.current() if system.running else None
-        if isinstance(move, Cubic):
+        if isinstance(move, PvtMove):
             self.since = move.start if self.since is None else self.since
             self.times.append(system.path.time - self.since)
             self.places.append(self.motors.commanded.copy())
@@ -95,7 +95,7 @@ def served(machine, settings, setup, kind, speed):
     """A controller that was set up and homed, behind a link; it and the name of its port."""
     made = Recorded(speed)
     made.load(setup.splitlines())
-    line = Line(made)
+    line = SerialPort(made)
     for motor in range(1, 7):
         fast = f"I{motor}11=320000 I{motor}15=10 I{motor}16=6000 I{motor}17=20 I{motor}19=5 I{motor}22=200"
         for text in (fast, f"#{motor}J/", f"#{motor}HMZ"):
@@ -130,7 +130,7 @@ def follow(program, kind, speed=SPEED):
         with Session(port_named(port), PATIENCE_S) as session:
             check_setup(session, settings, machine.strut_stroke)
             assert download(session, job.program).digest == job.program.digest
-            operate.run(session, settings, job.program, job.first)
+            operate.start_program(session, settings, job.program, job.first)
             status, until = read_status(session, settings), time.monotonic() + LONGEST_S
             while status.running:
                 assert time.monotonic() < until

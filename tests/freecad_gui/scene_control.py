@@ -12,17 +12,17 @@ from PySide import QtCore, QtGui, QtWidgets
 @step
 def words_are_those_of_the_rooms_below():
     from pkm_post.control.link.status import MotorBits, SystemBits
-    from pkm_post.control.numerical_control.emergency import STEPS
-    from pkm_post.control.numerical_control.homing import Phase
-    from pkm_post.control.numerical_control.permissions import Why
+    from pkm_post.control.link.stopping import EMERGENCY_STEPS
+    from pkm_post.control.numerical_control.homing import HomingPhase
+    from pkm_post.control.numerical_control.interlocks import Interlock
     from pkm_post.freecad_gui.control_panel import words
 
     return {
-        "why": {why: why.value for why in Why} == words.WHY,
-        "phases": {phase: phase.value for phase in Phase} == words.PHASES,
+        "why": {why: why.value for why in Interlock} == words.WHY,
+        "phases": {phase: phase.value for phase in HomingPhase} == words.PHASES,
         "motor": words.MOTOR == MotorBits.TOLD,
         "system": words.SYSTEM == SystemBits.TOLD,
-        "emergency": words.EMERGENCY == STEPS,
+        "emergency": words.EMERGENCY == EMERGENCY_STEPS,
     }
 
 
@@ -59,7 +59,7 @@ def names_that_are_wrong_are_told():
 
 @step
 def a_simulated_machine_is_connected_to_and_homed():
-    from pkm_post.control.numerical_control.homing import Phase
+    from pkm_post.control.numerical_control.homing import HomingPhase
 
     panel = the_panel()
     face = panel.face
@@ -83,7 +83,7 @@ def a_simulated_machine_is_connected_to_and_homed():
     face.homing.trigger.setText("#1HM #2HM #3HM #4HM #5HM #6HM")
     press_in_box("OK")
     click(face.homing.home)
-    until(lambda: newest().homing is not None and newest().homing.phase is not Phase.SEARCHING, 60)
+    until(lambda: newest().homing is not None and newest().homing.phase is not HomingPhase.SEARCHING, 60)
     found["homing"] = newest().homing.phase.name
     idle()
     settle()

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.control.numerical_control.emergency import STEPS
+from pkm_post.control.link.stopping import EMERGENCY_STEPS
 
 NEAR_MM = 1e-4
 """What struts that stand a count of 0.1 um off, and certified to a micron, make of the tip."""
@@ -157,7 +157,7 @@ def test_it_holds_the_machine_and_closes_then(programs):
 
 def test_a_lost_link_shows_what_to_do(programs):
     found = programs["a_lost_link_shows_what_to_do"]
-    assert found["banner"][: len(STEPS)] == list(STEPS)
+    assert found["banner"][: len(EMERGENCY_STEPS)] == list(EMERGENCY_STEPS)
     assert found["banner"][-1].startswith("No link: ")
     assert (found["red"], found["jog"], found["hold"]) == (True, False, True)
     assert (found["open"], found["connected"]) == (False, False)

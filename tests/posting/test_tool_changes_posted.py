@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "control" / "numerical_contro
 from station import new_station  # noqa: E402
 
 from pkm_post.cli import main  # noqa: E402
-from pkm_post.control.link.job import read_job  # noqa: E402
+from pkm_post.control.link.program import read_job  # noqa: E402
 from pkm_post.machine import (  # noqa: E402
     Policy,
     Rule,

@@ -15,11 +15,10 @@ import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pkm_post.control.link.faults import CancelledError, DownloadError, LinkLostError, PmacError, RefusedError
-from pkm_post.control.link.free_words import free_words
-from pkm_post.control.link.listing import Comparison, Program, compare
+from pkm_post.control.link.errors import CancelledError, DownloadError, LinkLostError, PmacError, RefusedError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.session import Session
+from pkm_post.control.link.program import ListingComparison, PmacProgram, compare_listing
+from pkm_post.control.link.session import Session, free_memory
 
 ATTEMPTS = 5
 """How often a download is tried before it is given up."""
@@ -35,7 +34,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
-class Loaded:
+class DownloadResult:
     """A program whose listing matched what was sent.
 
     Attributes:
@@ -51,7 +50,7 @@ class Loaded:
     resumptions: int
 
 
-def listing_of(session: Session, program: Program) -> Comparison:
+def verify_listing(session: Session, program: PmacProgram) -> ListingComparison:
     """Compare the controller's listing of a program with the program."""
     most = 3 * sum(map(len, program.lines)) + (1 << 16)
     try:
@@ -60,15 +59,15 @@ def listing_of(session: Session, program: Program) -> Comparison:
         if refused.number not in _NO_SUCH_PROGRAM:
             raise
         listed = ()
-    return compare(program.lines, listed)
+    return compare_listing(program.lines, listed)
 
 
 def download(
     session: Session,
-    program: Program,
+    program: PmacProgram,
     progress: Progress = lambda done, all_lines: None,
     is_cancelled: Callable[[], bool] = lambda: False,
-) -> Loaded:
+) -> DownloadResult:
     """Load a program into the controller.
 
     Args:
@@ -87,7 +86,9 @@ def download(
         return _download(session, program, progress, is_cancelled)
 
 
-def _download(session: Session, program: Program, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
+def _download(
+    session: Session, program: PmacProgram, progress: Progress, is_cancelled: Callable[[], bool]
+) -> DownloadResult:
     try:
         _open(session, program.number)
     except LinkLostError as lost:
@@ -105,7 +106,7 @@ def _download(session: Session, program: Program, progress: Progress, is_cancell
         _clear_away(session, program.number)
         raise
     _log.info("program %d: %d lines, SHA-256 %s, listed back", program.number, len(program.lines), program.digest)
-    return Loaded(program.number, len(program.lines), program.digest, resumptions)
+    return DownloadResult(program.number, len(program.lines), program.digest, resumptions)
 
 
 def clear(session: Session, number: int) -> None:
@@ -134,7 +135,7 @@ def _cleared(session: Session, number: int) -> bool:
     session.order("CLEAR")
     session.order("CLOSE")
     # Checked twice: a missing program shows as a refusal, which a corrupted byte causes as well.
-    return free_words(session) >= 0 and all(listing_of(session, Program(number, ())).same for _ in range(2))
+    return free_memory(session) >= 0 and all(verify_listing(session, PmacProgram(number, ())).same for _ in range(2))
 
 
 def _open(session: Session, number: int) -> None:
@@ -151,18 +152,18 @@ def _clear_away(session: Session, number: int) -> bool:
     return True
 
 
-def _check_room(session: Session, program: Program) -> None:
+def _check_room(session: Session, program: PmacProgram) -> None:
     """Compare the program's size with the free memory, while nothing is under its number.
 
     Raises:
         PmacError: it is too large.
     """
-    free = free_words(session)
+    free = free_memory(session)
     if free < program.words:
         raise PmacError(f"the program takes about {program.words} words, the controller has {free}")
 
 
-def _fill(session: Session, program: Program, progress: Progress, is_cancelled: Callable[[], bool]) -> int:
+def _fill(session: Session, program: PmacProgram, progress: Progress, is_cancelled: Callable[[], bool]) -> int:
     """Send the lines until the listing matches; return how often the link failed or the listing differed."""
     held = 0
     for attempt in range(ATTEMPTS):
@@ -170,8 +171,8 @@ def _fill(session: Session, program: Program, progress: Progress, is_cancelled: 
             _send(session, program, held, progress, is_cancelled)
         except LinkLostError as lost:
             _log.warning("the link failed: %s", lost)
-        is_closed = free_words(session) >= 0
-        there = listing_of(session, program)  # asked last, so that it reveals a reset in between
+        is_closed = free_memory(session) >= 0
+        there = verify_listing(session, program)  # asked last, so that it reveals a reset in between
         if there.same and is_closed:
             return attempt
         _log.warning("the listing differs, or the buffer is still open: %s", there.difference)
@@ -179,7 +180,9 @@ def _fill(session: Session, program: Program, progress: Progress, is_cancelled: 
     raise PmacError(f"sent {ATTEMPTS} times and still not there; {there.difference}")
 
 
-def _send(session: Session, program: Program, held: int, progress: Progress, is_cancelled: Callable[[], bool]) -> None:
+def _send(
+    session: Session, program: PmacProgram, held: int, progress: Progress, is_cancelled: Callable[[], bool]
+) -> None:
     """Send the lines after those that the controller holds."""
     lines = program.lines
     _open(session, program.number)

@@ -10,14 +10,14 @@ import abc
 import socket
 from typing import TYPE_CHECKING, Any, Protocol
 
-from pkm_post.control.link.faults import LinkLostError
+from pkm_post.control.link.errors import LinkLostError
 from pkm_post.options import PARITIES
 
 if TYPE_CHECKING:
     import serial
 
 # FreeCAD leaves SIGPIPE at its default: writing to a socket closed by the peer would end the process.
-WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
+NO_SIGPIPE = getattr(socket, "MSG_NOSIGNAL", 0)
 CHUNK = 1 << 16
 
 
@@ -108,7 +108,7 @@ class TcpLink(SocketLink):
 
     def send_all(self, connection: socket.socket, data: bytes) -> None:
         """Send every byte; a disconnected peer raises an exception, not a signal."""
-        connection.sendall(data, WITHOUT_SIGNAL)
+        connection.sendall(data, NO_SIGPIPE)
 
     def restart(self) -> None:
         """As ``Link``."""

@@ -29,10 +29,9 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
-from pkm_post.control.link.faults import DiagnosedError, LinkLostError, NotOwnerError, PmacError, RefusedError
-from pkm_post.control.link.free_words import free_words
-from pkm_post.control.link.motion import is_busy
-from pkm_post.control.link.session import Session
+from pkm_post.control.link.errors import DiagnosedError, LinkLostError, NotOwnerError, PmacError, RefusedError
+from pkm_post.control.link.session import Session, free_memory
+from pkm_post.control.link.status import is_busy
 from pkm_post.model import Diagnostic, Place
 from pkm_post.system import Lock, OwnerRecord, lock_owner, try_lock
 
@@ -47,7 +46,7 @@ SILENCE_S = 5.0
 """Seconds without a sign of life after which an owner is overridden."""
 LOOK_S = 0.5
 ATTEMPTS = 3
-WHAT = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal")
+OPERATIONS = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal")
 """Operations of an owner; the controller stores the index in this list, from 1. Append new ones at its end."""
 RESUMED_BY_ALL = ("stream",)
 """A stream has no resume command: after a hold any client may resume it."""
@@ -56,7 +55,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class Record:
+class Owner:
     """The contents of the controller's variables.
 
     Attributes:
@@ -64,7 +63,7 @@ class Record:
         count: heartbeat.
         address: of its computer, IPv4 as a number; 0 if it has none.
         since: seconds since 1970.
-        what: index in ``WHAT``, from 1.
+        what: index in ``OPERATIONS``, from 1.
     """
 
     owner: int
@@ -76,7 +75,7 @@ class Record:
     @property
     def action(self) -> str:
         """The owner's operation; empty if unknown."""
-        return WHAT[self.what - 1] if 0 < self.what <= len(WHAT) else ""
+        return OPERATIONS[self.what - 1] if 0 < self.what <= len(OPERATIONS) else ""
 
     def __str__(self) -> str:
         if not self.what:
@@ -147,7 +146,7 @@ class Ownership:
 
     def _see(self) -> None:
         there = read_record(self._session)
-        if not there.owner and not there.since and free_words(self._session) >= 0:
+        if not there.owner and not there.since and free_memory(self._session) >= 0:
             self._session.ask(_swap(0, self._owner))  # a controller that was reset has lost all of it
             there = read_record(self._session)
         if there.owner != self._owner:
@@ -164,18 +163,18 @@ def owned(session: Session, what: str, beside: tuple[str, ...] = ()) -> Iterator
 
     Args:
         session: an open session.
-        what: the operation, one of ``WHAT``.
+        what: the operation, one of ``OPERATIONS``.
         beside: operations of another client that are allowed meanwhile; any other silent client's program may continue.
 
     Raises:
         NotOwnerError: another client has it.
-        PmacError: as ``take``.
+        PmacError: as ``claim``.
     """
     if session.keeper is not None:
         yield
         return
     try:
-        taken: Ownership | None = take(session, what, beside)
+        taken: Ownership | None = claim(session, what, beside)
     except NotOwnerError as fault:
         if fault.what not in beside:
             raise
@@ -187,12 +186,12 @@ def owned(session: Session, what: str, beside: tuple[str, ...] = ()) -> Iterator
             taken.release()
 
 
-def take(session: Session, what: str, beside: tuple[str, ...] = ()) -> Ownership:
+def claim(session: Session, what: str, beside: tuple[str, ...] = ()) -> Ownership:
     """Claim ownership; clear and close a program buffer that is no longer being filled.
 
     Args:
         session: an open session without ownership.
-        what: the operation, one of ``WHAT``.
+        what: the operation, one of ``OPERATIONS``.
         beside: as ``owned``.
 
     Raises:
@@ -212,7 +211,7 @@ def take(session: Session, what: str, beside: tuple[str, ...] = ()) -> Ownership
     return ownership
 
 
-def read_record(session: Session) -> Record:
+def read_record(session: Session) -> Owner:
     """Read the owner's record from the controller.
 
     Raises:
@@ -228,7 +227,7 @@ def read_record(session: Session) -> Record:
         raise LinkLostError(f"{RECORD}: {fault}") from None
     if not all(value.is_integer() and value >= 0 for value in values):
         raise DiagnosedError(_diagnostic(session, "C213", f"{RECORD} is {' '.join(told)}"))
-    return Record(*map(int, values))
+    return Owner(*map(int, values))
 
 
 def lock_path(port: str) -> Path:
@@ -254,7 +253,7 @@ def _locked(session: Session, what: str) -> Lock:
 def _taken_in_controller(session: Session, what: str, beside: tuple[str, ...]) -> int:
     """Claim ownership in the controller; return the number of this client."""
     before = read_record(session)
-    is_open = free_words(session) < 0
+    is_open = free_memory(session) < 0
     if before.owner or is_open:
         _see_silence(session, before, beside)
     if is_open:
@@ -268,7 +267,7 @@ def _taken_in_controller(session: Session, what: str, beside: tuple[str, ...]) -
         seen = there.owner  # a controller that was reset has lost it
     if there.owner != owner:
         raise NotOwnerError(_diagnostic(session, "C210", str(there)), there.action)
-    words = (1, _own_address(session.port_name), int(time.time()), WHAT.index(what) + 1)
+    words = (1, _own_address(session.port_name), int(time.time()), OPERATIONS.index(what) + 1)
     session.ask(" ".join(f"P{number}={word}" for number, word in zip(VARIABLES[1:], words, strict=True)))
     return owner
 
@@ -278,7 +277,7 @@ def _swap(old: int, new: int) -> str:
     return f"P{OWNER}=P{OWNER}+({new}-{old})*INT(1/(ABS(P{OWNER}-{old})+1))"
 
 
-def _see_silence(session: Session, record: Record, beside: tuple[str, ...]) -> None:
+def _see_silence(session: Session, record: Owner, beside: tuple[str, ...]) -> None:
     """Wait until an owner has shown no sign of life for so long that it counts as gone.
 
     An owner whose machine moves or is held may be busy with a buffer, so it keeps ownership. A client that resumes such
@@ -301,7 +300,7 @@ def _see_silence(session: Session, record: Record, beside: tuple[str, ...]) -> N
         _log.warning("nothing was seen of %s for %g s: it is passed over", known, SILENCE_S)
 
 
-def _signs(session: Session, record: Record) -> tuple[object, ...]:
+def _signs(session: Session, record: Owner) -> tuple[object, ...]:
     """Signs of life of an owner: its count, free memory while it loads, lines ahead while it streams."""
     return record.owner, record.count, session.ask("SIZE"), session.ask("PR")
 
@@ -314,7 +313,7 @@ def _close_leftover(session: Session) -> None:
         if refused.number != _ERR_NOT_OPEN:
             raise
     session.order("CLOSE")
-    if free_words(session) < 0:
+    if free_memory(session) < 0:
         raise DiagnosedError(_diagnostic(session, "C214", "SIZE is below zero after CLOSE"))
     _log.warning("a program buffer was open, the rest of a download that was cut: it was made empty")
 

@@ -12,17 +12,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from pkm_post.control.link.ethernet_conversation import EthernetConversation
-from pkm_post.control.link.exchange import Conversation
-from pkm_post.control.link.gpascii_conversation import GpasciiConversation
+from pkm_post.control.link.ethernet_protocol import EthernetProtocol
+from pkm_post.control.link.gpascii_protocol import GpasciiProtocol
 from pkm_post.control.link.links import Link, SerialLink, TcpLink
-from pkm_post.control.link.serial_conversation import SerialConversation
+from pkm_post.control.link.protocol import CommandProtocol
+from pkm_post.control.link.serial_protocol import SerialProtocol
 from pkm_post.control.link.ssh_link import SshLink
 
 TCP_PORT, SSH_PORT = 1025, 22
 
 
-class Door(Protocol):
+class PortInterface(Protocol):
     """The interface of a port to a session; tests supply their own."""
 
     @property
@@ -36,7 +36,7 @@ class Door(Protocol):
     def link(self) -> Link:
         """A link, not yet connected: ``restart`` connects."""
 
-    def conversation(self) -> Conversation:
+    def conversation(self) -> CommandProtocol:
         """A conversation for this kind of link."""
 
 
@@ -89,15 +89,15 @@ class Port:
             return SerialLink(self.address, self.baud, self.parity, self.handshake, self.timeout)
         return TcpLink(self.address, self.number, self.timeout)
 
-    def conversation(self) -> Conversation:
+    def conversation(self) -> CommandProtocol:
         """A conversation for this kind of link."""
         return _CONVERSATIONS[self.kind](self.silence)
 
 
-_CONVERSATIONS: dict[str, Callable[[float], Conversation]] = {
-    "serial": SerialConversation,
-    "tcp": EthernetConversation,
-    "ssh": GpasciiConversation,
+_CONVERSATIONS: dict[str, Callable[[float], CommandProtocol]] = {
+    "serial": SerialProtocol,
+    "tcp": EthernetProtocol,
+    "ssh": GpasciiProtocol,
 }
 _HOST = r"(?P<address>[^:@\[\]]+|\[[0-9A-Fa-f:.]+\])(?::(?P<number>\d{1,5}))?"
 _FORMS = (

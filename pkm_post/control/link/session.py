@@ -14,13 +14,12 @@ from contextlib import contextmanager
 from types import TracebackType
 from typing import Protocol, Self
 
-from pkm_post.control.link.dialogue import Dialogue
-from pkm_post.control.link.exchange import Answer, Command, Kind, Lost, Refusal
-from pkm_post.control.link.faults import CancelledError, LinkLostError, OutcomeUnknownError, RefusedError
-from pkm_post.control.link.greeting import Leftover, greet
-from pkm_post.control.link.ports import Door
+from pkm_post.control.link.channel import CommandChannel, OpenBufferPolicy, establish_handshake
+from pkm_post.control.link.errors import CancelledError, LinkLostError, OutcomeUnknownError, RefusedError
+from pkm_post.control.link.ports import PortInterface
+from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, Refusal
 
-__all__ = ["Leftover", "Session"]
+__all__ = ["OpenBufferPolicy", "Session"]
 
 ATTEMPTS = 5
 """How often a query is sent."""
@@ -61,10 +60,10 @@ class Session:
 
     def __init__(
         self,
-        port: Door,
+        port: PortInterface,
         patience: float = 2.0,
         pause: float = 0.5,
-        leftover: Leftover = Leftover.LEAVE,
+        leftover: OpenBufferPolicy = OpenBufferPolicy.LEAVE,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
@@ -80,7 +79,7 @@ class Session:
         """
         self._patience, self._pause, self._leftover = patience, pause, leftover
         self._clock, self._sleep = clock, sleep
-        self._dialogue = Dialogue(port, patience, clock)
+        self._dialogue = CommandChannel(port, patience, clock)
         self._in_step, self._in_a_hurry = False, False
         self._attempts, self._calls = ATTEMPTS, CALLS
         self.port_name = port.name
@@ -157,7 +156,7 @@ class Session:
             LinkLostError: no answer to ``ATTEMPTS`` attempts.
             CancelledError: it takes long, and something more urgent waits.
         """
-        told = self._asked(Command(text, Kind.QUERY, self._patience, most))
+        told = self._asked(Command(text, CommandKind.QUERY, self._patience, most))
         if self.keeper is not None and not self._in_a_hurry:
             self.keeper.answered()
         return told
@@ -173,7 +172,7 @@ class Session:
         """
         self._check()
         self.has_open_buffer |= text.startswith("OPEN")
-        said = self._exchange(Command(text, Kind.SET, self._patience))
+        said = self._exchange(Command(text, CommandKind.SET, self._patience))
         self.has_open_buffer &= text != "CLOSE"
         return said
 
@@ -222,7 +221,7 @@ class Session:
         if not count:
             raise ValueError(f"lines: expected lines that fit into one exchange, got {lines[:1]}")
         self._check()
-        self._exchange(Command("\n".join(lines[:count]), Kind.BUFFER, self._patience))
+        self._exchange(Command("\n".join(lines[:count]), CommandKind.BUFFER, self._patience))
         return count
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
@@ -254,25 +253,38 @@ class Session:
             return ended.lines
         if isinstance(ended, Refusal):
             raise RefusedError(command.text.split("\n")[ended.line], ended.number, ended.words)
-        if command.kind is Kind.QUERY or ended.untouched:
+        if command.kind is CommandKind.QUERY or ended.untouched:
             raise LinkLostError(f"{command.text[:60]!r}: {ended.why}")
         raise OutcomeUnknownError(command.text[:60], ended.why)
 
     def _call(self) -> None:
         """Connect, with retries."""
         is_own = self.keeper is not None and self.keeper.is_sure()
-        leftover = Leftover.CLOSE if is_own else self._leftover
+        leftover = OpenBufferPolicy.CLOSE if is_own else self._leftover
         for attempt in range(self._calls):
             if attempt:
                 self.give_way()
                 self._sleep(self._pause * attempt)
             try:
-                greet(self._dialogue, leftover)
+                establish_handshake(self._dialogue, leftover)
             except (LinkLostError, RefusedError) as fault:
                 if attempt == self._calls - 1:
                     raise LinkLostError(f"no controller that can be understood: {fault}") from fault
             else:
                 self._in_step = True
-                self.has_open_buffer &= leftover is not Leftover.CLOSE
+                self.has_open_buffer &= leftover is not OpenBufferPolicy.CLOSE
                 self.connections += 1
                 return
+
+
+def free_memory(session: Session) -> int:
+    """Words of free memory; negative while a buffer is open.
+
+    Raises:
+        LinkLostError: the answer makes no sense.
+    """
+    (told,) = session.ask("SIZE")[:1] or ("",)
+    try:
+        return int(told)
+    except ValueError:
+        raise LinkLostError(f"SIZE: expected a number of words, got {told!r}") from None

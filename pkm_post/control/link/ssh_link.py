@@ -19,8 +19,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from pkm_post.control.link.faults import LinkLostError, NoAccessError
-from pkm_post.control.link.links import WITHOUT_SIGNAL, SocketLink
+from pkm_post.control.link.errors import LinkLostError, NoAccessError
+from pkm_post.control.link.links import NO_SIGPIPE, SocketLink
 
 if TYPE_CHECKING:
     import paramiko
@@ -169,7 +169,7 @@ class _Socket(socket.socket):
 
     def send(self, data: bytes, flags: int = 0) -> int:  # type: ignore[override]
         """As ``socket.socket``."""
-        return super().send(data, flags | WITHOUT_SIGNAL)
+        return super().send(data, flags | NO_SIGPIPE)
 
 
 def _has_listener() -> bool:

@@ -8,12 +8,12 @@ hexadecimal digits of an answer. [TurboPMAC, #n?, &n??]
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
-from pkm_post.control.link.faults import LinkLostError
+from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.session import Session
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
@@ -155,7 +155,7 @@ def read_status(session: Session, settings: PmacSettings | PowerPmacSettings) ->
         LinkLostError: the answer makes no sense.
     """
     if isinstance(settings, PowerPmacSettings):
-        from pkm_post.control.link import power_status
+        from pkm_post.control.link import status as power_status
 
         return _asked(session, power_status.query(settings), settings, power_status.status_of)
     return _asked(session, _query(settings), settings, _status_of)
@@ -211,3 +211,109 @@ def hexadecimal(text: str, digits: int) -> int:
     if len(text) != digits:
         raise ValueError(f"expected {digits} hexadecimal digits, got {text!r}")
     return int(text, 16)
+
+
+_ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus")
+_STATUS_BITS = 64
+
+
+class PowerMotorBits(MotorBits):
+    """Two words of 32 bits: ``#n?``. They have a bit for the closed loop, not for the open loop; see ``_motor``."""
+
+    DIGITS = 16
+    PLACES = {
+        "homing": 62, "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59,
+        "fatal_following_error": 58, "stopped_on_limit": 57, "amplifier_fault": 56, "lower_soft_limit": 55,
+        "upper_soft_limit": 54, "homed": 47, "standing": 46, "closed_loop": 45, "amplifier_enabled": 44,
+        "in_position": 43, "open_loop": _STATUS_BITS,
+    }  # fmt: skip
+    TOLD = MotorBits.TOLD | {
+        "lower_soft_limit": "on its lower soft limit",
+        "upper_soft_limit": "on its upper soft limit",
+    }
+
+
+class PowerSystemBits(SystemBits):
+    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements, set if it is not 0."""
+
+    DIGITS = 16
+    PLACES = {
+        "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59, "fatal_following_error": 58,
+        "amplifier_fault": 56, "running": _STATUS_BITS, "held": _STATUS_BITS + 1, "runtime_error": _STATUS_BITS + 2,
+    }  # fmt: skip
+    TOLD = {name: text for name, text in SystemBits.TOLD.items() if name != "limit"} | {
+        "negative_limit": "a lower limit was met",
+        "positive_limit": "an upper limit was met",
+    }
+
+
+def query(settings: PowerPmacSettings) -> str:
+    """The query line for the complete state."""
+    system = settings.coordinate_system
+    return " ".join(
+        [
+            *(f"#{motor}? #{motor}p #{motor}f" for motor in MOTORS),
+            f"&{system}? &{system}%",
+            *(f"Coord[{system}].{name}" for name in _ELEMENTS),
+        ]
+    )
+
+
+def status_of(told: tuple[str, ...], settings: PowerPmacSettings) -> Status:
+    """Parse the lines of the answer.
+
+    Raises:
+        ValueError: they make no sense.
+    """
+    expected = 3 * len(MOTORS) + 2 + len(_ELEMENTS)
+    if len(told) != expected:
+        raise ValueError(f"expected {expected} lines, got {len(told)}")
+    motors = tuple(_motor(hexadecimal(line, PowerMotorBits.DIGITS)) for line in told[0:18:3])
+    bits = hexadecimal(told[18], PowerSystemBits.DIGITS)
+    for place, value in enumerate(told[20:], start=_STATUS_BITS):
+        bits |= int(float(value) != 0) << place
+    length, error = lengths_and_errors(told, settings)
+    return Status(motors, PowerSystemBits(bits), float(told[19]), length, error, slows_in_a_hold=False)
+
+
+def _motor(value: int) -> PowerMotorBits:
+    is_closed = value >> PowerMotorBits.PLACES["closed_loop"] & 1
+    return PowerMotorBits(value | (1 - is_closed) << PowerMotorBits.PLACES["open_loop"])
+
+
+LOOK_S = 0.1
+"""Seconds between the two readings."""
+STAYED_MM = 0.01
+"""A standing strut moves less than this between the readings: a hundred counts of a common encoder."""
+
+
+def settled_status(session: Session, settings: AnySettings) -> Status:
+    """The state after a second reading: a strut stands if both readings command it to stand and it has not moved."""
+    before = read_status(session, settings)
+    session.sleep(LOOK_S)
+    status = read_status(session, settings)
+    moved = np.abs([status.length - before.length, status.commanded - before.commanded]).max(axis=0) > STAYED_MM
+    pairs = zip(before.motors, status.motors, moved, strict=True)
+    return replace(status, motors=tuple(now.moving() if away else _both(then, now) for then, now, away in pairs))
+
+
+def is_busy(session: Session) -> bool:
+    """Whether a program runs or is held in the port's coordinate system, or a motor is commanded to move.
+
+    It sends no coordinate system address: lines for a rotary buffer go to the last one addressed.
+
+    Raises:
+        LinkLostError: the answer makes no sense.
+    """
+    told = session.ask(" ".join(f"#{motor}?" for motor in MOTORS) + " ??")
+    try:
+        *motors, system = told
+        bits = [MotorBits(hexadecimal(line, MotorBits.DIGITS)) for line in motors]
+        runs = SystemBits(hexadecimal(system, SystemBits.DIGITS)).has("running")
+    except ValueError as fault:
+        raise LinkLostError(f"state: {fault}") from None
+    return runs or not all(motor.has("standing") for motor in bits)
+
+
+def _both(before: MotorBits, now: MotorBits) -> MotorBits:
+    return now if before.has("standing") else now.moving()

@@ -15,7 +15,7 @@ import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from pkm_post.control.link.faults import CancelledError, NoAccessError, PmacError
+from pkm_post.control.link.errors import CancelledError, NoAccessError, PmacError
 from pkm_post.control.link.ownership import read_record
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS, Status, read_status
@@ -219,3 +219,36 @@ def _read(session: Session, settings: AnySettings) -> Status | None:
         raise
     except PmacError:
         return None
+
+
+EMERGENCY_STEPS = (
+    "THE LINK TO THE CONTROLLER IS LOST AND THE MACHINE MAY BE MOVING. This computer cannot stop it now.",
+    "1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
+    "2. Keep everybody away from the machine. The program goes on in the controller until it ends.",
+    "3. If the machine has a feed hold of its own, press it, and look that all six struts stand.",
+    "4. Then look at the cable, at the power of the controller, and at this computer; leave the machine as it is.",
+    "5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.",
+    "6. If the power was off or the emergency stop was pressed: home the machine before anything else.",
+    "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",
+)
+"""In order of priority: people, machine, link, workpiece."""
+
+
+REST_DEADLINE_S = 2.0
+"""Seconds after a stop within which the machine must be seen at rest, or the operator is alerted."""
+NOT_AT_REST = (
+    "THE MACHINE IS NOT SEEN AT REST. This computer goes on trying to stop it; do not wait for that.",
+    *EMERGENCY_STEPS[1:],
+)
+"""The same after a stop that was sent but not confirmed in time."""
+
+
+def emergency_text(last: Status | None) -> tuple[str, ...]:
+    """The instructions, or nothing if the last state read shows a machine at rest without a program.
+
+    Args:
+        last: None if no state was ever read.
+    """
+    if last is not None and not last.running and last.standing:
+        return ()
+    return EMERGENCY_STEPS

@@ -15,25 +15,180 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import accumulate
 
-from pkm_post.control.link.faults import CancelledError, PmacError, StreamError
-from pkm_post.control.link.gates import segments_of
-from pkm_post.control.link.listing import Program
-from pkm_post.control.link.motion import settled_status
+from pkm_post.control.link import stopping
+from pkm_post.control.link.errors import CancelledError, LinkLostError, PmacError, RefusedError, StreamError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.ready import check_start
-from pkm_post.control.link.rotary import Progress, RotaryStream
+from pkm_post.control.link.program import PmacProgram
+from pkm_post.control.link.rotary_buffer import ATTEMPTS, RotaryBuffer, Segment, split_into_segments
+from pkm_post.control.link.run import check_start
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Array
+from pkm_post.control.link.status import Array, Status, read_status, settled_status
 from pkm_post.model import Machine
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
+
+_NOT_OPEN, _NO_ROOM = 5, 6
+_POLL_S = 0.05
+_QUIET_POLLS = 20
+"""Consecutive readings that must show the machine at rest where it should not be."""
+
+Progress = Callable[[int, int, int], None]
+"""Called with the numbers of program lines released, loaded, and in total."""
+
+
+class RotaryStream:
+    """A program being streamed.
+
+    Attributes:
+        segments: of the program.
+        rest: (6,) strut lengths where the machine rests once all released lines are done, mm.
+        line: of the program after which that is.
+        resumptions: how often the stream was resumed.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        settings: PmacSettings,
+        segments: tuple[Segment, ...],
+        words: int,
+        near: float,
+    ) -> None:
+        self.segments, self.resumptions, self.line = segments, 0, 0
+        self.rest: Array = segments[0].rest
+        self._session, self._settings, self._near = session, settings, near
+        self._ends = list(accumulate(len(segment.lines) for segment in segments))
+        self._buffer = RotaryBuffer(session, settings, [line for each in segments for line in each.lines], words)
+        self._let_go = 0  # lines
+
+    def open(self) -> None:
+        """Open an empty rotary buffer and point the coordinate system to it."""
+        self._buffer.open()
+
+    def run(self, progress: Progress, is_cancelled: Callable[[], bool]) -> None:
+        """Send and release the segments in order."""
+        total = self.segments[-1].last
+
+        def check() -> None:
+            progress(self.line, self._sent(), total)
+            if is_cancelled():
+                raise CancelledError("the stream was stopped")
+
+        for segment, end in zip(self.segments, self._ends, strict=True):
+            self._fill(end, check)
+            self._wait(check)
+            self._release(segment, end)
+        self._check(self._wait(check))
+        self._check_done()
+        progress(total, total, total)
+
+    def end(self, at_once: bool) -> bool:
+        """Come to rest, empty the buffer and close it; return whether the controller has confirmed both."""
+        try:
+            self._come_to_rest(at_once)
+            return self._buffer.empty()
+        except (PmacError, KeyboardInterrupt) as fault:
+            _log.error("the rotary buffer could not be emptied: %s", fault)
+            return False
+
+    def _come_to_rest(self, at_once: bool) -> None:
+        """Wait for rest; an interrupt meanwhile holds and aborts the program."""
+        try:
+            if not at_once:
+                self._wait(lambda: None)
+                return
+        except KeyboardInterrupt:
+            pass  # the user wants it to end now
+        stopping.abort(self._session, self._settings)
+        self._wait(lambda: None)
+
+    def _sent(self) -> int:
+        """Program lines in the controller, in whole segments."""
+        there = [each.last for each, end in zip(self.segments, self._ends, strict=True) if end <= self._buffer.loaded]
+        return max(there, default=0)
+
+    def _fill(self, end: int, check: Callable[[], None]) -> None:
+        """Load the lines up to ``end`` into the buffer, as room becomes free."""
+        failures = 0
+        while self._buffer.loaded < end:
+            check()
+            try:
+                if not self._buffer.send(end):
+                    self._session.sleep(_POLL_S)
+            except (LinkLostError, RefusedError) as fault:
+                failures += 1
+                passes = isinstance(fault, LinkLostError) or fault.number in (_NOT_OPEN, _NO_ROOM)
+                if not passes or failures > ATTEMPTS:
+                    raise
+                _log.warning("the stream was interrupted: %s", fault)
+                self._settle(check)
+
+    def _wait(self, check: Callable[[], None]) -> Status:
+        """Wait until the controller has finished the released lines, or was stopped, and the struts stand."""
+        quiet = 0
+        while True:
+            status = read_status(self._session, self._settings)
+            quiet = 0 if status.running or not status.standing else quiet + 1
+            # The state may show R with a delay.
+            if quiet and (quiet >= _QUIET_POLLS or self._is_done()):
+                return status
+            check()
+            self._session.sleep(_POLL_S)
+
+    def _is_done(self) -> bool:
+        left = self._buffer.loaded - self._let_go
+        return left <= self._buffer.ahead() <= left + self._buffer.unsure
+
+    def _check_done(self) -> None:
+        if not self._is_done():
+            ahead = self._buffer.ahead()
+            raise PmacError(f"the program was stopped with {ahead} lines of the rotary buffer ahead of it")
+
+    def _settle(self, check: Callable[[], None]) -> None:
+        """Recover from a failure: wait for rest, count the loaded lines, and reopen the buffer.
+
+        Raises:
+            PmacError: the controller's count is inconsistent.
+        """
+        self._check(self._wait(check))
+        self._buffer.recount(self._let_go)
+        self.resumptions += 1
+
+    def _release(self, segment: Segment, end: int) -> None:
+        """Send R; if its answer is lost, the lines ahead show whether it was executed."""
+        self._check_done()
+        for attempt in range(ATTEMPTS):
+            self._check(read_status(self._session, self._settings))
+            rest, line, before = self.rest, self.line, self._let_go
+            # From here on the machine may move as far as this, whatever the answer.
+            self.rest, self.line, self._let_go = segment.rest, segment.last, end
+            try:
+                self._session.order(f"&{self._settings.coordinate_system}R")
+                return
+            except (LinkLostError, RefusedError) as fault:
+                if isinstance(fault, LinkLostError) and self._goes(before):
+                    self.resumptions += 1
+                    return
+                self.rest, self.line, self._let_go = rest, line, before
+                if isinstance(fault, RefusedError) or attempt == ATTEMPTS - 1:
+                    raise
+        raise AssertionError("unreachable")
+
+    def _goes(self, before: int) -> bool:
+        """Whether lines after the first ``before`` have begun."""
+        return read_status(self._session, self._settings).running or self._buffer.loaded - self._buffer.ahead() > before
+
+    def _check(self, status: Status) -> None:
+        check_start(status, self.rest, self._near)
+
 
 _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class Streamed:
+class StreamResult:
     """A program that was executed to its end.
 
     Attributes:
@@ -52,14 +207,14 @@ class Streamed:
 def stream(
     session: Session,
     settings: PmacSettings,
-    program: Program,
+    program: PmacProgram,
     first: Array,
     words: int,
     near: float = START_TOLERANCE_MM,
     progress: Progress = lambda done, sent, all_lines: None,
     is_cancelled: Callable[[], bool] = lambda: False,
     machine: Machine | None = None,
-) -> Streamed:
+) -> StreamResult:
     """Run a program from the rotary buffer.
 
     Args:
@@ -79,7 +234,7 @@ def stream(
         CancelledError: it was cancelled; the machine rests and nothing is left in the buffer.
         NotOwnerError: another client owns the machine; nothing was sent.
     """
-    streaming = RotaryStream(session, settings, segments_of(program, settings, words), words, near)
+    streaming = RotaryStream(session, settings, split_into_segments(program, settings, words), words, near)
     streaming.rest = first
     with owned(session, "stream"):
         check_start(settled_status(session, settings), first, near, machine)
@@ -87,8 +242,12 @@ def stream(
 
 
 def _streamed(
-    session: Session, streaming: RotaryStream, program: Program, progress: Progress, is_cancelled: Callable[[], bool]
-) -> Streamed:
+    session: Session,
+    streaming: RotaryStream,
+    program: PmacProgram,
+    progress: Progress,
+    is_cancelled: Callable[[], bool],
+) -> StreamResult:
     try:
         streaming.open()
         streaming.run(progress, is_cancelled)
@@ -100,7 +259,7 @@ def _streamed(
     if not streaming.end(at_once=False):
         raise StreamError("the program was carried out, but its buffer could not be closed", streaming.line, False)
     _log.info("%d lines in %d segments, SHA-256 %s", len(program.lines), len(streaming.segments), program.digest)
-    return Streamed(len(program.lines), program.digest, len(streaming.segments), streaming.resumptions)
+    return StreamResult(len(program.lines), program.digest, len(streaming.segments), streaming.resumptions)
 
 
 def _ended(streaming: RotaryStream, fault: PmacError | KeyboardInterrupt) -> PmacError:

@@ -15,30 +15,28 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from pkm_post.control.link import operate, stopping
-from pkm_post.control.link.download import Loaded, Progress, download
-from pkm_post.control.link.faults import CancelledError, LinkLostError, NotOwnerError, NotReadyError, PmacError
-from pkm_post.control.link.job import Job
-from pkm_post.control.link.motion import settled_status
-from pkm_post.control.link.ownership import take
-from pkm_post.control.link.readout import Pose, Readout, standing_pose
-from pkm_post.control.link.ready import check_setup
+from pkm_post.control.link import run, stopping
+from pkm_post.control.link.download import DownloadResult, Progress, download
+from pkm_post.control.link.errors import CancelledError, LinkLostError, NotOwnerError, NotReadyError, PmacError
+from pkm_post.control.link.ownership import claim
+from pkm_post.control.link.program import Job
+from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Status, read_status
-from pkm_post.control.numerical_control import execute as execution
-from pkm_post.control.numerical_control import mdi, moves, stops
-from pkm_post.control.numerical_control.emergency import emergency_text
+from pkm_post.control.link.status import Status, read_status, settled_status
+from pkm_post.control.link.stopping import emergency_text
+from pkm_post.control.link.tool_pose import Pose, ToolPoseReadout, pose_from_home
+from pkm_post.control.numerical_control import execute, manual_moves
+from pkm_post.control.numerical_control.execute import Watchdog
 from pkm_post.control.numerical_control.homing import (
     Homing,
+    HomingPhase,
     HomingWatch,
-    Phase,
     check_trigger,
     missing_homes,
     start_homing,
 )
 from pkm_post.control.numerical_control.plan import Plan, planned
-from pkm_post.control.numerical_control.single_block import Blocks, Shown
-from pkm_post.control.numerical_control.watchdog import Watchdog
+from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks
 from pkm_post.model import Diagnostic, Machine, Tolerances, Trajectory
 from pkm_post.options import APPROACH_MM_S, MANUAL_MOVE_PROGRAM, START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
@@ -53,7 +51,7 @@ TOLERANCES = Tolerances(1e-3, math.radians(1e-3))
 
 
 @dataclass(frozen=True)
-class State:
+class ControlState:
     """A snapshot for display.
 
     Attributes:
@@ -70,7 +68,7 @@ class State:
     lost: str = ""
     emergency: tuple[str, ...] = ()
     homing: Homing | None = None
-    block: Shown | None = None
+    block: BlockDisplay | None = None
 
 
 class NumericalControl:
@@ -95,9 +93,9 @@ class NumericalControl:
         """
         self._session, self._machine, self._settings, self._number = session, machine, settings, number
         self._watch: HomingWatch | None = None
-        self._blocks: tuple[Blocks, int] | None = None
-        self._block: Shown | None = None
-        self._last = State(None, None)
+        self._blocks: tuple[ProgramBlocks, int] | None = None
+        self._block: BlockDisplay | None = None
+        self._last = ControlState(None, None)
         self._may_move = False
         self._watchdog: Watchdog | None = None
         self._is_attended: Callable[[], bool] = lambda: True
@@ -121,9 +119,9 @@ class NumericalControl:
         if not (math.isfinite(length) and length > 0):
             raise ValueError(f"tool_length: expected a length above zero, got {length}")
         self._tool_length = length
-        self._readout = Readout(self._machine, length)
+        self._readout = ToolPoseReadout(self._machine, length)
 
-    def poll(self) -> State:
+    def poll(self) -> ControlState:
         """Read the state once and renew the watchdog of a jog; a lost link is a state, not an error."""
         try:
             status = read_status(self._session, self._settings)
@@ -137,48 +135,48 @@ class NumericalControl:
                 self._session.keeper.release()
             return self._last
         except PmacError as fault:
-            self._last = State(
+            self._last = ControlState(
                 self._last.status, self._last.pose, str(fault), self._emergency(), self._last.homing, self._block
             )
             return self._last
         self._may_move = False
         self._give_back(status)
         homing = None if self._watch is None else self._watch.see(status, self._session.now())
-        if homing is not None and homing.phase is not Phase.SEARCHING:
+        if homing is not None and homing.phase is not HomingPhase.SEARCHING:
             self._watch = None
         elif homing is None:
             homing = self._last.homing
-        self._last = State(status, self._readout.pose(status), homing=homing, block=self._block)
+        self._last = ControlState(status, self._readout.pose(status), homing=homing, block=self._block)
         return self._last
 
-    def plan_jog(self, jog: moves.Jog, feed: float) -> tuple[Plan | None, Findings]:
+    def plan_jog(self, jog: manual_moves.Jog, feed: float) -> tuple[Plan | None, Findings]:
         """Plan a jog from the current pose; ``feed`` in mm/s, for a turn in place in degrees per second.
 
         Raises:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
         here = self._here()
-        plan, told = self._planned(*moves.trajectory_of(jog, self._machine, here, self.tool_length, feed))
+        plan, told = self._planned(*manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed))
         return (None if plan is None else replace(plan, is_jog=True)), told
 
-    def plan_line(self, line: str, reading: mdi.Reading | None = None) -> tuple[Plan | None, Findings]:
+    def plan_line(self, line: str, reading: manual_moves.MdiSettings | None = None) -> tuple[Plan | None, Findings]:
         """Plan a line of G-code from the current pose.
 
         Raises:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
-        return self._planned(*mdi.line_trajectory(line, self._machine, self._here(), self.tool_length, reading))
+        return self._planned(*manual_moves.mdi_trajectory(line, self._machine, self._here(), self.tool_length, reading))
 
     def plan_approach(self, job: Job, feed: float = APPROACH_MM_S) -> tuple[Plan | None, Findings]:
-        """Plan the approach from the current pose to the start of a program; as ``moves.approach``.
+        """Plan the approach from the current pose to the start of a program; as ``manual_moves.approach_trajectory``.
 
         Raises:
             NotReadyError: the tool pose is unknown, the machine moves, or the start has no pose.
         """
-        here, start = self._here(), standing_pose(self._machine, job.first, self.tool_length)
+        here, start = self._here(), pose_from_home(self._machine, job.first, self.tool_length)
         if start is None:
             raise NotReadyError(["no pose of the platform that small steps from home lead to is that of the start"])
-        return self._planned(*moves.approach(self._machine, here, start, self.tool_length, feed))
+        return self._planned(*manual_moves.approach_trajectory(self._machine, here, start, self.tool_length, feed))
 
     def execute(self, plan: Plan, near: float = START_TOLERANCE_MM) -> Status:
         """Load a plan, verify its listing and start it; as ``execute.execute``.
@@ -187,9 +185,9 @@ class NumericalControl:
         """
         order = self._session, self._machine, self._settings, plan.job
         if plan.is_jog:
-            status, self._watchdog = self._owning("jog", lambda: execution.execute_watched(*order))
+            status, self._watchdog = self._owning("jog", lambda: execute.execute_watched(*order))
         else:
-            status = self._owning("run", lambda: execution.execute(*order, near))
+            status = self._owning("run", lambda: execute.execute(*order, near))
         if plan.block and self._blocks is not None:
             self._take_block(self._blocks[0], plan.block + 1)
         return status
@@ -206,11 +204,11 @@ class NumericalControl:
 
     def wait_for_rest(self, seconds: float) -> Status:
         """Poll until the machine rests, and renew the watchdog of a jog; as ``execute.wait_for_rest``."""
-        status = execution.wait_for_rest(self._session, self._settings, seconds, self.renew)
+        status = execute.wait_for_rest(self._session, self._settings, seconds, self.renew)
         self._end_watch(status)
         return status
 
-    def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> Loaded:
+    def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> DownloadResult:
         """Check the controller's setup, load a program and verify its listing; as ``download.download``.
 
         A waiting stop ends the download as ``is_cancelled`` does.
@@ -219,15 +217,18 @@ class NumericalControl:
         return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.is_waited_for())
 
     def start(self, job: Job, near: float = START_TOLERANCE_MM) -> Status:
-        """Start a loaded program from its beginning; as ``operate.run``."""
+        """Start a loaded program from its beginning; as ``run.start_program``."""
         order = self._session, self._settings, job.program, job.first, near, self._machine
-        return self._owning("run", lambda: operate.run(*order))
+        return self._owning("run", lambda: run.start_program(*order))
 
     def go_on(self, job: Job, stop: int, near: float = START_TOLERANCE_MM) -> Status:
-        """Continue a program after the stop (M0, M1) at which it stands, numbered from 1; as ``stops.go_on``."""
-        return self._owning("run", lambda: stops.go_on(self._session, self._machine, self._settings, job, stop, near))
+        """Continue a program after its stop (M0, M1), from 1, where it stands; as ``execute.continue_after_stop``."""
+        return self._owning(
+            "run",
+            lambda: execute.continue_after_stop(self._session, self._machine, self._settings, job, stop, near),
+        )
 
-    def open_blocks(self, blocks: Blocks, at: int = 1) -> int:
+    def open_blocks(self, blocks: ProgramBlocks, at: int = 1) -> int:
         """Open a program in single block mode; return its number of blocks.
 
         Args:
@@ -262,7 +263,7 @@ class NumericalControl:
     def resume(self) -> Status:
         """Resume after a hold; a jog held by its watchdog resumes as well."""
         self.renew()
-        return self._moving(lambda: operate.resume(self._session, self._settings))
+        return self._moving(lambda: run.resume_program(self._session, self._settings))
 
     def abort(self, at_once: bool = False) -> Status:
         """Abort the program, after a hold unless ``at_once``, and stop watching a homing."""
@@ -271,7 +272,7 @@ class NumericalControl:
 
     def override(self, percent: float) -> Status:
         """Set the feed override, above 0 and up to 100 %."""
-        return operate.override(self._session, self._settings, percent, self.renew)
+        return run.set_feed_override(self._session, self._settings, percent, self.renew)
 
     def home(self, trigger: str) -> None:
         """Send the line that starts the homing of the machine; ``poll`` then watches it."""
@@ -283,7 +284,7 @@ class NumericalControl:
         if not status.running:
             self._watchdog = None
 
-    def _take_block(self, blocks: Blocks, number: int) -> None:
+    def _take_block(self, blocks: ProgramBlocks, number: int) -> None:
         """Make a block the next one."""
         self._blocks, self._block = (blocks, number), blocks.shown(number)
 
@@ -295,7 +296,7 @@ class NumericalControl:
 
     def _owning(self, what: str, order: Callable[[], Done]) -> Done:
         """Execute an order that moves the machine; keep ownership until the machine is seen at rest."""
-        keeper = self._session.keeper or take(self._session, what)
+        keeper = self._session.keeper or claim(self._session, what)
         try:
             return self._moving(order)
         except LinkLostError:
@@ -327,7 +328,7 @@ class NumericalControl:
         reasons += [] if status.standing else ["a strut moves"]
         if reasons:
             raise NotReadyError(reasons)
-        pose = standing_pose(self._machine, status.commanded, self.tool_length)
+        pose = pose_from_home(self._machine, status.commanded, self.tool_length)
         if pose is None:
             raise NotReadyError(["no pose of the platform that small steps from home lead to has these strut lengths"])
         return pose

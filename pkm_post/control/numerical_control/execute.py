@@ -6,23 +6,111 @@ Enters: a session and a plan; only planning with its checks creates one. Leaves:
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.control.link import operate
+from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import PmacError
-from pkm_post.control.link.job import Job
+from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.ready import check_setup, check_start
+from pkm_post.control.link.program import Job, PmacProgram, read_job
+from pkm_post.control.link.run import check_setup, check_start, read_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Status, read_status
-from pkm_post.control.numerical_control.watchdog import Watchdog, watchdog_of
-from pkm_post.model import Machine
+from pkm_post.model import EventKind, Machine, StrutMotion
 from pkm_post.options import START_TOLERANCE_MM
-from pkm_post.writing import PmacSettings
+from pkm_post.planning import LONGEST_MS
+from pkm_post.writing import PmacSettings, parted, program_text
+
+CREDIT_MS = 600
+"""Time a program may run after a renewal: several readings over a serial line."""
+_AHEAD_MS = 2 * LONGEST_MS
+"""Moves beyond the credit: those the controller computes ahead, and those that one watchdog line covers."""
+_FULL_SLEW = 1644.0
+"""Isx95 at which a hold takes one second [TurboPMAC, Isx95]."""
+_INTERVAL, _MOVE = re.compile(r"PVT(\d+)"), re.compile(r"[A-Z]\S+:\S+ .*")
+
+
+@dataclass(frozen=True)
+class Watchdog:
+    """The watchdog of a program.
+
+    Attributes:
+        program: with the watchdog lines.
+        variable: number of the P-variable that counts down.
+        silence_s: longest time from silence to standstill, s, at an override of 100 %.
+    """
+
+    program: PmacProgram
+    variable: int
+    silence_s: float
+
+    def renew(self, session: Session) -> None:
+        """Let the program continue; retried when the link fails, as a repeated renewal does no harm.
+
+        Raises:
+            PmacError: the controller is unreachable, or refuses.
+        """
+        session.ask(_credit(self.variable))
+
+
+def watchdog_of(session: Session, settings: PmacSettings, program: PmacProgram) -> Watchdog:
+    """Insert a watchdog into a program; its P-variable has the number of the program.
+
+    Args:
+        session: an open session.
+        settings: of the controller.
+        program: as it was certified.
+
+    Raises:
+        NotReadyError: a hold would never finish on this controller.
+    """
+    name = f"I{50 + settings.coordinate_system}95"
+    slew = abs(read_number(session, name))
+    if slew == 0:
+        raise NotReadyError([f"{name} is 0: a hold would not stop the struts, so nothing would when the link fails"])
+    lines = with_watchdog(program.lines, program.number, settings.coordinate_system)
+    silence = (CREDIT_MS + _AHEAD_MS) / 1000 + _FULL_SLEW / slew
+    return Watchdog(PmacProgram(program.number, lines), program.number, silence)
+
+
+def with_watchdog(lines: Sequence[str], variable: int, coordinate_system: int) -> tuple[str, ...]:
+    """Insert the lines of a watchdog into those of a program.
+
+    Args:
+        lines: of a program whose moves are no longer than ``feed.knots.LONGEST_MS``.
+        variable: number of the P-variable.
+        coordinate_system: to hold.
+    """
+    guard = f'IF(P{variable}<0)COMMAND"&{coordinate_system}H"'
+    made = [_credit(variable)]
+    for ms, group in _groups(lines):
+        made += [f"P{variable}=P{variable}-{ms}", guard] if ms else []
+        made += group
+    return tuple(made)
+
+
+def _credit(variable: int) -> str:
+    return f"P{variable}={CREDIT_MS}"
+
+
+def _groups(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
+    """Groups of lines with their total ms, none longer than the longest single move may be."""
+    interval, total, group = 0, 0, list[str]()
+    for line in lines:
+        stated = _INTERVAL.fullmatch(line)
+        interval = int(stated[1]) if stated else interval
+        ms = interval if _MOVE.fullmatch(line) else 0
+        if ms and total + ms > LONGEST_MS:
+            yield total, group
+            total, group = 0, []
+        total += ms
+        group.append(line)
+    yield total, group
+
 
 _POLL_S = 0.05
 
@@ -49,7 +137,7 @@ def execute(
         check_start(read_status(session, settings), job.first, near, machine)
         check_setup(session, settings, machine.strut_stroke)
         download(session, job.program, is_cancelled=session.is_waited_for)
-        return operate.run(session, settings, job.program, job.first, near, machine)
+        return operate.start_program(session, settings, job.program, job.first, near, machine)
 
 
 def execute_watched(session: Session, machine: Machine, settings: PmacSettings, job: Job) -> tuple[Status, Watchdog]:
@@ -85,7 +173,7 @@ def wait_for_rest(
         session.sleep(_POLL_S)
 
 
-def off_target(status: Status, lengths: Array) -> float:
+def target_deviation(status: Status, lengths: Array) -> float:
     """Largest deviation of a commanded strut length from its target, mm.
 
     Args:
@@ -93,3 +181,90 @@ def off_target(status: Status, lengths: Array) -> float:
         lengths: (6,) final lengths of a program, mm.
     """
     return float(np.abs(status.commanded - lengths).max())
+
+
+@dataclass(frozen=True)
+class ProgramStop:
+    """An M0 or M1 with moves after it.
+
+    Attributes:
+        number: of the stop in its program, from 1.
+        event: index among the events of the motion.
+        length: (6,) strut lengths at it, mm.
+    """
+
+    number: int
+    event: int
+    length: Array
+
+
+def program_stops(job: Job) -> tuple[ProgramStop, ...]:
+    """The stops of a program; one at its very end does not count, as no move follows."""
+    events, last = job.motion.events, len(job.motion) - 1
+    places = [index for index, each in enumerate(events) if each.kind is EventKind.STOP and each.row < last]
+    return tuple(
+        ProgramStop(number, index, job.motion.length[events[index].row]) for number, index in enumerate(places, 1)
+    )
+
+
+def remaining_job(job: Job, stop: ProgramStop, settings: PmacSettings) -> Job:
+    """The part of a program after a stop, under the number of the job.
+
+    Args:
+        job: the program.
+        stop: one of ``program_stops``.
+        settings: of the controller it was written for.
+    """
+    row = job.motion.events[stop.event].row
+    rest = replace(job.motion, events=job.motion.events[stop.event + 1 :])
+    motion = parted(rest, [row])[-1] if row else rest
+    return job_of(motion, replace(settings, program=job.program.number), f"behind stop {stop.number}")
+
+
+def job_of(motion: StrutMotion, settings: PmacSettings, name: str) -> Job:
+    """Turn part of a program into a program.
+
+    Args:
+        motion: of the part.
+        settings: of the controller, with its program number.
+        name: for diagnostics.
+
+    Raises:
+        ValueError: its text does not reproduce its motion.
+    """
+    job, faults = read_job(program_text(motion, settings, [name]), settings, name)
+    if job is None or not same(job.motion, motion):
+        raise ValueError(f"{name}: expected a text that gives its motion back, got {faults}")
+    return job
+
+
+def same(one: StrutMotion, other: StrutMotion) -> bool:
+    """Whether two motions are identical to the last digit."""
+    return one.events == other.events and all(
+        np.array_equal(getattr(one, name), getattr(other, name)) for name in ("time_ms", "length", "speed")
+    )
+
+
+def continue_after_stop(
+    session: Session, machine: Machine, settings: PmacSettings, job: Job, number: int, near: float = START_TOLERANCE_MM
+) -> Status:
+    """Load the part of a program after a stop and start it.
+
+    Args:
+        session: an open session.
+        machine: the machine.
+        settings: of its controller.
+        job: the program that has stopped.
+        number: of the stop, from 1. It is stated, not inferred from the strut lengths: several stops may share a
+            position, and a program that was never started may begin there.
+        near: largest distance of each strut from it, mm.
+
+    Raises:
+        NotReadyError: the stop does not exist, or the struts do not stand at it; or as ``execute.execute``.
+        DownloadError: the download failed; nothing was started.
+    """
+    stops = program_stops(job)
+    if not 1 <= number <= len(stops):
+        told = f"the program has {len(stops)} stops (M0, M1) with moves after them: there is none with number {number}"
+        raise NotReadyError([told])
+    return execute(session, machine, settings, remaining_job(job, stops[number - 1], settings), near)

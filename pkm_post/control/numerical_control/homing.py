@@ -15,11 +15,10 @@ import enum
 import re
 from dataclasses import dataclass
 
-from pkm_post.control.link.faults import NotReadyError
-from pkm_post.control.link.motion import settled_status
+from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import MOTORS, Status
+from pkm_post.control.link.status import MOTORS, Status, settled_status
 from pkm_post.writing import PmacSettings
 
 _FORMS = {
@@ -38,7 +37,7 @@ _QUIET_S = 2.0
 _STOPS_IT = ("amplifier_fault", "fatal_following_error")
 
 
-class Phase(enum.Enum):
+class HomingPhase(enum.Enum):
     """Phase of a homing."""
 
     SEARCHING = "the struts look for their homes"
@@ -58,7 +57,7 @@ class Homing:
         words: faults in plain text.
     """
 
-    phase: Phase
+    phase: HomingPhase
     missing: tuple[int, ...]
     words: tuple[str, ...]
 
@@ -131,14 +130,14 @@ class HomingWatch:
         self._quiet_since = None if busy or missing else now if self._quiet_since is None else self._quiet_since
         return Homing(self._phase(status, busy, now), missing, status.words())
 
-    def _phase(self, status: Status, busy: bool, now: float) -> Phase:
+    def _phase(self, status: Status, busy: bool, now: float) -> HomingPhase:
         if any(_faults(status)):
-            return Phase.FAILED
+            return HomingPhase.FAILED
         if self._seen and self._quiet_since is not None and now - self._quiet_since >= _QUIET_S:
-            return Phase.DONE
+            return HomingPhase.DONE
         if not self._seen and now - self._began >= _NOTHING_S:
-            return Phase.NOTHING
-        return Phase.LATE if now >= self._until else Phase.SEARCHING
+            return HomingPhase.NOTHING
+        return HomingPhase.LATE if now >= self._until else HomingPhase.SEARCHING
 
 
 def _faults(status: Status) -> tuple[str, ...]:

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.certificate import certify
-from pkm_post.control.link.job import Job, read_job
-from pkm_post.control.link.readout import Pose, spin_of
+from pkm_post.control.link.program import Job, read_job
+from pkm_post.control.link.tool_pose import Pose, spin_of
 from pkm_post.geometry import Array, hermite_lengths
 from pkm_post.machine import Solution, Way, faults_of, follow, platform_rotation, reach_findings
 from pkm_post.model import Certificate, Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, errors

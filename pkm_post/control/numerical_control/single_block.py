@@ -43,7 +43,7 @@ _CODES: dict[EventKind, Callable[[float], str]] = {
 
 
 @dataclass(frozen=True)
-class Shown:
+class BlockDisplay:
     """The next block, for display.
 
     Attributes:
@@ -72,7 +72,7 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class Blocks:
+class ProgramBlocks:
     """The blocks of a program.
 
     Attributes:
@@ -88,17 +88,17 @@ class Blocks:
     def __len__(self) -> int:
         return len(self.begins)
 
-    def shown(self, number: int) -> Shown:
+    def shown(self, number: int) -> BlockDisplay:
         """A block for display, numbered from 1; one past the last is the end."""
         if number > len(self):
-            return Shown(number, len(self))
+            return BlockDisplay(number, len(self))
         first, end = self._rows(number)
         place = self.trajectory.place(first)
         known = 0 < place.line <= len(self.lines)
         text = self.lines[place.line - 1].strip() if known else self._target(end - 1)
         behind = self._codes(end) if end == len(self.trajectory) else ""
         texts = " | ".join(filter(None, (self._codes(first), text, behind)))
-        return Shown(number, len(self), place.operation, place.line, texts)
+        return BlockDisplay(number, len(self), place.operation, place.line, texts)
 
     def block(self, number: int) -> Trajectory:
         """A block as a trajectory from rest to rest.
@@ -148,16 +148,16 @@ class Blocks:
         return f"-> X{x:.3f} Y{y:.3f} Z{z:.3f}"
 
 
-def blocks_of(trajectory: Trajectory, lines: tuple[str, ...] = ()) -> Blocks:
+def split_into_blocks(trajectory: Trajectory, lines: tuple[str, ...] = ()) -> ProgramBlocks:
     """The blocks of a trajectory: segments with the same operation and line, split at tool changes."""
     begins = np.ones(len(trajectory), dtype=np.bool_)
     begins[1:] = (np.diff(trajectory.line) != 0) | (np.diff(trajectory.operation) != 0)
     changes = [each.row for each in trajectory.events if each.kind is EventKind.TOOL_CHANGE]
     begins[[row for row in changes if row < len(trajectory)]] = True
-    return Blocks(trajectory, lines, np.flatnonzero(begins))
+    return ProgramBlocks(trajectory, lines, np.flatnonzero(begins))
 
 
-def blocks_of_program(program: Path, machine: Machine) -> tuple[Blocks | None, Findings]:
+def read_blocks(program: Path, machine: Machine) -> tuple[ProgramBlocks | None, Findings]:
     """The blocks of a motion program, from the trajectory posted with it.
 
     Args:
@@ -177,7 +177,7 @@ def blocks_of_program(program: Path, machine: Machine) -> tuple[Blocks | None, F
     if trajectory.machine_fingerprint != machine.fingerprint:
         found = f"made for {trajectory.machine}, to be run on {machine.name}"
         return None, (*faults, Diagnostic("T104", Place(str(file)), found))
-    return blocks_of(trajectory, _lines_of_source(trajectory, program.parent)), faults
+    return split_into_blocks(trajectory, _lines_of_source(trajectory, program.parent)), faults
 
 
 def _lines_of_source(trajectory: Trajectory, folder: Path) -> tuple[str, ...]:

@@ -17,8 +17,8 @@ from concurrent.futures import Future
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from pkm_post.control.numerical_control.control import NumericalControl, State
-from pkm_post.control.numerical_control.emergency import ADVICE_S, NOT_AT_REST
+from pkm_post.control.link.stopping import NOT_AT_REST, REST_DEADLINE_S
+from pkm_post.control.numerical_control.control import ControlState, NumericalControl
 
 Done = TypeVar("Done")
 Order = tuple[Future[Any], Callable[[NumericalControl], Any]]
@@ -49,7 +49,7 @@ class Worker:
         self._stops: deque[Order] = deque()
         self._orders: deque[Order] = deque()
         self._change, self._ended = threading.Condition(), False
-        self._state, self._stop_since = State(None, None), math.inf
+        self._state, self._stop_since = ControlState(None, None), math.inf
         self.failure: BaseException | None = None
         self._stopping = False
         self._attended, self._attended_at = attended, -math.inf
@@ -59,7 +59,7 @@ class Worker:
         self._thread.start()
 
     @property
-    def state(self) -> State:
+    def state(self) -> ControlState:
         """The latest state, empty before the first reading; a stop not confirmed in time is an emergency."""
         if self._is_stop_overdue() and not self._state.emergency:
             return replace(self._state, emergency=NOT_AT_REST)
@@ -117,7 +117,7 @@ class Worker:
         return bool(self._stops) or (self._ended and (not self._stopping or self._is_stop_overdue()))
 
     def _is_stop_overdue(self) -> bool:
-        return time.monotonic() - self._stop_since > ADVICE_S
+        return time.monotonic() - self._stop_since > REST_DEADLINE_S
 
     def _run(self) -> None:
         due = time.monotonic()

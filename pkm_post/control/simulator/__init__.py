@@ -5,11 +5,10 @@ It is written from the manuals and imports no other room: its verdict on a progr
 the program.
 """
 
-from pkm_post.control.simulator.controller import Controller
-from pkm_post.control.simulator.errors import MEANINGS, CommandError
-from pkm_post.control.simulator.ethernet import Packets
-from pkm_post.control.simulator.line import Line
-from pkm_post.control.simulator.serve import Server
-from pkm_post.control.simulator.settings import SimulatorSettings
+from pkm_post.control.simulator.controller import Controller, SimulatorSettings
+from pkm_post.control.simulator.errors import ERROR_TEXTS, CommandError
+from pkm_post.control.simulator.ethernet_port import EthernetPort
+from pkm_post.control.simulator.serial_port import SerialPort
+from pkm_post.control.simulator.server import Server
 
-__all__ = ["MEANINGS", "CommandError", "Controller", "Line", "Packets", "Server", "SimulatorSettings"]
+__all__ = ["ERROR_TEXTS", "CommandError", "Controller", "SerialPort", "EthernetPort", "Server", "SimulatorSettings"]

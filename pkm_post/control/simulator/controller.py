@@ -10,18 +10,73 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from pkm_post.control.simulator import guards
 from pkm_post.control.simulator.coordinate_system import CoordinateSystem
 from pkm_post.control.simulator.errors import CommandError
 from pkm_post.control.simulator.memory import Memory
 from pkm_post.control.simulator.motors import Motors
-from pkm_post.control.simulator.online import Session, execute
-from pkm_post.control.simulator.settings import SimulatorSettings
+from pkm_post.control.simulator.online import PortSession, execute
 from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, Variables
+
+_EFFECTS = {
+    0: "STOP", 1: "STOP", 3: "P7001=1", 4: "P7001=-1", 5: "P7001=0", 7: "P7002=2", 8: "P7002=1", 9: "P7002=0",
+}  # fmt: skip
+_M_CODES = (*range(10), 30)
+_TOOLS = 100
+
+MACHINE_CODES: tuple[str, ...] = (
+    "CLOSE",
+    "OPEN PROG 1001 CLEAR",
+    *(f"N{1000 * code} {_EFFECTS.get(code, '')} RETURN" for code in _M_CODES),
+    "CLOSE",
+    "OPEN PROG 1002 CLEAR",
+    *(f"N{1000 * tool}" for tool in range(_TOOLS)),
+    "CLOSE",
+)
+
+
+LEAST_MEMORY = 1000
+"""words: room for the machine codes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimulatorSettings:
+    """A controller and its motors.
+
+    Attributes:
+        memory_words: program memory, in 48-bit words.
+        line_limit: longest line, in characters.
+        tick_ms: period of the position update.
+        lag_ms: time constant of the servo loops: at constant speed the following error is the speed times this.
+        home_flag: position of the home flags after a reset, counts from the motors' positions.
+        firmware: answer to VER.
+        card: answer to TYPE.
+        identity: answer to CID.
+        password: protects programs from 1000 on; empty for none.
+        machine_codes: lines loaded at a reset: the programs behind G, M, T and D codes.
+    """
+
+    memory_words: int = 237_568
+    line_limit: int = 255
+    tick_ms: float = 1.0
+    lag_ms: float = 0.5
+    home_flag: float = 5000.0
+    firmware: str = "1.947"
+    card: str = "TURBO2, X4"
+    identity: str = "602413"
+    password: str = ""
+    machine_codes: tuple[str, ...] = MACHINE_CODES
+
+    def __post_init__(self) -> None:
+        if self.memory_words < LEAST_MEMORY:
+            raise ValueError(f"memory_words: expected {LEAST_MEMORY} or more, got {self.memory_words}")
+        if not (self.tick_ms > 0 and self.lag_ms > 0):
+            raise ValueError(f"expected times above zero, got tick_ms {self.tick_ms}, lag_ms {self.lag_ms}")
+
 
 Listener = Callable[[str | CommandError], None]
 
@@ -74,7 +129,7 @@ class Controller:
         Raises:
             CommandError: a line is refused; those before it were executed.
         """
-        session = Session(self)
+        session = PortSession(self)
         for line in lines:
             execute(session, line)
 
@@ -128,9 +183,11 @@ class Controller:
 
     def _said_by(self, number: int) -> Callable[[str, str], None]:
         """A callback for what a program of this coordinate system sends to ports, or commands as if by a port."""
-        return partial(self._say, Session(self, system=number))  # no closure: it is copied along with the controller
+        return partial(
+            self._say, PortSession(self, system=number)
+        )  # no closure: it is copied along with the controller
 
-    def _say(self, session: Session, kind: str, text: str) -> None:
+    def _say(self, session: PortSession, kind: str, text: str) -> None:
         try:
             said: list[str | CommandError] = [text] if kind == "SEND" else [*execute(session, text)]
         except CommandError as error:
@@ -152,13 +209,13 @@ class Controller:
 
     def _guard(self) -> None:
         """Stop motors that have failed, and all motors that move together with them."""
-        self.motors.fatal |= guards.exceeded(self.motors)
+        self.motors.fatal |= self.motors.fatal_following_errors()
         tripped = self.motors.closed & (self.motors.fatal | self.motors.amplifier_fault)
         for index in np.flatnonzero(tripped).tolist():
             system = self.system_of(index + 1)
             for other in system.axes.indices() if system is not None else [index]:
                 self.kill(other)
-        for index in np.flatnonzero(guards.beyond_limits(self.motors) & ~self.motors.stopped_on_limit).tolist():
+        for index in np.flatnonzero(self.motors.beyond_limits() & ~self.motors.stopped_on_limit).tolist():
             system = self.system_of(index + 1)
             if system is not None and system.running:
                 system.abort()

@@ -11,13 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.control.simulator import errors
-from pkm_post.control.simulator.axes import Axes
-from pkm_post.control.simulator.counter import ProgramError
 from pkm_post.control.simulator.errors import CommandError
-from pkm_post.control.simulator.interpreter import Interpreter, Outside
-from pkm_post.control.simulator.memory import Memory
+from pkm_post.control.simulator.interpreter import Interpreter, PortOutput
+from pkm_post.control.simulator.memory import Memory, ProgramError
+from pkm_post.control.simulator.modal_state import Axes
 from pkm_post.control.simulator.motors import Motors
-from pkm_post.control.simulator.path import Path
+from pkm_post.control.simulator.moves import MoveQueue
 from pkm_post.control.simulator.variables import SIMULATED_MOTORS, Array, SystemScope, Variables
 
 FULL_SLEW = 1644.0
@@ -47,13 +46,13 @@ class CoordinateSystem:
         runtime_error: whether the last program ended with an error.
     """
 
-    def __init__(self, number: int, memory: Memory, variables: Variables, motors: Motors, outside: Outside) -> None:
+    def __init__(self, number: int, memory: Memory, variables: Variables, motors: Motors, outside: PortOutput) -> None:
         self.number, self._motors, self._variables = number, motors, variables
         self.axes = Axes()
         self.interpreter = Interpreter(number, memory, SystemScope(variables, number), self.axes, outside)
         self.running = self.stepping = self.holding = self.runtime_error = False
         self.override = self.override_wanted = 1.0
-        self.path = Path()
+        self.path = MoveQueue()
         self._stopped_at: Array | None = None
         self._no_more = self._resuming = False
 

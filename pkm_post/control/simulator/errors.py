@@ -7,7 +7,7 @@ A refusal is a normal answer of the controller, so it is an exception inside thi
 
 from __future__ import annotations
 
-MEANINGS = {
+ERROR_TEXTS = {
     1: "not allowed while a motion program runs",
     2: "password missing",
     3: "data error or unrecognized command",
@@ -37,9 +37,9 @@ class CommandError(Exception):
     """The controller refuses a command.
 
     Attributes:
-        number: of the error, a key of ``MEANINGS``.
+        number: of the error, a key of ``ERROR_TEXTS``.
     """
 
     def __init__(self, number: int) -> None:
-        super().__init__(f"ERR{number:03d}: {MEANINGS[number]}")
+        super().__init__(f"ERR{number:03d}: {ERROR_TEXTS[number]}")
         self.number = number

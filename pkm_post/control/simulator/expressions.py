@@ -7,22 +7,110 @@ system. ``* / % &`` bind tighter than ``+ - | ^``. Angles are in degrees.
 
 from __future__ import annotations
 
+import math
+import operator
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 from pkm_post.control.simulator.errors import DATA, CommandError
-from pkm_post.control.simulator.numerals import number_of, printed
-from pkm_post.control.simulator.operators import (
-    CLOSE_OPERATORS,
-    COMPARISONS,
-    FUNCTIONS,
-    LOOSE_OPERATORS,
-    Binary,
-    Comparison,
-    safely,
-)
-from pkm_post.control.simulator.scanner import CONSTANT, Scanner
+from pkm_post.control.simulator.variables import constant_value, printed, stored
+
+CONSTANT = r"\$[0-9A-F]{1,12}|[0-9]+\.?[0-9]*|\.[0-9]+"
+
+
+@cache
+def _compiled(pattern: str) -> re.Pattern[str]:
+    return re.compile(r" *(?:" + pattern + r")", re.IGNORECASE | re.ASCII)
+
+
+class Scanner:
+    """A line and the read position; spaces between tokens are skipped, and case is ignored."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text.replace("\t", " ")
+        self.position = 0
+
+    def take(self, pattern: str) -> re.Match[str] | None:
+        """Read a token if it comes next."""
+        match = _compiled(pattern).match(self.text, self.position)
+        if match is not None:
+            self.position = match.end()
+        return match
+
+    def expect(self, pattern: str) -> re.Match[str]:
+        """Read a token.
+
+        Raises:
+            CommandError: it does not come next.
+        """
+        match = self.take(pattern)
+        if match is None:
+            raise CommandError(DATA)
+        return match
+
+    def at_end(self) -> bool:
+        """Whether only spaces and a comment are left."""
+        return self.take(r"(?:;.*)?$") is not None
+
+    def rest(self) -> str:
+        """Read everything that is left."""
+        text, self.position = self.text[self.position :], len(self.text)
+        return text
+
+
+Binary = Callable[[float, float], float]
+Comparison = Callable[[float, float], bool]
+
+
+def _bits(operation: Callable[[int, int], int]) -> Binary:
+    return lambda a, b: float(operation(int(a), int(b)))
+
+
+CLOSE_OPERATORS: dict[str, Binary] = {
+    "*": operator.mul,
+    "/": operator.truediv,
+    "%": operator.mod,
+    "&": _bits(operator.and_),
+}
+LOOSE_OPERATORS: dict[str, Binary] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "|": _bits(operator.or_),
+    "^": _bits(operator.xor),
+}
+FUNCTIONS: dict[str, Callable[[float], float]] = {
+    "SIN": lambda x: math.sin(math.radians(x)),
+    "COS": lambda x: math.cos(math.radians(x)),
+    "TAN": lambda x: math.tan(math.radians(x)),
+    "ASIN": lambda x: math.degrees(math.asin(x)),
+    "ACOS": lambda x: math.degrees(math.acos(x)),
+    "ATAN": lambda x: math.degrees(math.atan(x)),
+    "SQRT": math.sqrt,
+    "ABS": abs,
+    "INT": math.floor,
+    "EXP": math.exp,
+    "LN": math.log,
+}
+COMPARISONS: dict[str, Comparison] = {
+    "!=": operator.ne,
+    "!>": operator.le,
+    "!<": operator.ge,
+    "=": operator.eq,
+    ">": operator.gt,
+    "<": operator.lt,
+}
+
+
+def safely(compute: Callable[[], float]) -> float:
+    """A result as a stored word; an undefined one (division by zero, root of a negative number) is refused."""
+    try:
+        return stored(float(compute()))
+    except (ArithmeticError, ValueError):
+        raise CommandError(DATA) from None
+
 
 DEEPEST_NESTING = 15
 
@@ -82,7 +170,7 @@ def argument(scanner: Scanner) -> Expression:
 def constant(text: str) -> Expression:
     """The expression of a single number."""
     sign = -1.0 if text.startswith("-") else 1.0
-    number = sign * number_of(text.lstrip("+-"))
+    number = sign * constant_value(text.lstrip("+-"))
     return Expression(printed(number), 1, lambda scope: number, constant=True)
 
 

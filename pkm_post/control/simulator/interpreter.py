@@ -13,15 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.control.simulator.axes import Axes
-from pkm_post.control.simulator.counter import Counter, ProgramError
 from pkm_post.control.simulator.errors import CommandError
 from pkm_post.control.simulator.expressions import Expression
-from pkm_post.control.simulator.memory import Memory
-from pkm_post.control.simulator.modes import Modes
-from pkm_post.control.simulator.moves import Move, Rest
-from pkm_post.control.simulator.path import Pending
-from pkm_post.control.simulator.statements import Statement
+from pkm_post.control.simulator.memory import Memory, ProgramCounter, ProgramError
+from pkm_post.control.simulator.modal_state import Axes, ModalState
+from pkm_post.control.simulator.moves import Dwell, Move, Pending
+from pkm_post.control.simulator.programs import Statement
 from pkm_post.control.simulator.variables import SystemScope
 
 STATEMENTS_AT_ONCE = 1000
@@ -29,7 +26,7 @@ STATEMENTS_AT_ONCE = 1000
 CODE_PROGRAMS = {"G": 1000, "M": 1001, "T": 1002, "D": 1003}
 SPEED_OF_S_CODE = 127
 
-Outside = Callable[[str, str], None]
+PortOutput = Callable[[str, str], None]
 
 
 class Interpreter:
@@ -42,10 +39,10 @@ class Interpreter:
         halted: whether it has reached a STOP.
     """
 
-    def __init__(self, number: int, memory: Memory, scope: SystemScope, axes: Axes, outside: Outside) -> None:
+    def __init__(self, number: int, memory: Memory, scope: SystemScope, axes: Axes, outside: PortOutput) -> None:
         self._scope, self._outside = scope, outside
-        self.modes = Modes(scope, axes)
-        self.counter = Counter(number, memory)
+        self.modes = ModalState(scope, axes)
+        self.counter = ProgramCounter(number, memory)
         self._pending: list[Pending] = []
         self.finished = self.halted = self.in_block = False
 
@@ -104,10 +101,10 @@ class Interpreter:
             self.modes.change(kind, arguments)
         return None
 
-    def _rest(self, duration: float, after: Move | None, now: float, fixed: bool) -> Rest:
+    def _rest(self, duration: float, after: Move | None, now: float, fixed: bool) -> Dwell:
         start = max(after.end, now) if after else now
         self.modes.rest()
-        return Rest(start, start + max(duration, 0.0), self.modes.target, fixed)
+        return Dwell(start, start + max(duration, 0.0), self.modes.target, fixed)
 
     def _value(self, expression: Expression) -> float:
         return expression.value(self._scope)

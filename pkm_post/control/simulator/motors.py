@@ -13,9 +13,99 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.control.simulator.profiles import Profile, endless, go_to, stop
 from pkm_post.control.simulator.variables import SIMULATED_MOTORS, Array, Variables
 
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of constant acceleration: p + v t + a t^2 / 2 for ``duration`` ms."""
+
+    duration: float
+    position: float
+    speed: float
+    acceleration: float
+
+    def at(self, time: float) -> float:
+        """Position at a time since the start of the piece."""
+        return self.position + time * (self.speed + 0.5 * self.acceleration * time)
+
+    def next(self, duration: float, acceleration: float) -> Piece:
+        """The piece that continues from the end of this one."""
+        speed = self.speed + self.acceleration * self.duration
+        return Piece(duration, self.at(self.duration), speed, acceleration)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A move of a single motor.
+
+    Attributes:
+        pieces: in order; after the last one the motor rests, or continues at constant speed.
+        goal: end position; None if it does not end by itself.
+    """
+
+    pieces: tuple[Piece, ...]
+    goal: float | None
+
+    @property
+    def duration(self) -> float:
+        """Total duration of the pieces, ms."""
+        return sum(piece.duration for piece in self.pieces)
+
+    def at(self, time: float) -> float:
+        """Position at a time since the start."""
+        if self.goal is not None and time >= self.duration:
+            return self.goal
+        for piece in self.pieces[:-1]:
+            if time < piece.duration:
+                return piece.at(time)
+            time -= piece.duration
+        return self.pieces[-1].at(time)
+
+    def ended(self, time: float) -> bool:
+        """Whether the motor rests at the goal."""
+        return self.goal is not None and time >= self.duration
+
+
+def stop(position: float, speed: float, deceleration: float) -> Profile:
+    """Decelerate to rest."""
+    duration = abs(speed) / deceleration
+    braking = Piece(duration, position, speed, -math.copysign(deceleration, speed))
+    return Profile((braking,), braking.at(duration))
+
+
+def endless(position: float, speed: float, wanted: float, acceleration: float) -> Profile:
+    """Continue at a speed until the next command."""
+    change = wanted - speed
+    ramp = Piece(abs(change) / acceleration, position, speed, math.copysign(acceleration, change))
+    return Profile((ramp, ramp.next(math.inf, 0.0)), None)
+
+
+def go_to(position: float, speed: float, goal: float, limit: float, acceleration: float) -> Profile:
+    """Move to a position: from a moving start come to rest first, then take the fastest motion within both limits.
+
+    Args:
+        position: current, counts.
+        speed: current, counts/ms.
+        goal: counts.
+        limit: highest speed, counts/ms.
+        acceleration: counts/ms^2.
+    """
+    braking = stop(position, speed, acceleration)
+    assert braking.goal is not None
+    distance = goal - braking.goal
+    sign = math.copysign(1.0, distance)
+    peak = min(limit, math.sqrt(abs(distance) * acceleration))
+    ramp = peak / acceleration
+    cruise = (abs(distance) - peak * ramp) / peak if peak > 0 else 0.0
+    speeding = Piece(ramp, braking.goal, 0.0, sign * acceleration)
+    steady = Piece(cruise, speeding.at(ramp), sign * peak, 0.0)
+    slowing = Piece(ramp, steady.at(cruise), sign * peak, -sign * acceleration)
+    return Profile((*braking.pieces, speeding, steady, slowing), goal)
+
+
+LIMITS_DISABLED, WORD = 0x20000, 1 << 24
+"""LIMITS_DISABLED is a bit of Ixx24, which is a word of 24 bits."""
 SLOWEST = 1e-6
 """counts/ms or counts/ms^2: lower bound of I-variables; at zero a move would never end."""
 
@@ -132,6 +222,34 @@ class Motors:
         error = self.following_error * fading + self.speed * self._lag_ms * (1.0 - fading)
         self.commanded = wanted
         self.actual = np.where(self.jammed | ~self.closed, self.actual, wanted - error)
+
+    def beyond_limits(self) -> Array:
+        """Which motors move further beyond a limit or into a switch, (6,)."""
+        high, low = self.at_limits()
+        searching = np.array([jog is not None and jog.homing for jog in self.jogs])
+        outside = (self.high_switch | high & ~searching) & (self.speed > 0)
+        return outside | (self.low_switch | low & ~searching) & (self.speed < 0)
+
+    def at_limits(self) -> tuple[Array, Array]:
+        """Which motors are beyond Ixx13, and which beyond Ixx14; 0 means no limit, and a bit of Ixx24 disables all."""
+        high, low = self.variables.column(13), self.variables.column(14)
+        heeded = (np.abs(self.variables.column(24)) % WORD).astype(np.int64) & LIMITS_DISABLED == 0
+        return heeded & (high != 0) & (self.actual > high), heeded & (low != 0) & (self.actual < low)
+
+    def fatal_following_errors(self) -> Array:
+        """Which closed-loop motors have a following error above Ixx11, (6,)."""
+        limit = self.variables.column(11) / 16
+        return self.closed & (limit > 0) & (np.abs(self.following_error) > limit)
+
+    def following_error_warnings(self) -> Array:
+        """Which motors have a following error above Ixx12, (6,)."""
+        limit = self.variables.column(12) / 16
+        return (limit > 0) & (np.abs(self.following_error) > limit)
+
+    def in_position(self) -> Array:
+        """Which motors rest at their commanded position within Ixx28, (6,)."""
+        near = np.abs(self.following_error) <= self.variables.column(28) / 16
+        return near & ~self.moving() & self.closed
 
     def _jogged(self, index: int, jog: Jog, ms: float) -> float:
         jog.time += ms

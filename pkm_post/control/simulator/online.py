@@ -9,26 +9,85 @@ goes into it.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pkm_post.control.simulator import online_memory, online_motion
-from pkm_post.control.simulator.axes import definition_of
 from pkm_post.control.simulator.errors import DATA, NOT_OPEN, RUNNING, CommandError
-from pkm_post.control.simulator.scanner import Scanner
-from pkm_post.control.simulator.statements import statements_of
-from pkm_post.control.simulator.status import global_status, motor_status, system_status
-from pkm_post.control.simulator.variables import MOTORS, SYSTEMS
+from pkm_post.control.simulator.expressions import Scanner
+from pkm_post.control.simulator.modal_state import parse_axis_definition
+from pkm_post.control.simulator.moves import PvtMove
+from pkm_post.control.simulator.programs import parse_statements
+from pkm_post.control.simulator.variables import MOTORS, SIMULATED_MOTORS, SYSTEMS, hexadecimal
 
 if TYPE_CHECKING:
     from pkm_post.control.simulator.controller import Controller
 
-Handler = Callable[["Session", re.Match[str], Scanner], list[str]]
+
+def motor_status(controller: Controller, motor: int) -> str:
+    """The answer to ``#n?``: two words."""
+    if motor > SIMULATED_MOTORS:
+        return hexadecimal(0, 0)
+    motors, index = controller.motors, motor - 1
+    high, low = motors.at_limits()
+    jog = motors.jogs[index]
+    system = controller.system_of(motor)
+    first = {
+        23: motors.activated[index],
+        22: low[index] or motors.low_switch[index],
+        21: high[index] or motors.high_switch[index],
+        19: motors.enabled[index],
+        18: not motors.closed[index],
+        13: motors.speed[index] == 0,
+        10: jog is not None and jog.homing,
+    }
+    second = {
+        15: system is not None,
+        11: motors.stopped_on_limit[index],
+        10: motors.homed[index],
+        3: motors.amplifier_fault[index],
+        2: motors.fatal[index],
+        1: motors.following_error_warnings()[index],
+        0: motors.in_position()[index],
+    }
+    number = (system.number - 1) << 20 if system is not None else 0
+    return hexadecimal(_word(first), _word(second) | number)
+
+
+def system_status(controller: Controller, number: int) -> str:
+    """The answer to ``&n??``: three words."""
+    system, motors = controller.systems[number - 1], controller.motors
+    indices = system.axes.indices()
+    first = {0: system.running, 2: system.running and not system.stepping, 4: system.running and not system.stepping}
+    second = {
+        23: system.holding,
+        22: system.runtime_error,
+        20: motors.amplifier_fault[indices].any(),
+        19: motors.fatal[indices].any(),
+        18: motors.following_error_warnings()[indices].any(),
+        17: bool(indices) and motors.in_position()[indices].all() and not system.running,
+        16: controller.rotary_full(number),
+        4: isinstance(system.path.current(), PvtMove),
+    }
+    third = {1: motors.stopped_on_limit[indices].any()}
+    return hexadecimal(_word(first), _word(second), _word(third))
+
+
+def global_status(controller: Controller) -> str:
+    """The answer to ``???``: two words. None of the faults they report can occur in a simulation."""
+    return hexadecimal(0, 0)
+
+
+def _word(bits: Mapping[int, object]) -> int:
+    return sum(1 << bit for bit, is_set in bits.items() if is_set)
+
+
+Handler = Callable[["PortSession", re.Match[str], Scanner], list[str]]
 
 
 @dataclass(eq=False)
-class Session:
+class PortSession:
     """The sender of commands, and the motor and coordinate system it addresses.
 
     Attributes:
@@ -44,7 +103,7 @@ class Session:
     bank: int = 0
 
 
-def execute(session: Session, line: str) -> list[str]:
+def execute(session: PortSession, line: str) -> list[str]:
     """Execute a line.
 
     Raises:
@@ -56,7 +115,7 @@ def execute(session: Session, line: str) -> list[str]:
     return told
 
 
-def _one(session: Session, scanner: Scanner) -> list[str]:
+def _one(session: PortSession, scanner: Scanner) -> list[str]:
     memory = session.controller.memory
     if memory.is_open_by(session):
         for pattern, handler in online_memory.OF_OPEN_BUFFER:
@@ -70,7 +129,7 @@ def _one(session: Session, scanner: Scanner) -> list[str]:
     raise CommandError(DATA if memory.is_open_by(session) or not _is_statement(scanner.rest()) else NOT_OPEN)
 
 
-def _went_into_buffer(session: Session, scanner: Scanner) -> bool:
+def _went_into_buffer(session: PortSession, scanner: Scanner) -> bool:
     try:
         session.controller.memory.add(scanner.text[scanner.position :], session.system)
     except CommandError as error:
@@ -83,22 +142,22 @@ def _went_into_buffer(session: Session, scanner: Scanner) -> bool:
 
 def _is_statement(text: str) -> bool:
     try:
-        return bool(statements_of(text))
+        return bool(parse_statements(text))
     except CommandError:
         return False
 
 
-def _address_motor(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _address_motor(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     session.motor = _within(match["number"], 1, MOTORS)
     return []
 
 
-def _address_system(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _address_system(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     session.system = _within(match["number"], 1, SYSTEMS)
     return []
 
 
-def _address_bank(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _address_bank(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     session.bank = _within(match["number"], 0, MOTORS // 8 - 1)
     return []
 
@@ -109,7 +168,7 @@ def _within(text: str, least: int, most: int) -> int:
     return int(text)
 
 
-def _axis(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _axis(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """``#n->`` reports an axis definition, ``#n->1000X`` sets one [TurboPMAC, axis definition]."""
     controller = session.controller
     motor = session.motor = _within(match["number"], 1, MOTORS)
@@ -117,7 +176,7 @@ def _axis(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]
     if scanner.at_end():
         there = axes.definitions.get(motor)
         return [there.text() if there else "0"]
-    definition = definition_of(scanner)
+    definition = parse_axis_definition(scanner)
     if controller.runs_program():
         raise CommandError(RUNNING)
     system = controller.system_of(motor)
@@ -127,7 +186,7 @@ def _axis(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]
     return []
 
 
-def _undefine(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _undefine(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     if session.controller.runs_program():
         raise CommandError(RUNNING)
     everywhere = match["all"] is not None
@@ -137,7 +196,7 @@ def _undefine(session: Session, match: re.Match[str], scanner: Scanner) -> list[
     return []
 
 
-def _status(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _status(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     if match["marks"] == "???":
         return [global_status(session.controller)]
     if match["marks"] == "??":
@@ -145,24 +204,24 @@ def _status(session: Session, match: re.Match[str], scanner: Scanner) -> list[st
     return [motor_status(session.controller, session.motor)]
 
 
-def _identity(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _identity(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     settings = session.controller.settings
     word = match["word"].upper()
     return [{"TYPE": settings.card, "CID": settings.identity}.get(word, settings.firmware)]
 
 
-def _whole_controller(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _whole_controller(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     controller = session.controller
     {"$$$***": controller.initialize, "$$$": controller.reset, "SAVE": controller.save}[match["word"].upper()]()
     return []
 
 
-def _password(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _password(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     session.controller.unlocked = scanner.rest().strip() == session.controller.settings.password
     return []
 
 
-def _plc(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _plc(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """There are no PLC programs to enable or disable."""
     return []
 

@@ -7,20 +7,18 @@ import re
 from typing import TYPE_CHECKING
 
 from pkm_post.control.simulator.errors import DATA, IN_USE, NO_PROGRAM, NOT_OPEN, PASSWORD, RUNNING, CommandError
-from pkm_post.control.simulator.expressions import expression, variable_number
-from pkm_post.control.simulator.numerals import printed
+from pkm_post.control.simulator.expressions import Scanner, expression, variable_number
 from pkm_post.control.simulator.programs import listed
-from pkm_post.control.simulator.scanner import Scanner
-from pkm_post.control.simulator.variables import HIGHEST, SystemScope, holds_address
+from pkm_post.control.simulator.variables import HIGHEST, SystemScope, holds_address, printed
 
 if TYPE_CHECKING:
-    from pkm_post.control.simulator.online import Handler, Session
+    from pkm_post.control.simulator.online import Handler, PortSession
 
 PROTECTED_FROM = 1000
 """Programs from this number on can be password-protected [TurboPMAC, PASSWORD]."""
 
 
-def _variable(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _variable(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """``P1`` reports, ``P1=2`` sets; ``P1..3`` and ``P1..3=0`` do so for a range."""
     letter = match["letter"].upper()
     scope = SystemScope(session.controller.variables, session.system)
@@ -44,7 +42,7 @@ def _variable(session: Session, match: re.Match[str], scanner: Scanner) -> list[
     ]
 
 
-def _definition(session: Session, number: int, scanner: Scanner) -> list[str]:
+def _definition(session: PortSession, number: int, scanner: Scanner) -> list[str]:
     """``M1->`` reports the address of an M-variable, ``M1->*`` sets it; the simulator has no data at addresses."""
     definitions = session.controller.variables.definitions
     if scanner.at_end():
@@ -53,7 +51,7 @@ def _definition(session: Session, number: int, scanner: Scanner) -> list[str]:
     return []
 
 
-def _open_program(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _open_program(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """OPEN PROG: requires that no program runs, and clears all program pointers [TurboPMAC, OPEN]."""
     controller, number = session.controller, int(match["number"])
     if controller.settings.password and not controller.unlocked and number >= PROTECTED_FROM:
@@ -67,31 +65,31 @@ def _open_program(session: Session, match: re.Match[str], scanner: Scanner) -> l
     return []
 
 
-def open_rotary(session: Session) -> None:
+def open_rotary(session: PortSession) -> None:
     """OPEN ROT: a program may run, in particular the rotary one."""
     session.controller.memory.open_rotary(session)
 
 
-def _open_rotary(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _open_rotary(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     open_rotary(session)
     return []
 
 
-def _close(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _close(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     session.controller.memory.close(session)
     return []
 
 
-def _clear(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _clear(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     session.controller.memory.clear(session, session.system)
     return []
 
 
-def _not_open(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _not_open(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     raise CommandError(NOT_OPEN)
 
 
-def _gather(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _gather(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """DEFINE GATHER reserves the given number of words, or all; DELETE GATHER releases them."""
     memory = session.controller.memory
     if memory.opened is not None:
@@ -103,7 +101,7 @@ def _gather(session: Session, match: re.Match[str], scanner: Scanner) -> list[st
     return []
 
 
-def _rotary(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _rotary(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     memory, system = session.controller.memory, session.controller.systems[session.system - 1]
     if memory.opened is not None:
         raise CommandError(IN_USE)
@@ -116,18 +114,18 @@ def _rotary(session: Session, match: re.Match[str], scanner: Scanner) -> list[st
     return []
 
 
-def _lines_ahead(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _lines_ahead(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     rotary = session.controller.memory.rotaries.get(session.system)
     return [str(len(rotary.lines) if rotary else 0)]
 
 
-def _size(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _size(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """Number of free words; negative while a buffer is open [PMAC, SIZE]."""
     memory = session.controller.memory
     return [str(memory.free() if memory.opened is None else -memory.free())]
 
 
-def _list_program(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _list_program(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     controller, number = session.controller, int(match["number"])
     if controller.settings.password and not controller.unlocked and number >= PROTECTED_FROM:
         raise CommandError(PASSWORD)
@@ -137,7 +135,7 @@ def _list_program(session: Session, match: re.Match[str], scanner: Scanner) -> l
     return controller.memory.programs[number].listing(_is_long(session), first or 0, words)
 
 
-def _list_counter(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _list_counter(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """LIST PC: the next statement to compute."""
     counter = session.controller.systems[session.system - 1].interpreter.counter
     counter.check()
@@ -149,7 +147,7 @@ def _list_counter(session: Session, match: re.Match[str], scanner: Scanner) -> l
     return [f"P{program}:{offset}:{listed([statements[index]], _is_long(session))}"]
 
 
-def _is_long(session: Session) -> bool:
+def _is_long(session: PortSession) -> bool:
     """I9 = 1 or 3: keywords are listed in full."""
     return session.controller.variables.setting(9) in (1, 3)
 

@@ -10,14 +10,12 @@ import numpy as np
 
 from pkm_post.control.simulator.coordinate_system import CoordinateSystem
 from pkm_post.control.simulator.errors import DATA, NOT_ACTIVATED, RUNNING, CommandError
-from pkm_post.control.simulator.expressions import argument, constant
-from pkm_post.control.simulator.numerals import printed
-from pkm_post.control.simulator.scanner import Scanner
-from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SystemScope
+from pkm_post.control.simulator.expressions import Scanner, argument, constant
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SystemScope, printed
 
 if TYPE_CHECKING:
     from pkm_post.control.simulator.controller import Controller
-    from pkm_post.control.simulator.online import Handler, Session
+    from pkm_post.control.simulator.online import Handler, PortSession
 
 DECIMALS = 1
 """Positions are reported to a tenth of a count."""
@@ -32,15 +30,15 @@ def position_text(controller: Controller, what: str, motor: int) -> str:
     return printed(float(np.round(column[motor - 1], DECIMALS)) + 0.0)
 
 
-def _tell(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _tell(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     return [position_text(session.controller, match["what"].upper(), session.motor)]
 
 
-def _system(session: Session) -> CoordinateSystem:
+def _system(session: PortSession) -> CoordinateSystem:
     return session.controller.systems[session.system - 1]
 
 
-def _free_motor(session: Session) -> int:
+def _free_motor(session: PortSession) -> int:
     """The index of the addressed motor, if it may move on its own.
 
     Raises:
@@ -54,7 +52,7 @@ def _free_motor(session: Session) -> int:
     return session.motor - 1
 
 
-def _jog(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _jog(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """J/ stops, J+ and J- jog, J= returns, J=n goes to a position, J:n and J^n move by a distance [TurboPMAC, J]."""
     motors, index, how = session.controller.motors, _free_motor(session), match["how"]
     if how == "/":
@@ -70,7 +68,7 @@ def _jog(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
     return []
 
 
-def _home(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _home(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     index = _free_motor(session)
     if match["here"]:
         session.controller.motors.home_here(index)
@@ -79,7 +77,7 @@ def _home(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]
     return []
 
 
-def _kill(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _kill(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """K is refused while a program moves the motor; it takes an A first [TurboPMAC, K]."""
     system = session.controller.system_of(session.motor)
     if system is not None and system.running:
@@ -89,7 +87,7 @@ def _kill(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]
     return []
 
 
-def _open_loop(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _open_loop(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """O0 opens the loop; the output level itself moves nothing here."""
     if abs(constant(match["percent"]).value(SystemScope(session.controller.variables, session.system))) > 100:
         raise CommandError(DATA)
@@ -97,7 +95,7 @@ def _open_loop(session: Session, match: re.Match[str], scanner: Scanner) -> list
     return []
 
 
-def _enable(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _enable(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """E closes the loops of all motors of the coordinate system."""
     system = _system(session)
     if system.running:
@@ -107,7 +105,7 @@ def _enable(session: Session, match: re.Match[str], scanner: Scanner) -> list[st
     return []
 
 
-def _run(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _run(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     run(session.controller, session.system, step=match["letter"].upper() == "S")
     return []
 
@@ -125,23 +123,23 @@ def run(controller: Controller, number: int, step: bool) -> None:
     system.run(step)
 
 
-def _hold(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _hold(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """H, and the quick stop (backslash), which is equivalent outside look-ahead."""
     _system(session).hold()
     return []
 
 
-def _quit(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _quit(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     _system(session).quit()
     return []
 
 
-def _abort(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _abort(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     _system(session).abort()
     return []
 
 
-def _point(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _point(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """B10 selects a program, B10.5 its label N50000 [TurboPMAC, B]."""
     system = _system(session)
     if system.running:
@@ -151,7 +149,7 @@ def _point(session: Session, match: re.Match[str], scanner: Scanner) -> list[str
     return []
 
 
-def _override(session: Session, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _override(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """%n sets the override, % reports its current value."""
     system = _system(session)
     if match["percent"] is None:

@@ -8,14 +8,54 @@ it stores what is written to it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pkm_post.control.simulator.errors import DATA, CommandError
-from pkm_post.control.simulator.numerals import kept
+
+MANTISSA_BITS = 35
+LARGEST_EXPONENT = 1023
+
+
+def stored(value: float) -> float:
+    """A value as stored in a word of the controller.
+
+    Raises:
+        CommandError: it exceeds the range of a word, or is not finite.
+    """
+    if not math.isfinite(value) or abs(value) >= 2.0**LARGEST_EXPONENT:
+        raise CommandError(DATA)
+    mantissa, exponent = math.frexp(value)
+    return math.ldexp(round(math.ldexp(mantissa, MANTISSA_BITS)), exponent - MANTISSA_BITS)
+
+
+def printed(value: float) -> str:
+    """The shortest plain decimal stored as the same word; no exponent, a digit before the point."""
+    word = stored(value)
+    for digits in range(9, 17):
+        text = f"{word:.{digits}g}"
+        if stored(float(text)) == word:
+            break
+    plain = format(Decimal(text), "f")
+    if "." in plain:
+        plain = plain.rstrip("0").rstrip(".")
+    return "0" if plain == "-0" else plain
+
+
+def hexadecimal(*words: int) -> str:
+    """Status words of 24 bits, six digits each."""
+    return "".join(f"{word & 0xFFFFFF:06X}" for word in words)
+
+
+def constant_value(text: str) -> float:
+    """The value of a constant: decimal, or hexadecimal after a dollar sign."""
+    return stored(float(int(text[1:], 16)) if text.startswith("$") else float(text))
+
 
 Array = NDArray[Any]
 
@@ -98,7 +138,7 @@ class Variables:
         table = self._table(letter, number, system)
         if letter == "I" and number in CHOICES and value not in range(CHOICES[number] + 1):
             raise CommandError(DATA)
-        table[number] = kept(value)
+        table[number] = stored(value)
         if letter == "I":
             self._columns.clear()
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from PySide import QtWidgets
 
-from pkm_post.control import Order, Why, refusal
+from pkm_post.control import Order, Why, blocking_interlock
 from pkm_post.freecad_gui.control_panel.words import why_text
 
 
@@ -25,7 +25,7 @@ class OrderButton(QtWidgets.QPushButton):
 
     def refresh(self, found: frozenset[Why]) -> None:
         """Enable or disable the button."""
-        why = refusal(self._order, found)
+        why = blocking_interlock(self._order, found)
         self.setEnabled(why is None)
         if why is not self._why:
             self._why = why

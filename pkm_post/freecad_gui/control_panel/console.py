@@ -17,13 +17,13 @@ from PySide import QtCore
 
 from pkm_post.control import (
     Connection,
+    ConnectionTarget,
+    ControlState,
     Desk,
     Job,
     NumericalControl,
     Plan,
     PmacError,
-    State,
-    Target,
     Why,
     connect,
     facts,
@@ -72,9 +72,9 @@ class Console(QtCore.QObject):
         QtCore.QCoreApplication.instance().aboutToQuit.connect(self._quit)
 
     @property
-    def state(self) -> State:
+    def state(self) -> ControlState:
         """The latest state."""
-        return State(None, None) if self.connection is None else self.connection.worker.state
+        return ControlState(None, None) if self.connection is None else self.connection.worker.state
 
     @property
     def waits(self) -> bool:
@@ -103,7 +103,7 @@ class Console(QtCore.QObject):
         """All current reasons against orders."""
         return facts(self.state, self.desk())
 
-    def connect_to(self, target: Target, tool_length: float) -> None:
+    def connect_to(self, target: ConnectionTarget, tool_length: float) -> None:
         """Connect beside the window; mm."""
         self._is_wanted = True
         self.beside.do(lambda: connect(target, tool_length), self._connected)

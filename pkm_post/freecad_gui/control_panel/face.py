@@ -9,7 +9,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.control import Connection, State
+from pkm_post.control import Connection, ControlState
 from pkm_post.freecad_gui.control_panel.connect_page import ConnectPage
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.follower import Follower
@@ -131,7 +131,7 @@ class Face(QtWidgets.QWidget):
             return np.eye(4)
         return self._connection.target.machine.work_offsets.get(self.readout.work_offset.currentText(), np.eye(4))
 
-    def _show_link(self, state: State) -> None:
+    def _show_link(self, state: ControlState) -> None:
         lines = []
         if state.emergency:
             lines.append(emergency_text(state.emergency))

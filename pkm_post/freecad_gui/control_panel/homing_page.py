@@ -9,7 +9,7 @@ from __future__ import annotations
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import HOMING, Order, State, Why, check_trigger, refusal
+from pkm_post.control import HOMING, ControlState, Order, Why, blocking_interlock, check_trigger
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.words import homing_text
@@ -51,7 +51,7 @@ class HomingPage(QtWidgets.QWidget):
             layout.addWidget(widget)
         layout.addStretch(1)
 
-    def refresh(self, state: State, found: frozenset[Why]) -> None:
+    def refresh(self, state: ControlState, found: frozenset[Why]) -> None:
         """Enable what is possible, and show the progress of a homing."""
         self.home.refresh(found)
         self.told.setText("" if state.homing is None else homing_text(state.homing))
@@ -68,7 +68,7 @@ class HomingPage(QtWidgets.QWidget):
         except ValueError as fault:  # invalid user input
             self._console.told.emit(str(fault), True)
             return
-        if not self._is_sure(trigger) or refusal(Order.HOME, self._console.found()) is not None:
+        if not self._is_sure(trigger) or blocking_interlock(Order.HOME, self._console.found()) is not None:
             return  # the state may have changed during the question
         if connection is not None and not connection.simulated:
             FreeCAD.ParamGet(GROUP).SetString(_ENTRY, trigger)

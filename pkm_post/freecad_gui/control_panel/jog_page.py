@@ -12,7 +12,7 @@ from collections.abc import Callable
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import Cartesian, Jog, OneStrut, Order, Plan, State, Why
+from pkm_post.control import CartesianJog, ControlState, Jog, Order, Plan, StrutJog, Why
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
@@ -100,7 +100,7 @@ class JogPage(QtWidgets.QWidget):
             self.buttons[name, sign] = button
             grid.addWidget(button, row, column)
 
-    def refresh(self, _state: State, found: frozenset[Why]) -> None:
+    def refresh(self, _state: ControlState, found: frozenset[Why]) -> None:
         """Enable what is possible."""
         refresh_all(self.buttons.values(), found)
 
@@ -108,13 +108,13 @@ class JogPage(QtWidgets.QWidget):
         values = [0.0] * len(_TOOL)
         size = self.step.property("rawValue") if row < _LENGTHS else math.radians(self.turn.property("rawValue"))
         values[row] = sign * size
-        return Cartesian((values[0], values[1], values[2]), (values[3], values[4]), values[5])
+        return CartesianJog((values[0], values[1], values[2]), (values[3], values[4]), values[5])
 
     def _of_strut(self, sign: int) -> Jog:
-        return OneStrut(int(self.strut.currentText()), sign * self.step.property("rawValue"))
+        return StrutJog(int(self.strut.currentText()), sign * self.step.property("rawValue"))
 
     def _jog(self, jog: Jog, name: str) -> None:
-        turns = isinstance(jog, Cartesian) and not any(jog.shift)
+        turns = isinstance(jog, CartesianJog) and not any(jog.shift)
         feed = self.turning.value() if turns else self.speed.property("rawValue")
         if feed <= 0.0:
             self._console.told.emit(translate("ControlPanel", "Not sent: the speed has to be above zero"), True)

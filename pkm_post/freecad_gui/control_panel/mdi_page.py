@@ -11,7 +11,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.control import Order, Plan, Reading, State, Why, refusal
+from pkm_post.control import ControlState, MdiSettings, Order, Plan, Why, blocking_interlock
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.readout import angle_text, length_text
@@ -90,12 +90,12 @@ class MdiPage(QtWidgets.QWidget):
         layout.addWidget(self.outcome)
         layout.addStretch(1)
 
-    def refresh(self, _state: State, found: frozenset[Why]) -> None:
+    def refresh(self, _state: ControlState, found: frozenset[Why]) -> None:
         """Enable what is possible."""
         refresh_all((self.check, self.run), found)
 
     def _enter(self) -> None:
-        if refusal(Order.LINE, self._console.found()) is None:
+        if blocking_interlock(Order.LINE, self._console.found()) is None:
             self._plan(sends=True)
 
     def _plan(self, sends: bool) -> None:
@@ -104,7 +104,7 @@ class MdiPage(QtWidgets.QWidget):
             return
         self.line.remember(line)
         self.outcome.setText("")
-        reading = Reading(self._work_offset.currentText(), self.axis_words.currentText())
+        reading = MdiSettings(self._work_offset.currentText(), self.axis_words.currentText())
         self._console.move(lambda control: control.plan_line(line, reading), self._planned, sends)
 
     def _planned(self, plan: Plan | None) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import Blocks, Job, Order, Plan, State, Why, blocks_of_program, job_to_load
+from pkm_post.control import Blocks, ControlState, Job, Order, Plan, Why, job_to_load, read_blocks
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.model import Diagnostic
@@ -69,7 +69,7 @@ class ProgramPage(QtWidgets.QWidget):
         layout.addLayout(side_by_side(self.go_on, self.stop))
         layout.addStretch(1)
 
-    def refresh(self, _state: State, found: frozenset[Why]) -> None:
+    def refresh(self, _state: ControlState, found: frozenset[Why]) -> None:
         """Enable what is possible, and show the progress of loading."""
         console, (done, lines) = self._console, self._console.progress
         refresh_all((self.load, self.approach, self.start, self.begin_at, self.step, self.go_on), found)
@@ -129,7 +129,7 @@ class ProgramPage(QtWidgets.QWidget):
         file, connection, at = self._file, self._console.connection, self.block.value()
         assert connection is not None
         machine = connection.target.machine
-        self._console.beside.do(lambda: blocks_of_program(file, machine), lambda found: self._take_blocks(*found, at))
+        self._console.beside.do(lambda: read_blocks(file, machine), lambda found: self._take_blocks(*found, at))
 
     def _take_blocks(self, blocks: Blocks | None, told: tuple[Diagnostic, ...], at: int) -> None:
         for each in told:

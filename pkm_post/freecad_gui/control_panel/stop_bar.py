@@ -9,7 +9,7 @@ from functools import partial
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.control import Order, State, Why, refusal
+from pkm_post.control import ControlState, Order, Why, blocking_interlock
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 
@@ -83,10 +83,10 @@ class StopBar(QtWidgets.QWidget):
         self._quiet.timeout.connect(self._send)
         self.override.valueChanged.connect(self._changed)
 
-    def refresh(self, state: State, found: frozenset[Why]) -> None:
+    def refresh(self, state: ControlState, found: frozenset[Why]) -> None:
         """Enable what is possible, and show the controller's override unless the user is setting another one."""
         refresh_all(self._buttons, found)
-        against = refusal(Order.OVERRIDE, found)
+        against = blocking_interlock(Order.OVERRIDE, found)
         self.override.setEnabled(against in (None, Why.BUSY))
         unset = not (self._quiet.isActive() or self.override.isSliderDown() or self._console.has_orders)
         if unset and against is None and state.status is not None:
@@ -103,7 +103,7 @@ class StopBar(QtWidgets.QWidget):
         self._quiet.start(_QUIET_MS)
 
     def _send(self) -> None:
-        against = refusal(Order.OVERRIDE, self._console.found())
+        against = blocking_interlock(Order.OVERRIDE, self._console.found())
         if against is Why.BUSY or self.override.isSliderDown():
             self._quiet.start(_QUIET_MS)
         elif against is None:

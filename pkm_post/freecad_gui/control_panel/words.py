@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import FreeCAD
 
-from pkm_post.control import Bits, Homing, Phase, Shown, State, Status, Why
+from pkm_post.control import Bits, ControlState, Homing, HomingPhase, Shown, Status, Why
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -30,11 +30,11 @@ WHY = {
     Why.NOT_HOMED: QT_TRANSLATE_NOOP("ControlPanel", "not all struts are homed"),
 }
 PHASES = {
-    Phase.SEARCHING: QT_TRANSLATE_NOOP("ControlPanel", "the struts look for their homes"),
-    Phase.DONE: QT_TRANSLATE_NOOP("ControlPanel", "all struts have found their homes"),
-    Phase.NOTHING: QT_TRANSLATE_NOOP("ControlPanel", "the controller shows no homing"),
-    Phase.FAILED: QT_TRANSLATE_NOOP("ControlPanel", "the homing has failed"),
-    Phase.LATE: QT_TRANSLATE_NOOP("ControlPanel", "the homing takes too long"),
+    HomingPhase.SEARCHING: QT_TRANSLATE_NOOP("ControlPanel", "the struts look for their homes"),
+    HomingPhase.DONE: QT_TRANSLATE_NOOP("ControlPanel", "all struts have found their homes"),
+    HomingPhase.NOTHING: QT_TRANSLATE_NOOP("ControlPanel", "the controller shows no homing"),
+    HomingPhase.FAILED: QT_TRANSLATE_NOOP("ControlPanel", "the homing has failed"),
+    HomingPhase.LATE: QT_TRANSLATE_NOOP("ControlPanel", "the homing takes too long"),
 }
 MOTOR = {
     "negative_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its lower limit"),
@@ -93,7 +93,7 @@ def why_text(why: Why) -> str:
     return translate("ControlPanel", WHY[why])
 
 
-def activity_text(state: State) -> str:
+def activity_text(state: ControlState) -> str:
     """The controller's activity in one line, with any fault of the program."""
     status = state.status
     if status is None:

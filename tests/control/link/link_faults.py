@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 from rig import SETTINGS, Noise, Wire, controller, listed
 
-from pkm_post.control.link import operate
+from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import CancelledError, DownloadError, NotReadyError, PmacError
-from pkm_post.control.link.listing import Program
-from pkm_post.control.simulator import Line
+from pkm_post.control.link.errors import CancelledError, DownloadError, NotReadyError, PmacError
+from pkm_post.control.link.program import PmacProgram
+from pkm_post.control.simulator import SerialPort
 
 FIRST = (500.0,) * 6
 LONGEST_S = 300.0
@@ -31,7 +31,7 @@ def small_program(knots=6):
         for knot in range(1, knots + 1)
     ]
     lines += [" ".join(f"{letter}500.000000:0.0000" for letter in SETTINGS.letters), "DWELL0", "LINEAR"]
-    return Program(10, tuple(lines))
+    return PmacProgram(10, tuple(lines))
 
 
 @dataclass(frozen=True)
@@ -115,11 +115,11 @@ def assert_nothing_runs(wire, program):
     """What is left is refused, by the controller itself while its buffer is open, and by the link in any case."""
     made = wire.controller
     if made.memory.opened is not None:
-        assert Line(made).refusal(f"&1B{program.number}R")
+        assert SerialPort(made).refusal(f"&1B{program.number}R")
     session = Wire(made, wire.kind, line=wire.line).session()
     session.open()
     try:
-        operate.run(session, SETTINGS, program, FIRST)
+        operate.start_program(session, SETTINGS, program, FIRST)
     except NotReadyError as refused:
         assert f"program {program.number} in the controller is another one" in str(refused)
     else:

@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 
 from controller_settings import settings_for
 
-from pkm_post.control.link.ethernet_conversation import EthernetConversation
-from pkm_post.control.link.faults import LinkLostError
-from pkm_post.control.link.serial_conversation import SerialConversation
-from pkm_post.control.link.session import Leftover, Session
-from pkm_post.control.simulator import Controller, Line, Packets, Server
+from pkm_post.control.link.errors import LinkLostError
+from pkm_post.control.link.ethernet_protocol import EthernetProtocol
+from pkm_post.control.link.serial_protocol import SerialProtocol
+from pkm_post.control.link.session import OpenBufferPolicy, Session
+from pkm_post.control.simulator import Controller, EthernetPort, SerialPort, Server
 from pkm_post.writing.controllers.pmac import setup_text
 
 STROKE = (450.0, 550.0)
@@ -76,11 +76,11 @@ class Wire:
     piece: int | None = None
     passed: int = 0
     sent: bytearray = field(default_factory=bytearray)
-    line: Line = None
+    line: SerialPort = None
     name = ""
 
     def __post_init__(self):
-        self.line = self.line or Line(self.controller)
+        self.line = self.line or SerialPort(self.controller)
 
     def clock(self):
         """Seconds since the wire was made."""
@@ -95,9 +95,9 @@ class Wire:
         return WiredLink(self)
 
     def conversation(self):
-        return SerialConversation(self.silence) if self.kind == "serial" else EthernetConversation(self.silence)
+        return SerialProtocol(self.silence) if self.kind == "serial" else EthernetProtocol(self.silence)
 
-    def session(self, patience=0.5, leftover=Leftover.LEAVE):
+    def session(self, patience=0.5, leftover=OpenBufferPolicy.LEAVE):
         return Session(self, patience, 0.1, leftover, self.clock, self.sleep)
 
 
@@ -115,7 +115,7 @@ class WiredLink:
                 raise LinkLostError("cut")
             wire.cut_at = None
         if wire.kind == "tcp" or self._stream is None:
-            self._stream = wire.line if wire.kind == "serial" else Packets(wire.line)
+            self._stream = wire.line if wire.kind == "serial" else EthernetPort(wire.line)
         if wire.kind == "tcp" or not self._open:
             self._coming.clear()
         self._coming = [(due, data) for due, data in self._coming if due > wire.now]
@@ -183,7 +183,7 @@ def controller():
 def _set_up():
     made = Controller()
     made.load(setup_text(SETTINGS, "test", STROKE).splitlines())
-    line = Line(made)
+    line = SerialPort(made)
     for motor in range(1, 7):
         assert not line.refusal(f"#{motor}J/") and not line.refusal(f"#{motor}HMZ")
     made.advance(100)

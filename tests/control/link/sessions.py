@@ -19,11 +19,12 @@ from rig import SETTINGS, Wire, carried, controller
 from streams import MICRON, REACH, WORDS, swings
 
 from pkm_post.cli.pmac_stop import held_at_the_end
-from pkm_post.control.link import operate, stopping
+from pkm_post.control.link import run as operate
+from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import CancelledError, NotOwnerError, PmacError
+from pkm_post.control.link.errors import CancelledError, NotOwnerError, PmacError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.session import Leftover
+from pkm_post.control.link.session import OpenBufferPolicy
 from pkm_post.control.link.status import read_status
 from pkm_post.control.link.stream import stream
 
@@ -176,7 +177,7 @@ def begun(choice, session, until=LONGEST_S):
         stream(session, SETTINGS, JOB.program, JOB.first, WORDS, is_cancelled=lambda: session.now() > until)
         return
     with owned(session, "run"):
-        operate.run(session, SETTINGS, JOB.program, JOB.first)
+        operate.start_program(session, SETTINGS, JOB.program, JOB.first)
         while read_status(session, SETTINGS).running and session.now() < until:
             session.sleep(0.2)
 
@@ -224,7 +225,7 @@ def _stop_under_noise(choice, wire):
         other.sleep(choice.uniform(0.1, LENGTH_S))
         if wire.kind == "serial":
             noisy(choice, other, choice.choice((0.3, 0.7, 0.95)))
-        with other.session(leftover=Leftover.STOP) as session:
+        with other.session(leftover=OpenBufferPolicy.STOP) as session:
             stopped(choice, session, other)
             other.fault = carried
             stopping.abort(session, SETTINGS)  # a stream waits as long as it is held
@@ -297,7 +298,7 @@ def _second_client(choice, wire):
             other.sleep(choice.uniform(0.05, LENGTH_S / 2))
             done.append(choice.choice(tuple(_ACTS)))
             try:
-                with other.session(leftover=choice.choice((Leftover.LEAVE, Leftover.STOP))) as session:
+                with other.session(leftover=choice.choice((OpenBufferPolicy.LEAVE, OpenBufferPolicy.STOP))) as session:
                     _ACTS[done[-1]](session)
             except PmacError:
                 pass
@@ -321,9 +322,9 @@ def _second_client(choice, wire):
 
 _ACTS = {
     "download": lambda session: download(session, JOB.program),
-    "run": lambda session: operate.run(session, SETTINGS, JOB.program, JOB.first),
+    "run": lambda session: operate.start_program(session, SETTINGS, JOB.program, JOB.first),
     "stream": lambda session: stream(session, SETTINGS, JOB.program, JOB.first, WORDS),
-    "override": lambda session: operate.override(session, SETTINGS, 50.0),
+    "override": lambda session: operate.set_feed_override(session, SETTINGS, 50.0),
     "status": lambda session: read_status(session, SETTINGS),
     "hold": lambda session: _hold_for_a_while(session),
     "abort": lambda session: stopping.abort(session, SETTINGS),
@@ -353,7 +354,7 @@ def _hold_for_a_while(session):
     stopping.hold(session, SETTINGS)
     session.sleep(0.3)
     try:
-        operate.resume(session, SETTINGS)
+        operate.resume_program(session, SETTINGS)
     except PmacError:
         stopping.abort(session, SETTINGS)
 
@@ -388,7 +389,7 @@ def _assert_all_is_well(wire):
     wire.sleep(0.5)
     assert wire.off < MICRON and wire.controller.systems[0].path.abrupt_stops == 0
     assert_at_rest(wire, 1.0)
-    with wire.beside().session(leftover=Leftover.STOP) as session:
+    with wire.beside().session(leftover=OpenBufferPolicy.STOP) as session:
         stopping.abort(session, SETTINGS)
         assert not wire.controller.runs_program()
         if wire.controller.motors.closed.all():

@@ -9,9 +9,9 @@ import numpy as np
 from link_faults import refuse, reset_after
 from rig import SETTINGS, Noise, Wire, controller
 
-from pkm_post.control.link.faults import CancelledError, PmacError, StreamError
-from pkm_post.control.link.gates import segments_of
-from pkm_post.control.link.job import read_job
+from pkm_post.control.link.errors import CancelledError, PmacError, StreamError
+from pkm_post.control.link.program import read_job
+from pkm_post.control.link.rotary_buffer import split_into_segments
 from pkm_post.control.link.stream import stream
 from pkm_post.model import StrutMotion
 from pkm_post.writing.controllers.pmac import program_text
@@ -37,7 +37,7 @@ def swings(count=2, knots=20, interval=20):
 
 
 JOB = swings()
-RESTS = [500.0 * np.ones(6), *(segment.rest for segment in segments_of(JOB.program, SETTINGS, WORDS))]
+RESTS = [500.0 * np.ones(6), *(segment.rest for segment in split_into_segments(JOB.program, SETTINGS, WORDS))]
 
 
 def wired(kind, **arguments):
@@ -92,7 +92,7 @@ def tried(wire, is_reset=False, **arguments):
 
 
 def _rests_until(line):
-    ends = [0, *(segment.last for segment in segments_of(JOB.program, SETTINGS, WORDS))]
+    ends = [0, *(segment.last for segment in split_into_segments(JOB.program, SETTINGS, WORDS))]
     return RESTS[: ends.index(line) + 1]
 
 

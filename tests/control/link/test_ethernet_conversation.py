@@ -3,13 +3,13 @@
 
 import pytest
 
-from pkm_post.control.link.ethernet_conversation import CTRL_RESPONSE, MOST_ANSWER, EthernetConversation, packet
-from pkm_post.control.link.exchange import Answer, Command, Kind, Lost, Refusal
+from pkm_post.control.link.ethernet_protocol import CTRL_RESPONSE, MOST_ANSWER, EthernetProtocol, packet
+from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, Refusal
 
 
 @pytest.fixture
 def talk():
-    return EthernetConversation()
+    return EthernetProtocol()
 
 
 def test_get_response(talk):
@@ -45,14 +45,14 @@ def test_an_answer_that_ends_with_its_packet_is_not_asked_for_more(talk):
 
 
 def test_write_buffer(talk):
-    talk.begin(Command("ABS\nLINEAR", Kind.BUFFER), 0.0)
+    talk.begin(Command("ABS\nLINEAR", CommandKind.BUFFER), 0.0)
     assert talk.outgoing() == bytes.fromhex("40 C6 0000 0000 000B") + b"ABS\0LINEAR\0"
     talk.receive(bytes(4), 0.1)
     assert talk.events() == [Answer()]
 
 
 def test_a_line_that_is_refused(talk):
-    talk.begin(Command("ABS\nFOO", Kind.BUFFER), 0.0)
+    talk.begin(Command("ABS\nFOO", CommandKind.BUFFER), 0.0)
     talk.receive(bytes([2, 0, 3]), 0.1)
     assert not talk.events()
     talk.receive(b"\x80", 0.1)
@@ -60,7 +60,7 @@ def test_a_line_that_is_refused(talk):
 
 
 def test_a_strange_answer_to_lines(talk):
-    talk.begin(Command("ABS", Kind.BUFFER), 0.0)
+    talk.begin(Command("ABS", CommandKind.BUFFER), 0.0)
     talk.receive(b"\x01\x02\x03\x04", 0.1)
     assert isinstance(talk.events()[0], Lost)
 
@@ -78,7 +78,7 @@ def test_lines_at_once_fit_into_a_packet(talk):
     lines = ["A" * 99] * 20
     count = talk.lines_at_once(lines)
     assert count == 10
-    talk.begin(Command("\n".join(lines[:count]), Kind.BUFFER), 0.0)
+    talk.begin(Command("\n".join(lines[:count]), CommandKind.BUFFER), 0.0)
     assert len(talk.outgoing()) == 8 + 1000
 
 

@@ -3,13 +3,13 @@
 
 import pytest
 
-from pkm_post.control.link.exchange import Answer, Command, Kind, Lost, Refusal
-from pkm_post.control.link.gpascii_conversation import LONGEST_LINE, START_S, GpasciiConversation
+from pkm_post.control.link.gpascii_protocol import LONGEST_LINE, START_S, GpasciiProtocol
+from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, Refusal
 
 
 @pytest.fixture
 def talk():
-    return GpasciiConversation(silence=0.5)
+    return GpasciiProtocol(silence=0.5)
 
 
 def test_gpascii_is_started_and_told_to_answer_with_values(talk):
@@ -53,7 +53,7 @@ def test_the_answer_to_another_command_is_no_answer(talk):
 
 
 def test_an_error_has_its_number_and_meaning(talk):
-    talk.begin(Command("foo", Kind.SET), 0.0)
+    talk.begin(Command("foo", CommandKind.SET), 0.0)
     talk.receive(b"foo\r\nstdin:3:1: error #20: ILLEGAL CMD: foo\r\n", 0.1)
     assert not talk.events()
     talk.receive(b"\x06\r\n", 0.2)
@@ -62,7 +62,7 @@ def test_an_error_has_its_number_and_meaning(talk):
 
 
 def test_an_error_without_ack_ends_in_silence(talk):
-    talk.begin(Command("&1b5r", Kind.SET), 0.0)
+    talk.begin(Command("&1b5r", CommandKind.SET), 0.0)
     talk.receive(b"&1b5r\r\nstdin:3:1: error #99: SOMETHING NEW: &1b5r\r\n", 0.1)
     assert talk.deadline == pytest.approx(0.6)
     talk.expire(0.6)
@@ -93,7 +93,7 @@ def test_an_answer_without_end_has_an_end(talk):
 
 def test_one_line_at_a_time_and_not_too_long(talk):
     with pytest.raises(ValueError, match="expected one line"):
-        talk.begin(Command("abs\nlinear", Kind.BUFFER), 0.0)
+        talk.begin(Command("abs\nlinear", CommandKind.BUFFER), 0.0)
     with pytest.raises(ValueError, match=f"expected up to {LONGEST_LINE} characters"):
         talk.begin(Command("A" * (LONGEST_LINE + 1)), 0.0)
     talk.begin(Command("#1p"), 0.0)

@@ -8,8 +8,8 @@ from link_faults import by_chance, reference_of, refuse, reset_after, small_prog
 from rig import Noise, Wire, controller, listed
 
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import CancelledError, DownloadError, RefusedError
-from pkm_post.control.link.listing import Program
+from pkm_post.control.link.errors import CancelledError, DownloadError, RefusedError
+from pkm_post.control.link.program import PmacProgram
 from pkm_post.control.simulator import Controller, SimulatorSettings
 
 KINDS = ("serial", "tcp")
@@ -69,7 +69,7 @@ def test_the_refused_line_is_named(kind, program):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("mends", [True, False])
 def test_the_link_is_cut_at_every_byte(kind, mends):
-    program = Program(10, ("ABS", "PVT20", "A500.125000:-0.5000"))
+    program = PmacProgram(10, ("ABS", "PVT20", "A500.125000:-0.5000"))
     reference = reference_of(program)
     whole = Wire(controller(), kind)
     assert tried(whole, program, reference).what == "loaded"

@@ -6,9 +6,9 @@ import pytest
 from rig import SETTINGS
 from streams import JOB, swings
 
-from pkm_post.control.link.faults import NotReadyError
-from pkm_post.control.link.gates import segments_of
-from pkm_post.control.link.listing import Program, words_of
+from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.link.program import PmacProgram, line_words
+from pkm_post.control.link.rotary_buffer import split_into_segments
 from pkm_post.writing.controllers.pmac import read_program
 
 APPROACH = ["ABS", "LINEAR", "TA500 TS0 F10", " ".join(f"{letter}500.000" for letter in "ABCUVW"), "DWELL0"]
@@ -19,7 +19,7 @@ def knot(length, speed):
 
 
 def program(*lines):
-    return Program(10, (*APPROACH, *lines))
+    return PmacProgram(10, (*APPROACH, *lines))
 
 
 def without_gates(segments):
@@ -34,9 +34,9 @@ def without_gates(segments):
 
 @pytest.mark.parametrize("words", [330, 400, 500, 700, 1000, 5000])
 def test_the_program_is_there_whole_and_fits(words):
-    segments = segments_of(JOB.program, SETTINGS, words)
+    segments = split_into_segments(JOB.program, SETTINGS, words)
     for segment in segments:
-        assert sum(map(words_of, segment.lines)) <= words
+        assert sum(map(line_words, segment.lines)) <= words
     knots = [line for line in without_gates(segments) if ":" in line]
     assert knots == [line for line in JOB.program.lines if ":" in line]
     assert segments[-1].last == len(JOB.program.lines)
@@ -44,13 +44,13 @@ def test_the_program_is_there_whole_and_fits(words):
 
 def test_half_of_the_buffer_is_filled_if_the_rests_allow_it():
     for words in (700, 1000, 5000):
-        sizes = [sum(map(words_of, segment.lines)) for segment in segments_of(JOB.program, SETTINGS, words)]
+        sizes = [sum(map(line_words, segment.lines)) for segment in split_into_segments(JOB.program, SETTINGS, words)]
         assert max(sizes) <= words // 2
 
 
 def test_between_dwells_only_stop_is_added():
     lines = ["PVT20", knot(501, 5), knot(502, 0), "DWELL0", "M5", "PVT20", knot(501, -5), knot(500, 0), "DWELL0"]
-    segments = segments_of(program(*lines, "LINEAR"), SETTINGS, 150)
+    segments = split_into_segments(program(*lines, "LINEAR"), SETTINGS, 150)
     assert [segment.lines[-2:] for segment in segments] == [("DWELL0", "STOP"), ("DWELL0", "STOP"), ("LINEAR", "STOP")]
     assert segments[1].lines[0] == "PVT20" and segments[2].lines[0] == "M5"
     assert without_gates(segments) == [*APPROACH, *lines, "LINEAR"]
@@ -59,7 +59,7 @@ def test_between_dwells_only_stop_is_added():
 
 def test_behind_a_knot_at_rest_the_struts_stand_and_the_interval_is_stated_again():
     lines = ["PVT20", knot(501, 5), knot(502, 0), knot(501, -5), knot(500, 0), "DWELL0", "LINEAR"]
-    first, second, third = segments_of(program(*lines), SETTINGS, 150)
+    first, second, third = split_into_segments(program(*lines), SETTINGS, 150)
     assert first.lines == (*APPROACH, "STOP")
     assert second.lines == ("PVT20", knot(501, 5), knot(502, 0), "DWELL0", "STOP")
     assert third.lines[:2] == ("PVT20", knot(501, -5))
@@ -68,23 +68,23 @@ def test_behind_a_knot_at_rest_the_struts_stand_and_the_interval_is_stated_again
 def test_a_program_that_rests_too_seldom_is_refused():
     lines = ["PVT20", *(knot(500 + 0.1 * count, 5) for count in range(1, 40)), knot(504, 0), "DWELL0", "LINEAR"]
     with pytest.raises(NotReadyError, match=r"between its lines 6 and 47, which take \d+ words; the rotary buffer has"):
-        segments_of(program(*lines), SETTINGS, 400)
-    assert segments_of(program(*lines), SETTINGS, 600)
+        split_into_segments(program(*lines), SETTINGS, 400)
+    assert split_into_segments(program(*lines), SETTINGS, 600)
 
 
 def test_a_program_that_does_not_end_at_rest_is_refused():
     with pytest.raises(NotReadyError, match="does not end at rest"):
-        segments_of(program("PVT20", knot(501, 5)), SETTINGS, 400)
+        split_into_segments(program("PVT20", knot(501, 5)), SETTINGS, 400)
 
 
 def test_a_swing_rests_at_both_of_its_ends():
-    rests = {tuple(segment.rest) for segment in segments_of(swings(4).program, SETTINGS, 330)}
+    rests = {tuple(segment.rest) for segment in split_into_segments(swings(4).program, SETTINGS, 330)}
     assert rests == {(500.0,) * 6, (501.0, 502.0, 497.0, 504.0, 495.0, 506.0)}
 
 
 @pytest.mark.parametrize("words", [330, 500, 700])
 def test_read_back_without_its_stops_it_is_the_motion_that_was_certified(words):
-    lines = without_gates(segments_of(JOB.program, SETTINGS, words))
+    lines = without_gates(split_into_segments(JOB.program, SETTINGS, words))
     text = "\n".join(["CLOSE", "DELETE GATHER", "OPEN PROG 10", "CLEAR", *lines, "CLOSE", ""])
     motion, faults = read_program(text, SETTINGS, "streamed.pmc")
     assert not faults

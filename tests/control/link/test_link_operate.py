@@ -6,11 +6,12 @@ import pytest
 from link_faults import FIRST, small_program
 from rig import SETTINGS, STROKE, Wire, controller
 
-from pkm_post.control.link import operate, stopping
+from pkm_post.control.link import run as operate
+from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import CancelledError, NotReadyError, OutcomeUnknownError, PmacError
-from pkm_post.control.link.job import read_job
-from pkm_post.control.link.ready import check_setup, check_start
+from pkm_post.control.link.errors import CancelledError, NotReadyError, OutcomeUnknownError, PmacError
+from pkm_post.control.link.program import read_job
+from pkm_post.control.link.run import check_setup, check_start
 from pkm_post.control.link.status import read_status
 from pkm_post.model import StrutMotion
 from pkm_post.writing.controllers.pmac import program_text
@@ -63,7 +64,7 @@ def test_another_set_up_is_refused(line, said):
 
 
 def test_a_program_runs_is_held_goes_on_and_is_aborted(wire, loaded):
-    status = operate.run(loaded, SETTINGS, SLOW, FIRST)
+    status = operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     assert status.running and not status.held
     wire.sleep(0.3)
     stopping.hold(loaded, SETTINGS)
@@ -72,7 +73,7 @@ def test_a_program_runs_is_held_goes_on_and_is_aborted(wire, loaded):
     assert held.running and held.held and held.standing
     wire.sleep(1.0)
     assert np.allclose(read_status(loaded, SETTINGS).length, held.length, atol=MICRON)
-    assert operate.resume(loaded, SETTINGS).running
+    assert operate.resume_program(loaded, SETTINGS).running
     status = stopping.abort(loaded, SETTINGS)
     assert not status.running
     wire.sleep(1.0)
@@ -80,7 +81,7 @@ def test_a_program_runs_is_held_goes_on_and_is_aborted(wire, loaded):
 
 
 def test_a_program_runs_to_its_end(wire, loaded):
-    operate.run(loaded, SETTINGS, SLOW, FIRST)
+    operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     wire.sleep(10.0)
     status = read_status(loaded, SETTINGS)
     assert not status.running and status.words() == ()
@@ -91,7 +92,7 @@ def test_another_program_is_not_started(loaded, wire):
     for line in ("OPEN PROG 10", "A1:0", "CLOSE"):
         loaded.order(line)
     with pytest.raises(NotReadyError, match="program 10 in the controller is another one"):
-        operate.run(loaded, SETTINGS, SLOW, FIRST)
+        operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     assert not wire.controller.runs_program()
 
 
@@ -112,7 +113,7 @@ def test_a_machine_that_is_not_ready_does_not_start(spoil, said):
         download(session, SLOW)
         spoil(wire.controller.motors)
         with pytest.raises(NotReadyError) as refused:
-            operate.run(session, SETTINGS, SLOW, FIRST)
+            operate.start_program(session, SETTINGS, SLOW, FIRST)
     assert said in refused.value.reasons
     assert not wire.controller.runs_program()
 
@@ -120,7 +121,7 @@ def test_a_machine_that_is_not_ready_does_not_start(spoil, said):
 def test_a_start_far_from_the_first_point_is_refused(loaded):
     first = np.array([500.0, 500.0, 500.0, 500.0, 501.1, 500.0])
     with pytest.raises(NotReadyError, match=r"strut 5: 500.000 mm long, 1.100 mm from the first point"):
-        operate.run(loaded, SETTINGS, SLOW, first)
+        operate.start_program(loaded, SETTINGS, SLOW, first)
     status = read_status(loaded, SETTINGS)
     check_start(status, first, near=1.2)
     with pytest.raises(NotReadyError):
@@ -128,21 +129,21 @@ def test_a_start_far_from_the_first_point_is_refused(loaded):
 
 
 def test_a_running_program_is_not_started_again(loaded):
-    operate.run(loaded, SETTINGS, SLOW, FIRST)
+    operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     with pytest.raises(NotReadyError, match="a program runs, or is held"):
-        operate.run(loaded, SETTINGS, SLOW, FIRST, near=100.0)
+        operate.start_program(loaded, SETTINGS, SLOW, FIRST, near=100.0)
 
 
 def test_nothing_is_resumed_that_is_not_held(loaded):
     with pytest.raises(NotReadyError, match="no program is held"):
-        operate.resume(loaded, SETTINGS)
+        operate.resume_program(loaded, SETTINGS)
 
 
 def test_an_override_beyond_the_plan_is_refused(wire, loaded):
     loaded.order("&1%120")
     wire.sleep(1.0)  # the time base goes there slowly
     with pytest.raises(NotReadyError, match="the override is 120 %"):
-        operate.run(loaded, SETTINGS, SLOW, FIRST)
+        operate.start_program(loaded, SETTINGS, SLOW, FIRST)
 
 
 def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):
@@ -162,10 +163,10 @@ def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):
             command(*arguments)
 
     wire.sleep = loaded._sleep = sleep_and_do
-    assert operate.run(loaded, SETTINGS, SLOW, FIRST).running
+    assert operate.start_program(loaded, SETTINGS, SLOW, FIRST).running
     assert stopping.hold(loaded, SETTINGS).held
     wire.sleep(2.0)
-    status = operate.resume(loaded, SETTINGS)
+    status = operate.resume_program(loaded, SETTINGS)
     assert status.running and not status.held
     assert not stopping.abort(loaded, SETTINGS, at_once=True).running
     assert [bytes(wire.sent).count(b"&1" + order) for order in (b"B10R", b"H", b"R", b"A")] == [1, 1, 1, 1]
@@ -174,13 +175,13 @@ def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):
 def test_nothing_is_started_while_a_stop_waits(wire, loaded):
     loaded.give_way_when(lambda: True)
     with pytest.raises(CancelledError, match="a stop came first"):
-        operate.run(loaded, SETTINGS, SLOW, FIRST)
+        operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     loaded.give_way_when(lambda: False)
-    operate.run(loaded, SETTINGS, SLOW, FIRST)
+    operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     stopping.hold(loaded, SETTINGS)
     loaded.give_way_when(lambda: True)
     with pytest.raises(CancelledError, match="a stop came first"):
-        operate.resume(loaded, SETTINGS)
+        operate.resume_program(loaded, SETTINGS)
     assert read_status(loaded, SETTINGS).held
 
 
@@ -200,7 +201,7 @@ def silent_after(wire, text):
 
 def test_a_start_whose_answer_got_lost_is_seen_in_the_state(wire, loaded):
     gone = silent_after(wire, b"B10R")
-    status = operate.run(loaded, SETTINGS, SLOW, FIRST)
+    status = operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     assert gone[0] and status.running
     assert bytes(wire.sent).count(b"B10R") == 1
 
@@ -209,7 +210,7 @@ def test_a_start_that_got_lost_is_not_repeated(wire, loaded):
     fault = wire.fault
     wire.fault = lambda data, out: b"" if b"R\r" in bytes(wire.sent[-3:]) or b"B10R" in data else fault(data, out)
     with pytest.raises(PmacError) as lost:
-        operate.run(loaded, SETTINGS, SLOW, FIRST)
+        operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     assert not wire.controller.runs_program()
     assert bytes(wire.sent).count(b"B10R\r") <= 1
     if wire.kind == "tcp":
@@ -230,7 +231,7 @@ def test_the_struts_move_as_the_program_says(wire):
     told = []
     with wire.session() as session:
         download(session, job.program)
-        operate.run(session, SETTINGS, job.program, job.first)
+        operate.start_program(session, SETTINGS, job.program, job.first)
         while (status := read_status(session, SETTINGS)).running:
             told.append(status.length + status.following_error)
             wire.sleep(0.02)

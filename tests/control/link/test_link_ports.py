@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from pkm_post.cli import main
-from pkm_post.control.link.faults import LinkLostError
+from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.ports import Port, port_named
 
 
@@ -84,7 +84,7 @@ def test_writing_to_a_closed_socket_does_not_end_the_process():
 import signal, socket, time
 signal.signal(signal.SIGPIPE, signal.SIG_DFL)
 from pkm_post.cli import main
-from pkm_post.control.link.faults import LinkLostError
+from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.ports import Port
 with socket.create_server(("127.0.0.1", 0)) as server:
     link = Port("tcp", "127.0.0.1", server.getsockname()[1]).link()

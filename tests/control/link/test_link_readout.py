@@ -8,9 +8,9 @@ import pytest
 from machines import direction, example
 from rig import SETTINGS, Wire, controller
 
-from pkm_post.control.link.faults import LinkLostError
-from pkm_post.control.link.readout import Readout, pose_text, state_text
+from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.status import MotorBits, Status, SystemBits, _status_of, read_status
+from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_text, state_text
 from pkm_post.machine import strut_lengths
 
 NANOMETRE = 1e-6
@@ -31,7 +31,7 @@ def test_the_state_of_a_controller_at_rest(status):
 
 def test_poses_from_lengths(status):
     machine = example()
-    readout = Readout(machine, 120.0)
+    readout = ToolPoseReadout(machine, 120.0)
     for tilt in np.linspace(0.0, 25.0, 20):
         tip, axis = np.array([[2 * tilt, -tilt, 300.0 - tilt]]), direction(tilt, 30.0)[None]
         lengths = strut_lengths(machine, tip, axis, np.zeros(1), np.array([120.0]))
@@ -41,7 +41,7 @@ def test_poses_from_lengths(status):
 
 def test_lengths_without_a_pose_are_told_and_got_over(status):
     machine = example()
-    readout = Readout(machine, 120.0)
+    readout = ToolPoseReadout(machine, 120.0)
     assert readout.pose(dataclasses.replace(status, length=np.full(6, 10.0))) is None
     assert pose_text(None) == "tool: no pose has these strut lengths"
     home = strut_lengths(machine, machine.home_tip[None], np.array([[0.0, 0.0, 1.0]]), np.zeros(1), np.array([120.0]))

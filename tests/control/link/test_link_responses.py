@@ -6,13 +6,13 @@ from collections import Counter
 
 import pytest
 
-from pkm_post.control.link.exchange import Answer, Lost, Refusal
-from pkm_post.control.link.responses import ResponseReader, checksum
+from pkm_post.control.link.protocol import Answer, Lost, Refusal
+from pkm_post.control.link.serial_protocol import ResponseParser, checksum
 
 
 def read(transcript, command=b"", summed=False):
     """The event and how many bytes it took."""
-    reader = ResponseReader(command, summed)
+    reader = ResponseParser(command, summed)
     for count, byte in enumerate(bytes.fromhex(transcript), start=1):
         event = reader.take(byte)
         if event is not None:

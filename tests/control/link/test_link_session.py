@@ -4,18 +4,18 @@
 import pytest
 from rig import Wire, controller, listed
 
-from pkm_post.control.link.download import listing_of
-from pkm_post.control.link.faults import (
+from pkm_post.control.link.download import verify_listing
+from pkm_post.control.link.errors import (
     CancelledError,
     DiagnosedError,
     LinkLostError,
     OutcomeUnknownError,
     RefusedError,
 )
-from pkm_post.control.link.listing import Program
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.session import ATTEMPTS, Leftover
-from pkm_post.control.simulator import Line
+from pkm_post.control.link.program import PmacProgram
+from pkm_post.control.link.session import ATTEMPTS, OpenBufferPolicy
+from pkm_post.control.simulator import SerialPort
 
 
 @pytest.fixture(params=["serial", "tcp"])
@@ -107,10 +107,10 @@ def test_a_buffer_that_was_left_open_is_made_empty(wire, caplog):
         assert not wire.line.refusal(line)
     with wire.session() as session, owned(session, "download"):
         assert "was made empty" in caplog.text
-        assert listing_of(session, Program(10, ())).same
+        assert verify_listing(session, PmacProgram(10, ())).same
 
 
-@pytest.mark.parametrize("leftover", [Leftover.LEAVE, Leftover.STOP])
+@pytest.mark.parametrize("leftover", [OpenBufferPolicy.LEAVE, OpenBufferPolicy.STOP])
 def test_a_buffer_that_is_open_is_left_alone_by_who_watches_or_stops(wire, leftover):
     wire.session().open()  # the handshake is agreed from here on
     for line in ("OPEN PROG 10", "CLEAR", "ABS"):
@@ -128,13 +128,13 @@ def test_who_only_watches_does_not_agree_anew_while_a_buffer_is_open(wire):
     with pytest.raises(LinkLostError, match="a program buffer is open"):
         wire.session().open()
     assert not wire.line.refusal("CLOSE") and listed(wire.controller)[:1] == ["ABS"]
-    with wire.session(leftover=Leftover.STOP) as session:
+    with wire.session(leftover=OpenBufferPolicy.STOP) as session:
         assert session.ask("I3") == ("2",)
 
 
 def test_a_buffer_that_another_port_has_open_is_left_alone(wire):
     wire.session().open()
-    other = Line(wire.controller)
+    other = SerialPort(wire.controller)
     for line in ("OPEN PROG 10", "CLEAR", "ABS"):
         assert not other.refusal(line)
     with wire.session() as session, pytest.raises(DiagnosedError, match="C214"), owned(session, "download"):

@@ -9,10 +9,11 @@ from link_faults import FIRST, refuse, reset_after, small_program
 from rig import SETTINGS, Noise, Wire
 from streams import JOB, MICRON, REACH, RESTS, WORDS, by_chance, lengths, path, streamed, tried, wired
 
-from pkm_post.control.link import operate, stopping
+from pkm_post.control.link import run as operate
+from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import CancelledError, NotOwnerError, NotReadyError, StreamError
-from pkm_post.control.link.session import Leftover
+from pkm_post.control.link.errors import CancelledError, NotOwnerError, NotReadyError, StreamError
+from pkm_post.control.link.session import OpenBufferPolicy
 from pkm_post.control.link.stream import stream
 
 KINDS = pytest.mark.parametrize("kind", ["serial", "tcp"])
@@ -223,7 +224,7 @@ def test_a_machine_that_is_not_ready_is_sent_nothing():
 
 
 @KINDS
-@pytest.mark.parametrize("leftover", [Leftover.STOP, Leftover.LEAVE])
+@pytest.mark.parametrize("leftover", [OpenBufferPolicy.STOP, OpenBufferPolicy.LEAVE])
 def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, leftover):
     wire = wired(kind)
     other = Wire(wire.controller, kind, line=wire.line, moves=True)
@@ -233,7 +234,7 @@ def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, lefto
             with other.session(leftover=leftover) as session:
                 assert stopping.hold(session, SETTINGS).held
                 other.sleep(1.0)
-                operate.resume(session, SETTINGS)
+                operate.resume_program(session, SETTINGS)
 
     assert tried(wire, progress=progress) == "streamed 0"
     assert other.sent
@@ -243,7 +244,7 @@ def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, lefto
     "order",
     [
         lambda session: download(session, small_program()),
-        lambda session: operate.run(session, SETTINGS, small_program(), FIRST),
+        lambda session: operate.start_program(session, SETTINGS, small_program(), FIRST),
         lambda session: stream(session, SETTINGS, JOB.program, JOB.first, WORDS),
     ],
 )

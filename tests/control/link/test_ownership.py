@@ -15,15 +15,15 @@ from link_faults import FIRST, small_program
 from rig import SETTINGS, Wire, controller, served
 from test_stopping import SLOW
 
-from pkm_post.control.link import operate, ownership, stopping
+from pkm_post.control.link import ownership, stopping
+from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import DiagnosedError, LinkLostError, NotOwnerError, NotReadyError
-from pkm_post.control.link.motion import settled_status
-from pkm_post.control.link.ownership import SILENCE_S, lock_path, owned, read_record, take
+from pkm_post.control.link.errors import DiagnosedError, LinkLostError, NotOwnerError, NotReadyError
+from pkm_post.control.link.ownership import SILENCE_S, claim, lock_path, owned, read_record
 from pkm_post.control.link.ports import port_named
-from pkm_post.control.link.readout import state_text
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import read_status
+from pkm_post.control.link.status import read_status, settled_status
+from pkm_post.control.link.tool_pose import state_text
 from pkm_post.model.rules import RULES
 from pkm_post.system.lock import lock_owner, try_lock
 
@@ -60,9 +60,9 @@ def two(kind, moves=False):
 
 ORDERS = {
     "download": lambda session: download(session, PROGRAM),
-    "run": lambda session: operate.run(session, SETTINGS, PROGRAM, FIRST),
-    "resume": lambda session: operate.resume(session, SETTINGS),
-    "override": lambda session: operate.override(session, SETTINGS, 50.0),
+    "run": lambda session: operate.start_program(session, SETTINGS, PROGRAM, FIRST),
+    "resume": lambda session: operate.resume_program(session, SETTINGS),
+    "override": lambda session: operate.set_feed_override(session, SETTINGS, 50.0),
 }
 
 
@@ -88,7 +88,7 @@ def test_others_watch_and_stop(kind):
     with two(kind, moves=True) as (wire, one, other):
         download(one, SLOW)
         with owned(one, "run"):
-            operate.run(one, SETTINGS, SLOW, FIRST)
+            operate.start_program(one, SETTINGS, SLOW, FIRST)
             wire.sleep(0.3)
             assert read_status(other, SETTINGS).running
             assert stopping.hold(other, SETTINGS).held
@@ -99,7 +99,7 @@ def test_others_watch_and_stop(kind):
 @KINDS
 def test_an_owner_that_died_is_passed_over_when_nothing_is_seen_of_it(kind, caplog):
     with two(kind) as (wire, one, other):
-        take(one, "download")
+        claim(one, "download")
         one.order("OPEN PROG 10")
         one.order("CLEAR")
         one.order("ABS")
@@ -114,7 +114,7 @@ def test_an_owner_that_died_is_passed_over_when_nothing_is_seen_of_it(kind, capl
 def test_an_owner_that_counts_or_loads_or_moves_is_not_passed_over(kind):
     with two(kind, moves=True) as (wire, one, other):
         download(one, SLOW)
-        take(one, "run")
+        claim(one, "run")
         wire.meanwhile = lambda: one.ask("I3")
         with pytest.raises(NotOwnerError, match="C210"):
             download(other, PROGRAM)
@@ -125,7 +125,7 @@ def test_an_owner_that_counts_or_loads_or_moves_is_not_passed_over(kind):
             download(other, PROGRAM)
         wire.meanwhile = None
         one.order("CLOSE")
-        operate.run(one, SETTINGS, SLOW, FIRST)
+        operate.start_program(one, SETTINGS, SLOW, FIRST)
         wire.sleep(SILENCE_S)
         with pytest.raises(NotOwnerError, match="C210.*run"):
             download(other, PROGRAM)
@@ -134,15 +134,15 @@ def test_an_owner_that_counts_or_loads_or_moves_is_not_passed_over(kind):
             download(other, PROGRAM)
         wire.meanwhile = lambda: one.ask("I3")
         with pytest.raises(NotOwnerError, match="C210.*run"):
-            operate.resume(other, SETTINGS)
+            operate.resume_program(other, SETTINGS)
         wire.meanwhile = None
-        assert operate.resume(other, SETTINGS).running  # of an owner that is silent it may go on
+        assert operate.resume_program(other, SETTINGS).running  # of an owner that is silent it may go on
 
 
 @KINDS
 def test_an_owner_that_was_silent_looks_before_it_sends(kind):
     with two(kind) as (wire, one, other):
-        take(one, "download")
+        claim(one, "download")
         wire.sleep(SILENCE_S)
         with owned(other, "jog"):
             sent = len(wire.sent)
@@ -160,19 +160,19 @@ def test_of_two_that_take_it_at_once_one_gets_it(kind):
 
         def ask(text, most=1 << 16):
             if "INT(1/" in text and not taken:
-                taken.append(take(other, "run"))
+                taken.append(claim(other, "run"))
             return asked(text, most)
 
         one.ask = ask
         with pytest.raises(NotOwnerError, match="C210.*run"):
-            take(one, "jog")
+            claim(one, "jog")
         assert taken and other.keeper is taken[0] and one.keeper is None
         other.keeper.check()
 
 
 def test_a_controller_that_was_reset_has_forgotten_its_owner():
     with two("tcp") as (wire, one, _):
-        take(one, "jog")
+        claim(one, "jog")
         wire.controller.reset()
         wire.line.receive(b"I3=2\rI6=1\r")
         wire.sleep(SILENCE_S)
@@ -185,7 +185,7 @@ def test_variables_of_somebody_else_are_named(value):
     with two("tcp") as (wire, one, _):
         assert not wire.line.refusal(f"P8187={value}")
         with pytest.raises(DiagnosedError, match="C213.*P8187..8191"):
-            take(one, "jog")
+            claim(one, "jog")
 
 
 def test_an_answer_without_sense_is_a_link_that_is_lost():
@@ -199,10 +199,10 @@ def test_an_answer_without_sense_is_a_link_that_is_lost():
 def test_the_lock_of_this_computer_says_who_has_it():
     with served(controller()) as name, Session(port_named(name)) as one, Session(port_named(name)) as other:
         with owned(one, "stream"), pytest.raises(NotOwnerError) as refused:
-            take(other, "jog")
+            claim(other, "jog")
         assert f"process {os.getpid()} of " in str(refused.value) and "stream, since 20" in str(refused.value)
         assert not lock_path(name).exists()
-        take(other, "jog").release()
+        claim(other, "jog").release()
 
 
 _CLIENT = """
@@ -243,7 +243,7 @@ def test_a_lock_that_cannot_be_kept_is_named(monkeypatch, tmp_path):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "missing"))
     with served(controller()) as name, Session(port_named(name)) as session:
         with pytest.raises(DiagnosedError, match="C212"):
-            take(session, "jog")
+            claim(session, "jog")
         assert session.keeper is None
 
 
@@ -266,7 +266,7 @@ def test_a_machine_that_moves_without_a_program_is_seen_to_move(kind):
         assert not status.running and not status.standing
         assert "no program runs, BUT THE MACHINE MOVES" in state_text(status)
         with pytest.raises(NotReadyError, match="strut 3: moves"):
-            operate.run(session, SETTINGS, PROGRAM, FIRST, near=1000.0)
+            operate.start_program(session, SETTINGS, PROGRAM, FIRST, near=1000.0)
 
 
 def test_struts_that_turn_round_or_sink_are_seen_to_move():
@@ -296,7 +296,7 @@ def test_threads_of_one_process_are_clients_as_well():
             with Session(port_named(name)) as session:
                 start.wait()
                 try:
-                    take(session, "jog")
+                    claim(session, "jog")
                 except NotOwnerError:
                     got.append("refused")
                 else:

@@ -9,11 +9,11 @@ from controller_settings import settings_for
 from gpascii import CLOSED_LOOP, READY, Shell, ShellLink
 
 from pkm_post.control.link import stopping
-from pkm_post.control.link.faults import LinkLostError, OutcomeUnknownError, RefusedError
-from pkm_post.control.link.gpascii_conversation import GpasciiConversation
-from pkm_post.control.link.readout import state_text
+from pkm_post.control.link.errors import LinkLostError, OutcomeUnknownError, RefusedError
+from pkm_post.control.link.gpascii_protocol import GpasciiProtocol
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import read_status
+from pkm_post.control.link.tool_pose import state_text
 
 SETTINGS = settings_for("power_pmac", counts_per_mm=1000.0)
 NANOMETRE = 1e-6
@@ -31,7 +31,7 @@ class Port:
         return ShellLink(self.shells, self)
 
     def conversation(self):
-        return GpasciiConversation(self.silence)
+        return GpasciiProtocol(self.silence)
 
     def sleep(self, seconds):
         self.now += seconds

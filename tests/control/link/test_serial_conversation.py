@@ -3,18 +3,18 @@
 
 import pytest
 
-from pkm_post.control.link.exchange import Answer, Command, Kind, Lost, Message, Refusal
-from pkm_post.control.link.serial_conversation import GUARD_ATTEMPTS, LONGEST_LINE, SerialConversation
+from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, Message, Refusal
+from pkm_post.control.link.serial_protocol import GUARD_ATTEMPTS, LONGEST_LINE, SerialProtocol
 
 
 @pytest.fixture
 def talk():
-    return SerialConversation(silence=0.1)
+    return SerialProtocol(silence=0.1)
 
 
 def test_a_jog_as_the_manual_shows_it(talk):
     # J/ and ^N: the controller answers 121, 79 hexadecimal; then CR, and ACK with the same sum
-    talk.begin(Command("J/", Kind.SET), 0.0)
+    talk.begin(Command("J/", CommandKind.SET), 0.0)
     assert talk.outgoing() == b"J/\x0e"
     talk.receive(b"\x79", 0.1)
     assert talk.outgoing() == b"\r"
@@ -24,7 +24,7 @@ def test_a_jog_as_the_manual_shows_it(talk):
 
 
 def test_a_line_that_arrived_wrong_is_forgotten_and_sent_again(talk):
-    talk.begin(Command("J/", Kind.SET), 0.0)
+    talk.begin(Command("J/", CommandKind.SET), 0.0)
     talk.outgoing()
     talk.receive(b"\x78", 0.1)
     assert talk.outgoing() == b"\x18"
@@ -35,7 +35,7 @@ def test_a_line_that_arrived_wrong_is_forgotten_and_sent_again(talk):
 
 
 def test_a_line_that_never_arrives_right_was_not_carried_out(talk):
-    talk.begin(Command("J/", Kind.SET), 0.0)
+    talk.begin(Command("J/", CommandKind.SET), 0.0)
     sent = b""
     while not (events := talk.events()):
         talk.expire(talk.deadline)
@@ -45,7 +45,7 @@ def test_a_line_that_never_arrives_right_was_not_carried_out(talk):
 
 
 def test_silence_behind_cr_leaves_it_open_whether_it_was_carried_out(talk):
-    talk.begin(Command("J/", Kind.SET, patience=2.0), 0.0)
+    talk.begin(Command("J/", CommandKind.SET, patience=2.0), 0.0)
     talk.receive(b"\x79", 0.5)
     talk.outgoing()
     assert talk.deadline == pytest.approx(2.5)
@@ -55,13 +55,13 @@ def test_silence_behind_cr_leaves_it_open_whether_it_was_carried_out(talk):
 
 
 def test_a_refusal(talk):
-    talk.begin(Command("J/", Kind.SET), 0.0)
+    talk.begin(Command("J/", CommandKind.SET), 0.0)
     talk.receive(b"\x79\x07ERR003\r", 0.1)
     assert talk.events() == [Refusal(3)]
 
 
 def test_messages_come_between(talk):
-    talk.begin(Command("J/", Kind.SET), 0.0)
+    talk.begin(Command("J/", CommandKind.SET), 0.0)
     talk.receive(b"\x79\x02HELLO\r\x06\x79", 0.1)
     assert talk.events() == [Message("HELLO"), Answer()]
 

@@ -9,7 +9,7 @@ from ssh_server import PASSWORD, USER, Server
 
 from pkm_post.cli import main
 from pkm_post.control.link import ssh_link
-from pkm_post.control.link.faults import LinkLostError, NoAccessError
+from pkm_post.control.link.errors import LinkLostError, NoAccessError
 from pkm_post.control.link.ports import Port
 from pkm_post.control.link.session import Session
 

@@ -10,9 +10,10 @@ import pytest
 from link_faults import FIRST, small_program
 from rig import SETTINGS, Noise, Wire, controller
 
-from pkm_post.control.link import operate, stopping
+from pkm_post.control.link import run as operate
+from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
-from pkm_post.control.link.faults import CancelledError
+from pkm_post.control.link.errors import CancelledError
 from pkm_post.control.link.status import read_status
 
 _QUICK = small_program(100)
@@ -29,7 +30,7 @@ def running(kind):
     session = wire.session()
     session.open()
     download(session, SLOW)
-    operate.run(session, SETTINGS, SLOW, FIRST)
+    operate.start_program(session, SETTINGS, SLOW, FIRST)
     wire.sleep(0.3)
     return wire, session
 
@@ -52,7 +53,7 @@ def test_a_hold_rests_on_the_path_and_goes_on(moving):
     status = stopping.hold(session, SETTINGS)
     assert status.held and status.standing
     assert_at_rest(wire)
-    assert operate.resume(session, SETTINGS).running
+    assert operate.resume_program(session, SETTINGS).running
 
 
 def test_an_abort_ends_the_program(moving):

@@ -8,10 +8,10 @@ import pytest
 from rig import SETTINGS, STROKE, Wire, controller, served
 
 from pkm_post.cli import main
-from pkm_post.control.link.faults import PmacError
+from pkm_post.control.link.errors import PmacError
 from pkm_post.control.link.ownership import read_record
-from pkm_post.control.link.ready import check_setup
 from pkm_post.control.link.rotary_buffer import RotaryBuffer
+from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.status import read_status
 from pkm_post.control.simulator import Controller
 from pkm_post.machine import machine_named
@@ -57,7 +57,7 @@ def machine():
 
 def lying(made, choice, share):
     """Let a controller answer some questions with what makes no sense."""
-    from pkm_post.control.simulator import line
+    from pkm_post.control.simulator import serial_port as line
 
     execute = line.execute
 
@@ -79,7 +79,7 @@ def test_every_action_ends_in_words(action, machine, capsys, monkeypatch):
     made.load([f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)])
     with served(made) as port:
         for share in (0.02, 0.05, 0.2, 1.0, 1.0):
-            monkeypatch.setattr("pkm_post.control.simulator.line.execute", lying(made, choice, share))
+            monkeypatch.setattr("pkm_post.control.simulator.serial_port.execute", lying(made, choice, share))
             code = main(["pmac", action, "--port", port, "--machine", MACHINE, "--patience", "0.5", *ACTIONS[action]])
             told = capsys.readouterr()
             monkeypatch.undo()

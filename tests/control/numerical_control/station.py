@@ -12,9 +12,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "link"))
 import numpy as np  # noqa: E402
 from rig import Wire  # noqa: E402
 
-from pkm_post.control.link.job import read_job  # noqa: E402
+from pkm_post.control.link.program import read_job  # noqa: E402
 from pkm_post.control.numerical_control.control import NumericalControl  # noqa: E402
-from pkm_post.control.simulator import Controller, Line  # noqa: E402
+from pkm_post.control.simulator import Controller, SerialPort  # noqa: E402
 from pkm_post.machine import machine_named  # noqa: E402
 from pkm_post.model import StrutMotion  # noqa: E402
 from pkm_post.writing.controllers.pmac import program_text, settings_of, setup_text  # noqa: E402
@@ -33,7 +33,7 @@ PER_BLOCK = 25
 def set_up():
     made = Controller()
     made.load(setup_text(SETTINGS, "test", MACHINE.strut_stroke).splitlines())
-    line = Line(made)
+    line = SerialPort(made)
     for motor in range(1, 7):
         fast = f"I{motor}11=320000 I{motor}15=10 I{motor}16=2000 I{motor}17=20 I{motor}19=5 I{motor}22=200"
         assert not line.refusal(fast) and not line.refusal(f"#{motor}J/") and not line.refusal(f"#{motor}HMZ")

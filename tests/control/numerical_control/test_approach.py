@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 from station import MACHINE, SETTINGS, START, job
 
-from pkm_post.control.link.faults import NotReadyError
-from pkm_post.control.link.job import read_job
-from pkm_post.control.link.readout import Pose
-from pkm_post.control.link.start_pose import away_from_start, start_faults
-from pkm_post.control.numerical_control import moves
+from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.link.program import read_job
+from pkm_post.control.link.tool_pose import Pose, deviation_from_start, start_faults
+from pkm_post.control.numerical_control import manual_moves as moves
 from pkm_post.control.numerical_control.control import NumericalControl
-from pkm_post.control.numerical_control.moves import Cartesian
-from pkm_post.control.numerical_control.single_block import blocks_of_program
+from pkm_post.control.numerical_control.manual_moves import CartesianJog
+from pkm_post.control.numerical_control.single_block import read_blocks
 from pkm_post.machine import strut_lengths
 from pkm_post.model import ToolChange
 from pkm_post.posting.steps import post
@@ -47,13 +46,13 @@ def in_folder(folder):
     """A job that was posted, and its blocks."""
     program = post(cone(40, turns=0.2), MACHINE, folder / "cone.pmc").program
     made, faults = read_job(program.read_text(), SETTINGS, program.name)
-    blocks, told = blocks_of_program(program, MACHINE)
+    blocks, told = read_blocks(program, MACHINE)
     assert not faults and not told
     return made, blocks
 
 
 def jog(station, **how):
-    plan, told = station.control.plan_jog(Cartesian(**how), 20.0)
+    plan, told = station.control.plan_jog(CartesianJog(**how), 20.0)
     assert plan is not None, told
     station.control.execute(plan)
     return station.to_rest()
@@ -123,12 +122,12 @@ def test_a_machine_at_the_start_has_no_way_to_go(station, posted):
     plan, _ = station.control.plan_approach(posted)
     assert plan is None or np.abs(plan.job.motion.length - posted.first).max() < COUNT
     at_start = Pose(np.array([0.0, 0.0, 300.0]), UP, 0.0)
-    trajectory, told = moves.approach(MACHINE, at_start, at_start, TOOL, 20.0)
+    trajectory, told = moves.approach_trajectory(MACHINE, at_start, at_start, TOOL, 20.0)
     assert trajectory is None and [fault.code for fault in told] == ["C201"]
 
 
 def way(here, start, machine=MACHINE):
-    trajectory, told = moves.approach(machine, here, start, TOOL, 20.0)
+    trajectory, told = moves.approach_trajectory(machine, here, start, TOOL, 20.0)
     assert trajectory is not None, told
     return trajectory
 
@@ -167,13 +166,13 @@ def test_a_way_out_of_reach_is_no_plan(station, posted):
 
 def test_a_tool_that_lies_flat_is_not_retracted():
     flat = Pose(np.array([0.0, 0.0, 200.0]), np.array([np.sqrt(1 - 0.0081), 0.0, 0.09]), 0.0)
-    trajectory, told = moves.approach(MACHINE, flat, Pose(np.array([0.0, 0, 300]), UP, 0.0), TOOL, 20.0)
+    trajectory, told = moves.approach_trajectory(MACHINE, flat, Pose(np.array([0.0, 0, 300]), UP, 0.0), TOOL, 20.0)
     assert trajectory is None and [fault.code for fault in told] == ["K142"]
 
 
 def test_how_far_away_is_a_matter_of_poses():
     first = lengths_at([0, 0, 300])
-    away = away_from_start(MACHINE, lengths_at([3, 4, 300], spin=np.radians(2)), first)
+    away = deviation_from_start(MACHINE, lengths_at([3, 4, 300], spin=np.radians(2)), first)
     assert away.tip == pytest.approx(5, abs=MICRON) and away.spin == pytest.approx(np.radians(2), abs=1e-6)
     assert away.axis < 1e-6
     assert start_faults(MACHINE, first + 0.01, first, 0.05) == ()
@@ -185,13 +184,13 @@ def test_how_far_away_is_a_matter_of_poses():
 
 def test_a_line_by_hand_goes_straight_whatever_the_safe_height(station):
     """What a program does on its way from home is not what a typed line asks for."""
-    from pkm_post.control.numerical_control.mdi import line_trajectory
+    from pkm_post.control.numerical_control.manual_moves import mdi_trajectory
 
     pose = ToolChange(np.array([0.0, 0.0, 500.0]), UP, 0.0, 290.0)
     machine = dataclasses.replace(MACHINE, tool_change=pose, spin_up_time=2.0, largest_tool_diameter=40.0)
     here = Pose(np.array([0.0, 0.0, 200.0]), UP, 0.0)
-    trajectory, told = line_trajectory("G0 X10", machine, here, TOOL)
+    trajectory, told = mdi_trajectory("G0 X10", machine, here, TOOL)
     assert told == () and len(trajectory) == 1 and trajectory.operations == ("",)
     np.testing.assert_allclose(trajectory.tip, [[10.0, 0.0, 200.0]], atol=1e-6)
-    started, _ = line_trajectory("S12000 M3 G0 X10", machine, here, TOOL)
+    started, _ = mdi_trajectory("S12000 M3 G0 X10", machine, here, TOOL)
     assert [event.value for event in started.events] == [12000.0, 1.0]

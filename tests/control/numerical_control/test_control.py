@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from rig import listed
 
-from pkm_post.control.link.faults import CancelledError, NotReadyError, PmacError
-from pkm_post.control.numerical_control.mdi import Reading
-from pkm_post.control.numerical_control.moves import Cartesian, OneStrut
+from pkm_post.control.link.errors import CancelledError, NotReadyError, PmacError
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, MdiSettings, StrutJog
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Diagnostic
 
@@ -36,21 +35,21 @@ def test_the_readout_at_home(station):
 @pytest.mark.parametrize(
     ("jog", "tip", "axis", "spin"),
     [
-        (Cartesian(shift=(20, -10, 15)), (20, -10, 315), (0, 0, 1), 0.0),
+        (CartesianJog(shift=(20, -10, 15)), (20, -10, 315), (0, 0, 1), 0.0),
         (
-            Cartesian(tilt=(math.radians(5), 0)),
+            CartesianJog(tilt=(math.radians(5), 0)),
             (0, 0, 300),
             (0, -math.sin(math.radians(5)), math.cos(math.radians(5))),
             0,
         ),
         (
-            Cartesian(tilt=(0, math.radians(5))),
+            CartesianJog(tilt=(0, math.radians(5))),
             (0, 0, 300),
             (math.sin(math.radians(5)), 0, math.cos(math.radians(5))),
             0,
         ),
-        (Cartesian(spin=math.radians(4)), (0, 0, 300), (0, 0, 1), math.radians(4)),
-        (Cartesian((0, 5, 0), (0, 0.05), 0.03), (0, 5, 300), (math.sin(0.05), 0, math.cos(0.05)), 0.03),
+        (CartesianJog(spin=math.radians(4)), (0, 0, 300), (0, 0, 1), math.radians(4)),
+        (CartesianJog((0, 5, 0), (0, 0.05), 0.03), (0, 5, 300), (math.sin(0.05), 0, math.cos(0.05)), 0.03),
     ],
 )
 def test_a_jog_leads_where_it_says(station, jog, tip, axis, spin):
@@ -67,7 +66,7 @@ def test_a_jog_leads_where_it_says(station, jog, tip, axis, spin):
 @pytest.mark.parametrize(("strut", "by"), [(1, 5.0), (4, -8.0)])
 def test_a_jog_of_one_strut_leaves_the_others(station, strut, by):
     before = station.control.poll().status.commanded
-    plan, told = station.control.plan_jog(OneStrut(strut, by), FEED)
+    plan, told = station.control.plan_jog(StrutJog(strut, by), FEED)
     assert told == ()
     station.control.execute(plan)
     furthest = np.zeros(6)
@@ -84,7 +83,7 @@ def test_a_jog_of_one_strut_leaves_the_others(station, strut, by):
 
 def test_jogs_follow_each_other(station):
     for shift in ((5, 0, 0), (0, 5, 0), (-5, -5, 0)):
-        plan, _ = station.control.plan_jog(Cartesian(shift), FEED)
+        plan, _ = station.control.plan_jog(CartesianJog(shift), FEED)
         station.control.execute(plan)
         state = station.to_rest()
     assert np.allclose(state.pose.tip, [0, 0, 300], atol=5 * MICRON)
@@ -93,12 +92,12 @@ def test_jogs_follow_each_other(station):
 @pytest.mark.parametrize(
     ("jog", "codes"),
     [
-        (Cartesian((0, 0, -350)), {"K102"}),
-        (Cartesian((700, 0, 0)), {"K102", "K103", "K104"}),
-        (Cartesian(tilt=(math.radians(60), 0)), {"K102", "K103", "K104", "K105", "K114"}),
-        (Cartesian(), {"C201"}),
-        (OneStrut(1, 300.0), {"C202"}),
-        (OneStrut(6, -200.0), {"K101", "K103", "K104", "K105", "C202"}),
+        (CartesianJog((0, 0, -350)), {"K102"}),
+        (CartesianJog((700, 0, 0)), {"K102", "K103", "K104"}),
+        (CartesianJog(tilt=(math.radians(60), 0)), {"K102", "K103", "K104", "K105", "K114"}),
+        (CartesianJog(), {"C201"}),
+        (StrutJog(1, 300.0), {"C202"}),
+        (StrutJog(6, -200.0), {"K101", "K103", "K104", "K105", "C202"}),
     ],
 )
 def test_what_the_checks_refuse_is_not_sent(station, jog, codes):
@@ -117,13 +116,13 @@ def test_a_line_of_gcode(station):
 
 
 def test_a_line_begins_where_the_tool_is_and_keeps_its_axis(station):
-    station.control.execute(station.control.plan_jog(Cartesian((10, 0, 0), (0, 0.1), 0.05), FEED)[0])
+    station.control.execute(station.control.plan_jog(CartesianJog((10, 0, 0), (0, 0.1), 0.05), FEED)[0])
     station.to_rest()
     plan, _ = station.control.plan_line("G91 G1 Y7 F600")
     assert np.allclose(plan.end.tip, [10, 7, 300], atol=5 * MICRON)
     assert np.allclose(plan.end.axis, [math.sin(0.1), 0, math.cos(0.1)], atol=1e-5)
     assert plan.end.spin == pytest.approx(0.05, abs=1e-5)
-    upright, _ = station.control.plan_line("G43.5 G1 Y7 I0 J0 K1 F600", Reading(axis_words="vector"))
+    upright, _ = station.control.plan_line("G43.5 G1 Y7 I0 J0 K1 F600", MdiSettings(axis_words="vector"))
     assert np.allclose(upright.end.axis, [0, 0, 1], atol=1e-5)
 
 
@@ -161,7 +160,7 @@ def test_a_line_that_switches_alone(station, line, variable, value, axis_words):
     before = station.control.poll().status.commanded
     variables = station.wire.controller.variables
     variables.write("P", variable, 9.0)
-    plan, told = station.control.plan_line(line, Reading(axis_words=axis_words))
+    plan, told = station.control.plan_line(line, MdiSettings(axis_words=axis_words))
     assert told == ()
     station.control.execute(plan)
     furthest = np.zeros(6)
@@ -179,7 +178,7 @@ def test_a_line_of_a_dwell_alone_takes_its_time(station):
 
 
 def test_an_unknown_work_offset(station):
-    plan, told = station.control.plan_line("G1 X1 F100", Reading("G59"))
+    plan, told = station.control.plan_line("G1 X1 F100", MdiSettings("G59"))
     assert plan is None and [fault.code for fault in told] == ["K108"]
 
 
@@ -190,7 +189,7 @@ def test_two_lines_are_none(station):
 
 def test_a_plan_is_good_where_it_was_made(station):
     """After another move the machine does not stand where the plan begins."""
-    first, _ = station.control.plan_jog(Cartesian((5, 0, 0)), FEED)
+    first, _ = station.control.plan_jog(CartesianJog((5, 0, 0)), FEED)
     station.control.execute(first)
     station.to_rest()
     before = len(station.sent())
@@ -208,7 +207,7 @@ def test_a_plan_is_good_where_it_was_made(station):
     ],
 )
 def test_a_machine_that_is_not_ready_does_not_move(station, spoil, said):
-    plan, _ = station.control.plan_jog(Cartesian((5, 0, 0)), FEED)
+    plan, _ = station.control.plan_jog(CartesianJog((5, 0, 0)), FEED)
     spoil(station.motors)
     with pytest.raises(NotReadyError) as refused:
         station.control.execute(plan)
@@ -216,9 +215,9 @@ def test_a_machine_that_is_not_ready_does_not_move(station, spoil, said):
 
 
 def test_nothing_is_planned_while_something_moves_or_has_no_home(station):
-    station.control.execute(station.control.plan_jog(Cartesian((20, 0, 0)), FEED)[0])
+    station.control.execute(station.control.plan_jog(CartesianJog((20, 0, 0)), FEED)[0])
     with pytest.raises(NotReadyError, match="a program runs"):
-        station.control.plan_jog(Cartesian((1, 0, 0)), FEED)
+        station.control.plan_jog(CartesianJog((1, 0, 0)), FEED)
     station.to_rest()
     station.motors.homed[4] = False
     with pytest.raises(NotReadyError, match="strut 5: not homed"):
@@ -227,7 +226,7 @@ def test_nothing_is_planned_while_something_moves_or_has_no_home(station):
 
 def test_hold_resume_override_and_abort(station):
     control = station.control
-    control.execute(control.plan_jog(Cartesian((40, 0, 0)), FEED)[0])
+    control.execute(control.plan_jog(CartesianJog((40, 0, 0)), FEED)[0])
     station.wait(2.0)
     control.hold()
     held = station.wait(2.0)
@@ -262,7 +261,7 @@ def test_an_override_that_does_not_come_is_told(station):
 def test_the_number_of_the_jobs_is_not_taken(station):
     station.control._number = station.settings.program
     with pytest.raises(ValueError, match="expected another one than that of the jobs, got 10"):
-        station.control.plan_jog(Cartesian((1, 0, 0)), FEED)
+        station.control.plan_jog(CartesianJog((1, 0, 0)), FEED)
 
 
 @pytest.mark.parametrize("length", [0.0, -5.0, math.nan])
@@ -293,7 +292,7 @@ def test_a_machine_that_was_never_reached_is_no_emergency(station):
 @pytest.mark.parametrize("looked", [True, False])
 def test_a_link_that_is_lost_while_a_program_runs(station, looked):
     station.control.poll()
-    station.control.execute(station.control.plan_jog(Cartesian((40, 0, 0)), FEED)[0])
+    station.control.execute(station.control.plan_jog(CartesianJog((40, 0, 0)), FEED)[0])
     if looked:
         station.control.poll()
     station.wire.cut_at, station.wire.mends = station.wire.passed, False
@@ -304,7 +303,7 @@ def test_a_link_that_is_lost_while_a_program_runs(station, looked):
 
 
 def test_a_start_that_may_have_been_carried_out_is_an_emergency(station):
-    plan, _ = station.control.plan_jog(Cartesian((40, 0, 0)), FEED)
+    plan, _ = station.control.plan_jog(CartesianJog((40, 0, 0)), FEED)
     wire, said = station.wire, []
 
     def lose_the_start(data, out):
@@ -322,7 +321,7 @@ def test_a_start_that_may_have_been_carried_out_is_an_emergency(station):
 
 def test_a_stop_ends_a_download_and_nothing_is_started(station):
     """It gets through between two lines; nothing is left under the number."""
-    plan, _ = station.control.plan_jog(Cartesian((20, 0, 0)), FEED)
+    plan, _ = station.control.plan_jog(CartesianJog((20, 0, 0)), FEED)
     station.control.give_way_when(lambda: station.sent().endswith(b"\0") or b"PVT" in station.sent())
     with pytest.raises(CancelledError, match="a stop came first|nothing is left under program 999"):
         station.control.execute(plan)

@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from pkm_post.control.link.faults import NotReadyError, RefusedError
+from pkm_post.control.link.errors import NotReadyError, RefusedError
 from pkm_post.control.link.status import MotorBits, Status, SystemBits
-from pkm_post.control.numerical_control.homing import Homing, HomingWatch, Phase, check_trigger
+from pkm_post.control.numerical_control.homing import Homing, HomingPhase, HomingWatch, check_trigger
 
 STANDING, HOMED, HOMING = 1 << 37, 1 << 10, 1 << 34  # [EPICSpmac]
 ALL_MOTORS = " ".join(f"#{motor}HM" for motor in range(1, 7))
@@ -38,10 +38,10 @@ def test_struts_are_homed_one_by_one(station):
     assert station.control.poll().homing is None
     station.control.home(ALL_MOTORS)
     seen = [station.control.poll().homing]
-    while seen[-1].phase is Phase.SEARCHING:
+    while seen[-1].phase is HomingPhase.SEARCHING:
         assert len(seen) < 1000
         seen.append(station.wait(0.1).homing)
-    assert seen[-1] == Homing(Phase.DONE, (), ())
+    assert seen[-1] == Homing(HomingPhase.DONE, (), ())
     assert str(seen[-1]) == "all struts have found their homes"
     assert station.control.poll().homing == seen[-1]  # it is told until the next one
 
@@ -49,7 +49,7 @@ def test_struts_are_homed_one_by_one(station):
 def test_struts_without_home_are_named():
     watch = HomingWatch(0.0)
     told = watch.see(state([STANDING | HOMED] * 4 + [STANDING, STANDING | HOMING]), 1.0)
-    assert told.phase is Phase.SEARCHING and told.missing == (5, 6)
+    assert told.phase is HomingPhase.SEARCHING and told.missing == (5, 6)
     assert str(told).startswith("the struts look for their homes; no home yet: strut 5, 6\nstrut 6: searching its home")
 
 
@@ -57,43 +57,43 @@ def test_a_pause_between_two_struts_is_not_the_end():
     watch = HomingWatch(0.0)
     all_homed, one_searches = state([STANDING | HOMED] * 6), state([STANDING | HOMED] * 5 + [HOMING])
     for now, seen, phase in [
-        (0.1, one_searches, Phase.SEARCHING),
-        (3.0, all_homed, Phase.SEARCHING),
-        (4.0, one_searches, Phase.SEARCHING),
-        (8.0, all_homed, Phase.SEARCHING),
-        (9.5, all_homed, Phase.SEARCHING),
-        (10.5, all_homed, Phase.DONE),
+        (0.1, one_searches, HomingPhase.SEARCHING),
+        (3.0, all_homed, HomingPhase.SEARCHING),
+        (4.0, one_searches, HomingPhase.SEARCHING),
+        (8.0, all_homed, HomingPhase.SEARCHING),
+        (9.5, all_homed, HomingPhase.SEARCHING),
+        (10.5, all_homed, HomingPhase.DONE),
     ]:
         assert watch.see(seen, now).phase is phase, now
 
 
 def test_a_controller_that_does_nothing():
     watch = HomingWatch(0.0)
-    assert watch.see(state([STANDING | HOMED] * 6), 4.0).phase is Phase.SEARCHING
-    assert watch.see(state([STANDING | HOMED] * 6), 6.0).phase is Phase.NOTHING
+    assert watch.see(state([STANDING | HOMED] * 6), 4.0).phase is HomingPhase.SEARCHING
+    assert watch.see(state([STANDING | HOMED] * 6), 6.0).phase is HomingPhase.NOTHING
 
 
 def test_a_homing_that_takes_too_long():
     watch = HomingWatch(10.0, seconds=60.0)
-    assert watch.see(state([HOMING] * 6), 69.0).phase is Phase.SEARCHING
-    assert watch.see(state([HOMING] * 6), 71.0).phase is Phase.LATE
+    assert watch.see(state([HOMING] * 6), 69.0).phase is HomingPhase.SEARCHING
+    assert watch.see(state([HOMING] * 6), 71.0).phase is HomingPhase.LATE
 
 
 @pytest.mark.parametrize("fault", [1 << 3, 1 << 2])
 def test_a_fault_ends_it(fault):
-    assert HomingWatch(0.0).see(state([HOMING] * 5 + [HOMING | fault]), 1.0).phase is Phase.FAILED
+    assert HomingWatch(0.0).see(state([HOMING] * 5 + [HOMING | fault]), 1.0).phase is HomingPhase.FAILED
 
 
 def test_a_limit_does_not_end_it():
     """The home may be at a limit."""
     told = HomingWatch(0.0).see(state([HOMING] * 5 + [HOMING | 1 << 46]), 1.0)
-    assert told.phase is Phase.SEARCHING and "strut 6: on its lower limit" in told.words
+    assert told.phase is HomingPhase.SEARCHING and "strut 6: on its lower limit" in told.words
 
 
 def test_it_is_not_started_beside_a_program_or_with_a_fault(station):
-    from pkm_post.control.numerical_control.moves import Cartesian
+    from pkm_post.control.numerical_control.manual_moves import CartesianJog
 
-    station.control.execute(station.control.plan_jog(Cartesian((20, 0, 0)), 10.0)[0])
+    station.control.execute(station.control.plan_jog(CartesianJog((20, 0, 0)), 10.0)[0])
     with pytest.raises(NotReadyError, match="a program runs"):
         station.control.home(ALL_MOTORS)
     station.to_rest()
@@ -106,8 +106,8 @@ def test_it_is_not_started_beside_a_program_or_with_a_fault(station):
 def test_a_trigger_after_which_nothing_moves(station):
     """The simulated controller takes the line and has no PLC programs."""
     station.control.home("ENABLE PLC 3")
-    assert station.wait(1.0).homing.phase is Phase.SEARCHING
-    assert station.wait(6.0).homing.phase is Phase.NOTHING
+    assert station.wait(1.0).homing.phase is HomingPhase.SEARCHING
+    assert station.wait(6.0).homing.phase is HomingPhase.NOTHING
 
 
 def test_a_trigger_that_the_controller_refuses(station):
@@ -118,6 +118,6 @@ def test_a_trigger_that_the_controller_refuses(station):
 
 def test_an_abort_ends_the_watch(station):
     station.control.home("P7000=1")
-    assert station.control.poll().homing.phase is Phase.SEARCHING
+    assert station.control.poll().homing.phase is HomingPhase.SEARCHING
     station.control.abort(at_once=True)
     assert station.control.poll().homing is None

@@ -7,12 +7,17 @@ import time
 import pytest
 from station import MACHINE, SETTINGS, TOOL
 
-from pkm_post.control.link.faults import LinkLostError
+from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.ports import Port, port_named
-from pkm_post.control.numerical_control.connection import Target, connect, target_of
-from pkm_post.control.numerical_control.homing import Phase
-from pkm_post.control.numerical_control.moves import Cartesian
-from pkm_post.control.numerical_control.training import HOMING, Training
+from pkm_post.control.numerical_control.connection import (
+    SIMULATED_HOMING,
+    ConnectionTarget,
+    SimulatedMachine,
+    connect,
+    connection_target,
+)
+from pkm_post.control.numerical_control.homing import HomingPhase
+from pkm_post.control.numerical_control.manual_moves import CartesianJog
 from pkm_post.machine import find_machine
 
 LONGEST_S = 60.0
@@ -28,7 +33,7 @@ def until(holds):
 
 
 def test_names_become_a_target():
-    target, told = target_of("tcp:127.0.0.1:1025", "example_6tps")
+    target, told = connection_target("tcp:127.0.0.1:1025", "example_6tps")
     assert (target.port, target.watch_only, told) == (Port("tcp", "127.0.0.1", 1025), False, ())
     assert (target.machine.fingerprint, target.settings) == (MACHINE.fingerprint, SETTINGS)
 
@@ -37,16 +42,16 @@ def test_a_power_pmac_is_watched_alone(tmp_path):
     text = find_machine("example_6tps").read_text(encoding="utf-8")
     file = tmp_path / "power.toml"
     file.write_text(text.replace('kind = "turbo_pmac"', 'kind = "power_pmac"'), encoding="utf-8")
-    target, told = target_of("ssh:me@host", str(file))
+    target, told = connection_target("ssh:me@host", str(file))
     assert target.watch_only and not told
-    other, told = target_of("tcp:host", str(file))
+    other, told = connection_target("tcp:host", str(file))
     assert other is None and [fault.code for fault in told] == ["M104"]
 
 
 def test_what_is_wrong_with_names():
     with pytest.raises(ValueError, match="port: expected"):
-        target_of("usb:1", "example_6tps")
-    target, told = target_of(None, "no_such_machine")
+        connection_target("usb:1", "example_6tps")
+    target, told = connection_target(None, "no_such_machine")
     assert target is None and [fault.code for fault in told] == ["M101"]
 
 
@@ -54,22 +59,22 @@ def test_nobody_answers():
     with socket.create_server(("127.0.0.1", 0)) as taken:
         number = taken.getsockname()[1]
     with pytest.raises(LinkLostError):
-        connect(Target(Port("tcp", "127.0.0.1", number, timeout=0.2), MACHINE, SETTINGS), TOOL)
+        connect(ConnectionTarget(Port("tcp", "127.0.0.1", number, timeout=0.2), MACHINE, SETTINGS), TOOL)
 
 
 def test_a_simulated_machine_is_homed_and_jogged():
-    connection = connect(Target(None, MACHINE, SETTINGS), TOOL, FAST)
+    connection = connect(ConnectionTarget(None, MACHINE, SETTINGS), TOOL, FAST)
     try:
         worker = connection.worker
         until(lambda: worker.state.status is not None)
         assert connection.simulated and not any(worker.state.status.homed) and worker.state.status.words() == ()
-        worker.submit(lambda control: control.home(HOMING)).result(LONGEST_S)
-        until(lambda: worker.state.homing is not None and worker.state.homing.phase is not Phase.SEARCHING)
-        assert worker.state.homing.phase is Phase.DONE and all(worker.state.status.homed)
+        worker.submit(lambda control: control.home(SIMULATED_HOMING)).result(LONGEST_S)
+        until(lambda: worker.state.homing is not None and worker.state.homing.phase is not HomingPhase.SEARCHING)
+        assert worker.state.homing.phase is HomingPhase.DONE and all(worker.state.status.homed)
         # where the struts of this machine are counted from is its home, within a count of 0.1 um
         assert worker.state.pose.tip == pytest.approx(MACHINE.home_tip, abs=1e-3)
         before = worker.state.pose.tip[0]
-        plan, told = worker.submit(lambda control: control.plan_jog(Cartesian((2, 0, 0)), 10.0)).result(LONGEST_S)
+        plan, told = worker.submit(lambda control: control.plan_jog(CartesianJog((2, 0, 0)), 10.0)).result(LONGEST_S)
         assert not told
         worker.submit(lambda control: control.execute(plan)).result(LONGEST_S)
         # struts stand within a count of 0.1 um, which moves the tip by no more than some of them
@@ -79,22 +84,22 @@ def test_a_simulated_machine_is_homed_and_jogged():
 
 
 def test_it_goes_home_where_struts_are_counted_from_the_end_of_their_stroke():
-    target, _ = target_of(None, "nategh_agheli_nominal")
+    target, _ = connection_target(None, "nategh_agheli_nominal")
     assert set(target.settings.zero_length) == {target.machine.strut_stroke[0]}
     connection = connect(target, 100.0, 4.0)
     try:
         worker = connection.worker
-        worker.submit(lambda control: control.home(HOMING)).result(LONGEST_S)
-        until(lambda: worker.state.homing is not None and worker.state.homing.phase is not Phase.SEARCHING)
+        worker.submit(lambda control: control.home(SIMULATED_HOMING)).result(LONGEST_S)
+        until(lambda: worker.state.homing is not None and worker.state.homing.phase is not HomingPhase.SEARCHING)
         assert worker.state.pose.tip == pytest.approx(target.machine.home_tip, abs=1e-2)
-        plan, told = worker.submit(lambda control: control.plan_jog(Cartesian((1, 0, 0)), 5.0)).result(LONGEST_S)
+        plan, told = worker.submit(lambda control: control.plan_jog(CartesianJog((1, 0, 0)), 5.0)).result(LONGEST_S)
         assert plan is not None and not told
     finally:
         connection.close()
 
 
 def test_a_simulated_machine_ends():
-    training = Training(MACHINE, SETTINGS, TOOL)
+    training = SimulatedMachine(MACHINE, SETTINGS, TOOL)
     number = port_named(training.port).number
     training.close()
     with pytest.raises(OSError):

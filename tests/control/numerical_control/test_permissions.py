@@ -5,19 +5,27 @@ import numpy as np
 import pytest
 
 from pkm_post.control.link.status import MotorBits, Status, SystemBits
-from pkm_post.control.numerical_control.control import State
-from pkm_post.control.numerical_control.homing import Homing, Phase
-from pkm_post.control.numerical_control.permissions import AGAINST, Desk, Order, Why, facts, may_move, refusal
-from pkm_post.control.numerical_control.single_block import Shown
+from pkm_post.control.numerical_control.control import ControlState
+from pkm_post.control.numerical_control.homing import Homing, HomingPhase
+from pkm_post.control.numerical_control.interlocks import (
+    INTERLOCKS_OF,
+    Interlock,
+    OperatorCommand,
+    PanelState,
+    active_interlocks,
+    blocking_interlock,
+    may_move,
+)
+from pkm_post.control.numerical_control.single_block import BlockDisplay
 
 STANDING, HOMED, RUNNING = 1 << 37, 1 << 10, 1 << 48  # [EPICSpmac]
 HELD = RUNNING | 1 << 47
-AT_HAND = Desk(connected=True)
-STOPS = {Order.HOLD, Order.ABORT}
-BY_HAND = {Order.HOME, Order.JOG, Order.LINE, Order.OVERRIDE, *STOPS}
-TAKEN = {Order.LOAD, Order.BLOCKS}
-OPENED = Desk(connected=True, has_job=True)
-LOADED = Desk(connected=True, has_job=True, loaded=True)
+AT_HAND = PanelState(connected=True)
+STOPS = {OperatorCommand.HOLD, OperatorCommand.ABORT}
+BY_HAND = {OperatorCommand.HOME, OperatorCommand.JOG, OperatorCommand.LINE, OperatorCommand.OVERRIDE, *STOPS}
+TAKEN = {OperatorCommand.LOAD, OperatorCommand.BLOCKS}
+OPENED = PanelState(connected=True, has_job=True)
+LOADED = PanelState(connected=True, has_job=True, loaded=True)
 
 
 def status(motor=STANDING | HOMED, system=0):
@@ -26,28 +34,36 @@ def status(motor=STANDING | HOMED, system=0):
 
 
 def allowed(state, desk=AT_HAND):
-    found = facts(state, desk)
-    return {order for order in Order if refusal(order, found) is None}
+    found = active_interlocks(state, desk)
+    return {order for order in OperatorCommand if blocking_interlock(order, found) is None}
 
 
-AT_REST, RUNS, IS_HELD = State(status(), None), State(status(0, RUNNING), None), State(status(system=HELD), None)
+AT_REST, RUNS, IS_HELD = (
+    ControlState(status(), None),
+    ControlState(status(0, RUNNING), None),
+    ControlState(status(system=HELD), None),
+)
 
 
 @pytest.mark.parametrize(
     ("state", "desk", "orders"),
     [
-        (State(None, None), Desk(), set()),
-        (State(None, None), AT_HAND, STOPS),
+        (ControlState(None, None), PanelState(), set()),
+        (ControlState(None, None), AT_HAND, STOPS),
         (AT_REST, AT_HAND, BY_HAND),
-        (AT_REST, Desk(connected=True, busy=True), STOPS),
-        (AT_REST, Desk(connected=True, watch_only=True), STOPS),
-        (AT_REST, OPENED, BY_HAND | TAKEN | {Order.APPROACH}),
-        (AT_REST, LOADED, BY_HAND | TAKEN | {Order.APPROACH, Order.START}),
-        (State(status(STANDING), None), LOADED, STOPS | TAKEN | {Order.HOME, Order.OVERRIDE}),
-        (State(status(HOMED), None), AT_HAND, STOPS | {Order.OVERRIDE}),
-        (RUNS, LOADED, STOPS | {Order.OVERRIDE}),
-        (IS_HELD, LOADED, STOPS | {Order.RESUME}),
-        (State(status(), None, lost="cut"), LOADED, STOPS),
+        (AT_REST, PanelState(connected=True, busy=True), STOPS),
+        (AT_REST, PanelState(connected=True, watch_only=True), STOPS),
+        (AT_REST, OPENED, BY_HAND | TAKEN | {OperatorCommand.APPROACH}),
+        (AT_REST, LOADED, BY_HAND | TAKEN | {OperatorCommand.APPROACH, OperatorCommand.START}),
+        (
+            ControlState(status(STANDING), None),
+            LOADED,
+            STOPS | TAKEN | {OperatorCommand.HOME, OperatorCommand.OVERRIDE},
+        ),
+        (ControlState(status(HOMED), None), AT_HAND, STOPS | {OperatorCommand.OVERRIDE}),
+        (RUNS, LOADED, STOPS | {OperatorCommand.OVERRIDE}),
+        (IS_HELD, LOADED, STOPS | {OperatorCommand.RESUME}),
+        (ControlState(status(), None, lost="cut"), LOADED, STOPS),
     ],
 )
 def test_what_makes_sense(state, desk, orders):
@@ -55,47 +71,58 @@ def test_what_makes_sense(state, desk, orders):
 
 
 @pytest.mark.parametrize(("watched", "phase", "moves"), [
-    (True, Phase.SEARCHING, True), (False, Phase.SEARCHING, False), (True, Phase.DONE, False),
+    (True, HomingPhase.SEARCHING, True), (False, HomingPhase.SEARCHING, False), (True, HomingPhase.DONE, False),
 ])  # fmt: skip
 def test_a_pause_of_a_homing_is_no_rest(watched, phase, moves):
-    state = State(status(), None, homing=Homing(phase, (), ()))
-    assert (Order.JOG not in allowed(state, Desk(connected=True, homing=watched))) == moves
+    state = ControlState(status(), None, homing=Homing(phase, (), ()))
+    assert (OperatorCommand.JOG not in allowed(state, PanelState(connected=True, homing=watched))) == moves
 
 
 @pytest.mark.parametrize(
-    ("block", "allows"), [(None, False), (Shown(1, 3), True), (Shown(3, 3), True), (Shown(4, 3), False)]
+    ("block", "allows"),
+    [(None, False), (BlockDisplay(1, 3), True), (BlockDisplay(3, 3), True), (BlockDisplay(4, 3), False)],
 )
 def test_a_step_needs_a_block_that_comes_next(block, allows):
-    state, desk = State(status(), None, block=block), Desk(connected=True, has_job=True, stepping=True)
-    assert (refusal(Order.STEP, facts(state, desk)) is None) == allows
-    assert refusal(Order.STEP, facts(state, OPENED)) is Why.NO_BLOCK  # those are blocks of another program
+    state, desk = ControlState(status(), None, block=block), PanelState(connected=True, has_job=True, stepping=True)
+    assert (blocking_interlock(OperatorCommand.STEP, active_interlocks(state, desk)) is None) == allows
+    assert (
+        blocking_interlock(OperatorCommand.STEP, active_interlocks(state, OPENED)) is Interlock.NO_BLOCK
+    )  # those are blocks of another program
 
 
 def test_to_go_on_needs_a_stop():
-    assert refusal(Order.GO_ON, facts(AT_REST, LOADED)) is Why.NO_STOP
-    assert refusal(Order.GO_ON, facts(AT_REST, Desk(connected=True, has_job=True, has_stops=True))) is None
+    assert blocking_interlock(OperatorCommand.GO_ON, active_interlocks(AT_REST, LOADED)) is Interlock.NO_STOP
+    assert (
+        blocking_interlock(
+            OperatorCommand.GO_ON, active_interlocks(AT_REST, PanelState(connected=True, has_job=True, has_stops=True))
+        )
+        is None
+    )
 
 
 def test_the_reason_that_matters_most_comes_first():
-    found = facts(State(None, None), Desk())
-    assert {refusal(order, found) for order in Order} == {Why.NOT_CONNECTED}
-    assert refusal(Order.JOG, facts(State(status(0, RUNNING), None), AT_HAND)) is Why.RUNS
+    found = active_interlocks(ControlState(None, None), PanelState())
+    assert {blocking_interlock(order, found) for order in OperatorCommand} == {Interlock.NOT_CONNECTED}
+    assert (
+        blocking_interlock(OperatorCommand.JOG, active_interlocks(ControlState(status(0, RUNNING), None), AT_HAND))
+        is Interlock.RUNS
+    )
 
 
 def test_every_order_says_what_stands_against_it():
-    assert set(AGAINST) == set(Order)
-    assert {why for against in AGAINST.values() for why in against} == set(Why)
+    assert set(INTERLOCKS_OF) == set(OperatorCommand)
+    assert {why for against in INTERLOCKS_OF.values() for why in against} == set(Interlock)
 
 
 @pytest.mark.parametrize(
     ("state", "moves"),
     [
-        (State(None, None), False),
+        (ControlState(None, None), False),
         (AT_REST, False),
         (RUNS, True),
         (IS_HELD, False),
-        (State(status(0), None), True),
-        (State(status(), None, lost="cut", emergency=("press",)), True),
+        (ControlState(status(0), None), True),
+        (ControlState(status(), None, lost="cut", emergency=("press",)), True),
     ],
 )
 def test_what_nobody_should_walk_away_from(state, moves):

@@ -7,18 +7,17 @@ import numpy as np
 import pytest
 from station import MACHINE, SETTINGS, TOOL
 
-from pkm_post.control.link.readout import Pose
+from pkm_post.control.link.tool_pose import Pose
 from pkm_post.control.numerical_control.control import TOLERANCES
-from pkm_post.control.numerical_control.mdi import line_trajectory
-from pkm_post.control.numerical_control.moves import Cartesian, OneStrut, trajectory_of
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog, jog_trajectory, mdi_trajectory
 from pkm_post.control.numerical_control.plan import _followed, planned
 
 MICRON = 1e-3
 HERE = Pose(np.array([10.0, -20.0, 280.0]), np.array([0.0, 0.0, 1.0]), 0.02)
 
 
-def way(jog=Cartesian((15, 0, 0), (0.1, 0.0))):  # noqa: B008 - frozen
-    return trajectory_of(jog, MACHINE, HERE, TOOL, 10.0)[0]
+def way(jog=CartesianJog((15, 0, 0), (0.1, 0.0))):  # noqa: B008 - frozen
+    return jog_trajectory(jog, MACHINE, HERE, TOOL, 10.0)[0]
 
 
 def test_a_plan_is_certified_and_ends_where_it_was_asked_to():
@@ -48,14 +47,14 @@ def test_lengths_that_lead_nowhere_are_refused():
 
 
 def test_the_feed_is_kept_and_limited():
-    slow, fast = (trajectory_of(Cartesian((5, 0, 0)), MACHINE, HERE, TOOL, feed)[0] for feed in (3.0, 1e6))
+    slow, fast = (jog_trajectory(CartesianJog((5, 0, 0)), MACHINE, HERE, TOOL, feed)[0] for feed in (3.0, 1e6))
     assert slow.feed.tolist() == [3.0] and fast.feed.tolist() == [MACHINE.feed_speed]
     for feed in (0.0, -1.0, np.nan, np.inf):
         with pytest.raises(ValueError, match="feed: expected a number above zero"):
-            trajectory_of(Cartesian((5, 0, 0)), MACHINE, HERE, TOOL, feed)
+            jog_trajectory(CartesianJog((5, 0, 0)), MACHINE, HERE, TOOL, feed)
 
 
-@pytest.mark.parametrize("jog", [Cartesian((np.nan, 0, 0)), Cartesian(spin=np.inf), OneStrut(2, np.nan)])
+@pytest.mark.parametrize("jog", [CartesianJog((np.nan, 0, 0)), CartesianJog(spin=np.inf), StrutJog(2, np.nan)])
 def test_jogs_are_finite(jog):
     with pytest.raises(ValueError, match="expected"):
         way(jog)
@@ -64,12 +63,12 @@ def test_jogs_are_finite(jog):
 @pytest.mark.parametrize("strut", [0, 7])
 def test_there_are_six_struts(strut):
     with pytest.raises(ValueError, match="strut: expected 1 to 6"):
-        OneStrut(strut, 1.0)
+        StrutJog(strut, 1.0)
 
 
 def test_a_plan_is_one_program():
     line = "G91 G82 X5 Y0 Z-8 R-2 P0.1 L3 F600"  # three holes, a dwell in each: it could be cut there
-    trajectory, told = line_trajectory(line, MACHINE, HERE, TOOL)
+    trajectory, told = mdi_trajectory(line, MACHINE, HERE, TOOL)
     assert trajectory is not None and not told
     assert planned(trajectory, MACHINE, SETTINGS, TOLERANCES)[0] is not None
     small = dataclasses.replace(SETTINGS, memory_words=1200)

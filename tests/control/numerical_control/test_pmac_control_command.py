@@ -13,7 +13,7 @@ from rig import served
 from station import PER_BLOCK, SETTINGS, TOOL, job, set_up
 
 from pkm_post.cli import main
-from pkm_post.cli.pmac_control import tell_emergency
+from pkm_post.cli.pmac_manual import print_emergency_steps
 from pkm_post.model import Event, EventKind
 from pkm_post.posting.post_file import post_file
 from pkm_post.writing.controllers.pmac import program_text
@@ -195,5 +195,5 @@ def test_arguments_without_sense_by_hand(arguments):
     [("hold", False, True), ("run", False, False), ("run", True, True), ("status", True, False)],
 )
 def test_when_people_are_told_what_to_do(name, connected, told, capsys):
-    tell_emergency(name, connected)
+    print_emergency_steps(name, connected)
     assert ("EMERGENCY STOP" in capsys.readouterr().err) == told

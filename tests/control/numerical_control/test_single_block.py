@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from station import MACHINE, SETTINGS, TOOL, new_station
 
-from pkm_post.control.link.faults import NotReadyError
-from pkm_post.control.link.job import read_job
-from pkm_post.control.numerical_control.execute import off_target
-from pkm_post.control.numerical_control.single_block import blocks_of_program
+from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.link.program import read_job
+from pkm_post.control.numerical_control.execute import target_deviation
+from pkm_post.control.numerical_control.single_block import read_blocks
 from pkm_post.model import EventKind
 from pkm_post.posting.post_file import post_file
 from pkm_post.writing.controllers.pvt.writer import rests
@@ -58,7 +58,7 @@ def post(folder, source, *tools):
 
 
 def blocks_in(folder):
-    blocks, told = blocks_of_program(folder / "part.pmc", MACHINE)
+    blocks, told = read_blocks(folder / "part.pmc", MACHINE)
     assert blocks is not None and not told
     return blocks
 
@@ -107,7 +107,7 @@ def test_each_start_runs_one_line_and_rests_at_its_end(posted, kind):
         state = station.to_rest()
         assert not state.status.running and state.block.number == number + 1
         assert np.linalg.norm(state.pose.tip - origin(blocks) - end) < 5 * MICRON
-        assert off_target(state.status, plan.lengths) < 2 * COUNT and state.status.words() == ()
+        assert target_deviation(state.status, plan.lengths) < 2 * COUNT and state.status.words() == ()
         spindle[line], coolant[line] = read("P", 7001), read("P", 7002)
     assert spindle == dict.fromkeys(ENDS, 1) | {16: 0}  # M5 stands behind all that moves
     assert coolant == {line: int(10 <= line < 16) for line in ENDS}  # M8 stands behind line 6: with the next that moves
@@ -154,7 +154,7 @@ def test_a_block_that_is_held_goes_on_and_the_next_one_waits(station, posted):
     control.hold()
     assert control.poll().block.number == 2 and control.poll().status.held
     control.resume()
-    assert off_target(station.to_rest().status, plan.lengths) < 2 * COUNT
+    assert target_deviation(station.to_rest().status, plan.lengths) < 2 * COUNT
 
 
 def test_a_block_does_not_begin_elsewhere(station, posted):
@@ -189,7 +189,7 @@ def test_a_source_that_is_not_the_one_that_was_posted_is_not_shown(tmp_path):
 
 
 def refused(folder, machine=MACHINE):
-    blocks, told = blocks_of_program(folder / "part.pmc", machine)
+    blocks, told = read_blocks(folder / "part.pmc", machine)
     assert blocks is None
     return [each.code for each in told]
 

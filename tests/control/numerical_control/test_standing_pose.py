@@ -6,7 +6,7 @@ import pytest
 from machines import random_poses
 from station import MACHINE, TOOL
 
-from pkm_post.control.link.readout import spin_of, standing_pose
+from pkm_post.control.link.tool_pose import pose_from_home, spin_of
 from pkm_post.machine import platform_rotation, strut_lengths
 
 NANOMETRE = 1e-6
@@ -27,10 +27,10 @@ def test_the_pose_of_lengths(poses):
     tip, axis, spin, tool = poses
     lengths = strut_lengths(MACHINE, tip, axis, spin, tool)
     for row in range(COUNT):
-        pose = standing_pose(MACHINE, lengths[row], TOOL)
+        pose = pose_from_home(MACHINE, lengths[row], TOOL)
         assert np.allclose(pose.tip, tip[row], atol=NANOMETRE) and np.allclose(pose.axis, axis[row], atol=1e-9)
         assert pose.spin == pytest.approx(spin[row], abs=1e-9)
 
 
 def test_lengths_without_pose():
-    assert standing_pose(MACHINE, np.array([750.0, 1250, 750, 1250, 750, 1250]), TOOL) is None
+    assert pose_from_home(MACHINE, np.array([750.0, 1250, 750, 1250, 750, 1250]), TOOL) is None

@@ -18,8 +18,8 @@ from rig import served
 from station import SETTINGS, set_up
 
 from pkm_post.cli import main
-from pkm_post.control.numerical_control.emergency import NOT_AT_REST, STEPS
-from pkm_post.control.simulator import Line, Server
+from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST
+from pkm_post.control.simulator import SerialPort, Server
 from pkm_post.model import StrutMotion
 from pkm_post.writing.controllers.pmac import program_text
 
@@ -111,7 +111,7 @@ def process_is_still(process, number):
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_stream_at_rest(made, tmp_path, number):
-    assert not Line(made).refusal("&1DEFINE ROT 8000")
+    assert not SerialPort(made).refusal("&1DEFINE ROT 8000")
     with served(made) as port:
         process = started("stream", port, "--uncertified", "--rotary", "8000", str(slow_job(tmp_path)))
         until(lambda: is_moving(made) or process.poll() is not None)
@@ -165,7 +165,7 @@ def test_whoever_ends_the_trying_is_told_what_to_do():
     assert NOT_AT_REST[0] in told
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=LONGEST_S)
-    assert process.returncode == 1 and STEPS[1] in said
+    assert process.returncode == 1 and EMERGENCY_STEPS[1] in said
 
 
 def test_a_stop_waits_for_a_controller_that_does_not_answer_yet(made, capsys):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from station import PER_BLOCK, job
 
-from pkm_post.control.link.faults import NotReadyError
-from pkm_post.control.numerical_control.stops import job_behind, same, stops_of
+from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.numerical_control.execute import program_stops, remaining_job, same
 from pkm_post.model import Event, EventKind
 
 COUNT = 1e-4
@@ -38,7 +38,7 @@ def spindle(station):
 
 def test_what_stands_behind_a_stop(station):
     made = job(station.settings, EVENTS)
-    behind = job_behind(made, stops_of(made)[0], station.settings)
+    behind = remaining_job(made, program_stops(made)[0], station.settings)
     assert behind.program.number == made.program.number
     for name in ("length", "speed"):
         assert np.array_equal(getattr(behind.motion, name), getattr(made.motion, name)[PER_BLOCK:])
@@ -53,7 +53,7 @@ def test_what_stands_behind_a_stop(station):
 
 def test_from_stop_to_stop_to_the_end(station):
     made = job(station.settings, EVENTS)
-    first, second = stops_of(made)
+    first, second = program_stops(made)
     assert np.allclose(run(station, made).status.commanded, first.length, atol=COUNT) and spindle(station) == 0
     assert station.control.go_on(made, 1).running
     assert np.allclose(station.to_rest().status.commanded, second.length, atol=COUNT) and spindle(station) == 1

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from station import MACHINE, SETTINGS, TOOL, new_station, set_up
 
-from pkm_post.control.link.faults import NotReadyError
+from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.numerical_control.control import NumericalControl
-from pkm_post.control.numerical_control.moves import Cartesian, OneStrut
-from pkm_post.control.numerical_control.watchdog import CREDIT_MS, watched
+from pkm_post.control.numerical_control.execute import CREDIT_MS, with_watchdog
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog
 from pkm_post.planning.knots import LONGEST_MS
 
-LONG = Cartesian(shift=(100.0, 0.0, 0.0))
+LONG = CartesianJog(shift=(100.0, 0.0, 0.0))
 FEED = 5.0
 """mm/s: the jog takes twenty seconds."""
 
@@ -43,7 +43,7 @@ def silent_until_rest(station):
 def test_the_lines_of_the_program_are_untouched(station):
     plan, _ = station.control.plan_jog(LONG, FEED)
     lines = plan.job.program.lines
-    with_dog = watched(lines, 77, 2)
+    with_dog = with_watchdog(lines, 77, 2)
     own = [line for line in with_dog if "P77" in line]
     assert tuple(line for line in with_dog if "P77" not in line) == lines
     assert own[0] == f"P77={CREDIT_MS}" and own[2::2] == ['IF(P77<0)COMMAND"&2H"'] * (len(own) // 2)
@@ -52,7 +52,7 @@ def test_the_lines_of_the_program_are_untouched(station):
 
 
 @pytest.mark.parametrize("kind", ["tcp", "serial"])
-@pytest.mark.parametrize(("jog", "feed"), [(LONG, FEED), (LONG, 40.0), (OneStrut(2, 20.0), FEED)])
+@pytest.mark.parametrize(("jog", "feed"), [(LONG, FEED), (LONG, 40.0), (StrutJog(2, 20.0), FEED)])
 def test_a_jog_without_a_computer_comes_to_rest(kind, jog, feed):
     station = new_station(kind)
     begun(station, jog, feed)

@@ -7,10 +7,10 @@ from concurrent.futures import CancelledError
 
 import pytest
 
-from pkm_post.control.link.faults import NotReadyError
-from pkm_post.control.numerical_control.control import State
-from pkm_post.control.numerical_control.emergency import NOT_AT_REST
-from pkm_post.control.numerical_control.moves import Cartesian
+from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.link.stopping import NOT_AT_REST
+from pkm_post.control.numerical_control.control import ControlState
+from pkm_post.control.numerical_control.manual_moves import CartesianJog
 from pkm_post.control.numerical_control.worker import Worker
 
 LONGEST_S = 20.0
@@ -34,7 +34,7 @@ class Stub:
         self.polls += 1
         if self.polls == -1:
             raise ZeroDivisionError
-        return State(None, None, lost=str(self.polls))
+        return ControlState(None, None, lost=str(self.polls))
 
 
 def until(holds):
@@ -186,7 +186,7 @@ def test_a_fault_of_ours_is_not_hidden(worker, stub):
 def test_a_machine_is_operated(station):
     worker = Worker(station.control, period=0.01)
     try:
-        plan, told = worker.submit(lambda control: control.plan_jog(Cartesian((2, 0, 0)), 10.0)).result(LONGEST_S)
+        plan, told = worker.submit(lambda control: control.plan_jog(CartesianJog((2, 0, 0)), 10.0)).result(LONGEST_S)
         assert not told
         worker.submit(lambda control: control.execute(plan)).result(LONGEST_S)
         worker.submit(lambda control: station.to_rest()).result(LONGEST_S)

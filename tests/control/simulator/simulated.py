@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from controller_settings import settings_for
 
-from pkm_post.control.simulator import Controller, Line, SimulatorSettings
+from pkm_post.control.simulator import Controller, SerialPort, SimulatorSettings
 from pkm_post.model import StrutMotion
 
 LETTERS = "ABCUVW"
@@ -19,7 +19,7 @@ class Machine:
     """A controller and one port, asked in text."""
 
     controller: Controller
-    line: Line
+    line: SerialPort
 
     def bytes(self, data):
         return self.line.receive(data)
@@ -65,7 +65,7 @@ class Machine:
 
 def make(**settings):
     controller = Controller(SimulatorSettings(**settings))
-    machine = Machine(controller, Line(controller))
+    machine = Machine(controller, SerialPort(controller))
     machine.line.attend()
     machine.bytes(b"I3=2 I6=1\r")
     return machine

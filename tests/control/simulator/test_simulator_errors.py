@@ -4,7 +4,7 @@
 import pytest
 from simulated import make
 
-from pkm_post.control.simulator import MEANINGS, CommandError
+from pkm_post.control.simulator import ERROR_TEXTS, CommandError
 
 NEVER = {8, 18, 19}
 """MACRO auxiliary communication, phase reference and the buffer of cutter compensation are not simulated."""
@@ -13,7 +13,7 @@ PROGRAM = "OPEN PROG 10\nCLEAR\nLINEAR TM1000\nA510\nA520\nCLOSE"
 
 
 def test_each_number_has_a_meaning():
-    assert sorted(MEANINGS) == list(range(1, 20))
+    assert sorted(ERROR_TEXTS) == list(range(1, 20))
     assert str(CommandError(12)) == "ERR012: a motor is open-loop"
 
 

@@ -6,7 +6,7 @@ import struct
 
 import pytest
 
-from pkm_post.control.simulator import Controller, Line, Packets
+from pkm_post.control.simulator import Controller, EthernetPort, SerialPort
 
 
 def packet(kind, request, data=b"", value=0, length=None):
@@ -25,7 +25,7 @@ FLUSH = packet(0x40, 0xB3)
 
 @pytest.fixture
 def link():
-    packets = Packets(Line(Controller()))
+    packets = EthernetPort(SerialPort(Controller()))
     packets.receive(get_response("I3=2 I6=1"))
     return packets
 
@@ -112,9 +112,9 @@ def test_what_is_no_packet_is_passed_over(link):
 
 def test_the_port_stays_what_it_is_when_a_connection_ends():
     # A buffer that one connection left open is closed by the next: to the controller there is one Ethernet port.
-    line = Line(Controller())
-    Packets(line).receive(get_response("I3=2 I6=1 OPEN PROG 10"))
-    after = Packets(line)
+    line = SerialPort(Controller())
+    EthernetPort(line).receive(get_response("I3=2 I6=1 OPEN PROG 10"))
+    after = EthernetPort(line)
     assert after.receive(get_response("X1")) == b"\x06"
     assert after.receive(get_response("CLOSE")) == b"\x06"
     assert after.receive(get_response("LIST PROG 10")) == b"X1\rRET\r\x06"

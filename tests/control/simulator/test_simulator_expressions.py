@@ -4,9 +4,8 @@ import random
 import pytest
 
 from pkm_post.control.simulator.errors import CommandError
-from pkm_post.control.simulator.expressions import expression
-from pkm_post.control.simulator.numerals import kept, printed
-from pkm_post.control.simulator.scanner import Scanner
+from pkm_post.control.simulator.expressions import Scanner, expression
+from pkm_post.control.simulator.variables import printed, stored
 
 LAST_BIT = 2.0**-35
 """Of a mantissa between 1/2 and 1."""
@@ -56,8 +55,8 @@ def test_a_word_keeps_about_ten_and_a_half_digits():
     chance = random.Random(1)
     for _ in range(2000):
         value = chance.uniform(-1, 1) * 10.0 ** chance.randint(-12, 12)
-        assert abs(kept(value) - value) <= abs(value) * LAST_BIT
-        assert kept(kept(value)) == kept(value)
+        assert abs(stored(value) - value) <= abs(value) * LAST_BIT
+        assert stored(stored(value)) == stored(value)
 
 
 def test_what_is_printed_reads_back_as_the_same_word():
@@ -65,7 +64,7 @@ def test_what_is_printed_reads_back_as_the_same_word():
     for _ in range(2000):
         value = round(chance.uniform(-2000, 2000), chance.randint(0, 9))
         text = printed(value)
-        assert kept(float(text)) == kept(value)
+        assert stored(float(text)) == stored(value)
         assert "e" not in text and not text.startswith(".")
 
 

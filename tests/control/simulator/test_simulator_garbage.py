@@ -6,7 +6,7 @@ import random
 import pytest
 from simulated import ready_machine
 
-from pkm_post.control.simulator import Controller, Line, Packets
+from pkm_post.control.simulator import Controller, EthernetPort, SerialPort
 
 TEXT = r"""
 #1 #7 #33 -> J+ J- J/ J= J=100 J^5 HM HMZ K A R S H Q B10 B0 &1 &2 % %50 %999 P V F ? ?? ??? I3=2 I3=0 I4=1 I4=0
@@ -34,7 +34,7 @@ def assert_alive(line):
 @pytest.mark.parametrize("seed", range(8))
 def test_bytes_of_chance(seed):
     chance = random.Random(seed)
-    line = Line(Controller())
+    line = SerialPort(Controller())
     for _ in range(60):
         line.receive(chance.randbytes(chance.randint(1, 100)))
         line.controller.advance(chance.choice([0, 1, 5]))
@@ -55,8 +55,8 @@ def test_commands_of_chance(seed):
 @pytest.mark.parametrize("seed", range(8))
 def test_packets_of_chance(seed):
     chance = random.Random(seed)
-    port = Line(Controller())
-    link = Packets(port)
+    port = SerialPort(Controller())
+    link = EthernetPort(port)
     for _ in range(200):
         head = bytes([chance.choice([0x40, 0xC0, chance.randrange(256)]), chance.choice([*range(0xB0, 0xCC)])])
         data = chance_line(chance).encode()
@@ -127,7 +127,7 @@ def test_programs_beyond_all_bounds(body):
 
 
 def test_long_lines_by_ethernet_are_refused_as_well():
-    port = Line(Controller())
+    port = SerialPort(Controller())
     data = ("P1=" + "+".join("1" * 700)).encode()
-    answer = Packets(port).receive(b"\x40\xbf\0\0\0\0" + len(data).to_bytes(2, "big") + data)
+    answer = EthernetPort(port).receive(b"\x40\xbf\0\0\0\0" + len(data).to_bytes(2, "big") + data)
     assert answer == b"\x07\nERR003\r"

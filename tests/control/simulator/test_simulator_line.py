@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from pkm_post.control.simulator import Controller, Line
+from pkm_post.control.simulator import Controller, SerialPort
 
 # Software Reference, I3: for each value no data, data, and an invalid command (I6 = 1).
 FRAMES = {
@@ -39,7 +39,7 @@ def test_errors_are_told_as_i6_says(pmac, form, handshake, answer):
 
 
 def test_after_a_reset_the_handshake_is_a_line_feed():
-    assert Line(Controller()).receive(b"I3\r") == b"\n1\r\n"
+    assert SerialPort(Controller()).receive(b"I3\r") == b"\n1\r\n"
 
 
 def test_sums_follow_the_data_and_the_handshake(pmac):
@@ -93,10 +93,10 @@ def test_a_line_feed_and_a_lone_carriage_return_do_nothing(pmac):
 
 def test_answers_do_not_depend_on_how_bytes_arrive(pmac):
     text = b"P1=3\rP1 P1\rFOO\r#1P\r\x10LIST PROG 1001\rI4=1\rP1..4\rP1\x0e\r"
-    whole = Line(Controller()).receive(text)
+    whole = SerialPort(Controller()).receive(text)
     chance = random.Random(1)
     for _ in range(20):
-        line, answer, at = Line(Controller()), b"", 0
+        line, answer, at = SerialPort(Controller()), b"", 0
         while at < len(text):
             size = chance.randint(1, 9)
             answer += line.receive(text[at : at + size])

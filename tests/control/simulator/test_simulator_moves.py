@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from pkm_post.control.simulator.moves import Blended, Cubic, ramps_of, share
-from pkm_post.control.simulator.profiles import endless, go_to, stop
+from pkm_post.control.simulator.motors import endless, go_to, stop
+from pkm_post.control.simulator.moves import BlendedMove, PvtMove, ramps_of, share
 from pkm_post.geometry import curves as hermite
 
 PICOMETRE = 1e-9  # mm
@@ -18,7 +18,7 @@ def test_a_pvt_move_is_the_cubic_of_the_geometry():
         p0, p1 = RNG.uniform(300, 900, (2, 9))
         v0, v1 = RNG.uniform(-0.3, 0.3, (2, 9))  # mm/ms
         duration = float(RNG.integers(1, 4096))
-        move = Cubic(17.0, duration, p0, p1, v0, v1)
+        move = PvtMove(17.0, duration, p0, p1, v0, v1)
         shares = RNG.uniform(0, 1, 20)
         expected = hermite.hermite_lengths(
             *(column[None] for column in (p0, v0, p1, v1)), np.array([duration]), shares
@@ -29,7 +29,7 @@ def test_a_pvt_move_is_the_cubic_of_the_geometry():
 
 def test_before_and_after_a_pvt_move_the_axes_are_at_its_ends():
     p0, p1 = np.zeros(9), np.ones(9)
-    move = Cubic(10.0, 20.0, p0, p1, p0 + 0.1, p1 * 0.2)
+    move = PvtMove(10.0, 20.0, p0, p1, p0 + 0.1, p1 * 0.2)
     assert (move.missing(5.0) == 1).all()
     assert np.abs(move.missing(40.0)).max() < 1e-15
 
@@ -65,8 +65,8 @@ def test_the_share_grows_from_nothing_to_one_evenly_about_the_middle(boxes):
 def test_moves_that_blend_go_on_at_their_speed():
     # Two moves of the same speed in one line: no change of speed where they meet.
     step = np.array([10.0] + [0.0] * 8)
-    first = Blended(0.0, 100.0, (20.0,), step, step, True)
-    second = Blended(first.hand_over, 100.0, (20.0,), step, 2 * step, True)
+    first = BlendedMove(0.0, 100.0, (20.0,), step, step, True)
+    second = BlendedMove(first.hand_over, 100.0, (20.0,), step, 2 * step, True)
     times = np.arange(20, 200, 1.0)
     places = np.array([(2 * step - first.missing(time) - second.missing(time))[0] for time in times])
     assert np.abs(np.diff(places) - 0.1).max() < 1e-12

@@ -118,9 +118,9 @@ def test_while_a_buffer_is_open_questions_are_answered(machine):
 
 
 def test_other_ports_cannot_fill_or_close_what_one_has_opened(pmac):
-    from pkm_post.control.simulator import Line
+    from pkm_post.control.simulator import SerialPort
 
-    other = Line(pmac.controller)
+    other = SerialPort(pmac.controller)
     pmac.lines("OPEN PROG 1\nCLEAR")
     assert other.receive(b"X1\r") == b"\x07ERR005\r"
     assert other.receive(b"OPEN PROG 2\r") == b"\x07ERR007\r"

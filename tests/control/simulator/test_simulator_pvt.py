@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from simulated import PROGRAM_SETTINGS, curved_motion
 
-from pkm_post.control.simulator.numerals import kept
+from pkm_post.control.simulator.variables import stored
 from pkm_post.geometry.curves import hermite_lengths
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.writing.controllers.pmac import program_text
@@ -46,7 +46,7 @@ def played(motion, times):
 
 def as_kept(motion):
     """The motion with the numbers of its program as words of the controller."""
-    word = np.vectorize(kept)
+    word = np.vectorize(stored)
     return StrutMotion(motion.time_ms, word(motion.length.round(6)), word(motion.speed.round(4)), motion.events)
 
 

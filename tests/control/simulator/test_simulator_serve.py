@@ -15,7 +15,8 @@ import pytest
 from interpreter import PYTHON
 
 from pkm_post.cli import main
-from pkm_post.control.simulator import Controller, Server, serve
+from pkm_post.control.simulator import Controller, Server
+from pkm_post.control.simulator import server as serve
 
 DEADLINE_S = 10.0
 

@@ -4,7 +4,7 @@
 import pytest
 from controller_settings import settings_for
 
-from pkm_post.control.link.job import read_job
+from pkm_post.control.link.program import read_job
 from pkm_post.writing.controllers import pmac, read_text, read_texts, text_of
 
 SETTINGS = settings_for()

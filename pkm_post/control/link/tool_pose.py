@@ -7,11 +7,13 @@ kinematics, each warm-started from the previous pose, and lines of text.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.control.link.status import MOTORS, Array, Status
+from pkm_post.geometry import angle_between, norm
 from pkm_post.machine import follow, newton, platform_rotation, strut_lengths
 from pkm_post.model import Machine
 
@@ -33,7 +35,7 @@ class Pose:
     spin: float
 
 
-class Readout:
+class ToolPoseReadout:
     """Computes poses in sequence."""
 
     def __init__(self, machine: Machine, tool_length: float) -> None:
@@ -66,7 +68,7 @@ def spin_of(rotation: Array) -> Array:
     return spun
 
 
-def standing_pose(machine: Machine, length: Array, tool_length: float) -> Pose | None:
+def pose_from_home(machine: Machine, length: Array, tool_length: float) -> Pose | None:
     """The pose for strut lengths, given only that the machine reached them from its home.
 
     A single Newton solve may converge to another pose with the same lengths. So the lengths are stepped from home in
@@ -116,3 +118,59 @@ def _activity(status: Status) -> str:
     if not status.running:
         return "no program runs" if status.standing else "no program runs, BUT THE MACHINE MOVES"
     return "a program is held" if status.held else "a program runs"
+
+
+@dataclass(frozen=True)
+class PoseDeviation:
+    """Distance of a tool from its target pose.
+
+    Attributes:
+        tip: mm.
+        axis: rad.
+        spin: rad.
+    """
+
+    tip: float
+    axis: float
+    spin: float
+
+    def __str__(self) -> str:
+        axis, spin = math.degrees(self.axis), math.degrees(self.spin)
+        return f"tip {self.tip:.3f} mm, axis {axis:.4f} degrees, spin {spin:.4f} degrees"
+
+    def most(self, radius: float) -> float:
+        """The largest of tip distance and turns, mm, where a turn counts as the displacement of a point at a radius."""
+        return max(self.tip, radius * self.axis, radius * self.spin)
+
+
+def deviation_from_start(machine: Machine, length: Array, first: Array) -> PoseDeviation | None:
+    """The distance of the tool from the start; None if no pose reachable from home has these lengths.
+
+    Args:
+        machine: the geometry.
+        length: (6,) current strut lengths, mm.
+        first: (6,) strut lengths of the first point, mm.
+    """
+    here, start = (pose_from_home(machine, each, machine.rest_tool_length) for each in (length, first))
+    if here is None or start is None:
+        return None
+    axis = float(angle_between(here.axis[None], start.axis[None])[0])
+    spin = abs(math.remainder(here.spin - start.spin, 2 * math.pi))
+    return PoseDeviation(float(norm((here.tip - start.tip)[None])[0]), axis, spin)
+
+
+def start_faults(machine: Machine, length: Array, first: Array, near: float) -> tuple[str, ...]:
+    """Why a program may not start from the current pose, in plain text; empty if it may.
+
+    Args:
+        machine: the geometry.
+        length: (6,) current strut lengths, mm.
+        first: (6,) strut lengths of the first point, mm.
+        near: largest distance of the tip, and, by its turns, of a point at the characteristic length, mm.
+    """
+    away = deviation_from_start(machine, length, first) if np.isfinite([length, first]).all() else None
+    if away is None:
+        return ("no pose of the platform that small steps from home lead to has the lengths of the struts",)
+    if away.most(machine.characteristic_length) <= near:
+        return ()
+    return (f"the tool is away from the start of the program: {away}; let the way there be planned: approach",)

@@ -17,6 +17,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
+from pkm_post.control.link.status import Array
+from pkm_post.model import Diagnostic, StrutMotion
+from pkm_post.writing import PmacSettings, read_part
+
 _TOKEN = re.compile(r"\d+(?:\.\d*)?|\.\d+|[A-Z]+|\S")
 _WORD = re.compile(r"[A-Z]+|\d+(?:\.\d+)?")
 _PRECISION = Decimal(2) ** -35
@@ -26,7 +30,7 @@ _OPENING = re.compile(r"CLOSE\nDELETE GATHER\nOPEN PROG (\d+)\nCLEAR\n(.+\n)CLOS
 
 
 @dataclass(frozen=True)
-class Program:
+class PmacProgram:
     """A program in the form that the controller receives.
 
     Attributes:
@@ -45,15 +49,15 @@ class Program:
     @property
     def words(self) -> int:
         """Its size in 48-bit words of memory."""
-        return sum(map(words_of, self.lines))
+        return sum(map(line_words, self.lines))
 
 
-def words_of(line: str) -> int:
+def line_words(line: str) -> int:
     """Size of a line in 48-bit words: two for a length with its speed; elsewhere one for each word and number."""
     return 2 * line.count(":") or len(_WORD.findall(line))
 
 
-def program_of(text: str) -> Program:
+def parse_program(text: str) -> PmacProgram:
     """Parse a text written by ``controllers.pmac``.
 
     Raises:
@@ -63,11 +67,11 @@ def program_of(text: str) -> Program:
     found = _OPENING.fullmatch("\n".join(line for line in lines if line))
     if found is None:
         raise ValueError("text: expected CLOSE, DELETE GATHER, OPEN PROG, CLEAR, lines and CLOSE")
-    return Program(int(found[1]), tuple(found[2].removesuffix("\n").split("\n")))
+    return PmacProgram(int(found[1]), tuple(found[2].removesuffix("\n").split("\n")))
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ListingComparison:
     """The result of comparing a listing with a program.
 
     Attributes:
@@ -88,7 +92,7 @@ class Comparison:
         return self.all_there and self.nothing_else
 
 
-def compare(written: Sequence[str], listed: Sequence[str]) -> Comparison:
+def compare_listing(written: Sequence[str], listed: Sequence[str]) -> ListingComparison:
     """Compare a listing with the lines sent.
 
     Args:
@@ -105,10 +109,12 @@ def compare(written: Sequence[str], listed: Sequence[str]) -> Comparison:
     )
     shown = " ".join(rows[lines]) if lines < len(rows) else "nothing"
     if lines < len(written):
-        return Comparison(
+        return ListingComparison(
             lines, False, lines == len(rows), f"line {lines + 1}: sent {written[lines]!r}, listed is {shown!r}"
         )
-    return Comparison(lines, True, lines == len(rows), "" if lines == len(rows) else f"behind the last line: {shown!r}")
+    return ListingComparison(
+        lines, True, lines == len(rows), "" if lines == len(rows) else f"behind the last line: {shown!r}"
+    )
 
 
 def _same_line(written: str, listed: Sequence[str]) -> bool:
@@ -124,3 +130,35 @@ def _same(written: str, listed: str) -> bool:
     wanted = Decimal(written)
     last_digit = Decimal(1).scaleb(wanted.as_tuple().exponent)  # type: ignore[arg-type]
     return abs(Decimal(listed) - wanted) <= max(last_digit / 100, abs(wanted) * _PRECISION)
+
+
+@dataclass(frozen=True)
+class Job:
+    """A program that is valid to send.
+
+    Attributes:
+        program: the lines for the controller.
+        motion: its strut motion.
+    """
+
+    program: PmacProgram
+    motion: StrutMotion
+
+    @property
+    def first(self) -> Array:
+        """(6,) strut lengths at its first point, mm."""
+        return self.motion.length[0]
+
+
+def read_job(text: str, settings: PmacSettings, file: str) -> tuple[Job | None, tuple[Diagnostic, ...]]:
+    """Read a program file.
+
+    Args:
+        text: of the file. A part of a larger program is read separately.
+        settings: of the machine's controller.
+        file: its name, for diagnostics.
+    """
+    motion, faults = read_part(text, settings, file)
+    if motion is None:
+        return None, faults
+    return Job(parse_program(text), motion), faults

@@ -7,17 +7,131 @@ error format [TurboPMAC, I3, I4, I6]. Control characters act at once, even insid
 
 from __future__ import annotations
 
-from pkm_post.control.simulator.control import CONTROLS
+from collections.abc import Callable
+
 from pkm_post.control.simulator.controller import Controller
 from pkm_post.control.simulator.errors import CHARACTER, DATA, CommandError
-from pkm_post.control.simulator.online import Session, execute
+from pkm_post.control.simulator.online import PortSession, execute, global_status, motor_status, system_status
+from pkm_post.control.simulator.online_memory import open_rotary
+from pkm_post.control.simulator.online_motion import position_text, run
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS
+
+Control = Callable[[PortSession], list[str] | None]
+"""The action of a control character; None if it has no answer."""
+
+
+def _abort_all(session: PortSession) -> None:
+    """End all programs; stop each motor on its own ramp, and close open loops."""
+    for system in session.controller.systems:
+        system.forget()
+    for index in range(SIMULATED_MOTORS):
+        session.controller.motors.abort(index)
+
+
+def _kill_all(session: PortSession) -> None:
+    session.controller.kill_all()
+
+
+def _hold_all(session: PortSession) -> None:
+    for system in session.controller.systems:
+        system.hold()
+
+
+def _quit_all(session: PortSession) -> None:
+    for system in session.controller.systems:
+        system.quit()
+
+
+def _run_all(session: PortSession) -> None:
+    _start_all(session, step=False)
+
+
+def _step_all(session: PortSession) -> None:
+    _start_all(session, step=True)
+
+
+def _start_all(session: PortSession, step: bool) -> None:
+    """Start every coordinate system that has a program; the first refusal is raised at the end."""
+    refusals = []
+    for system in session.controller.systems:
+        if system.axes.definitions and system.interpreter.counter.pointer is not None:
+            try:
+                run(session.controller, system.number, step)
+            except CommandError as error:
+                refusals.append(error)
+    if refusals:
+        raise refusals[0]
+
+
+def _open_rotary(session: PortSession) -> None:
+    open_rotary(session)
+
+
+def _close_rotary(session: PortSession) -> None:
+    opened = session.controller.memory.opened
+    if opened is not None and opened.program is None:
+        session.controller.memory.close(session)
+
+
+def _no_plc(session: PortSession) -> None:
+    """There are no PLC programs to disable."""
+
+
+def _bank(session: PortSession) -> range:
+    """The eight motors of the bank addressed by ``##n``."""
+    return range(8 * session.bank + 1, 8 * session.bank + 9)
+
+
+def _of_motors(what: str) -> Control:
+    return lambda session: [" ".join(position_text(session.controller, what, motor) for motor in _bank(session))]
+
+
+def _motor_words(session: PortSession) -> list[str]:
+    return [" ".join(motor_status(session.controller, motor) for motor in _bank(session))]
+
+
+def _system_words(session: PortSession) -> list[str]:
+    numbers = [number for number in _bank(session) if number <= SYSTEMS]
+    return [" ".join(system_status(session.controller, number) for number in numbers)]
+
+
+def _global_words(session: PortSession) -> list[str]:
+    return [global_status(session.controller)]
+
+
+def _code(letter: str) -> int:
+    return ord(letter) - ord("A") + 1
+
+
+CONTROLS: dict[int, Control] = {
+    _code(letter): act
+    for letter, act in {
+        "A": _abort_all,
+        "B": _motor_words,
+        "C": _system_words,
+        "D": _no_plc,
+        "F": _of_motors("F"),
+        "G": _global_words,
+        "K": _kill_all,
+        "L": _close_rotary,
+        "O": _hold_all,
+        "P": _of_motors("P"),
+        "Q": _quit_all,
+        "R": _run_all,
+        "S": _step_all,
+        "U": _open_rotary,
+        "V": _of_motors("V"),
+    }.items()
+}
+"""Actions by character code. The line handles ^H, ^M, ^N and ^X; others do nothing."""
+
 
 ACK, BEL, CR, LF, MARK = b"\x06", b"\x07", b"\r", b"\n", b"\x02"
 BACKSPACE, CHECK, CANCEL = 0x08, 0x0E, 0x18
 LAST_CHARACTER = 127
 
 
-class Line:
+class SerialPort:
     """One port: the line received so far, and the addresses for its commands.
 
     A controller's port does not detect a disconnect: a buffer stays open, a motor addressed.
@@ -25,7 +139,7 @@ class Line:
 
     def __init__(self, controller: Controller) -> None:
         self.controller = controller
-        self.session = Session(controller)
+        self.session = PortSession(controller)
         self._text = bytearray()
         self._error = 0
         self._unasked = bytearray()

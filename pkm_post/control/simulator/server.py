@@ -19,8 +19,8 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from pkm_post.control.simulator.controller import Controller
-from pkm_post.control.simulator.ethernet import Packets
-from pkm_post.control.simulator.line import Line
+from pkm_post.control.simulator.ethernet_port import EthernetPort
+from pkm_post.control.simulator.serial_port import SerialPort
 
 LOOPBACK = "127.0.0.1"
 WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
@@ -80,10 +80,10 @@ class Server:
     def __init__(self, controller: Controller, speed: float = 1.0) -> None:
         self._controller, self._speed = controller, speed
         self._selector = selectors.DefaultSelector()
-        self._ethernet, self._channels = Line(controller), dict[int | socket.socket, Channel]()
+        self._ethernet, self._channels = SerialPort(controller), dict[int | socket.socket, Channel]()
         self._closers: list[Callable[[], None]] = []
         self._listeners: dict[socket.socket, float] = {}
-        self._serial: list[tuple[Line, Channel]] = []
+        self._serial: list[tuple[SerialPort, Channel]] = []
 
     def add_tcp(self, port: int) -> int:
         """Listen on a local TCP port; 0 selects a free one.
@@ -118,7 +118,7 @@ class Server:
         os.set_blocking(ours, False)
         # The client end stays open here: otherwise a client that disconnects would look like a broken device.
         self._closers += [lambda: os.close(ours), lambda: os.close(theirs)]
-        line = Line(self._controller)
+        line = SerialPort(self._controller)
         line.attend()
         channel = Channel(lambda size: os.read(ours, size), lambda data: os.write(ours, data), lambda: None, line)
         self._serial.append((line, channel))
@@ -184,7 +184,7 @@ class Server:
         def send(data: bytes) -> int:
             return connection.send(data, WITHOUT_SIGNAL)
 
-        self._watch(connection, Channel(connection.recv, send, connection.close, Packets(self._ethernet)))
+        self._watch(connection, Channel(connection.recv, send, connection.close, EthernetPort(self._ethernet)))
 
     def _watch(self, source: int | socket.socket, channel: Channel) -> None:
         self._channels[source] = channel

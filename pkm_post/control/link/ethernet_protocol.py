@@ -23,9 +23,8 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 
-from pkm_post.control.link.bytewise import BytewiseConversation
-from pkm_post.control.link.exchange import Answer, Command, Kind, Lost, Refusal
-from pkm_post.control.link.responses import ResponseReader
+from pkm_post.control.link.protocol import Answer, ByteProtocol, Command, CommandKind, Lost, Refusal
+from pkm_post.control.link.serial_protocol import ResponseParser
 
 DOWNLOAD, UPLOAD = 0x40, 0xC0
 GETRESPONSE, GETBUFFER, WRITEBUFFER, FLUSH, CTRL_RESPONSE = 0xBF, 0xC5, 0xC6, 0xB3, 0xC4
@@ -52,7 +51,7 @@ def packet(request: int, data: bytes = b"", value: int = 0, length: int | None =
     return struct.pack(">BBHHH", kind, request, value, 0, len(data) if length is None else length) + data
 
 
-class EthernetConversation(BytewiseConversation):
+class EthernetProtocol(ByteProtocol):
     """A conversation in packets: I3=2, I4=0, I6=1.
 
     Attributes:
@@ -63,25 +62,25 @@ class EthernetConversation(BytewiseConversation):
     handshake = "I3=2 I4=0 I6=1 I9=3"
 
     def __init__(self, silence: float = 0.1) -> None:
-        """Create a conversation; as ``BytewiseConversation``."""
+        """Create a conversation; as ``ByteProtocol``."""
         super().__init__(silence)
-        self._reader = ResponseReader(b"", False)
+        self._reader = ResponseParser(b"", False)
         self._in_packet = 0
 
     def begin(self, command: Command, now: float) -> None:
         """As ``exchange.Conversation``."""
         # Each line of a buffer takes a terminator byte.
-        self._take_up(command, MOST_LINES - 1 if command.kind is Kind.BUFFER else LONGEST_COMMAND)
+        self._take_up(command, MOST_LINES - 1 if command.kind is CommandKind.BUFFER else LONGEST_COMMAND)
         text = command.text.encode("ascii")
-        if command.kind is Kind.BUFFER:
+        if command.kind is CommandKind.BUFFER:
             self._out += packet(WRITEBUFFER, text.replace(b"\n", b"\0") + b"\0")
             self._wait_patiently(self._lines_taken, now)
             return
         self._out += packet(GETRESPONSE, text)
-        if command.kind is Kind.BLIND:
+        if command.kind is CommandKind.BLIND:
             self._wait_for_silence(now)
             return
-        self._reader, self._in_packet = ResponseReader(text, False), 0
+        self._reader, self._in_packet = ResponseParser(text, False), 0
         self._wait_patiently(self._answer, now)
 
     def reset(self, now: float, control: int | None = None) -> None:

@@ -9,28 +9,32 @@ grows. Units: mm, rad, mm/s; directions are those of {M}.
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from pkm_post.control.link.readout import Pose, spin_of
+from pkm_post.control.link.tool_pose import Pose, spin_of
 from pkm_post.geometry import Array, angle_between, norm
-from pkm_post.machine import follow, platform_rotation, strut_lengths
-from pkm_post.model import Diagnostic, Event, Kind, Machine, Place, Tool, Trajectory
+from pkm_post.machine import Policy, Rule, follow, platform_rotation, strut_lengths
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Tool, Trajectory, errors
+from pkm_post.options import Options
+from pkm_post.posting import trajectory_of, work_offset
+from pkm_post.reading import gcode
 from pkm_post.toolpath import ToolPose, columns, safe_way
 
-SOURCE = "jog"
+_JOG = "jog"
 _STEP_MM = 0.5
 """Step of a single-strut jog between poses: straight segments deviate from its path by less than a micron."""
-_NO_MOVE = 1e-9
+_SMALLEST_MOVE = 1e-9
 _MEASURABLE = 1e-6
 """mm: a machine code alone would give the plan an empty path, so the tip rises by this much, a hundredth of an encoder
 count."""
 
 
 @dataclass(frozen=True)
-class Cartesian:
+class CartesianJog:
     """A jog of the tool.
 
     Attributes:
@@ -45,7 +49,7 @@ class Cartesian:
 
 
 @dataclass(frozen=True)
-class OneStrut:
+class StrutJog:
     """A jog of one strut; the other five keep their lengths.
 
     Attributes:
@@ -61,10 +65,10 @@ class OneStrut:
             raise ValueError(f"strut: expected 1 to 6, got {self.strut}")
 
 
-Jog = Cartesian | OneStrut
+Jog = CartesianJog | StrutJog
 
 
-def trajectory_of(
+def jog_trajectory(
     jog: Jog, machine: Machine, here: Pose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The trajectory of a jog, or why there is none.
@@ -81,16 +85,16 @@ def trajectory_of(
     """
     if not (np.isfinite(feed) and feed > 0):
         raise ValueError(f"feed: expected a number above zero, got {feed}")
-    if isinstance(jog, OneStrut):
+    if isinstance(jog, StrutJog):
         poses = _of_strut(jog, machine, here, tool_length)
         if poses is None:
-            return None, (Diagnostic("C202", Place(SOURCE), f"strut {jog.strut} by {jog.by:g} mm"),)
+            return None, (Diagnostic("C202", Place(_JOG), f"strut {jog.strut} by {jog.by:g} mm"),)
     else:
         poses = _of_tool(jog, here)
     return _through(machine, here, poses, tool_length, min(feed, machine.feed_speed))
 
 
-def approach(
+def approach_trajectory(
     machine: Machine, here: Pose, start: Pose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The safe approach to the start of a program: up along the tool axis, across, down along the axis of the start.
@@ -109,16 +113,16 @@ def approach(
         height = max(height, machine.tool_change.safe_height)
     begin, end = (ToolPose(pose.tip, pose.axis, pose.spin) for pose in (here, start))
     if not (begin.rises_to(height) and end.rises_to(height)):
-        return None, (Diagnostic("K142", Place("approach"), f"to z {height:.3f} mm"),)
+        return None, (Diagnostic("K142", Place("approach_trajectory"), f"to z {height:.3f} mm"),)
     way = [begin, *safe_way(begin, end, height)]
     moved = [pose for before, pose in itertools.pairwise(way) if not before.is_at(pose)]
     if not moved:
-        return None, (Diagnostic("C201", Place("approach"), "the tool is at the start of the program"),)
+        return None, (Diagnostic("C201", Place("approach_trajectory"), "the tool is at the start of the program"),)
     trajectory, told = _through(machine, here, columns(moved), tool_length, min(feed, machine.feed_speed))
-    return None if trajectory is None else replace(trajectory, source="approach"), told
+    return None if trajectory is None else replace(trajectory, source="approach_trajectory"), told
 
 
-def standing(machine: Machine, here: Pose, tool_length: float, events: tuple[Event, ...]) -> Trajectory:
+def stationary_trajectory(machine: Machine, here: Pose, tool_length: float, events: tuple[Event, ...]) -> Trajectory:
     """Events at standstill, with the minimal path that planning needs.
 
     Args:
@@ -135,7 +139,7 @@ def standing(machine: Machine, here: Pose, tool_length: float, events: tuple[Eve
     return replace(trajectory, events=events)
 
 
-def _of_tool(jog: Cartesian, here: Pose) -> tuple[Array, Array, Array]:
+def _of_tool(jog: CartesianJog, here: Pose) -> tuple[Array, Array, Array]:
     values = np.array([*jog.shift, *jog.tilt, jog.spin])
     if not np.isfinite(values).all():
         raise ValueError(f"jog: expected finite numbers, got {values.tolist()}")
@@ -152,7 +156,7 @@ def _about(coordinate: int, angle: float) -> Array:
     return turn
 
 
-def _of_strut(jog: OneStrut, machine: Machine, here: Pose, tool_length: float) -> tuple[Array, Array, Array] | None:
+def _of_strut(jog: StrutJog, machine: Machine, here: Pose, tool_length: float) -> tuple[Array, Array, Array] | None:
     if not np.isfinite(jog.by):
         raise ValueError(f"by: expected a finite number, got {jog.by}")
     steps = max(1, int(np.ceil(abs(jog.by) / _STEP_MM)))
@@ -177,8 +181,8 @@ def _through(
     length = norm(np.diff(tip, axis=0, prepend=here.tip[None]))
     axis_before = np.vstack([here.axis, axis[:-1]])
     angle, turned = angle_between(axis_before, axis), np.abs(np.diff(spin, prepend=here.spin))
-    if (np.maximum(length, np.maximum(angle, turned)) < _NO_MOVE).any():
-        return None, (Diagnostic("C201", Place(SOURCE), "the jog leads to where the tool is"),)
+    if (np.maximum(length, np.maximum(angle, turned)) < _SMALLEST_MOVE).any():
+        return None, (Diagnostic("C201", Place(_JOG), "the jog leads to where the tool is"),)
     trajectory = Trajectory(
         **_straight(len(tip), feed),
         tip=tip,
@@ -195,7 +199,7 @@ def _through(
         machine_from_work=np.eye(4),
         machine=machine.name,
         machine_fingerprint=machine.fingerprint,
-        source=SOURCE,
+        source=_JOG,
     )
     return trajectory, ()
 
@@ -215,3 +219,110 @@ def _straight(count: int, feed: float) -> dict[str, Any]:
         "operation": zero,
         "line": zero,
     }
+
+
+_MDI = "MDI"
+_SAYS_THE_SPIN = "RPY"
+_EMPTY_CODE, _NO_MOVES_CODE = "G420", "J103"
+"""Codes that reading and placing report for a program without moves; their cures refer to files and CAM."""
+_STAY = "G90 G21 G94 G1 X{:.6f} Y{:.6f} Z{:.6f} F60"
+"""Appended to a line without moves, so that its switching codes precede a move to the current position."""
+
+Findings = tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True)
+class MdiSettings:
+    """How to read a line.
+
+    Attributes:
+        work_offset: name of a work offset in the machine file: the frame of the coordinates.
+        axis_words: how the line states the tool axis, a key of ``gcode.options.AXIS_WORDS``; with ``"none"`` the axis
+            stays as it is.
+    """
+
+    work_offset: str = "G54"
+    axis_words: str = "none"
+
+
+def mdi_trajectory(
+    line: str, machine: Machine, here: Pose, tool_length: float, reading: MdiSettings | None = None
+) -> tuple[Trajectory | None, Findings]:
+    """The trajectory of a line of G-code.
+
+    Args:
+        line: one line of text.
+        machine: its work offsets and limits apply.
+        here: current pose of the tool.
+        tool_length: gauge length of the tool in the spindle, mm.
+        reading: how to read the line.
+
+    Raises:
+        ValueError: the text has more than one line.
+    """
+    if len(line.splitlines()) > 1:
+        raise ValueError(f"line: expected one line, got {len(line.splitlines())}")
+    reading = reading or MdiSettings()
+    options = Options(work_offset=reading.work_offset, spin=Policy(Rule.FILE))
+    offset, told = work_offset(machine, options)
+    if offset is None:
+        return None, told
+    program, faults = _read(line, here, offset, tool_length, reading)
+    if any(fault.code == _EMPTY_CODE for fault in faults):
+        return _standing(line, machine, here, offset, tool_length, reading)
+    told += faults
+    if program is None or errors(told):
+        return None, told
+    # A trajectory starts at the home of its machine. Here that is the current pose, so that the line leads straight
+    # from it.
+    standing = replace(machine, home_tip=here.tip, home_axis=here.axis, home_spin=here.spin, tool_change=None)
+    standing = replace(standing, largest_tool_diameter=math.inf)  # diameter of the tool in the spindle is unknown
+    trajectory, faults = trajectory_of(program, standing, options)
+    told += tuple(replace(fault, code="C201") if fault.code == _NO_MOVES_CODE else fault for fault in faults)
+    if trajectory is None or reading.axis_words == _SAYS_THE_SPIN:
+        return trajectory, told
+    return replace(trajectory, spin=np.full(len(trajectory), here.spin)), told
+
+
+def _standing(
+    line: str, machine: Machine, here: Pose, machine_from_work: Array, tool_length: float, reading: MdiSettings
+) -> tuple[Trajectory | None, Findings]:
+    """A line without a move: switching codes at standstill."""
+    stay = _STAY.format(*_in_work(here, machine_from_work))
+    program, told = _read(f"{line}\n{stay}", here, machine_from_work, tool_length, reading)
+    if program is not None and program.events and not errors(told):
+        return stationary_trajectory(machine, here, tool_length, program.events), told
+    told = tuple(fault for fault in told if fault.code != _EMPTY_CODE)
+    if not errors(told):
+        told += (Diagnostic("C201", Place(_MDI, line=1), line.strip() or "an empty line"),)
+    return None, told
+
+
+def _in_work(here: Pose, machine_from_work: Array) -> tuple[float, float, float]:
+    """The tip in {C}, mm."""
+    x, y, z = (machine_from_work[:3, :3].T @ (here.tip - machine_from_work[:3, 3])).tolist()
+    return x, y, z
+
+
+def _read(
+    line: str, here: Pose, machine_from_work: Array, tool_length: float, reading: MdiSettings
+) -> tuple[Program | None, Findings]:
+    """The line as a program in {C}."""
+    # A NaN diameter reveals cutter compensation.
+    tool = Tool(0, "in the spindle", math.nan, 0.0, tool_length)
+    options = gcode.ReadOptions(
+        default_tool=tool, start=_in_work(here, machine_from_work), axis_words=reading.axis_words
+    )
+    program, told = gcode.read(line, _MDI, options)
+    if program is None:
+        return None, told
+    if np.isnan(program.side_offset).any():
+        found = "cutter compensation with a tool of unknown diameter"
+        return None, (*told, Diagnostic("G411", Place(_MDI, line=1), found))
+    if any(event.kind is EventKind.TOOL_CHANGE for event in program.events):
+        return None, (*told, Diagnostic("C203", Place(_MDI, line=1), line.splitlines()[0].strip()))
+    tools = {number: replace(each, diameter=0.0) for number, each in program.tools.items()}
+    if reading.axis_words == "none":
+        kept = np.tile(machine_from_work[:3, :3].T @ here.axis, (len(program), 1))
+        return replace(program, tools=tools, tool_axis=kept), told
+    return replace(program, tools=tools), told

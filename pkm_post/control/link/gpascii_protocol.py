@@ -21,15 +21,14 @@ from __future__ import annotations
 
 import re
 
-from pkm_post.control.link.bytewise import BytewiseConversation
-from pkm_post.control.link.exchange import Answer, Command, Kind, Lost, Refusal
+from pkm_post.control.link.protocol import Answer, ByteProtocol, Command, CommandKind, Lost, Refusal
 
 START, LISTENS, VALUES_ALONE = "gpascii -2", "STDIN Open for ASCII Input", "echo 7"
 START_S = 10.0
 """Seconds without a byte after which the shell is not that of a controller."""
 LONGEST_LINE = 255
 """Characters of a command; longer ones are not documented to work."""
-MEANINGS = {
+ERROR_TEXTS = {
     20: "illegal command",
     21: "wrong parameter",
     22: "the program is not in the buffer",
@@ -50,7 +49,7 @@ _ACK, _LF = 0x06, 0x0A
 _ERROR = re.compile(r"\w+:\d+:\d+: error #(\d+): *(.*)")
 
 
-class GpasciiConversation(BytewiseConversation):
+class GpasciiProtocol(ByteProtocol):
     """A conversation with gpascii.
 
     Attributes:
@@ -61,7 +60,7 @@ class GpasciiConversation(BytewiseConversation):
     handshake = ""
 
     def __init__(self, silence: float = 0.5) -> None:
-        """Create a conversation; as ``BytewiseConversation``."""
+        """Create a conversation; as ``ByteProtocol``."""
         super().__init__(silence)
         self._lines: list[str] = []
         self._refusal: Refusal | None = None
@@ -81,14 +80,14 @@ class GpasciiConversation(BytewiseConversation):
         """
         if control is not None:
             raise ValueError(f"control: expected none over gpascii, got {control}")
-        self._begin_with(Command(START, Kind.SET, START_S))
+        self._begin_with(Command(START, CommandKind.SET, START_S))
         self._out += f"{START}\n".encode("ascii")
         self._wait_patiently(self._greeted, now)
 
     def _greeted(self, byte: int, now: float) -> None:
         """Ignore what the shell prints before gpascii is ready."""
         if byte == _ACK and LISTENS in self._collected.decode("latin-1"):
-            self._begin_with(Command(VALUES_ALONE, Kind.SET, START_S))
+            self._begin_with(Command(VALUES_ALONE, CommandKind.SET, START_S))
             self._send(now)
             return
         self._collected.append(byte)
@@ -125,7 +124,7 @@ class GpasciiConversation(BytewiseConversation):
         found = _ERROR.match(line)
         if found:
             number = int(found[1])
-            self._refusal = Refusal(number, words=f"error #{number}, {MEANINGS.get(number, found[2])}: {line}")
+            self._refusal = Refusal(number, words=f"error #{number}, {ERROR_TEXTS.get(number, found[2])}: {line}")
             self._wait(self._answered, self._acknowledged, now + self._silence)
         elif line:
             self._lines.append(line)

@@ -7,16 +7,86 @@ Isx90 ms, times in ms.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from pkm_post.control.simulator.axes import Axes
 from pkm_post.control.simulator.errors import DATA, CommandError
-from pkm_post.control.simulator.expressions import Expression
-from pkm_post.control.simulator.moves import Blended, Cubic, Move, ramps_of
-from pkm_post.control.simulator.statements import LETTERS
-from pkm_post.control.simulator.variables import Array, SystemScope
+from pkm_post.control.simulator.expressions import CONSTANT, Expression, Scanner
+from pkm_post.control.simulator.moves import BlendedMove, Move, PvtMove, ramps_of
+from pkm_post.control.simulator.programs import LETTERS
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, Array, SystemScope, constant_value, printed
+
+
+@dataclass(frozen=True)
+class AxisDefinition:
+    """A motor's axis: its letter, counts per axis unit, and counts at axis position zero."""
+
+    letter: str
+    scale: float
+    offset: float
+
+    def text(self) -> str:
+        """The definition as reported."""
+        scale = "" if self.scale == 1 else printed(self.scale)
+        offset = f"{'+' if self.offset > 0 else ''}{printed(self.offset)}" if self.offset else ""
+        return f"{scale}{self.letter}{offset}"
+
+
+def parse_axis_definition(scanner: Scanner) -> AxisDefinition | None:
+    """Read what follows ``#n->``; None for ``0``, which removes the motor from its coordinate system.
+
+    Raises:
+        CommandError: it does not define a single axis.
+    """
+    if scanner.take(r"0+(?![0-9.]| *[A-CU-Z])"):
+        return None
+    scale = scanner.take(rf"(?P<sign>[+-]?) *(?P<number>{CONSTANT})?(?= *[{LETTERS}])")
+    letter = scanner.expect(rf"(?P<letter>[{LETTERS}])(?![{LETTERS}])")["letter"].upper()
+    offset = scanner.take(rf"(?P<sign>[+-]) *(?P<number>{CONSTANT})")
+    factor = _signed(scale["sign"], scale["number"] or "1") if scale else 1.0
+    if factor == 0:
+        raise CommandError(DATA)
+    return AxisDefinition(letter, factor, _signed(offset["sign"], offset["number"]) if offset else 0.0)
+
+
+def _signed(sign: str, number: str) -> float:
+    return -constant_value(number) if sign == "-" else constant_value(number)
+
+
+class Axes:
+    """The axis definitions of one coordinate system, by motor."""
+
+    def __init__(self) -> None:
+        self.definitions: dict[int, AxisDefinition] = {}
+
+    def define(self, motor: int, definition: AxisDefinition | None) -> None:
+        """Assign an axis to a motor, or remove it."""
+        self.definitions.pop(motor, None)
+        if definition is not None:
+            self.definitions[motor] = definition
+
+    def indices(self) -> list[int]:
+        """The simulated motors of this coordinate system, counted from zero."""
+        return [motor - 1 for motor in sorted(self.definitions) if motor <= SIMULATED_MOTORS]
+
+    def counts(self, position: Array) -> Array:
+        """Motor positions (6,) for axis positions (9,); NaN for motors without an axis."""
+        counts = np.full(SIMULATED_MOTORS, np.nan)
+        for index in self.indices():
+            definition = self.definitions[index + 1]
+            counts[index] = definition.scale * position[LETTERS.index(definition.letter)] + definition.offset
+        return counts
+
+    def position(self, counts: Array) -> Array:
+        """Axis positions (9,) for motor positions (6,); zero for axes without a motor."""
+        position = np.zeros(len(LETTERS))
+        for index in self.indices():
+            definition = self.definitions[index + 1]
+            position[LETTERS.index(definition.letter)] = (counts[index] - definition.offset) / definition.scale
+        return position
+
 
 LONGEST_INTERVAL_MS = 4095 + 4095 / 4096
 """24 bits, of which 12 are fractional [TurboPMAC, PVT]."""
@@ -30,7 +100,7 @@ FARTHEST = 2.0**47
 Words = tuple[tuple[str, Expression, Expression | None], ...]
 
 
-class Modes:
+class ModalState:
     """The modal state of a program.
 
     Attributes:
@@ -122,23 +192,23 @@ class Modes:
             return self._cubic(origin, speed, after, now)
         return self._blended(origin, after, now)
 
-    def _cubic(self, origin: Array, speed: Array, after: Move | None, now: float) -> Cubic:
+    def _cubic(self, origin: Array, speed: Array, after: Move | None, now: float) -> PvtMove:
         start = max(after.end, now) if after else now
-        made = Cubic(start, _positive(self._interval), origin, self.target, self.last_speed, speed)
+        made = PvtMove(start, _positive(self._interval), origin, self.target, self.last_speed, speed)
         self.last_speed = speed
         return made
 
-    def _blended(self, origin: Array, after: Move | None, now: float) -> Blended:
+    def _blended(self, origin: Array, after: Move | None, now: float) -> BlendedMove:
         distance = self.target - origin
         with_offset = self._axes.counts(distance) - self._axes.counts(np.zeros(len(LETTERS)))
         counts = np.nan_to_num(np.abs(with_offset))
         duration, ramps = self._times(distance, counts)
-        return Blended(self._start(after, now), duration, ramps, distance, self.target, self.mode == "LINEAR")
+        return BlendedMove(self._start(after, now), duration, ramps, distance, self.target, self.mode == "LINEAR")
 
     def _start(self, after: Move | None, now: float) -> float:
         if after is None:
             return now
-        if isinstance(after, Blended) and after.blends and self.mode == "LINEAR" and after.hand_over >= now:
+        if isinstance(after, BlendedMove) and after.blends and self.mode == "LINEAR" and after.hand_over >= now:
             return after.hand_over
         return max(after.end, now)
 

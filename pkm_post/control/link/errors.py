@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
 
-MEANINGS: dict[int, str] = {
+ERROR_TEXTS: dict[int, str] = {
     1: "not allowed while a program runs",
     2: "the password is missing",
     3: "not understood, or wrong data",
@@ -41,7 +41,7 @@ def meaning(number: int | None) -> str:
     """An error of the controller in plain text, with its number."""
     if number is None:
         return "an error without a number"
-    return f"ERR{number:03d}, {MEANINGS.get(number, 'which has no known meaning')}"
+    return f"ERR{number:03d}, {ERROR_TEXTS.get(number, 'which has no known meaning')}"
 
 
 class PmacError(Exception):

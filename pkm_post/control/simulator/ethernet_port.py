@@ -12,7 +12,7 @@ import struct
 from collections.abc import Callable
 
 from pkm_post.control.simulator.errors import CHARACTER
-from pkm_post.control.simulator.line import ACK, CR, LF, Line
+from pkm_post.control.simulator.serial_port import ACK, CR, LF, SerialPort
 
 DOWNLOAD, UPLOAD = 0x40, 0xC0
 HEAD = struct.Struct(">BBHHH")
@@ -22,10 +22,10 @@ DONE, NOTHING = b"\x40", b"\x00"
 FAILED = 0x80
 
 
-class Packets:
+class EthernetPort:
     """One connection to the Ethernet port; all connections share the port behind it."""
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: SerialPort) -> None:
         self.line = line
         self._received = bytearray()
         self._waiting = bytearray()
@@ -105,15 +105,15 @@ def _decoded(data: bytes) -> str:
     return "".join(chr(code) if 0x20 <= code < 0x7F else "\x7f" for code in data)
 
 
-Answer = Callable[[Packets, bytes, int, int], bytes]
+Answer = Callable[[EthernetPort, bytes, int, int], bytes]
 
 _REQUESTS: dict[tuple[int, int], Answer] = {
-    (DOWNLOAD, 0xB0): Packets._send_line,
-    (UPLOAD, 0xB1): Packets._get_line,
-    (DOWNLOAD, 0xB3): Packets._flush,
-    (DOWNLOAD, 0xBF): Packets._get_response,
-    (UPLOAD, 0xC2): Packets._ready,
-    (UPLOAD, 0xC4): Packets._control,
-    (UPLOAD, 0xC5): Packets._get_buffer,
-    (DOWNLOAD, 0xC6): Packets._write_buffer,
+    (DOWNLOAD, 0xB0): EthernetPort._send_line,
+    (UPLOAD, 0xB1): EthernetPort._get_line,
+    (DOWNLOAD, 0xB3): EthernetPort._flush,
+    (DOWNLOAD, 0xBF): EthernetPort._get_response,
+    (UPLOAD, 0xC2): EthernetPort._ready,
+    (UPLOAD, 0xC4): EthernetPort._control,
+    (UPLOAD, 0xC5): EthernetPort._get_buffer,
+    (DOWNLOAD, 0xC6): EthernetPort._write_buffer,
 }

@@ -11,11 +11,11 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
-from pkm_post.control.numerical_control.control import State
-from pkm_post.control.numerical_control.homing import Phase
+from pkm_post.control.numerical_control.control import ControlState
+from pkm_post.control.numerical_control.homing import HomingPhase
 
 
-class Order(enum.Enum):
+class OperatorCommand(enum.Enum):
     """Orders an operator can give."""
 
     HOME = "home"
@@ -33,7 +33,7 @@ class Order(enum.Enum):
     OVERRIDE = "override"
 
 
-class Why(enum.Enum):
+class Interlock(enum.Enum):
     """Obstacles to an order."""
 
     NOT_CONNECTED = "there is no connection"
@@ -51,30 +51,33 @@ class Why(enum.Enum):
     NOT_HOMED = "not all struts are homed"
 
 
-_AT_REST = (Why.BUSY, Why.RUNS, Why.HELD, Why.MOVES)
-_READY = (*_AT_REST, Why.NOT_HOMED)
-_LINK, _ORDERS = (Why.NOT_CONNECTED, Why.NO_ANSWER), (Why.NOT_CONNECTED, Why.WATCH_ONLY, Why.NO_ANSWER)
+_AT_REST = (Interlock.BUSY, Interlock.RUNS, Interlock.HELD, Interlock.MOVES)
+_READY = (*_AT_REST, Interlock.NOT_HOMED)
+_LINK, _ORDERS = (
+    (Interlock.NOT_CONNECTED, Interlock.NO_ANSWER),
+    (Interlock.NOT_CONNECTED, Interlock.WATCH_ONLY, Interlock.NO_ANSWER),
+)
 
-AGAINST: dict[Order, tuple[Why, ...]] = {
-    Order.HOME: (*_ORDERS, *_AT_REST),
-    Order.JOG: (*_ORDERS, *_READY),
-    Order.LINE: (*_ORDERS, *_READY),
-    Order.LOAD: (*_ORDERS, Why.NO_JOB, *_AT_REST),
-    Order.BLOCKS: (*_ORDERS, Why.NO_JOB, *_AT_REST),
-    Order.APPROACH: (*_ORDERS, Why.NO_JOB, *_READY),
-    Order.START: (*_ORDERS, Why.NO_JOB, Why.NOT_LOADED, *_READY),
-    Order.STEP: (*_ORDERS, Why.NO_JOB, Why.NO_BLOCK, *_READY),
-    Order.GO_ON: (*_ORDERS, Why.NO_JOB, Why.NO_STOP, *_READY),
-    Order.HOLD: (Why.NOT_CONNECTED,),
-    Order.RESUME: (*_ORDERS, Why.BUSY, Why.NOT_HELD),
-    Order.ABORT: (Why.NOT_CONNECTED,),
-    Order.OVERRIDE: (*_ORDERS, Why.BUSY, Why.HELD),
+INTERLOCKS_OF: dict[OperatorCommand, tuple[Interlock, ...]] = {
+    OperatorCommand.HOME: (*_ORDERS, *_AT_REST),
+    OperatorCommand.JOG: (*_ORDERS, *_READY),
+    OperatorCommand.LINE: (*_ORDERS, *_READY),
+    OperatorCommand.LOAD: (*_ORDERS, Interlock.NO_JOB, *_AT_REST),
+    OperatorCommand.BLOCKS: (*_ORDERS, Interlock.NO_JOB, *_AT_REST),
+    OperatorCommand.APPROACH: (*_ORDERS, Interlock.NO_JOB, *_READY),
+    OperatorCommand.START: (*_ORDERS, Interlock.NO_JOB, Interlock.NOT_LOADED, *_READY),
+    OperatorCommand.STEP: (*_ORDERS, Interlock.NO_JOB, Interlock.NO_BLOCK, *_READY),
+    OperatorCommand.GO_ON: (*_ORDERS, Interlock.NO_JOB, Interlock.NO_STOP, *_READY),
+    OperatorCommand.HOLD: (Interlock.NOT_CONNECTED,),
+    OperatorCommand.RESUME: (*_ORDERS, Interlock.BUSY, Interlock.NOT_HELD),
+    OperatorCommand.ABORT: (Interlock.NOT_CONNECTED,),
+    OperatorCommand.OVERRIDE: (*_ORDERS, Interlock.BUSY, Interlock.HELD),
 }
 """The last reading never blocks a stop: it may be stale."""
 
 
 @dataclass(frozen=True)
-class Desk:
+class PanelState:
     """What a panel knows besides the machine state.
 
     Attributes:
@@ -98,36 +101,36 @@ class Desk:
     homing: bool = False
 
 
-def facts(state: State, desk: Desk) -> frozenset[Why]:
+def active_interlocks(state: ControlState, desk: PanelState) -> frozenset[Interlock]:
     """All obstacles in this state."""
     status = state.status
     answers = status is not None and not state.lost
     held = status is not None and status.held
-    searches = desk.homing and state.homing is not None and state.homing.phase is Phase.SEARCHING
+    searches = desk.homing and state.homing is not None and state.homing.phase is HomingPhase.SEARCHING
     holds = {
-        Why.NOT_CONNECTED: not desk.connected,
-        Why.WATCH_ONLY: desk.watch_only,
-        Why.NO_ANSWER: not answers,
-        Why.BUSY: desk.busy,
-        Why.NO_JOB: not desk.has_job,
-        Why.NOT_LOADED: not desk.loaded,
-        Why.NO_BLOCK: not desk.stepping or state.block is None or state.block.is_over,
-        Why.NO_STOP: not desk.has_stops,
-        Why.RUNS: status is not None and status.running and not held,
-        Why.HELD: held,
-        Why.NOT_HELD: not held,
-        Why.MOVES: searches or (status is not None and not status.standing),
-        Why.NOT_HOMED: status is None or not all(status.homed),
+        Interlock.NOT_CONNECTED: not desk.connected,
+        Interlock.WATCH_ONLY: desk.watch_only,
+        Interlock.NO_ANSWER: not answers,
+        Interlock.BUSY: desk.busy,
+        Interlock.NO_JOB: not desk.has_job,
+        Interlock.NOT_LOADED: not desk.loaded,
+        Interlock.NO_BLOCK: not desk.stepping or state.block is None or state.block.is_over,
+        Interlock.NO_STOP: not desk.has_stops,
+        Interlock.RUNS: status is not None and status.running and not held,
+        Interlock.HELD: held,
+        Interlock.NOT_HELD: not held,
+        Interlock.MOVES: searches or (status is not None and not status.standing),
+        Interlock.NOT_HOMED: status is None or not all(status.homed),
     }
     return frozenset(why for why, is_so in holds.items() if is_so)
 
 
-def refusal(order: Order, found: frozenset[Why]) -> Why | None:
+def blocking_interlock(order: OperatorCommand, found: frozenset[Interlock]) -> Interlock | None:
     """The first obstacle to an order; None if it is allowed."""
-    return next((why for why in AGAINST[order] if why in found), None)
+    return next((why for why in INTERLOCKS_OF[order] if why in found), None)
 
 
-def may_move(state: State) -> bool:
+def may_move(state: ControlState) -> bool:
     """Whether the machine moves, or may move as far as known: it must not be left unattended then."""
     if state.emergency:
         return True

@@ -6,19 +6,21 @@ Enters: commands. Leaves: the event that ended each; exceptions of the link prop
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
+from enum import Enum
 
-from pkm_post.control.link.exchange import Answer, Command, Kind, Lost, Message, Refusal
-from pkm_post.control.link.faults import CancelledError, LinkLostError, RefusedError
-from pkm_post.control.link.ports import Door
+from pkm_post.control.link.errors import CancelledError, LinkLostError, RefusedError
+from pkm_post.control.link.ports import PortInterface
+from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, Message, Refusal
 
 LONG_S = 0.5
 """A query that takes longer may be dropped for something more urgent; reconnecting takes about as long."""
 
-Ending = Answer | Refusal | Lost
+_Outcome = Answer | Refusal | Lost
 
 
-class Dialogue:
+class CommandChannel:
     """Executes commands one after the other.
 
     Attributes:
@@ -27,7 +29,7 @@ class Dialogue:
         gives_way: called during a long query: whether something more urgent waits.
     """
 
-    def __init__(self, port: Door, patience: float, clock: Callable[[], float]) -> None:
+    def __init__(self, port: PortInterface, patience: float, clock: Callable[[], float]) -> None:
         """Create the dialogue; ``restart`` connects.
 
         Args:
@@ -76,7 +78,7 @@ class Dialogue:
             RefusedError: the controller refuses it.
             LinkLostError: the answer makes no sense.
         """
-        ended = self.run(Command(text, Kind.QUERY, self.patience))
+        ended = self.run(Command(text, CommandKind.QUERY, self.patience))
         if isinstance(ended, Answer):
             return ended.lines
         if isinstance(ended, Refusal):
@@ -89,12 +91,12 @@ class Dialogue:
         Raises:
             LinkLostError: the exchange failed.
         """
-        ended = self.run(Command(text, Kind.BLIND, 3 * self._port.silence))
+        ended = self.run(Command(text, CommandKind.BLIND, 3 * self._port.silence))
         if isinstance(ended, Lost):
             raise LinkLostError(ended.why)
         return "\n".join(ended.lines) if isinstance(ended, Answer) else ""
 
-    def run(self, command: Command | None, control: int | None = None) -> Ending:
+    def run(self, command: Command | None, control: int | None = None) -> _Outcome:
         """Run one exchange, or a reset with an optional control character; return the event that ended it.
 
         Raises:
@@ -106,7 +108,7 @@ class Dialogue:
             conversation.reset(began, control)
         else:
             conversation.begin(command, began)
-        may_give_way = command is not None and command.kind is Kind.QUERY
+        may_give_way = command is not None and command.kind is CommandKind.QUERY
         while True:
             ended = self._ending()
             self._send()
@@ -116,7 +118,7 @@ class Dialogue:
                 raise CancelledError("not carried out, or not to its end: a stop came first")
             self._listen()
 
-    def _ending(self) -> Ending | None:
+    def _ending(self) -> _Outcome | None:
         for event in self._conversation.events():
             if not isinstance(event, Message):
                 return event
@@ -136,3 +138,55 @@ class Dialogue:
             self._conversation.receive(data, self._clock())
         elif self._clock() >= deadline:
             self._conversation.expire(self._clock())
+
+
+class OpenBufferPolicy(Enum):
+    """What to do with a program buffer that is open when connecting."""
+
+    LEAVE = "leave"
+    """Leave it: a client that only monitors disturbs no one, and loading checks its owner first (``ownership``)."""
+    STOP = "stop"
+    """Leave it if the handshake is as agreed, else close it: a stop takes precedence over a download."""
+    CLOSE = "close"
+    """Close it: its owner reconnects and queries its contents."""
+
+
+_HANDSHAKE = re.compile(r"(I\d+)=(\d+)")
+_NEGATIVE = re.compile(r"(?:^|[^0-9A-Za-z$.])-\s?\d+")
+
+
+def establish_handshake(dialogue: CommandChannel, leftover: OpenBufferPolicy) -> None:
+    """Connect and establish the handshake.
+
+    Raises:
+        LinkLostError: the controller does not answer, or not as agreed.
+    """
+    dialogue.restart()
+    if not dialogue.handshake:
+        return
+    is_open = _finds_open_buffer(dialogue)
+    if leftover is OpenBufferPolicy.CLOSE:
+        dialogue.blind("CLOSE")
+    if _is_agreed(dialogue):
+        return  # an assignment might become a line of a download that another client is starting
+    if is_open and leftover is OpenBufferPolicy.LEAVE:
+        raise LinkLostError("a program buffer is open, and the answers are not as is agreed: abort closes it")
+    dialogue.blind("CLOSE")
+    dialogue.blind(dialogue.handshake)
+    if not _is_agreed(dialogue):
+        raise LinkLostError(f"the controller does not keep {dialogue.handshake}")
+
+
+def _is_agreed(dialogue: CommandChannel) -> bool:
+    """Whether the controller answers in the form that the conversation expects."""
+    names, values = zip(*_HANDSHAKE.findall(dialogue.handshake), strict=True)
+    ended = dialogue.run(Command(" ".join(names), CommandKind.QUERY, dialogue.patience))
+    return isinstance(ended, Answer) and ended.lines == values
+
+
+def _finds_open_buffer(dialogue: CommandChannel) -> bool:
+    """SIZE is negative while a program buffer is open; the framing of the answer is still unknown."""
+    told = dialogue.blind("SIZE")
+    if not re.search(r"\d", told):
+        raise LinkLostError(f"SIZE: expected a number of words, got {told!r}")
+    return bool(_NEGATIVE.search(told))

@@ -13,7 +13,6 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.pmac_by_hand import carry_out, control_of
 from pkm_post.cli.pmac_stop import held_at_the_end
 
 if TYPE_CHECKING:
@@ -21,6 +20,77 @@ if TYPE_CHECKING:
     from pkm_post.control import Jog, Session
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
+    from pkm_post.control import Array, NumericalControl, Plan, Session, Status
+    from pkm_post.model import Diagnostic
+
+_SLOWEST_OVERRIDE = 0.05
+"""A move may take as long as at this override, which an operator may set meanwhile."""
+_START_S = 30.0
+"""Added to that: the approach, and the machine's own codes."""
+_HELD = "it is held, by somebody or, a jog, because this computer came too late to renew it; resume or abort it"
+
+
+def control_of(session: Session, target: Target, namespace: argparse.Namespace) -> NumericalControl:
+    """Numerical control of a machine with the given tool.
+
+    Raises:
+        NotReadyError: the program number for moves by hand is that of the jobs.
+    """
+    from pkm_post.control import NotReadyError, NumericalControl
+
+    if namespace.number == target.settings.program:
+        raise NotReadyError([f"program {namespace.number} is that of the jobs: choose another --number"])
+    length = target.machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
+    return NumericalControl(session, target.machine, target.settings, length, namespace.number)
+
+
+def carry_out(
+    session: Session,
+    target: Target,
+    namespace: argparse.Namespace,
+    control: NumericalControl,
+    plan: Plan | None,
+    told: tuple[Diagnostic, ...],
+    near: float | None = None,
+) -> int:
+    """Print a plan, execute it, and print the position reached; ``near`` is as for ``execute``."""
+    from pkm_post.control import pose_text, target_deviation
+    from pkm_post.options import START_TOLERANCE_MM
+
+    for diagnostic in told:
+        print(diagnostic, file=sys.stderr)
+    if plan is None:
+        return 1
+    print(f"to {pose_text(plan.end)}; {plan.seconds:.1f} s")
+    if namespace.check:
+        return 0
+    with held_at_the_end(session, target.settings):
+        control.execute(plan, START_TOLERANCE_MM if near is None else near)
+        if control.silence_s is not None:
+            print(f"it rests within {control.silence_s:.1f} s if this computer falls silent, at 100 %", flush=True)
+        status = wait_for_end(control, plan.seconds)
+    if ended_elsewhere(status, plan.lengths):
+        return 1
+    print(f"arrived; no strut is off by more than {target_deviation(status, plan.lengths):.4f} mm")
+    return 0
+
+
+def wait_for_end(control: NumericalControl, seconds: float) -> Status:
+    """State after a move that takes this many seconds at 100 %."""
+    return control.wait_for_rest(_START_S + seconds / _SLOWEST_OVERRIDE)
+
+
+def ended_elsewhere(status: Status, lengths: Array) -> bool:
+    """Whether a move ended away from its target lengths, which is printed."""
+    from pkm_post.control import target_deviation
+    from pkm_post.options import START_TOLERANCE_MM
+
+    words = [_HELD] if status.held else list(status.words())
+    if not words and target_deviation(status, lengths) > START_TOLERANCE_MM:
+        words = [f"it ended {target_deviation(status, lengths):.3f} mm of a strut from where it leads to"]
+    print(*words, sep="\n", end="\n" if words else "", file=sys.stderr)
+    return bool(words)
+
 
 _WATCH_S = 0.2
 _THERE_MM = 1e-3
@@ -31,7 +101,7 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
     """Print which struts are homed; with a trigger, start the machine's homing and monitor it."""
     import time
 
-    from pkm_post.control import Phase, missing_homes, owned, read_status, start_homing
+    from pkm_post.control import HomingPhase, missing_homes, owned, read_status, start_homing
 
     if namespace.trigger is None:
         missing = missing_homes(read_status(session, target.settings))
@@ -41,11 +111,11 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
         watch = start_homing(session, target.settings, namespace.trigger)
         while True:
             seen = watch.see(read_status(session, target.settings), session.now())
-            if seen.phase is not Phase.SEARCHING:
+            if seen.phase is not HomingPhase.SEARCHING:
                 break
             time.sleep(_WATCH_S)
     print(seen)
-    return int(seen.phase is not Phase.DONE)
+    return int(seen.phase is not HomingPhase.DONE)
 
 
 def jog(session: Session, target: Target, namespace: argparse.Namespace) -> int:
@@ -56,28 +126,28 @@ def jog(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 
 def _jog_of(namespace: argparse.Namespace) -> Jog:
-    from pkm_post.control import Cartesian, OneStrut
+    from pkm_post.control import CartesianJog, StrutJog
 
     if namespace.strut is not None:
-        return OneStrut(namespace.strut, namespace.by)
+        return StrutJog(namespace.strut, namespace.by)
     tilt = math.radians(namespace.tilt_x), math.radians(namespace.tilt_y)
-    return Cartesian((namespace.x, namespace.y, namespace.z), tilt, math.radians(namespace.spin))
+    return CartesianJog((namespace.x, namespace.y, namespace.z), tilt, math.radians(namespace.spin))
 
 
 def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Execute a line of G-code."""
-    from pkm_post.control import Reading
+    from pkm_post.control import MdiSettings
 
     control = control_of(session, target, namespace)
-    plan, told = control.plan_line(namespace.line, Reading(namespace.work_offset, namespace.axis_words))
+    plan, told = control.plan_line(namespace.line, MdiSettings(namespace.work_offset, namespace.axis_words))
     return carry_out(session, target, namespace, control, plan, told)
 
 
 def approach(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Move the tool to the start of a program."""
-    from pkm_post.control import off_target, read_status
+    from pkm_post.control import read_status, target_deviation
 
-    if off_target(read_status(session, target.settings), target.job.first) <= _THERE_MM:
+    if target_deviation(read_status(session, target.settings), target.job.first) <= _THERE_MM:
         print("the tool is at the start of the program")
         return 0
     control = control_of(session, target, namespace)
@@ -87,10 +157,10 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
 
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Run a program line by line of its source; each line of the standard input starts one."""
-    from pkm_post.control import NotReadyError, blocks_of_program
+    from pkm_post.control import NotReadyError, read_blocks
 
     control = control_of(session, target, namespace)
-    blocks, told = blocks_of_program(namespace.program, target.machine)
+    blocks, told = read_blocks(namespace.program, target.machine)
     for diagnostic in told:
         print(diagnostic, file=sys.stderr)
     if blocks is None:
@@ -110,12 +180,14 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
     return 0
 
 
-def go_on(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
+def continue_after_stop(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Continue after a stop (M0, M1) of the program."""
-    from pkm_post.control import go_on, state_text
+    from pkm_post.control import continue_after_stop, state_text
 
     with held_at_the_end(session, target.settings):
-        status = go_on(session, target.machine, target.settings, target.job, namespace.stop, namespace.near)
+        status = continue_after_stop(
+            session, target.machine, target.settings, target.job, namespace.stop, namespace.near
+        )
         print(state_text(status))
     return 0
 
@@ -124,7 +196,7 @@ def override(session: Session, target: Target, namespace: argparse.Namespace) ->
     """Set the time base of programs."""
     from pkm_post.control import operate
 
-    print(f"override {operate.override(session, target.settings, namespace.percent).override:g} %")
+    print(f"override {operate.set_feed_override(session, target.settings, namespace.percent).override:g} %")
     return 0
 
 
@@ -134,7 +206,7 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
     "mdi": (mdi, "carry out a line of G-code, planned and checked", ("machine",)),
     "approach": (approach, "bring the tool to the start of a program, planned and checked", ("machine", "program")),
     "step": (step, "run a program line by line of its source, each to rest", ("machine", "program")),
-    "continue": (go_on, "go on after a stop (M0, M1) of a program that was run", ("machine", "program")),
+    "continue": (continue_after_stop, "go on after a stop (M0, M1) of a program that was run", ("machine", "program")),
     "override": (override, "how fast time passes in programs, in %%", ("machine",)),
 }
 """Same form as ``pmac_actions.ACTIONS``."""
@@ -143,14 +215,14 @@ _STARTING = ("run", "stream", "home", "jog", "mdi", "approach", "step", "continu
 _OF_WHAT_RUNS = ("hold", "resume", "abort", "override", "monitor")
 
 
-def tell_emergency(name: str, connected: bool) -> None:
+def print_emergency_steps(name: str, connected: bool) -> None:
     """Print what to do when the link is lost and the machine may be moving.
 
     Args:
         name: of the action.
         connected: whether the controller had answered before.
     """
-    from pkm_post.control import STEPS
+    from pkm_post.control import EMERGENCY_STEPS
 
     if name in _OF_WHAT_RUNS or (connected and name in _STARTING):
-        print(*STEPS, sep="\n", file=sys.stderr)
+        print(*EMERGENCY_STEPS, sep="\n", file=sys.stderr)

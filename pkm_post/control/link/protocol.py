@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Exchange: the commands and events of a conversation with the controller.
+
+A command enters; bytes go out and come in; one event ends it. A conversation does no I/O and has no clock: its caller
+passes the bytes and the time in seconds, from any monotonic clock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Protocol
+
+
+class CommandKind(Enum):
+    """The effect of a command, which decides whether it may be resent."""
+
+    QUERY = "query"
+    """Reads only; may be repeated."""
+    SET = "set"
+    """Changes something; never resent unless it certainly was not executed."""
+    BUFFER = "buffer"
+    """Lines for an open program buffer; the rule for a set applies."""
+    BLIND = "blind"
+    """Its answer cannot be parsed, as the handshake is unknown: it ends when the controller falls silent."""
+
+
+@dataclass(frozen=True)
+class Command:
+    r"""One command; only one is outstanding at a time.
+
+    Attributes:
+        text: without its terminator. Printable ASCII; the lines of a ``CommandKind.BUFFER`` are separated by ``\n``.
+        kind: its effect.
+        patience: seconds without a byte before the answer is given up.
+        most: maximum bytes of an answer; a longer one is invalid.
+
+    Raises:
+        ValueError: the text contains other characters.
+    """
+
+    text: str
+    kind: CommandKind = CommandKind.QUERY
+    patience: float = 2.0
+    most: int = 1 << 16
+
+    def __post_init__(self) -> None:
+        plain = self.text.replace("\n", "") if self.kind is CommandKind.BUFFER else self.text
+        # The controller obeys control characters even inside a line: ^K cuts motor power.
+        if not plain or not all(" " <= character <= "~" for character in plain):
+            raise ValueError(f"text: expected printable ASCII, got {self.text!r}")
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The command was executed; the lines of the answer."""
+
+    lines: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """The controller refused the command.
+
+    Attributes:
+        number: of the error, None if it gave none.
+        line: index of the refused line, for lines of a buffer.
+        words: number and meaning, if the controller states them itself.
+    """
+
+    number: int | None
+    line: int = 0
+    words: str = ""
+
+
+@dataclass(frozen=True)
+class Lost:
+    """The answer made no sense, or did not arrive.
+
+    Attributes:
+        why: in plain text.
+        untouched: whether the controller certainly did not execute the command.
+    """
+
+    why: str
+    untouched: bool = False
+
+
+@dataclass(frozen=True)
+class Message:
+    """An unsolicited line from a program in the controller."""
+
+    text: str
+
+
+Event = Answer | Refusal | Lost | Message
+
+
+class CommandProtocol(Protocol):
+    """A protocol without I/O: bytes in, bytes out.
+
+    Attributes:
+        deadline: when ``expire`` is due unless bytes arrive first; None while nothing is outstanding.
+        handshake: the assignments that make the controller answer in the expected form; empty if ``reset`` is enough.
+    """
+
+    deadline: float | None
+    handshake: str
+
+    def begin(self, command: Command, now: float) -> None:
+        """Start a command.
+
+        Raises:
+            ValueError: another one is outstanding, or it exceeds the link's limit.
+        """
+
+    def reset(self, now: float, control: int | None = None) -> None:
+        """Drop what is outstanding, here and in the controller; ends with an ``Answer``, or with ``Lost``.
+
+        Args:
+            now: current time.
+            control: code of a control character to send first; the controller obeys it in any state.
+        """
+
+    def receive(self, data: bytes, now: float) -> None:
+        """Take bytes from the controller."""
+
+    def expire(self, now: float) -> None:
+        """The deadline has passed."""
+
+    def outgoing(self) -> bytes:
+        """Bytes to send; each call returns new ones only."""
+
+    def events(self) -> list[Event]:
+        """Events so far; each call returns new ones only."""
+
+    def lines_at_once(self, lines: Sequence[str]) -> int:
+        """How many of these lines one ``CommandKind.BUFFER`` command may hold."""
+
+
+_Step = Callable[[int, float], None]
+"""Called with a byte and the time."""
+_Timeout = Callable[[float], None]
+"""Called with the time when the deadline has passed."""
+
+
+class ByteProtocol:
+    """A conversation without a protocol.
+
+    Attributes:
+        deadline: when ``expire`` is due.
+    """
+
+    def __init__(self, silence: float) -> None:
+        """Create a conversation.
+
+        Args:
+            silence: seconds without a byte that end an answer; longer than the longest pause within one.
+        """
+        self.deadline: float | None = None
+        self._silence = silence
+        self._command = Command("?")
+        self._step: _Step | None = None
+        self._late: _Timeout = self._unanswered
+        self._out = bytearray()
+        self._events: list[Event] = []
+        self._collected = bytearray()
+        self._taken = 0
+
+    def receive(self, data: bytes, now: float) -> None:
+        """As ``exchange.Conversation``."""
+        for byte in data:
+            if self._step is None:
+                continue  # nothing is outstanding: a stray byte
+            self._taken += 1
+            self._step(byte, now)
+            if self._taken > self._command.most and self._step is not None:
+                self._end(Lost(f"more than {self._command.most} bytes", self._is_untouched()))
+
+    def expire(self, now: float) -> None:
+        """As ``exchange.Conversation``."""
+        if self._step is not None:
+            self._late(now)
+
+    def outgoing(self) -> bytes:
+        """As ``exchange.Conversation``."""
+        data, self._out = bytes(self._out), bytearray()
+        return data
+
+    def events(self) -> list[Event]:
+        """As ``exchange.Conversation``."""
+        events, self._events = self._events, []
+        return events
+
+    def lines_at_once(self, lines: Sequence[str]) -> int:
+        """One line at a time: each is confirmed separately."""
+        return min(len(lines), 1)
+
+    def _take_up(self, command: Command, most: int) -> None:
+        """Make a command the outstanding one.
+
+        Raises:
+            ValueError: another one is outstanding, or the command exceeds ``most`` characters.
+        """
+        if self._step is not None:
+            raise ValueError(f"command: expected none outstanding, got {self._command.text!r} before {command.text!r}")
+        if len(command.text) > most:
+            raise ValueError(f"command: expected up to {most} characters, got {len(command.text)}")
+        self._begin_with(command)
+
+    def _forget(self) -> None:
+        """Drop the outstanding command; bytes until the next silence are discarded."""
+        self._begin_with(Command("forget", CommandKind.BLIND, self._silence))
+
+    def _begin_with(self, command: Command) -> None:
+        self._command, self._taken = command, 0
+        self._collected.clear()
+
+    def _wait(self, step: _Step, late: _Timeout, deadline: float) -> None:
+        self._step, self._late, self.deadline = step, late, deadline
+
+    def _wait_patiently(self, step: _Step, now: float) -> None:
+        self._wait(step, self._unanswered, now + self._command.patience)
+
+    def _wait_for_silence(self, now: float) -> None:
+        # A controller thinks before it answers: the first byte may take longer than those after it.
+        self._collected.clear()
+        self._wait(self._collect, self._silent, now + self._command.patience)
+
+    def _collect(self, byte: int, now: float) -> None:
+        self._collected.append(byte)
+        self.deadline = now + self._silence
+
+    def _silent(self, now: float) -> None:
+        self._end(Answer(tuple(self._collected.decode("latin-1").split("\r"))))
+
+    def _unanswered(self, now: float) -> None:
+        self._end(Lost(f"no answer for {self._command.patience:g} s"))
+
+    def _is_untouched(self) -> bool:
+        """Whether the controller certainly did not execute the command."""
+        return False
+
+    def _end(self, event: Event) -> None:
+        self._step, self.deadline = None, None
+        self._events.append(event)

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Operate: run and resume a program, and set its override. Each command is sent once; then the state is read.
+
+Hold and abort are in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts are moving.
+The controller's state shows a command with a short delay, so each command is watched until it shows.
+
+Enters: a session, settings, a program. Leaves: the resulting state.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from decimal import Decimal
+
+import numpy as np
+
+from pkm_post.control.link.download import verify_listing
+from pkm_post.control.link.errors import LinkLostError, NotReadyError, OutcomeUnknownError, PmacError
+from pkm_post.control.link.ownership import RESUMED_BY_ALL, owned
+from pkm_post.control.link.program import PmacProgram
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import MOTORS, Array, Status, read_status, settled_status
+from pkm_post.control.link.tool_pose import start_faults
+from pkm_post.model import Machine
+from pkm_post.options import START_TOLERANCE_MM
+from pkm_post.writing import PmacSettings
+
+_UNSIGNED = r"(?:\d+\.?\d*|\.\d+)"
+_DEFINITION = re.compile(rf"([-+]?{_UNSIGNED})?([A-Z])([-+]{_UNSIGNED})?")
+_REAL = r"[-+]?\d+(?:\.\d*)?"
+_ROTARY = "ABC"
+
+
+def check_setup(session: Session, settings: PmacSettings, stroke: tuple[float, float]) -> None:
+    """Compare the controller with the setup that programs of this machine rely on.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        stroke: shortest and longest strut length, mm.
+
+    Raises:
+        NotReadyError: lists all differences.
+    """
+    reasons = [
+        *_axis_faults(session, settings),
+        *_variable_faults(session, settings),
+        *_limit_faults(session, settings, stroke),
+    ]
+    if reasons:
+        raise NotReadyError(reasons)
+
+
+def check_start(status: Status, first: Array, near: float = START_TOLERANCE_MM, machine: Machine | None = None) -> None:
+    """Check that a program may start: struts homed, in closed loop, without faults, standing near its first point.
+
+    Args:
+        status: of the struts.
+        first: (6,) strut lengths of the first point, mm.
+        near: largest distance of each strut from it, mm.
+        machine: its geometry, to compare the tool pose as well.
+
+    Raises:
+        NotReadyError: lists every reason.
+    """
+    reasons = [*_motor_faults(status), *status.words()]
+    if status.running:
+        reasons.append("a program runs, or is held")
+    if status.override > 100:
+        reasons.append(f"the override is {status.override:g} %: the program was planned to the limits at 100 %")
+    away = np.abs(status.length - first)
+    reasons += [
+        f"strut {motor}: {status.length[motor - 1]:.3f} mm long, {distance:.3f} mm from the first point of the program"
+        for motor, distance in zip(MOTORS, away, strict=True)
+        if not distance <= near
+    ]
+    if machine is not None and all(status.homed):
+        reasons += start_faults(machine, status.length, first, near)
+    if reasons:
+        raise NotReadyError(tuple(dict.fromkeys(reasons)))
+
+
+def read_number(session: Session, name: str) -> float:
+    """The value of a variable of the controller.
+
+    Raises:
+        LinkLostError: the answer is not a number.
+    """
+    told = _one(session, name)
+    if not re.fullmatch(_REAL, told):
+        raise LinkLostError(f"{name}: expected a number, got {told!r}")
+    return float(told)
+
+
+def _motor_faults(status: Status) -> Iterator[str]:
+    expected = {
+        "homed": "not homed",
+        "activated": "not activated",
+        "amplifier_enabled": "its amplifier is off",
+        "assigned": "belongs to no coordinate system",
+        "standing": "moves",
+    }
+    for motor, bits in zip(MOTORS, status.motors, strict=True):
+        for name, otherwise in expected.items():
+            if not bits.has(name):
+                yield f"strut {motor}: {otherwise}"
+
+
+def _axis_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
+    """Compare ``#n->`` with the axis definitions of the setup file."""
+    scale = Decimal(repr(float(settings.counts_per_mm)))
+    for motor, letter, zero in zip(MOTORS, settings.letters, settings.zero_length, strict=True):
+        wanted = (scale, letter, -scale * Decimal(repr(float(zero))))
+        told = _one(session, f"&{settings.coordinate_system}#{motor}->").replace(" ", "")
+        found = _DEFINITION.fullmatch(told.removeprefix(f"#{motor}->").upper())
+        got = found and (Decimal(found[1] or 1), found[2], Decimal(found[3] or 0))
+        if got != wanted:
+            stated = f"{wanted[0].normalize():f}{letter}{wanted[2].normalize():+f}"
+            yield f"#{motor}->: expected {stated}, the controller has {told or 'nothing'}"
+
+
+def _variable_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
+    base = f"I{50 + settings.coordinate_system}"
+    expected = {f"{base}90": (1000, "speeds are in mm/s"), f"{base}50": (0, "no kinematics in the controller")}
+    for motor, letter in zip(MOTORS, settings.letters, strict=True):
+        if letter in _ROTARY:
+            expected[f"I{motor}27"] = (0, "no rollover of a strut")
+    for name, (value, why) in expected.items():
+        got = read_number(session, name)
+        if got != value:
+            yield f"{name}: expected {value} ({why}), the controller has {got:g}"
+    served = read_number(session, "I68")
+    if served < settings.coordinate_system - 1:
+        yield f"I68: expected {settings.coordinate_system - 1} or more, the controller has {served:g}"
+
+
+def _limit_faults(session: Session, settings: PmacSettings, stroke: tuple[float, float]) -> Iterator[str]:
+    """The soft limits must be enabled and within the stroke."""
+    for motor, zero in zip(MOTORS, settings.zero_length, strict=True):
+        low, high = sorted(settings.counts_per_mm * (length - zero) for length in stroke)
+        for name, (least, most) in {f"I{motor}13": (-np.inf, high), f"I{motor}14": (low, np.inf)}.items():
+            got = read_number(session, name)
+            if got == 0 or not least - 1 <= got <= most + 1:
+                within = f"{most:.0f} or less" if np.isfinite(most) else f"{least:.0f} or more"
+                yield f"{name}: expected {within} and not 0, which is no limit; the controller has {got:g}"
+
+
+def _one(session: Session, query: str) -> str:
+    told = session.ask(query)
+    if len(told) != 1:
+        raise PmacError(f"{query}: expected one line, got {len(told)}")
+    return told[0].strip()
+
+
+OVERRIDE_S = 5.0
+"""Seconds for the time base to reach an override."""
+SHOWN_S = 0.5
+"""Seconds for the state to show that a start was accepted."""
+_OVERRIDE_REACHED = 0.1
+"""%"""
+_POLL_S = 0.02
+
+
+def start_program(
+    session: Session,
+    settings: PmacSettings,
+    program: PmacProgram,
+    first: Array,
+    near: float = START_TOLERANCE_MM,
+    machine: Machine | None = None,
+) -> Status:
+    """Start a program from its beginning.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        program: what the controller must hold; its listing is verified again.
+        first: (6,) strut lengths of its first point, mm.
+        near: largest distance of each strut from it, mm.
+        machine: its geometry, to compare the tool pose as well.
+
+    Raises:
+        NotReadyError: the controller's program differs, or the machine is not ready.
+        OutcomeUnknownError: the link failed at the start, and the state does not show a running program.
+        CancelledError: a stop came first; nothing was started.
+        NotOwnerError: another client owns the machine; nothing was started.
+    """
+    with owned(session, "run"):
+        there = verify_listing(session, program)
+        if not there.same:
+            raise NotReadyError([f"program {program.number} in the controller is another one: {there.difference}"])
+        check_start(settled_status(session, settings), first, near, machine)
+        return _go(session, settings, f"B{program.number}R", lambda status: status.running)
+
+
+def resume_program(session: Session, settings: PmacSettings) -> Status:
+    """Resume a held program.
+
+    Raises:
+        NotReadyError: no program is held, or there is a fault.
+        OutcomeUnknownError: the link failed, and the state does not show that the program has resumed.
+        CancelledError: a stop came first; the program is still held.
+        NotOwnerError: the program belongs to another client; it is still held.
+    """
+    with owned(session, "resume", beside=RESUMED_BY_ALL):
+        return _resume(session, settings)
+
+
+def _resume(session: Session, settings: PmacSettings) -> Status:
+    status = read_status(session, settings)
+    reasons = list(status.words())
+    if not status.held:
+        reasons.append("no program is held; after a stop (M0, M1) continue it, else start it from its beginning")
+    if reasons:
+        raise NotReadyError(reasons)
+    return _go(session, settings, "R", lambda status: status.running and not status.held)
+
+
+def set_feed_override(
+    session: Session, settings: PmacSettings, percent: float, meanwhile: Callable[[], None] = lambda: None
+) -> Status:
+    """Set the override of the time base and verify that it takes effect.
+
+    Args:
+        session: an open session.
+        settings: of the machine's controller.
+        percent: above 0 and up to 100: programs are planned to the limits of the machine at 100 %.
+        meanwhile: called after each reading.
+
+    Raises:
+        ValueError: the percentage is out of range; use a hold to stop.
+        NotReadyError: a program is held; its time base is at 0.
+        PmacError: the time base does not reach it.
+        CancelledError: a stop came first.
+        NotOwnerError: another client owns the machine.
+    """
+    if not 0 < percent <= 100:
+        raise ValueError(f"percent: expected above 0 and up to 100, got {percent:g}")
+    with owned(session, "override", beside=RESUMED_BY_ALL):
+        return _override(session, settings, percent, meanwhile)
+
+
+def _override(session: Session, settings: PmacSettings, percent: float, meanwhile: Callable[[], None]) -> Status:
+    if read_status(session, settings).held:
+        raise NotReadyError(["a program is held: resume it, or abort it, before the override is changed"])
+    session.order(f"&{settings.coordinate_system}%{percent:.2f}")
+
+    def is_reached(status: Status) -> bool:
+        return abs(status.override - percent) <= _OVERRIDE_REACHED
+
+    status = _watched(session, settings, is_reached, OVERRIDE_S, session.is_waited_for, meanwhile)
+    if is_reached(status):
+        return status
+    session.give_way()
+    taken_from = f"I{50 + settings.coordinate_system}93"
+    raise PmacError(
+        f"the time base stays at {status.override:g} % after %{percent:g}: {taken_from} may take it from elsewhere"
+    )
+
+
+def _go(session: Session, settings: PmacSettings, order: str, goes: Callable[[Status], bool]) -> Status:
+    """Send a command that moves the machine, once, unless a stop waits; if its answer is lost, the state decides."""
+    session.give_way()
+    try:
+        session.order(f"&{settings.coordinate_system}{order}")
+    except OutcomeUnknownError:
+        status = _watched(session, settings, goes, SHOWN_S)
+        if not goes(status):
+            raise
+        return status
+    return _watched(session, settings, goes, SHOWN_S)
+
+
+def _watched(
+    session: Session,
+    settings: PmacSettings,
+    holds: Callable[[Status], bool],
+    seconds: float,
+    is_over: Callable[[], bool] = lambda: False,
+    meanwhile: Callable[[], None] = lambda: None,
+) -> Status:
+    """Poll until the state satisfies ``holds``; return the last state on timeout, or when ``is_over``."""
+    until = session.now() + seconds
+    while True:
+        status = read_status(session, settings)
+        if holds(status) or session.now() >= until or is_over():
+            return status
+        meanwhile()
+        session.sleep(_POLL_S)
