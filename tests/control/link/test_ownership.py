@@ -210,10 +210,10 @@ import sys
 sys.path[:0] = {paths!r}
 from pkm_post.control.link.ports import port_named
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.ownership import take
+from pkm_post.control.link.ownership import claim
 session = Session(port_named(sys.argv[1]))
 session.open()
-take(session, "download")
+claim(session, "download")
 for line in ("OPEN PROG 10", "CLEAR", "ABS"):
     session.order(line)
 print("taken", flush=True)
