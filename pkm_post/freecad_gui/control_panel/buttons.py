@@ -8,22 +8,22 @@ from typing import Any
 
 from PySide import QtWidgets
 
-from pkm_post.control import Order, Why, blocking_interlock
+from pkm_post.control import Interlock, OperatorCommand, blocking_interlock
 from pkm_post.freecad_gui.control_panel.words import why_text
 
 
 class OrderButton(QtWidgets.QPushButton):
     """A button for an order; where the order is not possible it is disabled, and its tooltip states why."""
 
-    def __init__(self, text: str, tip: str, order: Order, action: Callable[[], Any]) -> None:
+    def __init__(self, text: str, tip: str, order: OperatorCommand, action: Callable[[], Any]) -> None:
         super().__init__(text)
         self._tip, self._order = tip, order
-        self._why: Why | None = None
+        self._why: Interlock | None = None
         self.setToolTip(tip)
         self.setAutoDefault(False)
         self.clicked.connect(lambda: action())
 
-    def refresh(self, found: frozenset[Why]) -> None:
+    def refresh(self, found: frozenset[Interlock]) -> None:
         """Enable or disable the button."""
         why = blocking_interlock(self._order, found)
         self.setEnabled(why is None)
@@ -32,7 +32,7 @@ class OrderButton(QtWidgets.QPushButton):
             self.setToolTip(self._tip if why is None else f"{self._tip}\n({why_text(why)})")
 
 
-def refresh_all(buttons: Iterable[OrderButton], found: frozenset[Why]) -> None:
+def refresh_all(buttons: Iterable[OrderButton], found: frozenset[Interlock]) -> None:
     """Enable or disable several buttons."""
     for button in buttons:
         button.refresh(found)

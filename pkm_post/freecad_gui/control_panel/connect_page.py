@@ -11,7 +11,7 @@ from collections.abc import Callable
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import ControlState, Why, target_of
+from pkm_post.control import ControlState, Interlock, connection_target
 from pkm_post.freecad_gui.control_panel.buttons import plain_button, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.post_fields import editable_box, quantity_field, show_quantity, with_button
@@ -73,9 +73,9 @@ class ConnectPage(QtWidgets.QWidget):
         layout.addRow(translate("ControlPanel", "Tool length"), self.tool_length)
         layout.addRow(side_by_side(self.connect, self.train, self.leave))
 
-    def refresh(self, _state: ControlState, found: frozenset[Why]) -> None:
+    def refresh(self, _state: ControlState, found: frozenset[Interlock]) -> None:
         """Enable what is possible."""
-        connected, waits = Why.NOT_CONNECTED not in found, self._console.waits
+        connected, waits = Interlock.NOT_CONNECTED not in found, self._console.waits
         for widget in (self.port, self.machine.parentWidget(), self.connect, self.train):
             widget.setEnabled(not (connected or waits))
         self.leave.setEnabled(connected)
@@ -94,7 +94,7 @@ class ConnectPage(QtWidgets.QWidget):
             self._console.told.emit(translate("ControlPanel", "The length of the tool has to be above zero"), True)
             return False
         try:
-            target, told = target_of(port, name)
+            target, told = connection_target(port, name)
         except ValueError as fault:  # invalid port name
             self._console.told.emit(str(fault), True)
             return False

@@ -19,15 +19,15 @@ from pkm_post.control import (
     Connection,
     ConnectionTarget,
     ControlState,
-    Desk,
+    Interlock,
     Job,
     NumericalControl,
+    PanelState,
     Plan,
     PmacError,
-    Why,
+    active_interlocks,
     connect,
-    facts,
-    stops_of,
+    program_stops,
 )
 from pkm_post.freecad_gui.control_panel.beside import Beside, Then
 from pkm_post.model import Diagnostic, Refused
@@ -86,9 +86,9 @@ class Console(QtCore.QObject):
         """Whether orders are pending."""
         return bool(self._under_way)
 
-    def desk(self) -> Desk:
+    def desk(self) -> PanelState:
         """What the panel knows besides the state."""
-        return Desk(
+        return PanelState(
             connected=self.connection is not None,
             watch_only=self.connection is not None and self.connection.target.watch_only,
             busy=self.has_orders or self.waits,
@@ -99,9 +99,9 @@ class Console(QtCore.QObject):
             homing=self._homing,
         )
 
-    def found(self) -> frozenset[Why]:
+    def found(self) -> frozenset[Interlock]:
         """All current reasons against orders."""
-        return facts(self.state, self.desk())
+        return active_interlocks(self.state, self.desk())
 
     def connect_to(self, target: ConnectionTarget, tool_length: float) -> None:
         """Connect beside the window; mm."""
@@ -192,7 +192,7 @@ class Console(QtCore.QObject):
         """Replace the opened program, or close it; blocks of the previous one are no longer next."""
         self.job: Job | None = job
         self.loaded, self.stepping, self.progress = False, False, (0, 0)
-        self.stops = 0 if job is None else len(stops_of(job))
+        self.stops = 0 if job is None else len(program_stops(job))
 
     def _look(self) -> None:
         """Called by the timer; its calls confirm to the worker that the user can see what the machine does."""

@@ -9,7 +9,14 @@ from __future__ import annotations
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import HOMING, ControlState, Order, Why, blocking_interlock, check_trigger
+from pkm_post.control import (
+    SIMULATED_HOMING,
+    ControlState,
+    Interlock,
+    OperatorCommand,
+    blocking_interlock,
+    check_trigger,
+)
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.words import homing_text
@@ -38,7 +45,7 @@ class HomingPage(QtWidgets.QWidget):
         self.home = OrderButton(
             translate("ControlPanel", "Home"),
             translate("ControlPanel", "Start the homing of the machine, and watch it"),
-            Order.HOME,
+            OperatorCommand.HOME,
             self._ask_and_home,
         )
         told = translate(
@@ -51,7 +58,7 @@ class HomingPage(QtWidgets.QWidget):
             layout.addWidget(widget)
         layout.addStretch(1)
 
-    def refresh(self, state: ControlState, found: frozenset[Why]) -> None:
+    def refresh(self, state: ControlState, found: frozenset[Interlock]) -> None:
         """Enable what is possible, and show the progress of a homing."""
         self.home.refresh(found)
         self.told.setText("" if state.homing is None else homing_text(state.homing))
@@ -59,7 +66,9 @@ class HomingPage(QtWidgets.QWidget):
         if (connection is not None) != self._shown:
             self._shown = connection is not None
             if connection is not None:
-                self.trigger.setText(HOMING if connection.simulated else FreeCAD.ParamGet(GROUP).GetString(_ENTRY, ""))
+                self.trigger.setText(
+                    SIMULATED_HOMING if connection.simulated else FreeCAD.ParamGet(GROUP).GetString(_ENTRY, "")
+                )
 
     def _ask_and_home(self) -> None:
         trigger, connection = self.trigger.text().strip(), self._console.connection
@@ -68,7 +77,7 @@ class HomingPage(QtWidgets.QWidget):
         except ValueError as fault:  # invalid user input
             self._console.told.emit(str(fault), True)
             return
-        if not self._is_sure(trigger) or blocking_interlock(Order.HOME, self._console.found()) is not None:
+        if not self._is_sure(trigger) or blocking_interlock(OperatorCommand.HOME, self._console.found()) is not None:
             return  # the state may have changed during the question
         if connection is not None and not connection.simulated:
             FreeCAD.ParamGet(GROUP).SetString(_ENTRY, trigger)

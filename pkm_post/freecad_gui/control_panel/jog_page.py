@@ -12,7 +12,7 @@ from collections.abc import Callable
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import CartesianJog, ControlState, Jog, Order, Plan, StrutJog, Why
+from pkm_post.control import CartesianJog, ControlState, Interlock, Jog, OperatorCommand, Plan, StrutJog
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
@@ -96,11 +96,11 @@ class JogPage(QtWidgets.QWidget):
     ) -> None:
         grid.addWidget(QtWidgets.QLabel(label), row, 0)
         for column, (sign, text) in enumerate(((-1, "−"), (1, "+")), start=1):
-            button = OrderButton(text, tip, Order.JOG, lambda sign=sign: self._jog(make(sign), name))
+            button = OrderButton(text, tip, OperatorCommand.JOG, lambda sign=sign: self._jog(make(sign), name))
             self.buttons[name, sign] = button
             grid.addWidget(button, row, column)
 
-    def refresh(self, _state: ControlState, found: frozenset[Why]) -> None:
+    def refresh(self, _state: ControlState, found: frozenset[Interlock]) -> None:
         """Enable what is possible."""
         refresh_all(self.buttons.values(), found)
 

@@ -11,7 +11,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.control import ControlState, MdiSettings, Order, Plan, Why, blocking_interlock
+from pkm_post.control import ControlState, Interlock, MdiSettings, OperatorCommand, Plan, blocking_interlock
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.readout import angle_text, length_text
@@ -75,13 +75,13 @@ class MdiPage(QtWidgets.QWidget):
         self.check = OrderButton(
             translate("ControlPanel", "Check"),
             translate("ControlPanel", "Plan the line, and send nothing"),
-            Order.LINE,
+            OperatorCommand.LINE,
             lambda: self._plan(sends=False),
         )
         self.run = OrderButton(
             translate("ControlPanel", "Run"),
             translate("ControlPanel", "Plan the line and, if nothing stands against it, carry it out"),
-            Order.LINE,
+            OperatorCommand.LINE,
             lambda: self._plan(sends=True),
         )
         layout = QtWidgets.QVBoxLayout(self)
@@ -90,12 +90,12 @@ class MdiPage(QtWidgets.QWidget):
         layout.addWidget(self.outcome)
         layout.addStretch(1)
 
-    def refresh(self, _state: ControlState, found: frozenset[Why]) -> None:
+    def refresh(self, _state: ControlState, found: frozenset[Interlock]) -> None:
         """Enable what is possible."""
         refresh_all((self.check, self.run), found)
 
     def _enter(self) -> None:
-        if blocking_interlock(Order.LINE, self._console.found()) is None:
+        if blocking_interlock(OperatorCommand.LINE, self._console.found()) is None:
             self._plan(sends=True)
 
     def _plan(self, sends: bool) -> None:

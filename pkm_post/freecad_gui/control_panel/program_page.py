@@ -11,7 +11,16 @@ from pathlib import Path
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import Blocks, ControlState, Job, Order, Plan, Why, job_to_load, read_blocks
+from pkm_post.control import (
+    ControlState,
+    Interlock,
+    Job,
+    OperatorCommand,
+    Plan,
+    ProgramBlocks,
+    job_to_load,
+    read_blocks,
+)
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.model import Diagnostic
@@ -46,19 +55,19 @@ class ProgramPage(QtWidgets.QWidget):
         )
         rows = (
             (translate("ControlPanel", "Load"), translate("ControlPanel", "Load it, list it back and compare"),
-             Order.LOAD, console.load),
+             OperatorCommand.LOAD, console.load),
             (translate("ControlPanel", "Approach"),
              translate("ControlPanel", "Bring the tool to the start of the program, planned and checked"),
-             Order.APPROACH, self._approach),
+             OperatorCommand.APPROACH, self._approach),
             (translate("ControlPanel", "Start"), translate("ControlPanel", "Start it from its beginning"),
-             Order.START, self._start),
+             OperatorCommand.START, self._start),
             (translate("ControlPanel", "Begin at block"), translate("ControlPanel", "Take it for single block"),
-             Order.BLOCKS, self._begin_at),
+             OperatorCommand.BLOCKS, self._begin_at),
             (translate("ControlPanel", "Next block"),
-             translate("ControlPanel", "Run the next line of its source, to rest"), Order.STEP, self._step),
+             translate("ControlPanel", "Run the next line of its source, to rest"), OperatorCommand.STEP, self._step),
             (translate("ControlPanel", "Go on after stop"),
              translate("ControlPanel", "Start what comes after the stop (M0, M1) at which the machine stands"),
-             Order.GO_ON, self._go_on),
+             OperatorCommand.GO_ON, self._go_on),
         )  # fmt: skip
         self.load, self.approach, self.start, self.begin_at, self.step, self.go_on = (OrderButton(*row) for row in rows)
         layout = QtWidgets.QVBoxLayout(self)
@@ -69,11 +78,11 @@ class ProgramPage(QtWidgets.QWidget):
         layout.addLayout(side_by_side(self.go_on, self.stop))
         layout.addStretch(1)
 
-    def refresh(self, _state: ControlState, found: frozenset[Why]) -> None:
+    def refresh(self, _state: ControlState, found: frozenset[Interlock]) -> None:
         """Enable what is possible, and show the progress of loading."""
         console, (done, lines) = self._console, self._console.progress
         refresh_all((self.load, self.approach, self.start, self.begin_at, self.step, self.go_on), found)
-        self.open.setEnabled(not {Why.NOT_CONNECTED, Why.WATCH_ONLY} & found and not console.waits)
+        self.open.setEnabled(not {Interlock.NOT_CONNECTED, Interlock.WATCH_ONLY} & found and not console.waits)
         self.cancel.setEnabled(console.has_orders and not console.loaded and lines > 0)
         self.bar.setRange(0, max(lines, 1))
         self.bar.setValue(done)
@@ -131,7 +140,7 @@ class ProgramPage(QtWidgets.QWidget):
         machine = connection.target.machine
         self._console.beside.do(lambda: read_blocks(file, machine), lambda found: self._take_blocks(*found, at))
 
-    def _take_blocks(self, blocks: Blocks | None, told: tuple[Diagnostic, ...], at: int) -> None:
+    def _take_blocks(self, blocks: ProgramBlocks | None, told: tuple[Diagnostic, ...], at: int) -> None:
         for each in told:
             self._console.told.emit(str(each), blocks is None)
         if blocks is not None and self._console.connection is not None:

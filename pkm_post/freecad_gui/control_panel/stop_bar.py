@@ -9,36 +9,36 @@ from functools import partial
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.control import ControlState, Order, Why, blocking_interlock
+from pkm_post.control import ControlState, Interlock, OperatorCommand, blocking_interlock
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-_BUTTONS: tuple[tuple[str, str, Order, Callable[[Console], None]], ...] = (
+_BUTTONS: tuple[tuple[str, str, OperatorCommand, Callable[[Console], None]], ...] = (
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Hold"),
         QT_TRANSLATE_NOOP("ControlPanel", "Slow down to rest, on the path"),
-        Order.HOLD,
+        OperatorCommand.HOLD,
         lambda console: console.stop(lambda control: control.hold()),
     ),
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Resume"),
         QT_TRANSLATE_NOOP("ControlPanel", "Go on after a hold"),
-        Order.RESUME,
+        OperatorCommand.RESUME,
         lambda console: console.order(lambda control: control.resume()),
     ),
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Abort"),
         QT_TRANSLATE_NOOP("ControlPanel", "Hold, then end the program"),
-        Order.ABORT,
+        OperatorCommand.ABORT,
         lambda console: console.abort(at_once=False),
     ),
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Abort at once"),
         QT_TRANSLATE_NOOP("ControlPanel", "Each strut stops as fast as it can: the tool leaves its path"),
-        Order.ABORT,
+        OperatorCommand.ABORT,
         lambda console: console.abort(at_once=True),
     ),
 )
@@ -83,11 +83,11 @@ class StopBar(QtWidgets.QWidget):
         self._quiet.timeout.connect(self._send)
         self.override.valueChanged.connect(self._changed)
 
-    def refresh(self, state: ControlState, found: frozenset[Why]) -> None:
+    def refresh(self, state: ControlState, found: frozenset[Interlock]) -> None:
         """Enable what is possible, and show the controller's override unless the user is setting another one."""
         refresh_all(self._buttons, found)
-        against = blocking_interlock(Order.OVERRIDE, found)
-        self.override.setEnabled(against in (None, Why.BUSY))
+        against = blocking_interlock(OperatorCommand.OVERRIDE, found)
+        self.override.setEnabled(against in (None, Interlock.BUSY))
         unset = not (self._quiet.isActive() or self.override.isSliderDown() or self._console.has_orders)
         if unset and against is None and state.status is not None:
             self._show(max(1, round(state.status.override)))
@@ -103,8 +103,8 @@ class StopBar(QtWidgets.QWidget):
         self._quiet.start(_QUIET_MS)
 
     def _send(self) -> None:
-        against = blocking_interlock(Order.OVERRIDE, self._console.found())
-        if against is Why.BUSY or self.override.isSliderDown():
+        against = blocking_interlock(OperatorCommand.OVERRIDE, self._console.found())
+        if against is Interlock.BUSY or self.override.isSliderDown():
             self._quiet.start(_QUIET_MS)
         elif against is None:
             percent = float(self.override.value())

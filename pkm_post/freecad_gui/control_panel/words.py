@@ -9,25 +9,25 @@ from __future__ import annotations
 
 import FreeCAD
 
-from pkm_post.control import Bits, ControlState, Homing, HomingPhase, Shown, Status, Why
+from pkm_post.control import Bits, BlockDisplay, ControlState, Homing, HomingPhase, Interlock, Status
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 WHY = {
-    Why.NOT_CONNECTED: QT_TRANSLATE_NOOP("ControlPanel", "there is no connection"),
-    Why.WATCH_ONLY: QT_TRANSLATE_NOOP("ControlPanel", "a Power PMAC can be watched, held and aborted alone"),
-    Why.NO_ANSWER: QT_TRANSLATE_NOOP("ControlPanel", "the controller does not answer"),
-    Why.BUSY: QT_TRANSLATE_NOOP("ControlPanel", "another order is being carried out"),
-    Why.NO_JOB: QT_TRANSLATE_NOOP("ControlPanel", "no program was opened"),
-    Why.NOT_LOADED: QT_TRANSLATE_NOOP("ControlPanel", "the program is not loaded"),
-    Why.NO_BLOCK: QT_TRANSLATE_NOOP("ControlPanel", "no block comes next"),
-    Why.NO_STOP: QT_TRANSLATE_NOOP("ControlPanel", "the program has no stop with moves after it"),
-    Why.RUNS: QT_TRANSLATE_NOOP("ControlPanel", "a program runs"),
-    Why.HELD: QT_TRANSLATE_NOOP("ControlPanel", "a program is held"),
-    Why.NOT_HELD: QT_TRANSLATE_NOOP("ControlPanel", "no program is held"),
-    Why.MOVES: QT_TRANSLATE_NOOP("ControlPanel", "the machine moves"),
-    Why.NOT_HOMED: QT_TRANSLATE_NOOP("ControlPanel", "not all struts are homed"),
+    Interlock.NOT_CONNECTED: QT_TRANSLATE_NOOP("ControlPanel", "there is no connection"),
+    Interlock.WATCH_ONLY: QT_TRANSLATE_NOOP("ControlPanel", "a Power PMAC can be watched, held and aborted alone"),
+    Interlock.NO_ANSWER: QT_TRANSLATE_NOOP("ControlPanel", "the controller does not answer"),
+    Interlock.BUSY: QT_TRANSLATE_NOOP("ControlPanel", "another order is being carried out"),
+    Interlock.NO_JOB: QT_TRANSLATE_NOOP("ControlPanel", "no program was opened"),
+    Interlock.NOT_LOADED: QT_TRANSLATE_NOOP("ControlPanel", "the program is not loaded"),
+    Interlock.NO_BLOCK: QT_TRANSLATE_NOOP("ControlPanel", "no block comes next"),
+    Interlock.NO_STOP: QT_TRANSLATE_NOOP("ControlPanel", "the program has no stop with moves after it"),
+    Interlock.RUNS: QT_TRANSLATE_NOOP("ControlPanel", "a program runs"),
+    Interlock.HELD: QT_TRANSLATE_NOOP("ControlPanel", "a program is held"),
+    Interlock.NOT_HELD: QT_TRANSLATE_NOOP("ControlPanel", "no program is held"),
+    Interlock.MOVES: QT_TRANSLATE_NOOP("ControlPanel", "the machine moves"),
+    Interlock.NOT_HOMED: QT_TRANSLATE_NOOP("ControlPanel", "not all struts are homed"),
 }
 PHASES = {
     HomingPhase.SEARCHING: QT_TRANSLATE_NOOP("ControlPanel", "the struts look for their homes"),
@@ -88,7 +88,7 @@ EMERGENCY = (
 )
 
 
-def why_text(why: Why) -> str:
+def why_text(why: Interlock) -> str:
     """The reason against an order."""
     return translate("ControlPanel", WHY[why])
 
@@ -100,14 +100,14 @@ def activity_text(state: ControlState) -> str:
         return translate("ControlPanel", "Nothing was read yet")
     told = translate("ControlPanel", "no program runs")
     if status.running:
-        told = why_text(Why.HELD if status.held else Why.RUNS)
-    moves = [] if status.standing else [why_text(Why.MOVES)]
+        told = why_text(Interlock.HELD if status.held else Interlock.RUNS)
+    moves = [] if status.standing else [why_text(Interlock.MOVES)]
     block = [] if state.block is None or state.block.is_over else [_block_text(state.block)]
     override = translate("ControlPanel", "override {:g} %").format(status.override)
     return ", ".join([told, *moves, *block, override, *_told(status.system, SYSTEM)])
 
 
-def _block_text(block: Shown) -> str:
+def _block_text(block: BlockDisplay) -> str:
     """A block with the job operation's own name."""
     text = ": ".join(filter(None, (block.operation, block.text)))
     return translate("ControlPanel", "block {} of {} comes next, line {}: {}").format(
