@@ -28,7 +28,7 @@ from pkm_post.machine import (  # noqa: E402
 )
 from pkm_post.machine.spin.optimise import optimise  # noqa: E402
 from pkm_post.machine.spin.policy import OBJECTIVES  # noqa: E402
-from pkm_post.toolpath.placement import place  # noqa: E402
+from pkm_post.toolpath.place import place  # noqa: E402
 
 
 def path(poses):

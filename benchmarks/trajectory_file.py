@@ -36,7 +36,7 @@ from pkm_post.machine.description.reader import read_machine  # noqa: E402
 from pkm_post.model import Kind, Trajectory  # noqa: E402
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS  # noqa: E402
 from pkm_post.reading import gcode  # noqa: E402
-from pkm_post.toolpath.placement import place  # noqa: E402
+from pkm_post.toolpath.place import place  # noqa: E402
 from pkm_post.writing import trajectory_file  # noqa: E402
 from pkm_post.writing.trajectory_file.layout import HEADER, SEGMENT  # noqa: E402
 

@@ -12,7 +12,7 @@ from pkm_post.machine import forward, machine_named
 from pkm_post.model import StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 NARROW, WIDE, UNEQUAL = (1e-3, 1e-3), (0.2, 2.0), (1e-3, 2.0)
 """Tolerances of tip, mm, and tool axis, degrees."""

@@ -19,7 +19,7 @@ from pkm_post.machine.description.reader import read_machine
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import RULES
 from pkm_post.planning import plan
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 from pkm_post.writing.controllers import pmac
 
 ROOT = Path(__file__).parents[1]

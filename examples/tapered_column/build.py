@@ -27,7 +27,8 @@ from pkm_post.freecad_app.face_projection import surface_points
 from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
 from pkm_post.freecad_app.tools import set_gauge_length
 from pkm_post.model import Tool
-from pkm_post.toolpath.compensation import Cutter, tip_from_contact
+from pkm_post.toolpath.compensation.contact import tip_from_contact
+from pkm_post.toolpath.compensation.cutter import Cutter
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 

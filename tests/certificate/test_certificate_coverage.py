@@ -10,7 +10,7 @@ from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Extent, Topic, meaning
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 
 TRAJECTORY = place(cone(9), machines.example(), ON_PALLET)[0]
 

@@ -12,7 +12,7 @@ from pkm_post.geometry import norm, unit
 from pkm_post.model import Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning.tool_path import ToolPath
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 

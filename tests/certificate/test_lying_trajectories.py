@@ -15,7 +15,7 @@ from pkm_post.cli import main
 from pkm_post.machine import machine_named
 from pkm_post.model import Event, EventKind, Refused
 from pkm_post.posting.verify import verify
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 from pkm_post.writing.trajectory_file import decode, write, writer
 
 SEEDS = 250

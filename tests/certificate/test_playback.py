@@ -20,7 +20,7 @@ from pkm_post.machine import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 FEED = 30.0

@@ -15,7 +15,7 @@ from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
 from pkm_post.planning import interpolate, plan_feed, strut_motion
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 

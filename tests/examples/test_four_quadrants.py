@@ -18,7 +18,7 @@ from cam_jobs import add_operation, new_job  # noqa: E402
 from examples.tapered_column.build import Column, build  # noqa: E402
 from pkm_post.freecad_app.document_object import program_of  # noqa: E402
 from pkm_post.freecad_app.symmetry_report import family_of  # noqa: E402
-from pkm_post.toolpath.placement import passes  # noqa: E402
+from pkm_post.toolpath.symmetry.passes import passes  # noqa: E402
 
 QUARTER = ["G0 X60 Y0 Z90", "G0 Z40", "G1 Z30 F5", "G3 X0 Y60 I-60 J0 F20", "G0 Z40", "G0 Z90"]
 SIX_DECIMALS = 1e-6

@@ -10,8 +10,7 @@ from surface_finishes import finish, valid
 
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.symmetry import create_mirror
-from pkm_post.toolpath.placement import passes
-from pkm_post.toolpath.placement.passes import moving
+from pkm_post.toolpath.symmetry.passes import moving, passes
 
 SIX_DECIMALS = 1e-6
 PLUNGE = 5.0

@@ -9,7 +9,7 @@ import pytest
 from pkm_post.freecad_app.document_object import program_of
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.freecad_app.symmetry_report import material_side_of
-from pkm_post.toolpath.placement.passes import chords
+from pkm_post.toolpath.symmetry.passes import chords
 
 MIDDLE = [10, 10, 0]
 COUNTERCLOCKWISE, CLOCKWISE = 1, -1

@@ -11,8 +11,7 @@ from cam_jobs import add_operation
 
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
-from pkm_post.toolpath.compensation import Cutter
-from pkm_post.toolpath.compensation.profile import Profile
+from pkm_post.toolpath.compensation.cutter import Cutter, Profile
 
 
 def stock_bit(document, shape, **sizes):

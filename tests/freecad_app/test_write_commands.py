@@ -11,7 +11,7 @@ from programs import cone, program, square_with_arc
 from pkm_post.freecad_app.commands import commands_of, read_commands
 from pkm_post.geometry import angle_between, arc_points, arc_sweep, norm
 from pkm_post.model import Event, EventKind, Kind
-from pkm_post.toolpath.placement import mirror, rotation, transform
+from pkm_post.toolpath.symmetry.transform import mirror, rotation, transform
 
 MICRON = 1e-3
 ROUNDING = 1e-12

@@ -8,7 +8,7 @@ from programs import ON_PALLET, cone
 from pkm_post.machine.best_position import best_position
 from pkm_post.machine.description.presets import machine_named
 from pkm_post.machine.spin.normalised_margins import JOINTS, STROKE, Samples, shares
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from pkm_post.planning import cubics, interpolate, motion, plan_feed
 from pkm_post.planning.cubics import Cubics, poses_at
 from pkm_post.planning.knots import even_marks, knots
 from pkm_post.planning.schedule import by_time
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 PATHS = {"lines that turn": cone, "arcs and a helix": square_with_arc}

@@ -9,7 +9,7 @@ from programs import BALL, ON_PALLET, cone, program, square_with_arc
 from pkm_post.model import Event, EventKind
 from pkm_post.planning.glimpse import glimpse, glimpse_within
 from pkm_post.planning.tool_path import ToolPath
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 ROUNDING = 1e-11
 """mm, rad and plain numbers: two ways to one place half a metre from the origin."""

@@ -17,7 +17,7 @@ from pkm_post.planning.jerk import Ceilings, _least_of_covers, for_jerk
 from pkm_post.planning.profile import speed_profile
 from pkm_post.planning.schedule import by_time
 from pkm_post.planning.stations import stations
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 NANOMETRE = 1e-6
 JERK = 1e5

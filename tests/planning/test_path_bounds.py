@@ -11,7 +11,7 @@ from programs import ON_PALLET, cone, program, random_job, square_with_arc
 from pkm_post.geometry import norm
 from pkm_post.planning.path_bounds import PathBounds
 from pkm_post.planning.tool_path import ToolPath
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 ROUNDING = 1e-9
 """Relative; second derivatives in short blends lose this much."""

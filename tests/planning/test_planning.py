@@ -10,7 +10,7 @@ from pkm_post.machine import strut_lengths
 from pkm_post.model import Event, EventKind, Tool
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan, plan_feed
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 

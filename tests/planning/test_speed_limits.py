@@ -24,7 +24,7 @@ from pkm_post.planning.speed_limits import (
     roughly_bounded,
 )
 from pkm_post.planning.stations import stations
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 LONGER = 1e-3

@@ -6,7 +6,7 @@ from programs import ON_PALLET, cone, random_job, square_with_arc
 from pkm_post.geometry import angle_between, norm
 from pkm_post.planning.stations import stations
 from pkm_post.planning.tool_path import ToolPath
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 ROUNDING = 1e-9
 

@@ -13,7 +13,7 @@ from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import interpolate, plan_feed, strut_motion
 from pkm_post.planning.motion import tool_path
 from pkm_post.report import summary
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 ASKED = Tolerances(tip=1e-3, axis=np.radians(1e-3))
 OFFSET = 3 / 16

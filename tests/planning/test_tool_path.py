@@ -10,7 +10,7 @@ from pkm_post.geometry import dot, norm
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning.stations import stations
 from pkm_post.planning.tool_path import ToolPath
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 MICRON = 1e-3
 AXIS = np.radians(0.001)

@@ -7,7 +7,7 @@ from machines import example
 from programs import BALL, ON_PALLET, program
 
 from pkm_post.reading.gcode import ReadOptions, read
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 from pkm_post.writing.outputs import left_over, linuxcnc_text
 
 

@@ -7,12 +7,13 @@ t, with n the normal of the plane, t the direction of travel and d the signed of
 
 from __future__ import annotations
 
+import enum
 from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, across, cross, dot
-from pkm_post.toolpath.compensation.contour import Elements
+from pkm_post.geometry import Array, across, cross, dot, norm
+from pkm_post.toolpath.compensation.contour_elements import Elements, OffsetOptions, Role
 
 
 @dataclass(frozen=True)
@@ -74,3 +75,236 @@ def corners_of(elements: Elements, first: Array, second: Array) -> Corners:
         stepped=after * left_first,
         resized=np.abs(before - after)[:, 0] > 0,
     )
+
+
+SAME = 1e-6
+"""mm within which two offset lines coincide."""
+
+NO_TURN = 1e-5
+"""Sine of the turn at a joint below which the path continues straight on, or straight back."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Offset curves at a joint, J rows.
+
+    Attributes:
+        point: (J, 3) the end of the radius vector, on the curve.
+        tangent: (J, 3) unit direction of travel there.
+        centre: (J, 3) centre of the circle; NaN for lines.
+        radius: (J,) radius of the circle, NaN for lines.
+        arc: (J,) whether it is a circle.
+    """
+
+    point: Array
+    tangent: Array
+    centre: Array
+    radius: Array
+    arc: Array
+
+
+def meetings(first: Curves, second: Curves, normal: Array) -> Array:
+    """Intersections of the curves of each row, (J, 3).
+
+    Args:
+        first: the curves that end at the joint.
+        second: those that begin there.
+        normal: (J, 3) normal of the plane.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lines = _line_line(first, second, normal)
+        on_first = first.point + _along(first, second)[:, None] * first.tangent
+        on_second = second.point + _along(second, first)[:, None] * second.tangent
+        circles = _circle_circle(first, second, normal)
+    points = np.where(second.arc[:, None], on_first, lines)
+    return np.where(first.arc[:, None], np.where(second.arc[:, None], circles, on_second), points)
+
+
+def _line_line(first: Curves, second: Curves, normal: Array) -> Array:
+    """Intersections of lines, (J, 3): p1 + x t1 = p2 + y t2, times n x t2, gives x."""
+    across_second = cross(normal, second.tangent)
+    apart = dot(second.point - first.point, across_second)
+    slope = dot(first.tangent, across_second)
+    one_line = (np.abs(slope) < NO_TURN) & (np.abs(apart) < SAME) & (dot(first.tangent, second.tangent) > 0)
+    way = np.where(np.abs(slope) < NO_TURN, np.where(one_line, 0.0, np.nan), apart / slope)
+    return first.point + way[:, None] * first.tangent
+
+
+def _along(line: Curves, circle: Curves) -> Array:
+    """Distance along lines from their point to circles, (J,): the shorter of both."""
+    spoke = line.point - circle.centre
+    half = dot(spoke, line.tangent)
+    excess = dot(spoke, spoke) - circle.radius**2
+    # This form avoids cancellation in the shorter distance.
+    farther = -half - np.where(half < 0, -1.0, 1.0) * np.sqrt(half**2 - excess)
+    return np.where(farther == 0, 0.0, excess / farther)
+
+
+def _circle_circle(first: Curves, second: Curves, normal: Array) -> Array:
+    """Intersections of two circles lie on their radical line, across the line of centres."""
+    between = second.centre - first.centre
+    distance = np.sqrt(dot(between, between))
+    towards = between / distance[:, None]
+    along = (distance**2 + (first.radius - second.radius) * (first.radius + second.radius)) / (2 * distance)
+    aside = np.sqrt((first.radius - along) * (first.radius + along))[:, None] * cross(normal, towards)
+    foot = first.centre + along[:, None] * towards
+    nearer = np.where(dot(foot, aside) > 0, -1.0, 1.0)
+    return foot + nearer[:, None] * aside
+
+
+MOST_BETWEEN = 4
+"""Most points that a joint adds."""
+
+_RIGHT_ANGLE = 1e-9
+"""Cosine of a turn that is a right angle up to rounding: it is extended, not cut off."""
+
+_LEAST_ARC = 0.05
+"""Turn in rad up to which offset lines are extended although arcs are selected: they leave the arc by 0.0003 of its
+radius, and outward."""
+
+
+class Joint(enum.IntEnum):
+    """Kinds of joints."""
+
+    STRAIGHT_ON = 0
+    SHORTENED = 1
+    EXTENDED = 2
+    CHORD = 3
+    ARC = 4
+    SWITCHED = 5
+    """The side changes: straight from beside the end of the first element to beside the start of the next."""
+    LEAD = 6
+    """Straight to, or from, the point beside the contour's end."""
+
+
+@dataclass(frozen=True)
+class Joints:
+    """Columns of J joints.
+
+    Attributes:
+        kind: (J,) ``Joint``.
+        first: (J, 3) end of the offset of the first element, from its programmed end.
+        last: (J, 3) start of the offset of the second, from its programmed start.
+        between: (J, 4, 3) points added between, from the programmed start of the second, in order; NaN where unused.
+    """
+
+    kind: Array
+    first: Array
+    last: Array
+    between: Array
+
+
+def joints(elements: Elements, first: Array, second: Array, options: OffsetOptions, rounded: Array) -> Joints:
+    """Joints of pairs of elements; NaN where their offsets do not meet.
+
+    Args:
+        elements: the elements of all contours.
+        first: (J,) the elements that end at the joints.
+        second: (J,) those that begin there. If one is not the next element, those between were removed, and the
+            remaining two have to meet.
+        options: how contours begin and end.
+        rounded: (J,) whether an outer corner is rounded by an arc.
+    """
+    corner = corners_of(elements, first, second)
+    kind = _kinds(elements, first, second, corner, options, rounded)
+    # An arc cannot be extended, and leads must stay in place: a line is added there.
+    fixed_first = (elements.turn[first] != 0) | (elements.role[first] == Role.START) | corner.resized
+    fixed_second = (elements.turn[second] != 0) | (elements.role[second] == Role.CANCEL)
+    extended, shortened = kind == Joint.EXTENDED, kind == Joint.SHORTENED
+    extension = (corner.stepped + corner.beside_second) / (1.0 + np.where(extended, corner.cosine, 0.0))[:, None]
+    meeting = np.full_like(extension, np.nan)
+    meeting[shortened] = _meetings(elements, first[shortened], second[shortened], corner.rows(shortened))
+    to_contour = (kind == Joint.LEAD) & (elements.role[first] == Role.START) & (elements.role[second] != Role.CANCEL)
+    ends = _chosen(
+        corner.beside_first,
+        (extended & ~fixed_first, extension),
+        (shortened, meeting),
+        (to_contour, corner.beside_second + corner.gap),
+    )
+    begins = _chosen(corner.beside_second, (extended & ~fixed_second, extension), (shortened, meeting - corner.gap))
+    between = _between(kind, corner, extended & fixed_first, extended & fixed_second, extension)
+    return Joints(kind, ends, begins, between)
+
+
+def _between(kind: Array, corner: Corners, to_extension: Array, from_extension: Array, extension: Array) -> Array:
+    """Points added between the ends of both offsets, from the programmed start of the second, (J, 4, 3)."""
+    chord, arc = kind == Joint.CHORD, kind == Joint.ARC
+    size = norm(corner.beside_second)[:, None]
+    outer = chord | arc | (kind == Joint.EXTENDED) | (kind == Joint.STRAIGHT_ON)
+    across = (kind == Joint.SWITCHED) & (norm(corner.beside_second - corner.beside_first) > SAME)
+    return _packed((
+        (corner.resized & outer, corner.stepped),
+        (to_extension, extension),
+        (chord, corner.stepped + size * corner.tangent_first),
+        (chord, corner.beside_second - size * corner.tangent_second),
+        (from_extension | chord | arc | across, corner.beside_second),
+    ))  # fmt: skip
+
+
+def _kinds(
+    elements: Elements, first: Array, second: Array, corner: Corners, options: OffsetOptions, rounded: Array
+) -> Array:
+    """Kinds of the joints, (J,): the first rule that holds decides."""
+    offset = elements.offset[second]
+    lead = (elements.role[first] == Role.START) | (elements.role[second] == Role.CANCEL)
+    adjacent = second == first + 1
+    no_turn = np.abs(corner.sine) < NO_TURN
+    inner = ~no_turn & (offset * corner.sine > 0)
+    little = (np.abs(corner.sine) <= np.sin(_LEAST_ARC)) & (corner.cosine > 0)
+    # A rapid move goes around by lines, whatever the options ask for.
+    arcs = rounded & ~elements.rapid[second] & ~little
+    return np.select(
+        [
+            lead & ((options.leads == "A") | inner | ~adjacent),
+            elements.offset[first] * offset < 0,
+            ~adjacent,
+            no_turn & (corner.cosine > 0),
+            inner,
+            arcs,
+            corner.cosine >= -_RIGHT_ANGLE,
+        ],
+        [
+            Joint.LEAD,
+            Joint.SWITCHED,
+            Joint.SHORTENED,
+            Joint.STRAIGHT_ON,
+            Joint.SHORTENED,
+            Joint.ARC,
+            Joint.EXTENDED,
+        ],
+        Joint.CHORD,
+    )
+
+
+def _meetings(elements: Elements, first: Array, second: Array, corner: Corners) -> Array:
+    """Meeting points of shortened offsets, from the programmed end of the first element, (J, 3)."""
+    radius = elements.radius_left
+    arc = elements.turn != 0
+    ending = Curves(corner.beside_first, corner.tangent_first, -elements.spoke[first, 1], radius[first, 1], arc[first])
+    beginning = Curves(
+        corner.gap + corner.beside_second,
+        corner.tangent_second,
+        corner.gap - elements.spoke[second, 0],
+        radius[second, 0],
+        arc[second],
+    )
+    too_large = (ending.radius < 0) | (beginning.radius < 0)
+    return np.where(too_large[:, None], np.nan, meetings(ending, beginning, corner.normal))
+
+
+def _chosen(otherwise: Array, *choices: tuple[Array, Array]) -> Array:
+    """For each row the vector of the condition that holds, (J, 3)."""
+    vectors = otherwise
+    for condition, value in choices:
+        vectors = np.where(condition[:, None], value, vectors)
+    return vectors
+
+
+def _packed(added: tuple[tuple[Array, Array], ...]) -> Array:
+    """The points of the conditions that hold, in order, (J, 4, 3): at most four hold at once."""
+    conditions = np.stack([condition for condition, _ in added], axis=1)
+    points = np.stack([point for _, point in added], axis=1)
+    packed = np.full((len(conditions), MOST_BETWEEN, 3), np.nan)
+    row, column = np.nonzero(conditions)
+    packed[row, (np.cumsum(conditions, axis=1) - 1)[row, column]] = points[row, column]
+    return packed

@@ -13,8 +13,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.model import Diagnostic, Kind, Place, Program
+from pkm_post.toolpath.surface.options import LeadMove, Settings
 from pkm_post.toolpath.surface.poses import Poses
-from pkm_post.toolpath.surface.settings import LeadMove, Settings
 from pkm_post.toolpath.surface.surface import Array
 from pkm_post.toolpath.surface.tool_axis import clamped
 

@@ -4,11 +4,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
 
-from pkm_post.toolpath.surface.course import Course
-from pkm_post.toolpath.surface.surface import Array
-from pkm_post.toolpath.surface.turning import Frame
+import numpy as np
+
+from pkm_post.geometry import along, angle_between, dot, norm, towards
+from pkm_post.model import Diagnostic, Place
+from pkm_post.toolpath.compensation.contact import tip_from_contact
+from pkm_post.toolpath.compensation.cutter import Cutter
+from pkm_post.toolpath.surface.contact_path import Course, Pattern
+from pkm_post.toolpath.surface.stepover import gap
+from pkm_post.toolpath.surface.surface import Array, Patch, Surface
+from pkm_post.toolpath.surface.tool_axis import AxisRule, Frame, Links, frame_of, tool_axes
 
 
 @dataclass(frozen=True)
@@ -50,3 +58,184 @@ class Poses:
     axis: Array
     tip: Array
     clamped: Array
+
+
+_SHARES = (0.25, 0.5, 0.75)
+"""Places between two rows where the tolerances are checked; a new row goes in the middle."""
+_SHORTEST = 1e-3
+"""mm: moves between closer contacts are not divided further; there the surface has an edge."""
+_EDGE = math.radians(1.0)
+_ROUNDS = 40
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """Everything that determines the pose at a point of the surface.
+
+    Attributes:
+        surface: the surface.
+        pattern: the lines of the passes.
+        cutter: the corner of the cutter.
+        rule: rule of the tool axis.
+        tolerances: tolerances of straight moves.
+        place: what diagnostics name.
+    """
+
+    surface: Surface
+    pattern: Pattern
+    cutter: Cutter
+    rule: AxisRule
+    tolerances: Tolerances
+    place: Place
+
+    def poses(
+        self, course: Course, progress: Progress = lambda share: None
+    ) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
+        """Refine the course to the tolerances and compute the pose at each row.
+
+        Args:
+            course: passes in order of travel, settled on the pattern.
+            progress: called from time to time with the completed share, from 0 to 1; may raise to abort.
+
+        Returns:
+            The poses, or None when the cutter cannot touch the surface somewhere; and the diagnostics.
+        """
+        patch = self.surface.at(course.u, course.v)
+        open_ = course.run[:-1] == course.run[1:]
+        done = 0.0
+        for _ in range(_ROUNDS):
+            found, faults = self._at(course, patch)
+            if found is None:
+                return None, faults
+            behind = np.flatnonzero(open_ & self._divisible(found))
+            if not len(behind):
+                break
+            middle, middle_patch, fails = self._looked_at(found, behind)
+            behind, middle = behind[fails], middle.taken(fails)
+            rows = Patch(*(np.insert(old, behind + 1, new[fails], axis=0) for old, new in _pairs(patch, middle_patch)))
+            course, patch, open_ = course.with_rows(behind, middle), rows, _open_again(open_, behind)
+            done = max(done, 1.0 - len(behind) / max(len(course) - 1, 1))
+            progress(done)
+        else:
+            return None, (
+                Diagnostic("N305", self.place, f"after {_ROUNDS} halvings, {len(behind)} moves are too long"),
+            )
+        return found, (*faults, *self._edges(found))
+
+    def _at(self, course: Course, patch: Patch) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
+        """Poses at rows of known patch."""
+        travel = np.gradient(patch.point, axis=0) if len(course) > 1 else patch.along_u
+        frame = frame_of(self.pattern, course, patch, travel)
+        before, after = _passes_beside(course)
+        links = Links(frame.taken(before), frame.taken(after), patch.point[after] - patch.point[before])
+        frame = frame.with_links(links, patch.normal, course.link)
+        axis, clamped = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
+        tip, faults = tip_from_contact(patch.point, patch.normal, axis, self.cutter, self.place)
+        if tip is None:
+            return None, _first_of_each(faults, patch.point)
+        return Poses(course, patch.point, patch.normal, frame, axis, tip, clamped), faults
+
+    def _divisible(self, found: Poses) -> Array:
+        """Moves that may be divided: long ones, and those of links that turn the tool in place."""
+        turns = angle_between(found.axis[:-1], found.axis[1:]) > self.tolerances.axis
+        moves: Array = (norm(np.diff(found.point, axis=0)) > _SHORTEST) | (_links(found.course) & turns)
+        return moves
+
+    def _looked_at(self, found: Poses, behind: Array) -> tuple[Course, Patch, Array]:
+        """The rows in the middle of moves, the surface there, and the moves that exceed the tolerances."""
+        course = found.course
+        left, right = course.taken(behind), course.taken(behind + 1)
+        is_link = _links(course)[behind]
+        before, after = (rows[at] for rows, at in zip(_passes_beside(course), (behind, behind + 1), strict=True))
+        links = Links(found.frame.taken(before), found.frame.taken(after), found.point[after] - found.point[before])
+        fails = np.zeros(len(behind), dtype=bool)
+        for share in _SHARES:
+            u, v = (before + share * (after - before) for before, after in ((left.u, right.u), (left.v, right.v)))
+            settled = self.pattern.settled(self.surface, u, v, right.number)
+            u, v = (np.where(is_link, raw, on_line) for raw, on_line in zip((u, v), settled, strict=True))
+            link = np.where(is_link, _link_share(left.link, right.link, share), np.nan)
+            between = replace(right, u=u, v=v, link=link)
+            patch = self.surface.at(u, v)
+            fails |= self._fails(found, behind, between, patch, links, share)
+            if share == 0.5:
+                middle, middle_patch = between, patch
+        return middle, middle_patch, fails
+
+    def _fails(self, found: Poses, behind: Array, between: Course, patch: Patch, links: Links, share: float) -> Array:
+        """Moves that exceed the tolerances at a place between their ends, (n,)."""
+        chord = found.point[behind + 1] - found.point[behind]
+        way = patch.point - found.point[behind]
+        square = dot(chord, chord)
+        on_the_spot = square <= _SHORTEST**2
+        passed = np.where(on_the_spot, share, dot(way, chord) / np.where(on_the_spot, 1.0, square))
+        passed = np.clip(passed, 0.0, 1.0)[:, None]
+        tip = found.tip[behind] + passed * (found.tip[behind + 1] - found.tip[behind])
+        axis = along(found.axis[behind], passed * towards(found.axis[behind], found.axis[behind + 1]))
+        frame = frame_of(self.pattern, between, patch, chord).with_links(links, patch.normal, between.link)
+        wanted, _ = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
+        off = gap(tip, axis, patch.point, patch.normal, self.cutter)
+        twisted = angle_between(axis, wanted) > self.tolerances.axis
+        beside = norm(way - passed * chord)
+        fails: Array = (np.maximum(np.abs(off), beside) > self.tolerances.chord) | twisted
+        return fails
+
+    def _edges(self, found: Poses) -> tuple[Diagnostic, ...]:
+        """A warning where the surface has edges: adjacent contacts with different normals."""
+        near = (found.course.run[:-1] == found.course.run[1:]) & (norm(np.diff(found.point, axis=0)) <= _SHORTEST)
+        angle = angle_between(found.normal[:-1], found.normal[1:])
+        edges = np.flatnonzero(near & (angle > _EDGE))
+        if not len(edges):
+            return ()
+        x, y, z = found.point[edges[0]]
+        told = f"{len(edges)} times, first at ({x:.3f}, {y:.3f}, {z:.3f}) by {np.degrees(angle[edges[0]]):.1f} degrees"
+        return (Diagnostic("N306", self.place, told),)
+
+
+def _first_of_each(faults: tuple[Diagnostic, ...], point: Array) -> tuple[Diagnostic, ...]:
+    """The first fault of each kind, with its contact point instead of an internal row number."""
+    firsts = {fault.code: fault for fault in reversed(faults)}
+    return tuple(
+        replace(first, place=replace(first.place, line=0), found=_told(point[first.place.line - 1], first.found))
+        for _, first in sorted(firsts.items())
+    )
+
+
+def _told(point: Array, found: str) -> str:
+    return "at ({:.3f}, {:.3f}, {:.3f}): ".format(*point) + found
+
+
+def _links(course: Course) -> Array:
+    """Moves of links, from the end of a pass to the start of the next, (N - 1,)."""
+    in_link = ~np.isnan(course.link)
+    links: Array = (course.number[1:] != course.number[:-1]) | in_link[1:] | in_link[:-1]
+    return links
+
+
+def _link_share(before: Array, after: Array, share: float) -> Array:
+    """Interpolated shares of links between rows; a link ends where a pass begins."""
+    first, last = np.where(np.isnan(before), 0.0, before), np.where(np.isnan(after), 1.0, after)
+    part: Array = first + share * (last - first)
+    return part
+
+
+def _passes_beside(course: Course) -> tuple[Array, Array]:
+    """For each row the last pass row not after it, and the first pass row not before it, (N,) each."""
+    rows = np.arange(len(course))
+    in_pass = np.isnan(course.link)
+    before = np.maximum.accumulate(np.where(in_pass, rows, 0))
+    after = np.minimum.accumulate(np.where(in_pass, rows, len(rows) - 1)[::-1])[::-1]
+    return before, after
+
+
+def _open_again(open_: Array, behind: Array) -> Array:
+    """Moves to check next: only both halves of the divided ones."""
+    divided = np.zeros(len(open_), dtype=bool)
+    divided[behind] = True
+    return np.repeat(divided, np.where(divided, 2, 1))
+
+
+def _pairs(left: Patch, right: Patch) -> list[tuple[Array, Array]]:
+    """The columns of two patches, side by side."""
+    return [(getattr(left, item.name), getattr(right, item.name)) for item in fields(Patch)]

@@ -16,7 +16,7 @@ from pkm_post.machine.reach.report import reach, way_of
 from pkm_post.model import Kind
 from pkm_post.model.machine import Box
 from pkm_post.planning.tool_path import ToolPath
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 
 MICRON = 1e-3
 NANOMETRE = 1e-6

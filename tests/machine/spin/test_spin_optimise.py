@@ -14,7 +14,7 @@ from pkm_post.machine.kinematics.inverse import strut_lengths
 from pkm_post.machine.spin.normalised_margins import JOINTS, SINGULAR, STROKE, shares
 from pkm_post.machine.spin.optimise import least_shares, optimise
 from pkm_post.machine.spin.policy import Policy, Rule
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 
 DEGREE = np.pi / 180
 

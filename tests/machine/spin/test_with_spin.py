@@ -11,7 +11,7 @@ from pkm_post.machine.spin.apply import with_spin
 from pkm_post.machine.spin.policy import Policy, Rule
 from pkm_post.options import Options
 from pkm_post.posting import post
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from pkm_post.toolpath.compensation import Cutter
+from pkm_post.toolpath.compensation.cutter import Cutter
 
 BALL = Cutter(5.0, 0.0, 5.0)
 FLAT = Cutter(0.0, 5.0, 0.0)

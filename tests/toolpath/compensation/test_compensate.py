@@ -8,7 +8,8 @@ import pytest
 from programs import BALL, program
 
 from pkm_post.model import Tool
-from pkm_post.toolpath.compensation import OffsetOptions, compensate
+from pkm_post.toolpath.compensation.compensate import compensate
+from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 
 CONTOURS = OffsetOptions()
 

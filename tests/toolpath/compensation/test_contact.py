@@ -6,7 +6,7 @@ import pytest
 from cutters import ALL, BALL, BULL_NOSE, DRILL, FLAT, LENS, TAPERED, cloud, frame_with_z
 
 from pkm_post.model import Place
-from pkm_post.toolpath.compensation import tip_from_contact
+from pkm_post.toolpath.compensation.contact import tip_from_contact
 
 MICRON = 1e-3
 ROUNDING = 1e-9

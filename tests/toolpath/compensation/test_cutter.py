@@ -10,7 +10,7 @@ from cutters import ALL, profile
 
 from pkm_post.model import Tool
 from pkm_post.model.tool import largest_corner
-from pkm_post.toolpath.compensation import Cutter
+from pkm_post.toolpath.compensation.cutter import Cutter
 
 ROUNDING = 1e-12
 

@@ -11,7 +11,8 @@ from pkm_post.cli import main
 from pkm_post.cli.inputs import add_reading, reading_from
 from pkm_post.options import add_options, options_from
 from pkm_post.posting.post_file import prepared_file
-from pkm_post.toolpath.compensation import Cutter, compensate
+from pkm_post.toolpath.compensation.compensate import compensate
+from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.writing import trajectory_file
 
 ROUNDING = 1e-7

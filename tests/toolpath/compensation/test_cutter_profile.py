@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from cutters import ALL, BALL, FLAT, profile
 
-from pkm_post.toolpath.compensation.profile import Profile
+from pkm_post.toolpath.compensation.cutter import Profile
 
 ROUNDING = 1e-12
 NANOMETRE = 1e-6

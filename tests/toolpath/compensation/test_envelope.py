@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from cutters import ALL, BALL, BULL_NOSE, TAPERED_BALL
 
-from pkm_post.toolpath.compensation import Cutter, StockLeft, stock_left, tip_from_contact
-from pkm_post.toolpath.compensation.profile import Profile
+from pkm_post.toolpath.compensation.contact import tip_from_contact
+from pkm_post.toolpath.compensation.cutter import Cutter, Profile
+from pkm_post.toolpath.compensation.swept_volume import StockLeft, stock_left
 
 ROUNDING = 1e-9
 TOLERANCE = 1e-3

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from contour_programs import contour
 
-from pkm_post.toolpath.compensation import OffsetOptions
-from pkm_post.toolpath.compensation.contour import elements_of
-from pkm_post.toolpath.compensation.joints import Joint, joints
+from pkm_post.toolpath.compensation.contour_corners import Joint, joints
+from pkm_post.toolpath.compensation.contour_elements import OffsetOptions, elements_of
 
 PRINTED = 5.1e-5
 ROUNDING = 1e-9

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from pkm_post.toolpath.compensation.meetings import Curves, meetings
+from pkm_post.toolpath.compensation.contour_corners import Curves, meetings
 
 ROUNDING = 1e-9
 UP = np.array([[0.0, 0.0, 1.0]])

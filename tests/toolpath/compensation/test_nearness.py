@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.toolpath.compensation.nearness import Segments, segment_distances, too_near
+from pkm_post.toolpath.compensation.proximity import Segments, segment_distances, too_near
 
 ROUNDING = 1e-9
 
@@ -84,7 +84,7 @@ def test_few_pairs_are_looked_at(monkeypatch):
         looked_at.append(points[0].size // 3)
         return segment_distances(*points)
 
-    monkeypatch.setattr("pkm_post.toolpath.compensation.nearness.segment_distances", counted)
+    monkeypatch.setattr("pkm_post.toolpath.compensation.proximity.segment_distances", counted)
     here, _, _ = too_near(table(45 * circle, clearance=5.0), table(40 * circle, clearance=5.0), 1e-3)
     assert len(here) == 0
     assert sum(looked_at) < 100 * 20000

@@ -9,11 +9,9 @@ from contour_programs import beside, clearance, contour, cutting_rows, distance,
 
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.model.diagnostics import errors
-from pkm_post.toolpath.compensation import OffsetOptions, offset_contours
-from pkm_post.toolpath.compensation.compensated import compensated
-from pkm_post.toolpath.compensation.contour import elements_of
-from pkm_post.toolpath.compensation.swallowed import offsets_of
-from pkm_post.toolpath.placement import mirror, transform
+from pkm_post.toolpath.compensation.contour_elements import OffsetOptions, elements_of
+from pkm_post.toolpath.compensation.contour_offset import compensated, offset_contours, offsets_of
+from pkm_post.toolpath.symmetry.transform import mirror, transform
 
 MICRON = 1e-3
 ROUNDING = 1e-9

@@ -9,7 +9,8 @@ from programs import program
 
 from pkm_post.model import Event, EventKind, Kind, Program
 from pkm_post.model.diagnostics import errors
-from pkm_post.toolpath.compensation import OffsetOptions, offset_contours
+from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
+from pkm_post.toolpath.compensation.contour_offset import offset_contours
 
 MICRON = 1e-3
 

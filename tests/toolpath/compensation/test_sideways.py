@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from pkm_post.toolpath.compensation.sideways import sideways
+from pkm_post.toolpath.compensation.contact import sideways
 
 X, Y, Z = np.eye(3)
 TENTH_MICRON = 1e-4

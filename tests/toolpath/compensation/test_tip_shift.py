@@ -9,7 +9,9 @@ from cutters import BALL, BULL_NOSE, FLAT, TAPERED
 from programs import program
 
 from pkm_post.model import Event, EventKind, Kind, Place
-from pkm_post.toolpath.compensation import Cutter, compensate_tips, tip_from_contact, tip_shift
+from pkm_post.toolpath.compensation.compensate import compensate_tips
+from pkm_post.toolpath.compensation.contact import tip_from_contact, tip_shift
+from pkm_post.toolpath.compensation.cutter import Cutter
 
 ROUNDING = 1e-9
 NAN = np.full(3, np.nan)

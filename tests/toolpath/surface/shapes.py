@@ -4,8 +4,10 @@
 import numpy as np
 
 from pkm_post.model import Place
-from pkm_post.toolpath.compensation import Cutter
-from pkm_post.toolpath.surface import Settings, Span, Surface, cover
+from pkm_post.toolpath.compensation.cutter import Cutter
+from pkm_post.toolpath.surface.options import Settings
+from pkm_post.toolpath.surface.passes import cover
+from pkm_post.toolpath.surface.surface import Span, Surface
 
 PLACE = Place("part.FCStd", "Finish")
 MICRON = 1e-3

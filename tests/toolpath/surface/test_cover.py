@@ -23,8 +23,12 @@ from shapes import (
     torus,
 )  # fmt: skip
 
-from pkm_post.toolpath.compensation import Cutter
-from pkm_post.toolpath.surface import AxisRule, CutMode, Lines, Order, Stepover, Tolerances, cover
+from pkm_post.toolpath.compensation.cutter import Cutter
+from pkm_post.toolpath.surface.options import CutMode, Lines, Order
+from pkm_post.toolpath.surface.passes import cover
+from pkm_post.toolpath.surface.poses import Tolerances
+from pkm_post.toolpath.surface.stepover import Stepover
+from pkm_post.toolpath.surface.tool_axis import AxisRule
 
 ROUNDING = 1e-9
 LEAN = AxisRule(lead=math.radians(10.0), tilt=math.radians(5.0))

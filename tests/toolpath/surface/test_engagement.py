@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from shapes import BALL, BULL, FLAT, distance_to_cutter
 
-from pkm_post.toolpath.surface.engagement import effective_radius, gap, pass_width, scallop_width
+from pkm_post.toolpath.surface.stepover import effective_radius, gap, pass_width, scallop_width
 
 ROUNDING = 1e-9
 

@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 from shapes import BALL, BULL, FLAT, PLACE, covered, plate, settings, torus
 
-from pkm_post.toolpath.compensation.envelope import stock_left
-from pkm_post.toolpath.surface import AxisRule, LeadMove, Lines, Order, Stepover, Tolerances, program_of
+from pkm_post.toolpath.compensation.swept_volume import stock_left
+from pkm_post.toolpath.surface.moves import program_of
+from pkm_post.toolpath.surface.options import LeadMove, Lines, Order
+from pkm_post.toolpath.surface.poses import Tolerances
+from pkm_post.toolpath.surface.stepover import Stepover
+from pkm_post.toolpath.surface.tool_axis import AxisRule
 
 TOLERANCE = 1e-4
 

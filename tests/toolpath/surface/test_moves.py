@@ -8,8 +8,9 @@ import pytest
 from shapes import BALL, PLACE, covered, cylinder, plate, settings
 
 from pkm_post.model import Kind
-from pkm_post.toolpath.surface import AxisRule, LeadMove, Order, program_of
-from pkm_post.toolpath.surface.tool_axis import clamped
+from pkm_post.toolpath.surface.moves import program_of
+from pkm_post.toolpath.surface.options import LeadMove, Order
+from pkm_post.toolpath.surface.tool_axis import AxisRule, clamped
 
 LEAN = AxisRule(lead=math.radians(10.0), tilt=math.radians(15.0))
 UP = np.array([0.0, 0.0, 1.0])

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from shapes import cylinder, plate, sphere, torus
 
-from pkm_post.toolpath.surface import Span
-from pkm_post.toolpath.surface.surface import Grid, normal_curvatures
+from pkm_post.toolpath.surface.surface import Grid, Span, normal_curvatures
 
 ONE_IN_MILLION = 1e-6
 

@@ -11,7 +11,7 @@ from trajectories import everything, fitted, random_trajectory
 
 from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.model.certificate import Tolerances
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 from pkm_post.writing.trajectory_file import read, write
 from pkm_post.writing.trajectory_file.promises import SENSIBLE
 

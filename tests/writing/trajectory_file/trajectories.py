@@ -12,7 +12,7 @@ from pkm_post.geometry.curves import arc_length
 from pkm_post.model import Event, EventKind, Kind, Tool, Trajectory
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
-from pkm_post.toolpath.placement import place
+from pkm_post.toolpath.place import place
 
 NAMES = ("", "Finish", "Schlichten – Kegel ⌀12", "精加工", "🛠 rough\nsecond line\0end", "x" * 300)
 VALUES = {

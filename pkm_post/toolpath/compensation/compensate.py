@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Apply: all compensation that a program asks for, with the cutters that are in the spindle.
+
+Takes a program as read; returns one whose tips are where the tool has to go. Compensation precedes symmetry and
+placement: a mirror would swap left and right.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.geometry import norm
+from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
+from pkm_post.toolpath.compensation.contact import Array, Flags, corner_shift, size_changes
+from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
+from pkm_post.toolpath.compensation.contour_offset import offset_contours
+from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
+
+_SAME = 1e-9
+"""mm within which two shifts count as equal."""
+
+
+def compensate_tips(
+    program: Program, nominal: Cutter, actual: Cutter, tool: int | None = None
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """The program for the actual cutter.
+
+    Every row with a normal moves by ``tip_shift``. A row without one moves with the row before it that has one, up to
+    and including the first rapid after it; further ones move with the next row that has one.
+
+    Args:
+        program: tips of the nominal cutter, with normals, in {C}; all rows belong to one tool unless ``tool`` is given.
+        nominal: the cutter the program was made for.
+        actual: the cutter in the spindle.
+        tool: number of the tool whose rows are compensated; None for a program of one tool.
+
+    Returns:
+        The program, or None when a row cannot be compensated; and the diagnostics: N101 to N108.
+
+    Raises:
+        ValueError: ``tool`` is None in a program with several tools.
+    """
+    in_use = _rows_of(program, tool)
+    given = in_use & np.isfinite(program.normal).all(axis=1)
+    if not given.any():
+        return None, (Diagnostic("N108", Place(program.source), "no row of the tool has one"),)
+    rows = np.flatnonzero(given)
+    columns = (program.position[rows], program.normal[rows], program.tool_axis[rows])
+    sizes = size_changes(nominal, actual)
+    found, diagnostics = corner_shift(*columns, sizes, (nominal, actual), lambda row: program.place(int(rows[row])))
+    if found is None:
+        return None, diagnostics
+    shift = np.where(in_use[:, None], found[_neighbours(given, program.kind == Kind.RAPID)], 0.0)
+    bent = (program.kind == Kind.ARC) & (norm(np.diff(shift, axis=0, prepend=shift[:1])) > _SAME)
+    if bent.any():
+        return None, tuple(_bent(program, shift, row) for row in np.flatnonzero(bent).tolist())
+    moved = dataclasses.replace(program, position=program.position + shift, arc_centre=program.arc_centre + shift)
+    return moved, diagnostics
+
+
+def _bent(program: Program, shift: Array, row: int) -> Diagnostic:
+    apart = float(norm(shift[row] - shift[row - 1]))
+    return Diagnostic("N107", program.place(row), f"its ends would move {apart:.4g} mm apart")
+
+
+def _rows_of(program: Program, tool: int | None) -> Flags:
+    """The rows cut with the tool; all rows for None."""
+    changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
+    numbers = np.array([np.nan, *(event.value for event in changes)])
+    number = numbers[np.searchsorted([event.row for event in changes], np.arange(len(program)), side="right")]
+    if tool is not None:
+        return np.asarray(number == tool)
+    if len(np.unique(number[~np.isnan(number)])) > 1:
+        raise ValueError("compensate_tips: expected the number of a tool for a program that changes it, got None")
+    return np.ones(len(program), dtype=np.bool_)
+
+
+def _neighbours(given: Flags, rapid: Flags) -> Array:
+    """For every row the row it moves with, (N,), as an index into the given ones."""
+    count: Array = np.cumsum(given)
+    before, after = count - 1, count - given.astype(np.int64)
+    rapids = np.cumsum(rapid)
+    since: Array = rapids - rapids[np.flatnonzero(given)[np.maximum(before, 0)]]
+    leaving = (before >= 0) & ((since == 0) | (rapid & (since == 1)))
+    neighbours: Array = np.where(given | leaving | (after == count[-1]), before, after)
+    return neighbours
+
+
+def compensate(
+    program: Program, contours: OffsetOptions, actual: Mapping[int, Tool]
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """Offset contours in 2D and move tips along their surface normals in 3D.
+
+    Args:
+        program: with side offsets, normals, or neither.
+        contours: how contours are offset.
+        actual: by number, the tools whose cutters differ from those the program was made for.
+    """
+    told: tuple[Diagnostic, ...] = ()
+    moved, faults = offset_contours(program, contours)
+    told += faults
+    for number, tool in sorted(actual.items()):
+        if moved is None:
+            break
+        moved, faults = _for_cutter(moved, number, tool)
+        told += faults
+    return moved, told
+
+
+def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    place = Place(program.source)
+    if number not in program.tools:
+        known = ", ".join(f"T{known}" for known in sorted(program.tools))
+        return None, (Diagnostic("N118", place, f"T{number}, the program has {known}"),)
+    tool = program.tools[number]
+    nominal, faults = known_cutter(tool, place)
+    ground, more = known_cutter(actual, place)
+    if nominal is None or ground is None:
+        return None, (*faults, *more)
+    moved, told = compensate_tips(program, nominal, ground, number if len(program.tools) > 1 else None)
+    if moved is None:
+        return None, told
+    ground_tool = replace(actual, number=number, name=tool.name, length=tool.length)
+    return replace(moved, tools=program.tools | {number: ground_tool}), told

@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Sweep: distances of points from the volume that a cutter sweeps along its path.
+
+Tips and axes of the path, and a cutter, become poses in short steps. Takes points; returns their signed distances to
+the swept volume, in mm, negative inside. Between two poses the tip moves along a straight line and the axis turns
+evenly. Each step is searched by bisection: the distance that any point of the cutter moves within a step is bounded,
+and for a cutter that does not turn, the distance to it is a convex function of the distance travelled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pkm_post.geometry import Array, angle_between, dot, grid_cells, norm, unit
+from pkm_post.toolpath.compensation.cutter import Cutter, Profile
+
+_BLOCK = 16
+"""Steps of the path that are skipped together when they are far away."""
+
+_STEP = 0.25
+"""Longest step between two poses, in radii of the cutter."""
+
+_POINTS_PER_CELL = 100
+"""Approximate number of points for which far blocks are skipped together."""
+
+_POINTS_TOGETHER = 6
+"""Approximate number of points of a cell whose near steps are searched together."""
+
+_AT_ONCE = 1 << 16
+"""Distances computed at a time: their data stay in the cache."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A cutter on its path, in M short steps.
+
+    Attributes:
+        tip: (M + 1, 3) tool tips at the ends of the steps, mm.
+        axis: (M + 1, 3) unit tool axes there.
+        row: (M,) row of the path that the step belongs to.
+        way: (M,) bound of the distance that any point of the cutter moves in the step, mm.
+        bend: (M,) bound of the deviation of a point's path, in the frame of the cutter, from a straight line, mm.
+        profile: outline of the cutter.
+        within: distance from the cutter up to which points matter, mm.
+    """
+
+    tip: Array
+    axis: Array
+    row: Array
+    way: Array
+    bend: Array
+    profile: Profile
+    within: float
+
+    @classmethod
+    def of(cls, tips: Array, axes: Array, cutter: Cutter, within: float, tallest: float) -> Sweep:
+        """The steps of a path.
+
+        Args:
+            tips: (N, 3) tool tips, mm, at least one.
+            axes: (N, 3) unit tool axes, no two in a row opposite.
+            cutter: the cutter.
+            within: distance from the cutter up to which points matter, mm.
+            tallest: height in mm above which nothing matters.
+        """
+        rows = len(tips)
+        if rows == 1:
+            tips, axes = np.repeat(tips, 2, axis=0), np.repeat(axes, 2, axis=0)
+        profile = Profile.of(cutter, tallest)
+        reach = profile.reach + within
+        way = norm(np.diff(tips, axis=0)) + reach * angle_between(axes[:-1], axes[1:])
+        count = np.maximum(1, np.ceil(way / (_STEP * cutter.radius)).astype(np.int64))
+        before = np.repeat(np.arange(len(count)), count)
+        share = (np.arange(len(before)) - np.repeat(np.cumsum(count) - count, count)) / count[before]
+        tip = np.vstack([_between(tips[before], tips[before + 1], share), tips[-1:]])
+        axis = unit(np.vstack([_between(axes[before], axes[before + 1], share), axes[-1:]]))
+        moved, turned = norm(np.diff(tip, axis=0)), angle_between(axis[:-1], axis[1:])
+        bend = reach * turned**2 / 8.0 + moved * turned / 4.0
+        return cls(tip, axis, np.minimum(before + 1, rows - 1), moved + reach * turned, bend, profile, within)
+
+    def distances(
+        self, points: Array, tolerance: float, progress: Callable[[float], Any] | None = None
+    ) -> tuple[Array, Array]:
+        """Signed distances of points to the swept volume, and the rows of the path that come nearest.
+
+        Args:
+            points: (N, 3) points, mm.
+            tolerance: largest overestimate of a distance, mm.
+            progress: called repeatedly with the completed share, from 0 to 1; an exception it raises aborts.
+
+        Returns:
+            Distances (N,), infinite or too large where the cutter stays out of reach, and rows of the path (N,).
+        """
+        best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
+        done = 0
+        for rows in grid_cells(points, _POINTS_PER_CELL):
+            best[rows], row[rows] = self._in_cell(points[rows], tolerance)
+            done += len(rows)
+            if progress is not None:
+                progress(done / len(points))
+        return best, row
+
+    def _in_cell(self, points: Array, tolerance: float) -> tuple[Array, Array]:
+        """The distances and rows of points in one cell."""
+        best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
+        near_all = self._near_steps(points)
+        for rows in grid_cells(points, _POINTS_TOGETHER) if len(near_all) else []:
+            near = self._nearer(points[rows], near_all)
+            size = max(1, _AT_ONCE // max(1, len(near)))
+            for part in (rows[start : start + size] for start in range(0, len(rows) if len(near) else 0, size)):
+                best[part], row[part] = self._search(points[part], near, tolerance)
+        return best, row
+
+    def _near_steps(self, points: Array) -> Array:
+        """Candidate steps for the nearest to one of the points, (K,): those of blocks that are near enough."""
+        first = np.arange(0, len(self.way), _BLOCK)
+        last = np.minimum(first + _BLOCK, len(self.way))
+        half = (first + last) // 2
+        way = np.append(0.0, np.cumsum(self.way))
+        span = np.maximum(way[last] - way[half], way[half] - way[first])
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        radius = float(norm(points - middle).max())
+        distance = self._to_poses(middle[None], half)[0]
+        limit = min(float(distance.min()) + radius, self.within)
+        return np.flatnonzero(np.repeat(distance - radius - span <= limit, last - first))
+
+    def _nearer(self, points: Array, steps: Array) -> Array:
+        """The given steps that may come nearest to one of the points."""
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        radius = float(norm(points - middle).max())
+        distance = self._to_poses(middle[None], steps)[0]
+        limit = min(float(distance.min()) + radius, self.within)
+        near: Array = steps[distance - radius - self.way[steps] <= limit]
+        return near
+
+    def _search(self, points: Array, steps: Array, tolerance: float) -> tuple[Array, Array]:
+        """Smallest distances over some steps, by bisection of those that may contain a smaller one."""
+        poses = np.unique(np.concatenate([steps, steps + 1]))
+        all_found = self._to_poses(points, poses)
+        nearest = np.argmin(all_found, axis=1)
+        best = all_found[np.arange(len(points)), nearest]
+        row = self.row[np.minimum(poses[nearest], len(self.row) - 1)]
+        index = np.searchsorted(poses, steps)
+        a, b = all_found[:, index], all_found[:, index + 1]
+        least = (a + b - self.way[steps]) / 2.0
+        point, column = np.nonzero(least < np.minimum(best, self.within)[:, None] - tolerance)
+        step, a, b = steps[column], a[point, column], b[point, column]
+        share, width = np.zeros(len(step)), 1.0
+        while len(step):
+            width /= 2.0
+            m = self._to_pose(points[point], step, share + width)
+            np.minimum.at(best, point, m)
+            winner = m <= best[point]
+            row[point[winner]] = self.row[step[winner]]
+            way, bend = self.way[step] * width, 3.0 * self.bend[step] * (2.0 * width) ** 2
+            # By the Lipschitz bound and by convexity: a line through one end and the middle stays below the other half.
+            left = np.maximum((a + m - way) / 2.0, np.minimum(m, 2.0 * m - b) - bend)
+            right = np.maximum((m + b - way) / 2.0, np.minimum(m, 2.0 * m - a) - bend)
+            limit = np.minimum(best, self.within)[point] - tolerance
+            go_left, go_right = left < limit, right < limit
+            share = np.concatenate([share[go_left], share[go_right] + width])
+            a, b = np.concatenate([a[go_left], m[go_right]]), np.concatenate([m[go_left], b[go_right]])
+            point, step = (np.concatenate([column[go_left], column[go_right]]) for column in (point, step))
+        return best, row
+
+    def _to_poses(self, points: Array, poses: Array) -> Array:
+        """Distances of all points to the cutter in all given poses, (N, K)."""
+        middle = points[0]
+        tip, axis = self.tip[poses] - middle, self.axis[poses]
+        moved = points - middle
+        level = moved @ axis.T - dot(tip, axis)
+        square = dot(moved, moved)[:, None] - 2.0 * moved @ tip.T + dot(tip, tip)
+        return self.profile.distance(np.sqrt(np.maximum(square - level**2, 0.0)), level)
+
+    def _to_pose(self, points: Array, steps: Array, share: Array) -> Array:
+        """Distances of points (N, 3), each to the cutter at a share of its own step, (N,)."""
+        away = points - _between(self.tip[steps], self.tip[steps + 1], share)
+        axis = unit(_between(self.axis[steps], self.axis[steps + 1], share))
+        level = dot(away, axis)
+        return self.profile.distance(norm(away - level[:, None] * axis), level)
+
+
+def _between(start: Array, end: Array, share: Array) -> Array:
+    moved: Array = start + share[:, None] * (end - start)
+    return moved
+
+
+@dataclass(frozen=True)
+class StockLeft:
+    """Material that a path leaves on a surface.
+
+    Attributes:
+        left: (N,) material left at the points along their normals, negative for gouges, mm; infinite where the cutter
+            does not come within ``reach``.
+        row: (N,) the row of the path whose motion from the row before comes nearest; -1 where ``left`` is infinite.
+    """
+
+    left: Array
+    row: Array
+
+    @property
+    def deepest(self) -> int:
+        """Index of the point with the deepest gouge, or the least material left."""
+        return int(np.argmin(self.left))
+
+    @property
+    def highest(self) -> int:
+        """Index of the point with the most material left within reach of the cutter; -1 if there is none."""
+        near = np.isfinite(self.left)
+        return int(np.argmax(np.where(near, self.left, -np.inf))) if near.any() else -1
+
+
+def stock_left(
+    tips: ArrayLike,
+    axes: ArrayLike,
+    cutter: Cutter,
+    points: ArrayLike,
+    normals: ArrayLike,
+    *,
+    tolerance: float = 1e-3,
+    reach: float = 1.0,
+    progress: Callable[[float], Any] | None = None,
+) -> StockLeft:
+    """Material that a path leaves at points of a surface, and gouges.
+
+    Between two rows the tip moves along a straight line and the axis turns evenly. A line through the point along its
+    normal enters the swept volume at the value; it is found by sphere tracing: steps of the distance to that volume
+    cannot skip it.
+
+    Args:
+        tips: (M, 3) tool tips, mm.
+        axes: (M, 3) tool axes, from the tip towards the spindle, of any length.
+        cutter: the cutter; one of unknown height reaches as far as the points do.
+        points: (N, 3) points of the surface, mm.
+        normals: (N, 3) normals there, out of the material, of any length.
+        tolerance: distance of the line from the boundary of the swept volume at the value, mm; the error of the value
+            is larger where the line enters at a slant.
+        reach: material left of more than this is not measured, mm.
+        progress: called repeatedly with the completed share, from 0 to 1 for each round of steps; an exception it
+            raises aborts.
+
+    Raises:
+        ValueError: tips and axes, or points and normals, are not of one shape (M, 3); a vector has no direction;
+            there is no tip; or tolerance and reach are not above 0.
+    """
+    tip, axis = _pair("tips and axes", tips, axes)
+    start, normal = _pair("points and normals", points, normals)
+    if not (len(tip) and tolerance > 0.0 and reach > 0.0):
+        raise ValueError(f"stock_left: expected tips, tolerance and reach, got {len(tip)}, {tolerance}, {reach}")
+    if not len(start):
+        return StockLeft(np.zeros(0), np.zeros(0, dtype=np.int64))
+    everything = np.vstack([tip, start])
+    sweep = Sweep.of(tip, axis, cutter, reach, float(norm(np.ptp(everything, axis=0))) + reach)
+    return _entries(sweep, start, normal, tolerance / 2.0, progress)
+
+
+def _entries(
+    sweep: Sweep, start: Array, normal: Array, enough: float, progress: Callable[[float], Any] | None
+) -> StockLeft:
+    """Where the lines through the points along their normals enter the swept volume.
+
+    The steps terminate: all but the last are longer than ``enough``, and those of one point have the same sign. None
+    leaves the volume again, and none is too long by more than ``enough``.
+    """
+    left, row = np.zeros(len(start)), np.full(len(start), -1, dtype=np.int64)
+    open_rows = np.arange(len(start))
+    while len(open_rows):
+        reached = start[open_rows] + left[open_rows, None] * normal[open_rows]
+        step, row[open_rows] = sweep.distances(reached, enough, progress)
+        left[open_rows] += step
+        beyond = left[open_rows] > sweep.within
+        left[open_rows[beyond]], row[open_rows[beyond]] = np.inf, -1
+        open_rows = open_rows[~beyond & (np.abs(step) > enough)]
+    return StockLeft(left, row)
+
+
+def _pair(names: str, positions: ArrayLike, directions: ArrayLike) -> tuple[Array, Array]:
+    position, direction = np.asarray(positions, dtype=np.float64), np.asarray(directions, dtype=np.float64)
+    if position.ndim != 2 or position.shape[1] != 3 or position.shape != direction.shape:
+        raise ValueError(f"stock_left: expected {names} (N, 3), got {position.shape} and {direction.shape}")
+    if not (np.isfinite(position).all() and np.isfinite(direction).all()):
+        raise ValueError(f"stock_left: expected finite {names}")
+    return position, unit(direction)

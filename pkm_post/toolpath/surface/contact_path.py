@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Course: points of passes in surface parameters, as columns.
+
+Patterns create it, trimming cuts it, ordering reverses and joins it, stepping refines it. The tool travels the rows of
+one run consecutively on the surface; between runs it is lifted. Rows of a link join two passes of a run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from pkm_post.geometry import cross, dot
+from pkm_post.toolpath.surface.surface import Array, Patch, Span, Surface
+
+_ROUNDS = 8
+"""Newton steps to a plane: each squares the error."""
+_ON_PLANE = 1e-9
+_STEEP = 1e-6
+"""Relative slope of the surface against a plane below which it counts as parallel to it."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """Columns of N points, in the order of travel within each pass.
+
+    Attributes:
+        u: (N,) first parameter; continues beyond the range if that is closed.
+        v: (N,) second parameter.
+        number: (N,) number of the pass, counted in the direction of the stepover.
+        run: (N,) number of the run, travelled without lifting the tool; rows of one run are contiguous.
+        sense: (N,) 1 where the feed has the direction of the pattern, -1 where it is opposite.
+        link: (N,) completed share of a link at this row, NaN where the row belongs to a pass.
+    """
+
+    u: Array
+    v: Array
+    number: Array
+    run: Array
+    sense: Array
+    link: Array
+
+    @classmethod
+    def of(cls, u: Array, v: Array, number: Array, run: Array | None = None) -> Course:
+        """A course in the direction of the pattern; each pass is a run unless runs are given."""
+        rows = len(u)
+        return cls(u, v, number, number if run is None else run, np.ones(rows), np.full(rows, np.nan))
+
+    def __len__(self) -> int:
+        return len(self.u)
+
+    def taken(self, rows: Array) -> Course:
+        """The rows selected by indices or a mask."""
+        return Course(*(getattr(self, column.name)[rows] for column in fields(self)))
+
+    @staticmethod
+    def joined(parts: list[Course]) -> Course:
+        """Concatenated courses; their runs keep their numbers."""
+        return Course(*(np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(Course)))
+
+    def with_rows(self, behind: Array, rows: Course) -> Course:
+        """The course with additional rows, each directly after the row with the given index, in order."""
+        return Course(
+            *(np.insert(getattr(self, item.name), behind + 1, getattr(rows, item.name)) for item in fields(self))
+        )
+
+    def numbered(self, run: Array) -> Course:
+        """The course with the given runs."""
+        return replace(self, run=run)
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """The lines of the passes: constant v, or sections by parallel planes.
+
+    Attributes:
+        plane: (3,) unit normal of the planes; None for lines along u.
+        level: (P,) position of each pass along that normal, mm; its v for lines along u.
+    """
+
+    plane: Array | None
+    level: Array
+
+    def direction(self, patch: Patch) -> Array:
+        """Tangents along the lines, (N, 3), of any length: with rising u, or n x plane, its normal to the right."""
+        return patch.along_u if self.plane is None else cross(patch.normal, self.plane)
+
+    def settled(self, surface: Surface, u: Array, v: Array, number: Array) -> tuple[Array, Array]:
+        """The nearest points on the lines of the passes with the given numbers, (N,) each.
+
+        On a border of the surface a point stays on that border.
+        """
+        if self.plane is None:
+            return u, v
+        for _ in range(_ROUNDS):
+            patch = surface.at(u, v)
+            off = dot(patch.point, self.plane) - self.level[number]
+            if not np.any(np.abs(off) > _ON_PLANE):
+                break
+            step_u, step_v = _to_plane(patch, self.plane, off, _free(surface.u, u), _free(surface.v, v))
+            u, v = surface.u.kept(u + step_u), surface.v.kept(v + step_v)
+        return u, v
+
+
+def _free(span: Span, values: Array) -> Array:
+    """Values that are not at an end of an open range."""
+    if span.closed:
+        return np.ones(len(values), dtype=bool)
+    free: Array = (values > span.first) & (values < span.last)
+    return free
+
+
+def _to_plane(patch: Patch, plane: Array, off: Array, free_u: Array, free_v: Array) -> tuple[Array, Array]:
+    """Newton steps in u and v along the slope of the surface, in its metric, to distance 0 from the plane."""
+    slope_u, slope_v = dot(patch.along_u, plane) * free_u, dot(patch.along_v, plane) * free_v
+    scale_u, scale_v = (np.maximum(dot(each, each), 1e-300) for each in (patch.along_u, patch.along_v))
+    steepness = slope_u**2 / scale_u + slope_v**2 / scale_v
+    factor = np.where(steepness > _STEEP**2, -off / np.maximum(steepness, _STEEP**2), 0.0)
+    return factor * slope_u / scale_u, factor * slope_v / scale_v
+
+
+_HALVINGS = 40
+
+
+def trimmed(surface: Surface, pattern: Pattern, course: Course) -> Course:
+    """The pieces of a course on the face, each a run with its ends on the border.
+
+    Args:
+        surface: the surface, with the face as its inside.
+        pattern: the lines on which points are settled.
+        course: passes, before they are reversed or linked.
+    """
+    if not len(course):
+        return course
+    inside = surface.holds(course.u, course.v)
+    crossing = np.flatnonzero((inside[:-1] != inside[1:]) & (course.run[:-1] == course.run[1:]))
+    whole = course.with_rows(crossing, _border(surface, pattern, course, crossing, inside))
+    kept = np.insert(inside, crossing + 1, True)
+    cut = (whole.run[:-1] != whole.run[1:]) | ~kept[:-1] | ~kept[1:]
+    return whole.numbered(np.concatenate([[0], np.cumsum(cut)])).taken(kept)
+
+
+def thinned(course: Course, every: int) -> Course:
+    """The first and last row of each run and every n-th between: trimming needs more points than stepping."""
+    if not len(course):
+        return course
+    rows = np.arange(len(course))
+    begins = np.concatenate([[True], course.run[1:] != course.run[:-1]])
+    since = rows - np.maximum.accumulate(np.where(begins, rows, 0))
+    return course.taken(begins | np.concatenate([begins[1:], [True]]) | (since % every == 0))
+
+
+def _border(surface: Surface, pattern: Pattern, course: Course, crossing: Array, inside: Array) -> Course:
+    """The last points inside between the rows at the crossings and the next rows."""
+    before, after = course.taken(crossing), course.taken(crossing + 1)
+    within = inside[crossing]
+    near_u, near_v = np.where(within, before.u, after.u), np.where(within, before.v, after.v)
+    far_u, far_v = np.where(within, after.u, before.u), np.where(within, after.v, before.v)
+    for _ in range(_HALVINGS):
+        u, v = pattern.settled(surface, (near_u + far_u) / 2, (near_v + far_v) / 2, before.number)
+        held = surface.holds(u, v)
+        near_u, near_v = np.where(held, u, near_u), np.where(held, v, near_v)
+        far_u, far_v = np.where(held, far_u, u), np.where(held, far_v, v)
+    return replace(before, u=near_u, v=near_v)

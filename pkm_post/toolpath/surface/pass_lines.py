@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Iso-parametric passes: lines of constant v, or one spiral that runs through all of them.
+
+Takes the values of v; returns a course in (u, v).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import cross, dot
+from pkm_post.toolpath.surface.contact_path import Course
+from pkm_post.toolpath.surface.surface import Array, Grid, Span, Surface
+
+
+def lines(u: Span, v: Array, nodes: int) -> Course:
+    """Passes along the whole range of u, each at a constant v.
+
+    Args:
+        u: range of the parameter along the passes.
+        v: (P,) values of v of the passes.
+        nodes: number of points of each pass.
+    """
+    number = np.repeat(np.arange(len(v)), nodes)
+    return Course.of(np.tile(np.linspace(u.first, u.last, nodes), len(v)), v[number], number)
+
+
+def spiral(u: Span, v: Array, nodes: int) -> Course:
+    """One pass: a full turn at the first v, a spiral from each v to the next, and a full turn at the last v.
+
+    Args:
+        u: range of the parameter around the surface, closed.
+        v: (P,) values of v of the turns.
+        nodes: number of points of each turn.
+    """
+    turn = np.arange((len(v) + 1) * (nodes - 1) + 1) / (nodes - 1)
+    place = np.interp(np.clip(turn - 1.0, 0.0, None), np.arange(len(v)), v)
+    return Course.of(u.first + turn * u.width, place, np.zeros(len(turn), dtype=np.int64))
+
+
+_GRID = (129, 129)
+
+
+def sections(surface: Surface, plane: Array, level: Array) -> Course:
+    """The lines of all planes, each its own run; closed lines end where they begin.
+
+    Args:
+        surface: the surface; its trimming is ignored.
+        plane: (3,) unit normal of the planes.
+        level: (P,) positions of the planes along the normal, mm.
+    """
+    grid = Grid.over(surface, *_GRID)
+    height = grid.shaped(dot(grid.patch.point, plane)).copy()
+    if surface.u.closed:
+        height[-1] = height[0]
+    if surface.v.closed:
+        height[:, -1] = height[:, 0]
+    parts: list[Course] = []
+    run = 0
+    for number, place in enumerate(level.tolist()):
+        crossing_u, crossing_v, pairs = _crossings(grid, height - place)
+        for chain in _chains(_same_seams(surface, pairs), crossing_u, crossing_v):
+            u, v = _unrolled(surface, crossing_u[chain], crossing_v[chain])
+            parts.append(Course.of(u, v, np.full(len(u), number), np.full(len(u), run)))
+            run += 1
+    if not parts:
+        return Course.of(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
+    return _in_direction(surface, plane, Course.joined(parts))
+
+
+def _in_direction(surface: Surface, plane: Array, course: Course) -> Course:
+    """The lines, each in the direction of the pattern: the plane normal is on its right, seen from outside."""
+    patch = surface.at(course.u, course.v)
+    step = np.diff(patch.point, axis=0)
+    same = course.run[:-1] == course.run[1:]
+    along = np.zeros(int(course.run[-1]) + 1)
+    np.add.at(along, course.run[:-1][same], dot(step, cross(patch.normal[:-1], plane))[same])
+    rows = np.arange(len(course))
+    order = np.lexsort((np.where(along[course.run] < 0.0, -rows, rows), course.run))
+    return course.taken(order)
+
+
+def _crossings(grid: Grid, height: Array) -> tuple[Array, Array, Array]:
+    """Crossings of the line with cell edges, by number of the edge, and the pairs of edges that it joins.
+
+    An edge along u has the number of its first node, one along v that of its node plus the number of nodes.
+    """
+    rows, columns = height.shape
+    count = rows * columns
+    above = height >= 0.0
+    u, v = np.zeros(2 * count), np.zeros(2 * count)
+    i, j = np.nonzero(above[:-1] != above[1:])
+    share = height[i, j] / (height[i, j] - height[i + 1, j])
+    edge = i * columns + j
+    u[edge], v[edge] = grid.u[i] + share * (grid.u[i + 1] - grid.u[i]), grid.v[j]
+    i, j = np.nonzero(above[:, :-1] != above[:, 1:])
+    share = height[i, j] / (height[i, j] - height[i, j + 1])
+    edge = count + i * columns + j
+    u[edge], v[edge] = grid.u[i], grid.v[j] + share * (grid.v[j + 1] - grid.v[j])
+    return u, v, _joined_edges(height, above)
+
+
+def _joined_edges(height: Array, above: Array) -> Array:
+    """Pairs of edges joined within a cell, (K, 2). In a saddle the mean of the corners decides."""
+    rows, columns = height.shape
+    corner = [above[:-1, :-1], above[1:, :-1], above[1:, 1:], above[:-1, 1:]]
+    node = np.arange(rows * columns).reshape(rows, columns)[:-1, :-1]
+    side = np.stack([node, node + columns + rows * columns, node + 1, node + rows * columns])
+    crossed = np.stack([corner[k] != corner[(k + 1) % 4] for k in range(4)])
+    many = crossed.sum(axis=0)
+    middle = (height[:-1, :-1] + height[1:, :-1] + height[1:, 1:] + height[:-1, 1:]) >= 0.0
+    pairs = []
+    for first, second in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)):
+        both = (many == 2) & crossed[first] & crossed[second]
+        pairs.append(np.column_stack([side[first][both], side[second][both]]))
+    # A corner is cut off where its sign differs from that of the middle of the saddle.
+    for first, second, between in ((0, 1, 1), (1, 2, 2), (2, 3, 3), (3, 0, 0)):
+        both = (many == 4) & (corner[between] != middle)
+        pairs.append(np.column_stack([side[first][both], side[second][both]]))
+    return np.concatenate(pairs)
+
+
+def _same_seams(surface: Surface, pairs: Array) -> Array:
+    """The pairs, with edges at the end of a closed range renumbered as those at its start."""
+    rows, columns = _GRID
+    kind, node = np.divmod(pairs, rows * columns)
+    i, j = np.divmod(node, columns)
+    if surface.u.closed:
+        i = np.where(i == rows - 1, 0, i)
+    if surface.v.closed:
+        j = np.where(j == columns - 1, 0, j)
+    renamed: Array = kind * rows * columns + i * columns + j
+    return renamed
+
+
+def _chains(pairs: Array, u: Array, v: Array) -> list[Array]:
+    """Edges in the order of each line; open lines first, closed ones with their first edge repeated at the end.
+
+    Closed lines begin at their smallest u, so neighbours begin side by side. A line is a linked list, so it is followed
+    step by step.
+    """
+    beside: dict[int, list[int]] = {}
+    for first, second in pairs.tolist():
+        beside.setdefault(first, []).append(second)
+        beside.setdefault(second, []).append(first)
+    chains = []
+    ends = [edge for edge, neighbours in beside.items() if len(neighbours) == 1]
+    for start in [*ends, *sorted(beside, key=lambda edge: (u[edge], v[edge]))]:
+        if not beside[start]:
+            continue
+        chain = [start]
+        while beside[chain[-1]]:
+            following = beside[chain[-1]].pop()
+            beside[following].remove(chain[-1])
+            chain.append(following)
+        chains.append(np.array(chain))
+    return chains
+
+
+def _unrolled(surface: Surface, u: Array, v: Array) -> tuple[Array, Array]:
+    """A line across a seam, with continuous parameters."""
+    if surface.u.closed:
+        u = np.unwrap(u, period=surface.u.width)
+    if surface.v.closed:
+        v = np.unwrap(v, period=surface.v.width)
+    return u, v

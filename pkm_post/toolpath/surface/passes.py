@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cover: poses of a cutter along all passes over a surface."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.geometry import cross, dot, norm, unit
+from pkm_post.model import Diagnostic, Place
+from pkm_post.toolpath.compensation.cutter import Cutter
+from pkm_post.toolpath.surface.contact_path import Course, Pattern, thinned, trimmed
+from pkm_post.toolpath.surface.options import CutMode, Lines, Order, Settings
+from pkm_post.toolpath.surface.pass_lines import lines, sections, spiral
+from pkm_post.toolpath.surface.poses import Poses, Progress, Stepping
+from pkm_post.toolpath.surface.stepover import levels_of_planes, passes_along_u
+from pkm_post.toolpath.surface.surface import Array, Surface, unit_or_nan
+from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
+
+_LOOKS = 17
+"""Points of a link checked to be on the face."""
+_SAME = 1e-3
+"""mm between the ends of a line within which it is closed."""
+
+
+def turned(course: Course, backwards: Array) -> Course:
+    """The course with some passes reversed, their pieces in order of travel.
+
+    Args:
+        course: pieces in the order of the pattern.
+        backwards: (N,) for each row whether its pass is reversed; equal for all rows of a pass.
+    """
+    rows = np.arange(len(course))
+    along = np.where(backwards, -rows, rows)
+    order = np.lexsort((along, course.number))
+    changed = course.taken(order)
+    changed = replace(changed, sense=np.where(backwards[order], -changed.sense, changed.sense))
+    return changed.numbered(np.concatenate([[0], np.cumsum(changed.run[:-1] != changed.run[1:])]))
+
+
+def climbs(surface: Surface, pattern: Pattern, course: Course, rule: AxisRule, into_rising: float) -> bool:
+    """Whether a course mostly climbs, with a cutter that turns clockwise.
+
+    Material is below the surface, towards -n, and on the side of the next passes, towards s. With the right of the feed
+    t x k, the passes climb where the mean of (s - n) . (t x k) > 0: beside a wall -n decides, on a floor s.
+
+    Args:
+        surface: the surface.
+        pattern: the lines.
+        course: passes, all in one direction.
+        rule: rule of the tool axis.
+        into_rising: 1 when passes follow each other with rising v or level, -1 when falling.
+    """
+    patch = surface.at(course.u, course.v)
+    feed = np.nan_to_num(unit_or_nan(pattern.direction(patch)) * course.sense[:, None])
+    next_passes = patch.along_v if pattern.plane is None else np.broadcast_to(pattern.plane, feed.shape)
+    sideways = next_passes - dot(next_passes, feed)[:, None] * feed
+    s = into_rising * np.nan_to_num(unit_or_nan(sideways - dot(sideways, patch.normal)[:, None] * patch.normal))
+    side = cross(patch.normal, feed) * course.sense[:, None]
+    k = np.nan_to_num(tool_axes(patch.normal, feed, rule, side)[0])
+    return bool(np.mean(dot(s - patch.normal, cross(feed, k))) > 0.0)
+
+
+def linked(surface: Surface, course: Course, longest: float, zigzag: bool) -> Course:
+    """The course with neighbouring passes linked along the surface where the link is short and stays on the face.
+
+    Passes in one direction are linked only at the seam of closed lines: a link back along the surface would cut in the
+    opposite direction.
+
+    Args:
+        surface: the surface.
+        course: pieces in order of travel.
+        longest: longest link along the surface, mm; otherwise the tool is lifted.
+        zigzag: whether passes alternate.
+    """
+    course = _seams_passed(surface, course)
+    last = np.flatnonzero(course.run[:-1] != course.run[1:])
+    first = last + 1
+    begin = np.concatenate([[0], first])[:-1]
+    share = np.linspace(0.0, 1.0, _LOOKS)
+    u, v = ((column[last, None] + share * (column[first] - column[last])[:, None]) for column in (course.u, course.v))
+    points = surface.at(u.ravel(), v.ravel()).point.reshape(len(last), _LOOKS, 3)
+    length = np.sum(norm(np.diff(points, axis=1)), axis=1)
+    held = surface.holds(u.ravel(), v.ravel()).reshape(len(last), _LOOKS).all(axis=1)
+    joins = (np.abs(course.number[first] - course.number[last]) == 1) & held & (length <= longest)
+    if not zigzag:
+        loop = norm(surface.at(course.u[begin], course.v[begin]).point - points[:, 0]) < _SAME
+        joins &= loop
+    lifts = np.zeros(max(len(course) - 1, 0), dtype=bool)
+    lifts[last[~joins]] = True
+    return course.numbered(np.concatenate([[0], np.cumsum(lifts)]))
+
+
+def _seams_passed(surface: Surface, course: Course) -> Course:
+    """The course with each run shifted by whole turns, to begin as close as possible to the end of the one before."""
+    jump = np.concatenate([[False], course.run[:-1] != course.run[1:]])
+    columns = {}
+    for name, span in (("u", surface.u), ("v", surface.v)):
+        column = getattr(course, name)
+        if span.closed:
+            turns = np.round(np.diff(column, prepend=column[:1]) / span.width) * jump
+            column = column - np.cumsum(turns) * span.width
+        columns[name] = column
+    return replace(course, **columns)
+
+
+_NODES = (17, 513)
+"""Least and most initial points of a pass."""
+_EVERY = 4
+"""Stepping starts with one in this many of the points used by trimming."""
+_LINK = 3.0
+"""Links along the surface are at most this many stepovers long."""
+
+
+def quiet(share: float) -> None:
+    """Ignore progress."""
+
+
+def cover(
+    surface: Surface, cutter: Cutter, settings: Settings, place: Place, progress: Progress = quiet
+) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
+    """The poses of a cutter along its path over a surface.
+
+    Args:
+        surface: the surface to cover.
+        cutter: a ball, bull nose or flat end mill.
+        settings: pattern, tolerances, tool axis.
+        place: what diagnostics name.
+        progress: called with the completed share, from 0 to 1; may raise to abort.
+
+    Returns:
+        The poses, in order of travel, their runs counted from 0; None when there are errors. And the diagnostics.
+
+    Raises:
+        ValueError: the cutter is tapered or a lens.
+    """
+    if cutter.bottom_angle or cutter.side_angle or cutter.radial_offset < 0.0:
+        raise ValueError(f"cover: expected a ball, bull nose or flat end mill, got {cutter}")
+    if settings.lines is Lines.ALONG_V:
+        surface = surface.exchanged()
+    if settings.order is Order.SPIRAL and (settings.lines is Lines.PLANES or not surface.u.closed):
+        told = "planes" if settings.lines is Lines.PLANES else "an open surface"
+        return None, (Diagnostic("N301", place, told),)
+    pattern, widest = _pattern(surface, cutter, settings)
+    if math.isnan(widest):
+        return None, (Diagnostic("N303", place, f"radius of the corner {cutter.corner_radius:g} mm"),)
+    course = _passes(surface, pattern, cutter, settings)
+    course = thinned(trimmed(surface, pattern, course), _EVERY)
+    if not len(course):
+        return None, (Diagnostic("N302", place, "no pass lies on it"),)
+    course = _in_order(surface, pattern, course, settings)
+    course = linked(surface, course, _LINK * widest, settings.order is Order.ZIGZAG)
+    stepping = Stepping(surface, pattern, cutter, settings.rule, settings.tolerances, place)
+    return stepping.poses(course, progress)
+
+
+def _pattern(surface: Surface, cutter: Cutter, settings: Settings) -> tuple[Pattern, float]:
+    """The lines in the order of cutting, and the largest distance of neighbours; NaN if there is none."""
+    chosen = settings.stepover, cutter, settings.rule
+    if settings.lines is Lines.PLANES:
+        plane = unit(np.asarray(settings.plane, dtype=np.float64))
+        level, widest = levels_of_planes(surface, plane, *chosen)
+        return Pattern(plane, level[::-1] if settings.reversed else level), widest
+    level, widest = passes_along_u(surface, *chosen)
+    return Pattern(None, level[::-1] if settings.reversed else level), widest
+
+
+def _passes(surface: Surface, pattern: Pattern, cutter: Cutter, settings: Settings) -> Course:
+    """The untrimmed passes."""
+    if pattern.plane is not None:
+        course = sections(surface, pattern.plane, pattern.level)
+        u, v = pattern.settled(surface, course.u, course.v, course.number)
+        return replace(course, u=u, v=v)
+    if not len(pattern.level):
+        return Course.of(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
+    make = spiral if settings.order is Order.SPIRAL else lines
+    return make(surface.u, pattern.level, _nodes(surface, pattern.level, cutter))
+
+
+def _nodes(surface: Surface, v: Array, cutter: Cutter) -> int:
+    """Number of points of a pass for a spacing of half a cutter radius."""
+    u, places = np.linspace(surface.u.first, surface.u.last, 65), v[:: max(len(v) // 16, 1)]
+    all_u, all_v = (each.ravel() for each in np.meshgrid(u, places))
+    points = surface.at(all_u, all_v).point.reshape(len(places), len(u), 3)
+    longest = float(np.max(np.sum(norm(np.diff(points, axis=1)), axis=1)))
+    wanted = math.ceil(longest / (0.5 * (cutter.radial_offset + cutter.corner_radius))) + 1
+    return int(np.clip(wanted, *_NODES))
+
+
+def _in_order(surface: Surface, pattern: Pattern, course: Course, settings: Settings) -> Course:
+    """The pieces in the order and direction of travel."""
+    backwards = np.zeros(len(course), dtype=bool)
+    if settings.cut_mode is not CutMode.AS_IT_COMES:
+        first = course.taken(course.number == course.number[0]) if settings.order is Order.ZIGZAG else course
+        rising = -1.0 if settings.reversed else 1.0
+        climbing = climbs(surface, pattern, first, settings.rule, rising) == settings.clockwise
+        backwards ^= climbing != (settings.cut_mode is CutMode.CLIMB)
+    if settings.order is Order.ZIGZAG:
+        backwards = backwards ^ (course.number % 2 == 1)
+    return turned(course, backwards)

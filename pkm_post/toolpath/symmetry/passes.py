@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Passes: the runs of rows in which the cutter cuts, and the moves between them.
+
+Takes a program; returns flags by row, and first and last rows of the passes. A pass is a run of feed moves between
+rapid moves and plunges. Moves straight along the tool axis belong to no pass: downwards they approach one, upwards they
+leave one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array, arc_points, arc_sweep, dot, norm
+from pkm_post.model import Kind, Program
+
+_NO_MOVE = 1e-9
+"""mm, and difference of unit vectors: a row that moves less stands still."""
+_ALONG = 1e-3
+"""rad within which a straight move counts as along the tool axis."""
+_SLANTED = 0.5
+"""Sine of the angle to the plane across the tool axis above which a move is a plunge or lift."""
+_ARC_STEPS = 24
+"""Points per arc: 15 degrees apart for a full circle."""
+
+
+def steps(program: Program) -> Array:
+    """Displacement of the tip on each row, (N, 3) in mm; zero on row 0, whose start is unknown."""
+    return np.diff(program.position, axis=0, prepend=program.position[:1])
+
+
+def moving(program: Program) -> Array:
+    """Rows on which tip or tool axis move, (N,); not row 0."""
+    turn = np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1])
+    flags: Array = (norm(steps(program)) > _NO_MOVE) | (norm(turn) > _NO_MOVE) | (program.kind == Kind.ARC)
+    return flags
+
+
+def lifts(program: Program) -> Array:
+    """+1 on straight rows up along a steady tool axis, -1 down along it, 0 on all others, (N,)."""
+    way = steps(program)
+    length = norm(way)
+    direction = way / np.maximum(length, _NO_MOVE)[:, None]
+    turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
+    straight = (program.kind != Kind.ARC) & (length > _NO_MOVE) & (turn < _ALONG)
+    up = straight & (norm(direction - program.tool_axis) < _ALONG)
+    down = straight & (norm(direction + program.tool_axis) < _ALONG)
+    return up.astype(np.int8) - down.astype(np.int8)
+
+
+def rises(program: Program) -> Array:
+    """Rise of straight rows along the tool axis as a share of their length, (N,): 1 along it, 0 on other rows."""
+    way = steps(program)
+    axis = program.tool_axis + np.concatenate([program.tool_axis[:1], program.tool_axis[:-1]])
+    size = norm(way) * norm(axis)
+    share: Array = np.where(
+        (program.kind != Kind.ARC) & (size > _NO_MOVE), dot(way, axis) / np.maximum(size, _NO_MOVE), 0
+    )
+    return share
+
+
+def without_plunges(program: Program, runs: Array) -> Array:
+    """The passes without the oblique plunges and lifts at their ends, (P, 2).
+
+    These are straight rows, down at the start and up at the end, whose feed differs from that of the adjacent cut.
+    """
+    rise = rises(program)
+    inner = np.array(runs)
+    for number, (first, behind) in enumerate(runs.tolist()):
+        rows = np.arange(first, behind)
+        inner[number, 0] += _plunging(-rise[rows], program.feed[rows])
+        inner[number, 1] -= _plunging(rise[rows][::-1], program.feed[rows][::-1])
+    return inner
+
+
+def _plunging(down: Array, feed: Array) -> int:
+    """Number of plunge rows at an end of a pass; 0 where that would be all rows."""
+    going = np.append(down > _SLANTED, False)
+    count = int(np.argmin(going))
+    if count == len(feed):
+        return 0
+    return int(np.argmax(np.append(feed[:count] == feed[count], True)))
+
+
+def cutting(program: Program) -> Array:
+    """Rows that belong to a pass, (N,). A row without motion belongs with the row before."""
+    cuts = (program.kind != Kind.RAPID) & (lifts(program) == 0)
+    known = moving(program)
+    known[:1], cuts[:1] = True, False
+    latest = np.maximum.accumulate(np.where(known, np.arange(len(program)), 0))
+    found: Array = cuts[latest] & (program.kind != Kind.RAPID)
+    return found
+
+
+def passes(program: Program) -> Array:
+    """The passes, (P, 2): the first row, and the one after the last row."""
+    edge = np.diff(np.concatenate([[0], cutting(program).astype(np.int8), [0]]))
+    return np.column_stack([np.flatnonzero(edge > 0), np.flatnonzero(edge < 0)])
+
+
+def chords(program: Program) -> tuple[Array, Array]:
+    """Starts and ends of the cuts, (n, 3) each in mm: straight rows as they are, arcs as short chords."""
+    rows = np.flatnonzero(cutting(program))
+    arc = program.kind[rows] == Kind.ARC
+    start, end = program.position[rows - 1], program.position[rows]
+    centre, axis = program.arc_centre[rows[arc]], program.arc_axis[rows[arc]]
+    share = np.linspace(0, 1, _ARC_STEPS + 1)
+    sweep = arc_sweep(start[arc], end[arc], centre, axis)[:, None]
+    rise = dot(end[arc] - start[arc], axis)[:, None]
+    points = arc_points(start[arc][:, None], centre[:, None], axis[:, None], sweep * share, rise * share)
+    return (
+        np.concatenate([start[~arc], points[:, :-1].reshape(-1, 3)]),
+        np.concatenate([end[~arc], points[:, 1:].reshape(-1, 3)]),
+    )
+
+
+_SAME = 1e-6
+"""mm, and difference of unit vectors: saved documents have six decimals."""
+_STEEP = 0.7
+"""Cosine of the angle between a rapid move that turns the tool and the tool axis, above which it goes up or down."""
+_STRAIGHT = 1.0 - 1e-6
+"""Cosine of the angle between two moves in line."""
+
+
+@dataclass(frozen=True)
+class Link:
+    """The rows between two passes.
+
+    Attributes:
+        rows: all of them.
+        departure: those that lead off the pass before.
+        travel: those between.
+        approach: those that lead to the next pass.
+    """
+
+    rows: Array
+    departure: Array
+    travel: Array
+    approach: Array
+
+
+def links(program: Program, runs: Array) -> list[Link]:
+    """The P + 1 links of P passes.
+
+    Args:
+        program: of N rows.
+        runs: (P, 2) its passes.
+    """
+    swings, moves, rapid = _swings(program), moving(program), program.kind == Kind.RAPID
+    up, down = _leading_ways(program, runs, swings)
+    moves[:1] = True
+    firsts, lasts = np.append(0, runs[:, 1]), np.append(runs[:, 0], len(program))
+    made = []
+    for number, (first, last) in enumerate(zip(firsts, lasts, strict=True)):
+        every = np.arange(first, last)
+        rows = every[moves[every]]
+        away = 0 if number == 0 else _leading(up[rows], rapid[rows])
+        rest = rows[away:]
+        # Row 0 has no start: it is a travel target.
+        own = rest[1:] if number == 0 else rest
+        to = 0 if number == len(runs) else _leading(down[own][::-1], rapid[own][::-1])
+        if 0 < number < len(runs) and away + to == len(rows):
+            # Two passes need travel between them; a move that turns the tool may serve.
+            back = away > 0 and bool(swings[rows[away - 1]])
+            away, to = away - back, to - (not back and to > 0 and bool(swings[rows[-to]]))
+            rest = rows[away:]
+        made.append(Link(every, rows[:away], rest[: len(rest) - to], rest[len(rest) - to :]))
+    return made
+
+
+def _turns(program: Program) -> Array:
+    """Rapid moves that turn the tool, (N,)."""
+    turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
+    flags: Array = (program.kind == Kind.RAPID) & (turn > _SAME)
+    return flags
+
+
+def _swings(program: Program) -> Array:
+    """Rapid moves that turn the tool while going up or down, (N,)."""
+    flags: Array = _turns(program) & (norm(steps(program)) >= _SAME) & (np.abs(rises(program)) > _STEEP)
+    return flags
+
+
+def _leading_ways(program: Program, runs: Array, swings: Array) -> tuple[Array, Array]:
+    """Rows that may lead up from a pass, and down to one, (N,) each."""
+    rise, lift = rises(program), lifts(program)
+    plunges = cutting(program) & ~_within(runs, len(program))
+    leads = plunges | swings | _in_line(program, plunges)
+    here = _turns(program) & (norm(steps(program)) < _SAME)
+    return (lift > 0) | (leads & (rise > 0)) | here, (lift < 0) | (leads & (rise < 0)) | here
+
+
+def _within(runs: Array, rows: int) -> Array:
+    """Rows within the passes, (N,)."""
+    edges = np.bincount(runs[:, 0], minlength=rows + 1) - np.bincount(runs[:, 1], minlength=rows + 1)
+    inside: Array = np.cumsum(edges)[:rows] > 0
+    return inside
+
+
+def _in_line(program: Program, plunges: Array) -> Array:
+    """Rapid moves in line with an adjacent plunge or lift, (N,)."""
+    way = steps(program)
+    direction = way / np.maximum(norm(way), _SAME)[:, None]
+    ahead = np.append(dot(direction[:-1], direction[1:]) > _STRAIGHT, False)
+    behind = np.append(False, ahead[:-1])
+    next_one, last_one = np.append(plunges[1:], False), np.append(False, plunges[:-1])
+    flags: Array = (program.kind == Kind.RAPID) & ((ahead & next_one) | (behind & last_one))
+    return flags
+
+
+def closed(program: Program, runs: Array) -> Array:
+    """Passes that end at the pose they begin with, (P,)."""
+    begin, end = runs[:, 0] - 1, runs[:, 1] - 1
+    off = norm(program.position[begin] - program.position[end])
+    turned = norm(program.tool_axis[begin] - program.tool_axis[end])
+    same: Array = (off < _SAME) & (turned < _SAME)
+    return same
+
+
+def same_pose(program: Program, row: int, other: int) -> bool:
+    """Whether tip and tool axis are the same at the ends of two rows."""
+    off = norm(program.position[row] - program.position[other])
+    return bool(off < _SAME and norm(program.tool_axis[row] - program.tool_axis[other]) < _SAME)
+
+
+def _leading(along: Array, rapid: Array) -> int:
+    """Number of rows from the pass outwards along the tool axis; if none, 1 where the first one is rapid."""
+    run = int(np.argmin(np.append(along, False)))
+    return run or int(np.any(rapid[:1]))

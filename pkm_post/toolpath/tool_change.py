@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tool changes: the route to the tool-change pose of the machine and back, as rapid moves of the program.
+
+Takes a program in {M}; returns it with the moves of its tool changes. They belong to an operation of their own, "tool
+change T2", with the line after the change. The platform stands still at the change, so the route uses the length of the
+old tool up to the spindle nose of the pose, and that of the new tool from there. It leads to the end of the next row if
+that is a rapid move, else back to the start of the next row, which stays as programmed. A program that begins without a
+tool change also crosses to its first point above the safe height: "approach". Where the machine file states no
+tool-change pose, tools change in place, and nothing is added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.model import (
+    MOTION_COLUMNS,
+    OPTIONAL_COLUMNS,
+    Diagnostic,
+    Event,
+    EventKind,
+    Kind,
+    Machine,
+    Place,
+    Program,
+    Tool,
+    ToolChange,
+)
+
+FLATTEST = 0.1
+"""Smallest z of a tool axis for a retract along it: 84 degrees from upright, where the path is ten times the height."""
+
+_NO_MOVE = 1e-8
+"""mm, rad, and difference of unit axes."""
+
+
+@dataclass(frozen=True)
+class ToolPose:
+    """Current or target pose of a tool.
+
+    Attributes:
+        tip: (3,) in {M}, mm.
+        axis: (3,) unit tool axis in {M}.
+        spin: spin of the platform about it, rad; NaN where unspecified.
+    """
+
+    tip: Array
+    axis: Array
+    spin: float
+
+    def rises_to(self, height: float) -> bool:
+        """Whether the tool is at the height, or can be retracted to it along its axis."""
+        return bool(self.tip[2] >= height or self.axis[2] >= FLATTEST)
+
+    def is_at(self, other: ToolPose) -> bool:
+        """Whether both poses are equal up to rounding."""
+        apart = (*(self.tip - other.tip), *(self.axis - other.axis), self.spin - other.spin)
+        return bool(np.abs(apart).max() < _NO_MOVE)
+
+    def above(self, height: float) -> tuple[ToolPose, ...]:
+        """The pose at the height, along the tool axis; empty where the tip is already that high.
+
+        tip + (height - z) / k axis, with z of the tip and k of the axis along z.
+        """
+        rise = (height - self.tip[2]) / self.axis[2]
+        return (ToolPose(self.tip + rise * self.axis, self.axis, self.spin),) if rise > 0.0 else ()
+
+
+def safe_way(start: ToolPose, end: ToolPose, height: float) -> tuple[ToolPose, ...]:
+    """The poses to pass through by straight moves, including the end.
+
+    Args:
+        start: current pose.
+        end: target pose.
+        height: z in {M} at and above which the tip is free.
+    """
+    return (*start.above(height), *end.above(height), end)
+
+
+def columns(poses: list[ToolPose]) -> tuple[Array, Array, Array]:
+    """Tips (N, 3), axes (N, 3) and spins (N,) of poses."""
+    tips, axes = (np.array([getattr(pose, name) for pose in poses]).reshape(-1, 3) for name in ("tip", "axis"))
+    return tips, axes, np.array([pose.spin for pose in poses])
+
+
+Findings = tuple[Diagnostic, ...]
+_Tools = tuple[int, Tool, Tool]
+"""A row with a tool change before it, the old tool and the new tool."""
+
+
+@dataclass(frozen=True)
+class _Detour:
+    """Moves before a row of the program.
+
+    Attributes:
+        row: the row.
+        name: name of the operation they belong to.
+        there: moves that end at the tool-change pose; empty for an approach.
+        back: moves from there to where the program continues.
+    """
+
+    row: int
+    name: str
+    there: tuple[ToolPose, ...]
+    back: tuple[ToolPose, ...]
+
+    @property
+    def moves(self) -> tuple[ToolPose, ...]:
+        """The ends of all moves, in order."""
+        return (*self.there, *self.back)
+
+
+def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Findings]:
+    """The program with the routes of its tool changes, and their diagnostics.
+
+    Args:
+        program: in {M}.
+        machine: defines home, where the program starts, and the tool-change pose.
+    """
+    pose = machine.tool_change
+    if pose is None:
+        return program, ()
+    changes = tuple(_tools_at_changes(program))
+    rows = [row for row, _, _ in changes]
+    begins = [0] if program.kind[0] == Kind.RAPID and 0 not in rows else []
+    faults = [*_low_tips(program, pose, changes), *_flat_axes(program, machine, pose, [*begins, *rows])]
+    if faults:
+        return program, tuple(faults)
+    detours = [_approach(program, machine, pose) for _ in begins]
+    detours += [_change(program, machine, pose, *change) for change in changes]
+    return (_inserted(program, detours) if any(detour.moves for detour in detours) else program), ()
+
+
+def _tools_at_changes(program: Program) -> Iterator[_Tools]:
+    """Each row with a tool change before it, the old tool and the new tool; the first tool counts as loaded."""
+    changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
+    loaded = program.tools[int(changes[0].value)] if changes else None
+    for row, at_row in groupby(changes, lambda event: event.row):
+        before, *_, loaded = (loaded, *(program.tools[int(event.value)] for event in at_row))
+        assert before is not None and loaded is not None
+        yield row, before, loaded
+
+
+def _pose_before(program: Program, machine: Machine, row: int) -> ToolPose:
+    """Tool pose at the end of the row before, with the tool in use there."""
+    if row == 0:
+        return ToolPose(machine.home_tip, machine.home_axis, machine.home_spin)
+    return _end_of(program, row - 1)
+
+
+def _end_of(program: Program, row: int) -> ToolPose:
+    return ToolPose(program.position[row], program.tool_axis[row], float(program.spin[row]))
+
+
+def _goes_on(program: Program, machine: Machine, row: int) -> ToolPose | None:
+    """Target pose of the route back: the end of a rapid row, else the start of the row; None at the end."""
+    if row == len(program):
+        return None
+    return _end_of(program, row) if program.kind[row] == Kind.RAPID else _pose_before(program, machine, row)
+
+
+def _approach(program: Program, machine: Machine, pose: ToolChange) -> _Detour:
+    """The route from home to the first point; the first row is its last move."""
+    return _Detour(
+        0, "approach", (), safe_way(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
+    )
+
+
+def _change(program: Program, machine: Machine, pose: ToolChange, row: int, before: Tool, after: Tool) -> _Detour:
+    there, back = (ToolPose(pose.tip(tool.length), pose.axis, pose.spin) for tool in (before, after))
+    target = _goes_on(program, machine, row)
+    way_back = () if target is None else safe_way(back, target, pose.safe_height)
+    if target is not None and program.kind[row] == Kind.RAPID:
+        way_back = way_back[:-1]  # the row itself moves there
+    way_there = safe_way(_pose_before(program, machine, row), there, pose.safe_height)
+    return _Detour(row, f"tool change T{after.number}", way_there, way_back)
+
+
+def _low_tips(program: Program, pose: ToolChange, changes: tuple[_Tools, ...]) -> Iterator[Diagnostic]:
+    for row, *tools in changes:
+        for tool in dict.fromkeys(tools):
+            tip = float(pose.tip(tool.length)[2])
+            if tip < pose.safe_height:
+                found = f"T{tool.number} at z {tip:.3f} mm, safe are {pose.safe_height:g} mm"
+                yield Diagnostic("K141", _place(program, row), found)
+
+
+def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[int]) -> Iterator[Diagnostic]:
+    """Diagnostics of route ends before these rows from which no height is gained."""
+    for row in rows:
+        for end in (_pose_before(program, machine, row), _goes_on(program, machine, row)):
+            if end is not None and not end.rises_to(pose.safe_height):
+                tilt, most = (float(np.degrees(np.arccos(rise))) for rise in (end.axis[2], FLATTEST))
+                found = f"{tilt:.3f} degrees from upright, at most {most:.1f}"
+                yield Diagnostic("K142", _place(program, row), found)
+
+
+def _place(program: Program, row: int) -> Place:
+    return program.place(min(row, len(program) - 1))
+
+
+def _inserted(program: Program, detours: list[_Detour]) -> Program:
+    """The program with the rows of all detours; events from a tool change on occur at its pose."""
+    names = list(dict.fromkeys(detour.name for detour in detours))
+    ways = [(detour, pose) for detour in detours for pose in detour.moves]
+    at = np.array([detour.row for detour, _ in ways])
+    tip, axis, spin = columns([pose for _, pose in ways])
+    added = _blank(len(ways)) | {
+        "kind": np.full(len(ways), Kind.RAPID),
+        "position": tip,
+        "tool_axis": axis,
+        "spin": spin,
+        "operation": np.array([len(program.operations) + names.index(detour.name) for detour, _ in ways]),
+        "line": program.line[np.minimum(at, len(program) - 1)],
+    }
+    grown = {name: np.insert(getattr(program, name), at, rows, axis=0) for name, rows in added.items()}
+    operations = (*program.operations, *names)
+    return replace(program, **grown, operations=operations, events=tuple(_moved(program.events, detours)))
+
+
+def _blank(count: int) -> dict[str, Array]:
+    """Defaults of the columns unused by a rapid move."""
+    nothing: dict[str, Array] = {
+        name: np.full((count, *shape), default) for name, (_, shape, default) in OPTIONAL_COLUMNS.items()
+    }
+    unsaid = {name: np.full((count, *shape), np.nan) for name, (_, shape) in MOTION_COLUMNS.items()}
+    return nothing | unsaid
+
+
+def _moved(events: tuple[Event, ...], detours: list[_Detour]) -> Iterator[Event]:
+    """The events at their rows after insertion."""
+    added, ahead, changed = 0, list(detours), False
+    for event in events:
+        while ahead and (ahead[0].row < event.row):
+            added += len(ahead[0].moves)
+            changed = False
+            ahead.pop(0)
+        changed |= event.kind is EventKind.TOOL_CHANGE
+        at_pose = len(ahead[0].there) if changed and ahead else 0
+        yield replace(event, row=event.row + added + at_pose)
