@@ -26,8 +26,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np  # noqa: E402 - the threads are chosen first
 
 from pkm_post.machine import (  # noqa: E402 - the path comes first
-    Part,  # noqa: E402 - the path comes first
-    Way,  # noqa: E402 - the path comes first
+    CollisionMesh,  # noqa: E402 - the path comes first
+    PosePath,  # noqa: E402 - the path comes first
     find_machine,  # noqa: E402
     forward,  # noqa: E402 - the path comes first
     jacobian_of_tip,
@@ -220,7 +220,7 @@ def path(count):
     tilt = np.radians(15) + np.radians(4) * np.sin(7 * turn)
     tip = np.column_stack([60 * np.cos(turn), 60 * np.sin(turn), 200 + 30 * np.sin(turn / 50)])
     axis = np.column_stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])
-    return Way.straight(tip, axis, np.zeros(count), np.full(count, 120.0)), np.full(count, 1e-3)
+    return PosePath.straight(tip, axis, np.zeros(count), np.full(count, 120.0)), np.full(count, 1e-3)
 
 
 def cone():
@@ -229,7 +229,7 @@ def cone():
     radius = 55 - 25 * high
     p = np.stack([radius * np.cos(turn), radius * np.sin(turn), 60 + 200 * high], axis=-1)
     halves = [[p[:-1, :-1], p[1:, :-1], p[:-1, 1:]], [p[1:, 1:], p[1:, :-1], p[:-1, 1:]]]
-    return Part.of(np.concatenate([np.stack(half, axis=-2).reshape(-1, 3, 3) for half in halves]))
+    return CollisionMesh.of(np.concatenate([np.stack(half, axis=-2).reshape(-1, 3, 3) for half in halves]))
 
 
 def checks(machine, count):

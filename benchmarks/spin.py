@@ -20,13 +20,13 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 from programs import program  # noqa: E402 - the path comes first
 
 from pkm_post.machine import (  # noqa: E402
-    Policy,
-    Rule,
+    SpinPolicy,
+    SpinRule,
     best_position,  # noqa: E402
-    least_shares,  # noqa: E402
+    least_normalised_margins,  # noqa: E402
     machine_named,  # noqa: E402
 )
-from pkm_post.machine.spin.optimise import optimise  # noqa: E402
+from pkm_post.machine.spin.optimise import optimise_spin  # noqa: E402
 from pkm_post.machine.spin.policy import OBJECTIVES  # noqa: E402
 from pkm_post.toolpath.place import place  # noqa: E402
 
@@ -56,9 +56,14 @@ def main():
     print(f"{len(trajectory)} poses; shares of stroke, joints and distance to singular poses, before and after")
     for objective in OBJECTIVES:
         begin = time.perf_counter()
-        found = optimise(trajectory, machine, Policy(Rule.OPTIMISED, objective=objective))
+        found = optimise_spin(trajectory, machine, SpinPolicy(SpinRule.OPTIMISED, objective=objective))
         seconds = time.perf_counter() - begin
-        told(f"spin, {objective}", seconds, least_shares(trajectory, machine), least_shares(found, machine))
+        told(
+            f"spin, {objective}",
+            seconds,
+            least_normalised_margins(trajectory, machine),
+            least_normalised_margins(found, machine),
+        )
     begin = time.perf_counter()
     position = best_position(trajectory, machine)
     told("position", time.perf_counter() - begin, position.before, position.after)

@@ -17,11 +17,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from pkm_post.machine import (  # noqa: E402
-    Ends,
     Inside,
+    KnotState,
     machine_named,  # noqa: E402
 )
-from pkm_post.machine.kinematics.strut_cubics import stray  # noqa: E402
+from pkm_post.machine.kinematics.strut_cubics import tool_deviation  # noqa: E402
 from pkm_post.planning import interpolate, plan_feed  # noqa: E402 - the path comes first
 from pkm_post.planning.cubics import poses_at  # noqa: E402
 from pkm_post.planning.glimpse import glimpse  # noqa: E402
@@ -41,8 +41,8 @@ def told(name, time_ms, path, schedule, machine):
         s, _, _ = schedule.at((start[:, None] + (end - start)[:, None] * SHARES).ravel() / 1000)
         seen = glimpse(path, s)
         inside = Inside(seen.tip, seen.axis, seen.spin, seen.tool_length)
-        ends = (Ends.of(machine, poses_at(path, schedule, ms)) for ms in (start, end))
-        found = stray(machine, *ends, inside, (end - start) / 1000, SHARES)
+        ends = (KnotState.of(machine, poses_at(path, schedule, ms)) for ms in (start, end))
+        found = tool_deviation(machine, *ends, inside, (end - start) / 1000, SHARES)
         tip, axis = max(tip, found.tip.max()), max(axis, found.axis.max())
     print(f"{name:<12}{len(time_ms):>9} points   tip {tip:.6f} mm   axis {np.degrees(axis):.6f} degrees", flush=True)
 

@@ -6,8 +6,8 @@ import dataclasses
 import numpy as np
 from machines import direction, example
 
-from pkm_post.machine import Way
-from pkm_post.machine.kinematics.placed_machine import Placed
+from pkm_post.machine import PosePath
+from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.model.machine import Body, Box
 
 LENGTH = 120.0
@@ -15,7 +15,7 @@ LENGTH = 120.0
 
 def bodied():
     """The example machine with tubes, rods, bodies of the platform, a table and a vice jaw."""
-    rest = Placed.of(example(), Way.straight(*upright([[0.0, 0.0, 200.0]])).rows(slice(None)))
+    rest = PlacedMachine.of(example(), PosePath.straight(*upright([[0.0, 0.0, 200.0]])).rows(slice(None)))
     return dataclasses.replace(
         example(),
         base_rest=rest.direction[0], base_cone=np.radians(25), platform_rest=-rest.in_platform()[0],
@@ -40,7 +40,7 @@ def wandering(rng, rows, tilt_deg=25.0, spin_deg=20.0):
     tip = rng.uniform([-120, -120, 120], [120, 120, 300], (rows, 3))
     axis = direction(rng.uniform(0, tilt_deg, rows), rng.uniform(0, 360, rows)).T
     length = np.where(np.arange(rows) < rows // 2, LENGTH, LENGTH + 30)
-    return Way.straight(tip, axis, np.radians(rng.uniform(-spin_deg, spin_deg, rows)), length)
+    return PosePath.straight(tip, axis, np.radians(rng.uniform(-spin_deg, spin_deg, rows)), length)
 
 
 def samples(way, cells, shares):

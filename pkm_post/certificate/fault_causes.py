@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine import moving
+from pkm_post.machine import strut_state
 from pkm_post.model import Certificate, Diagnostic, Finding, Machine, Motion, StrutMotion, in_pieces
 
 Decimals = tuple[int, int]
@@ -48,7 +48,7 @@ def fault_causes(
     """
     if certificate.holds:
         return ()
-    length, speed = in_pieces(len(motion), _AT_ONCE, lambda rows: moving(machine, motion.poses(rows))[:2])
+    length, speed = in_pieces(len(motion), _AT_ONCE, lambda rows: strut_state(machine, motion.poses(rows))[:2])
     exact = StrutMotion(struts.time_ms, length, speed, struts.events)
     decimals = _as_printed(struts, exact, machine)
     if decimals is None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine import moving
+from pkm_post.machine import strut_state
 from pkm_post.model import Machine, Motion
 
 _MOST_CHANGE = 0.02
@@ -46,7 +46,7 @@ class Knots:
 
         Full inverses are only temporary; they would take most of the memory of a long program.
         """
-        self.length[rows], self.speed[rows], jacobian = moving(machine, motion.poses(rows))
+        self.length[rows], self.speed[rows], jacobian = strut_state(machine, motion.poses(rows))
         inverse = _inverted(jacobian)
         self.tip_inverse[rows] = inverse[:, :3]
         between = slice(rows.start, rows.stop - 1)
@@ -58,7 +58,7 @@ def inverses_at(machine: Machine, motion: Motion, rows: Array) -> tuple[Array, A
     """Inverse Jacobians of the tip at both ends of the intervals that begin at some knots, (N, 6, 6) each."""
     knots, row = np.unique(np.concatenate([rows, rows + 1]), return_inverse=True)
     begin, end = np.split(row, 2)
-    inverse = _inverted(moving(machine, motion.poses(knots))[2])
+    inverse = _inverted(strut_state(machine, motion.poses(knots))[2])
     return inverse[begin], inverse[end]
 
 

@@ -20,7 +20,7 @@ from pkm_post.geometry import (
     hermite_columns,
     torsion_free_axes,
 )
-from pkm_post.machine import attitude_rates, follow, jacobian_of_tip, platform_rotation, solve_regular
+from pkm_post.machine import attitude_rates, forward_along_path, jacobian_of_tip, platform_rotation, solve_regular
 from pkm_post.model import Machine, StrutMotion, Trajectory
 
 
@@ -50,7 +50,7 @@ class PlayedCourse:
     ) -> tuple[PlayedCourse | None, int]:
         """The tool path of a program; or None, and the first knot that small steps from the start cannot reach."""
         begin = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
-        found = follow(machine, struts.length, tool_length, trajectory.start_tip, begin)
+        found = forward_along_path(machine, struts.length, tool_length, trajectory.start_tip, begin)
         if not found.converged.all():
             return None, int(np.argmin(found.converged))
         spin = _spin(found.rotation, trajectory.start_spin)

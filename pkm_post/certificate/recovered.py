@@ -19,7 +19,7 @@ from pkm_post.certificate.played_course import PlayedCourse
 from pkm_post.certificate.spin_off import spin_off
 from pkm_post.certificate.structure import event_fault
 from pkm_post.geometry import Array, norm
-from pkm_post.machine import Way
+from pkm_post.machine import PosePath
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory
 
 Findings = tuple[Diagnostic, ...]
@@ -42,7 +42,7 @@ class Recovered:
     spin_off: Array
     course: PlayedCourse
 
-    def way(self) -> tuple[Way, Array]:
+    def way(self) -> tuple[PosePath, Array]:
         """The pose path through even instants of all intervals, and the segments of these."""
         count = len(self.motion) - 1
         first = self.course.at(np.array([0]), np.zeros((1, 1)))[:, 0]
@@ -52,7 +52,7 @@ class Recovered:
         looks = len(_LOOKS)
         tool_length = np.append(self.motion.tool_length[:1], np.repeat(self.motion.tool_length[1:], looks))
         segment = np.append(self.motion.segment[:1], np.repeat(self.motion.segment[1:], looks))
-        return Way.straight(place[:3].T, axis, place[6], tool_length), segment
+        return PosePath.straight(place[:3].T, axis, place[6], tool_length), segment
 
 
 def recovered(

@@ -18,7 +18,7 @@ from pkm_post.certificate.knots import Knots, inverses_at
 from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds, length_of
-from pkm_post.machine import NearPoses, carried, forward, linearise, near_poses
+from pkm_post.machine import NearPoses, forward, linearise, map_to_tool, refine_poses
 from pkm_post.model import Machine, Motion, StrutMotion
 
 _SPEED_MISSED = 2e-4
@@ -83,9 +83,11 @@ def by_kinematics(task: Task, rows: Array, shares: Array) -> ToolAt:
     machine, motion = task.machine, task.motion
     tool_length = np.repeat(motion.tool_length[rows + 1], len(shares))
     inverses = inverses_at(machine, motion, rows)
-    pose, found = near_poses(machine, length, _planned(motion, rows, cubic[-1], shares), tool_length, inverses, shares)
+    pose, found = refine_poses(
+        machine, length, _planned(motion, rows, cubic[-1], shares), tool_length, inverses, shares
+    )
     tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
-    velocity = np.array(carried(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
+    velocity = np.array(map_to_tool(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
     odd = np.flatnonzero(~(found & np.repeat(task.knots.alike[rows], len(shares))))
     if len(odd):
         knot, lengths, speeds = rows[odd // len(shares)], length.reshape(-1, 6)[odd], speed.reshape(-1, 6)[odd]

@@ -23,7 +23,7 @@ from pkm_post.geometry import (
     hermite_lengths,
     length_of,
 )
-from pkm_post.machine import NearPoses, attitude_rates, carried, moved, strut_lengths
+from pkm_post.machine import NearPoses, attitude_rates, displaced, map_to_tool, strut_lengths
 from pkm_post.model import Machine, Motion, StrutMotion, pieces
 
 _LOOKS = np.array([[0.25], [0.5], [0.75]])
@@ -144,7 +144,7 @@ class ToolCourse:
         tool_length = np.tile(motion.tool_length[rows + 1], _LOOKS.size)
         needed = strut_lengths(machine, tip.T, axis.T, spin[0], tool_length).reshape(_LOOKS.size, -1, 6)
         residual = hermite_lengths(*cubics(struts, rows), _LOOKS.ravel()) - needed.transpose(1, 0, 2)
-        twist = carried(*inverses, residual, _LOOKS.ravel())
+        twist = map_to_tool(*inverses, residual, _LOOKS.ravel())
         way, turn = (part.transpose(0, 2, 1).reshape(3, -1) for part in (twist[:3], twist[3:]))
         swing, _ = attitude_rates(axis.T, turn.T)
         off_tip, off_axis = (length_of(*part).reshape(_LOOKS.size, -1).max(axis=0) for part in (way, swing.T))
@@ -159,6 +159,6 @@ def _at_knots(
     residual = struts.length[rows] - knots.length[rows]
     near = np.abs(residual).max(axis=1) < _NEAR_PLAN
     step, twist = (inverse @ np.stack([residual, struts.speed[rows]], axis=2)).transpose(2, 1, 0)
-    pose = moved(NearPoses(motion.tip[rows], motion.axis[rows], motion.spin[rows]), np.where(near, step, 0.0))
+    pose = displaced(NearPoses(motion.tip[rows], motion.axis[rows], motion.spin[rows]), np.where(near, step, 0.0))
     swing, spun = attitude_rates(pose.axis, twist[3:].T)
     return np.vstack([pose.tip.T, pose.axis.T, pose.spin]), np.vstack([twist[:3], swing.T, spun]), near

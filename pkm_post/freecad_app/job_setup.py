@@ -24,7 +24,7 @@ from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.machine_object import machine_of
 from pkm_post.freecad_app.mesh import mesh_of
 from pkm_post.freecad_app.tools import millimetres
-from pkm_post.machine import Part, find_machine, machine_named, placed_part
+from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Shank, Tolerances, Trajectory
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
 from pkm_post.posting import Prepared, Study, known_setup, study, told_offset, work_offset
@@ -106,7 +106,7 @@ class JobOnMachine:
 
     trajectory: Trajectory
     machine: Machine
-    part: Part | None
+    part: CollisionMesh | None
     tolerances: Tolerances
 
 
@@ -127,7 +127,7 @@ def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
     trajectory, _ = read.placed()
     program, machine = read.sound
     setup, _ = known_setup(read.options, program)
-    return JobOnMachine(trajectory, machine, placed_part(setup, trajectory), read.options.tolerances)
+    return JobOnMachine(trajectory, machine, placed_workpiece(setup, trajectory), read.options.tolerances)
 
 
 def study_job(job: Any, free: str = "") -> Study:

@@ -22,7 +22,7 @@ from pkm_post.freecad_app.document_object import EDITABLE, READ_ONLY, PropertyPr
 from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.geometry import Array
-from pkm_post.machine import Pose, Way, machine_named, reach_findings, reach_margins, strut_lengths
+from pkm_post.machine import Pose, PosePath, machine_named, reach_findings, reach_margins, strut_lengths
 from pkm_post.model import Machine, Refused
 from pkm_post.posting import work_offset
 
@@ -185,7 +185,7 @@ def _tell(obj: Any, machine: Machine, pose: Pose) -> None:
     obj.StrokeMargin = float(min(left.shortest.min(), left.longest.min()))
     obj.JointMargin = math.degrees(min(left.base.min(), left.platform.min()))
     obj.SingularMargin = float(left.singular[0])
-    findings = reach_findings(machine, Way.straight(*pose))
+    findings = reach_findings(machine, PosePath.straight(*pose))
     bad = [finding for finding in findings if finding.margin[0] < 0.0]
     obj.OutOfLimits = [
         f"{finding.subject.name}: {finding.subject.tell(int(finding.part[0]), float(finding.margin[0]))}"

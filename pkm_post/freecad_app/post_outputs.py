@@ -20,7 +20,7 @@ from pkm_post.freecad_app.job_settings import JobSettings
 from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.post_job import post_to
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.machine import find_collisions, reach
+from pkm_post.machine import check_reach, find_collisions
 from pkm_post.model import Diagnostic, Refused, Trajectory, errors
 from pkm_post.posting import known_setup, step_names
 from pkm_post.system import staged, write_fault
@@ -108,7 +108,7 @@ def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     program, machine = read.sound
     setup, told = _value(known_setup(read.options, program), found)
     collisions = find_collisions(trajectory, machine, setup, read.options.tolerances)
-    return _value((trajectory, (*reach(trajectory, machine).faults(), *collisions.faults)), told)
+    return _value((trajectory, (*check_reach(trajectory, machine).faults(), *collisions.faults)), told)
 
 
 def _value(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:

@@ -28,7 +28,7 @@ from pkm_post.freecad_app.frames import apply
 from pkm_post.freecad_app.job_setup import job_on_machine
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array
-from pkm_post.machine import SHOWN, Reach, reach
+from pkm_post.machine import DISPLAY_UNITS, ReachReport, check_reach
 from pkm_post.model import errors
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -83,7 +83,7 @@ class ReachObject(PropertyProxy):
 
     properties = PROPERTIES
     results = (*RESULTS, *WAY)
-    _found: tuple[Reach, Array] | None = None
+    _found: tuple[ReachReport, Array] | None = None
     """The last result, and its stored rows; lost when the document is closed."""
 
     def add_missing_properties(self, obj: Any) -> None:
@@ -104,7 +104,7 @@ class ReachObject(PropertyProxy):
         with Progress(obj.Label, 2) as bar:
             placed = job_on_machine(obj.Job, obj.Machine)
             bar.step()
-            found = reach(placed.trajectory, placed.machine, placed.part)
+            found = check_reach(placed.trajectory, placed.machine, placed.part)
             bar.step()
         _tell(obj, found)
         self._found = found, thinned(_least_by_row(found), _MOST_POINTS)
@@ -156,20 +156,20 @@ def thinned(margin: Array, most: int) -> Array:
     return np.unique(np.concatenate([[0], here[first], [len(margin) - 1]]))
 
 
-def _least_by_row(found: Reach) -> Array:
+def _least_by_row(found: ReachReport) -> Array:
     """One combined margin of all checks for thinning, (N,): each scaled by its own spread, smallest at the worst."""
     columns = [finding.margin / max(float(np.ptp(finding.margin)), 1e-9) for finding in found.findings]
     return np.min([np.where(column < 0.0, column, column - column.min()) for column in columns], axis=0)
 
 
-def _tell(obj: Any, found: Reach) -> None:
+def _tell(obj: Any, found: ReachReport) -> None:
     """Fill in the findings."""
     checks = found.as_dict()["checks"]
     document_from_machine = np.linalg.inv(found.trajectory.machine_from_work)
     worst = np.array([found.tip[finding.worst_row] for finding in found.findings])
     faults = found.faults()
     obj.Checks = [check["name"] for check in checks]
-    obj.Units = [SHOWN[finding.subject.unit][0] for finding in found.findings]
+    obj.Units = [DISPLAY_UNITS[finding.subject.unit][0] for finding in found.findings]
     obj.LeastMargins = [check["margin"] for check in checks]
     proven = [check["proven_margin"] for check in checks]
     obj.ProvenMargins = ["points only" if margin is None else f"{margin:.4g}" for margin in proven]
@@ -186,14 +186,14 @@ def _tell(obj: Any, found: Reach) -> None:
         obj.ColourBy = chosen if chosen in obj.Checks else obj.Checks[0]
 
 
-def _store_way(obj: Any, found: Reach, rows: Array) -> None:
+def _store_way(obj: Any, found: ReachReport, rows: Array) -> None:
     """Store the path with the margins of the selected check, in the displayed unit."""
     chosen = list(obj.Checks).index(str(obj.ColourBy))
     finding = found.findings[chosen]
     points = apply(np.linalg.inv(found.trajectory.machine_from_work), found.tip[rows])
     obj.Margins = []  # keep points and margins consistent at all times
     obj.Points = _vectors(points)
-    obj.Margins = (finding.margin[rows] * SHOWN[finding.subject.unit][1]).tolist()
+    obj.Margins = (finding.margin[rows] * DISPLAY_UNITS[finding.subject.unit][1]).tolist()
 
 
 def _vectors(points: Array) -> list[Any]:

@@ -17,7 +17,7 @@ import numpy as np
 from pkm_post.freecad_app.job_setup import JobOnMachine, job_on_machine
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, norm, unit
-from pkm_post.machine import Pose, Reach, ReachFinding, reach
+from pkm_post.machine import Pose, ReachFinding, ReachReport, check_reach
 from pkm_post.model import RULES, EventKind, Machine, Motion, Place, Refused, Severity, StrutMotion, Tool, Trajectory
 from pkm_post.planning import interpolate, plan_feed
 
@@ -214,19 +214,19 @@ def simulation_of(placed: JobOnMachine) -> Simulation:
         plan = interpolate(feed_plan)
         bar.step()
         planned = Simulation(trajectory, machine, plan.motion, plan.struts, ())
-        problems = _problems(reach(trajectory, machine, placed.part), planned)
+        problems = _problems(check_reach(trajectory, machine, placed.part), planned)
         bar.step()
     return replace(planned, problems=problems)
 
 
-def _problems(checked: Reach, planned: Simulation) -> tuple[Problem, ...]:
+def _problems(checked: ReachReport, planned: Simulation) -> tuple[Problem, ...]:
     """One problem for each check and stretch of violating blocks."""
     graves = [item for item in checked.findings if RULES[item.subject.code].severity is Severity.ERROR]
     found = [problem for finding in graves for problem in _stretches(finding, checked, planned)]
     return tuple(sorted(found, key=lambda problem: (problem.time, problem.text)))
 
 
-def _stretches(finding: ReachFinding, checked: Reach, planned: Simulation) -> list[Problem]:
+def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation) -> list[Problem]:
     rows = np.flatnonzero(finding.margin < 0.0)
     groups = np.split(rows, np.flatnonzero(np.diff(checked.segment[rows]) > 1) + 1) if len(rows) else []
     problems = []
@@ -246,7 +246,7 @@ def _stretches(finding: ReachFinding, checked: Reach, planned: Simulation) -> li
     return problems
 
 
-def _time_of(row: int, segment: int, checked: Reach, planned: Simulation) -> float:
+def _time_of(row: int, segment: int, checked: ReachReport, planned: Simulation) -> float:
     """Time at which the tip passes a row in its block; the block's start if it dwells or lacks the row."""
     begins = float(planned.motion.joint_time[segment - 1]) if segment else _BEGUN
     if row < 0 or checked.segment[row] != segment:

@@ -3,9 +3,17 @@
 
 from pkm_post.machine.best_position import best_position
 from pkm_post.machine.calibration.calibrate_file import calibrate_file
-from pkm_post.machine.collisions.check import NO_SETUP, find_collisions, names_of, placed_part
+from pkm_post.machine.collisions.check import NO_SETUP, find_collisions, placed_workpiece, setup_names
 from pkm_post.machine.description.presets import find_machine, machine_named, presets, templates
-from pkm_post.machine.kinematics.forward import NearPoses, Solution, follow, forward, moved, near_poses, newton
+from pkm_post.machine.kinematics.forward import (
+    ForwardSolution,
+    NearPoses,
+    displaced,
+    forward,
+    forward_along_path,
+    forward_from_rotation,
+    refine_poses,
+)
 from pkm_post.machine.kinematics.inverse import Pose, attitude_rates, platform_joints, platform_rotation, strut_lengths
 from pkm_post.machine.kinematics.jacobian import (
     jacobian_of_tip,
@@ -16,62 +24,62 @@ from pkm_post.machine.kinematics.jacobian import (
 )
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
 from pkm_post.machine.kinematics.rates import strut_rate_bounds, strut_rates, tool_rates
-from pkm_post.machine.kinematics.strut_cubics import Ends, Inside, carried, moving
+from pkm_post.machine.kinematics.strut_cubics import Inside, KnotState, map_to_tool, strut_state
 from pkm_post.machine.kinematics.tool_cubics import Demand, ToolCubics, bounded_demand, measured_demand
-from pkm_post.machine.reach.collision_mesh import Part
-from pkm_post.machine.reach.findings import SHOWN, ReachFinding, faults_of
+from pkm_post.machine.reach.collision_mesh import CollisionMesh
+from pkm_post.machine.reach.findings import DISPLAY_UNITS, ReachFinding, finding_diagnostics
 from pkm_post.machine.reach.limit_checks import reach_margins
 from pkm_post.machine.reach.path_checks import reach_faults, reach_findings
-from pkm_post.machine.reach.pose_path import Way
-from pkm_post.machine.reach.report import Reach, reach
+from pkm_post.machine.reach.pose_path import PosePath
+from pkm_post.machine.reach.report import ReachReport, check_reach
 from pkm_post.machine.reach_map import reach_map
 from pkm_post.machine.spin.apply import with_spin
-from pkm_post.machine.spin.optimise import least_shares
-from pkm_post.machine.spin.policy import ZERO_TORSION, Policy, Rule
+from pkm_post.machine.spin.optimise import least_normalised_margins
+from pkm_post.machine.spin.policy import ZERO_TORSION, SpinPolicy, SpinRule
 
 __all__ = [
     "NO_SETUP",
-    "SHOWN",
+    "DISPLAY_UNITS",
     "ZERO_TORSION",
     "Demand",
-    "Ends",
+    "KnotState",
     "Inside",
     "NearPoses",
-    "Part",
-    "Policy",
+    "CollisionMesh",
+    "SpinPolicy",
     "Pose",
-    "Reach",
+    "ReachReport",
     "ReachFinding",
-    "Rule",
-    "Solution",
+    "SpinRule",
+    "ForwardSolution",
     "ToolCubics",
-    "Way",
+    "PosePath",
     "attitude_rates",
     "best_position",
     "bounded_demand",
     "calibrate_file",
-    "carried",
-    "faults_of",
+    "map_to_tool",
+    "finding_diagnostics",
     "find_collisions",
     "find_machine",
-    "follow",
+    "forward_along_path",
     "forward",
     "has_strut_bodies",
     "jacobian_of_tip",
-    "least_shares",
+    "least_normalised_margins",
     "linearise",
     "machine_named",
     "measured_demand",
-    "moved",
-    "moving",
-    "names_of",
-    "near_poses",
-    "newton",
-    "placed_part",
+    "displaced",
+    "strut_state",
+    "setup_names",
+    "refine_poses",
+    "forward_from_rotation",
+    "placed_workpiece",
     "platform_joints",
     "platform_rotation",
     "presets",
-    "reach",
+    "check_reach",
     "reach_faults",
     "reach_findings",
     "reach_map",

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine.spin.normalised_margins import STROKE, Samples, score, shares
+from pkm_post.machine.spin.normalised_margins import STROKE, SampledPoses, normalised_margins, score
 from pkm_post.model import Machine, Trajectory
 from pkm_post.toolpath import rotation
 
@@ -25,7 +25,7 @@ _SEED = 1
 _MOST_STEPS = 2000
 
 
-def compass_search(height: Callable[[Array], Array], start: Array, first_step: Array, last_step: Array) -> Array:
+def pattern_search(height: Callable[[Array], Array], start: Array, first_step: Array, last_step: Array) -> Array:
     """Climb from a start to a point that no small step improves, (D,).
 
     Args:
@@ -67,7 +67,7 @@ _EQUAL = 1e-6
 
 
 @dataclass(frozen=True)
-class Position:
+class WorkpiecePosition:
     """Result of the search.
 
     Attributes:
@@ -92,7 +92,7 @@ class _Job:
     spin: Array
     tool_length: Array
 
-    def shares(self, moves: Array, rows: Array) -> Array:
+    def normalised_margins(self, moves: Array, rows: Array) -> Array:
         """Shares of the given poses after each move, (P, R, 3), for moves (P, 6)."""
         matrices = np.array([_matrix(move, self.middle) for move in moves])
         turned = matrices[:, :3, :3].transpose(0, 2, 1)
@@ -100,7 +100,7 @@ class _Job:
         axis = self.axis[rows] @ turned
         count = len(moves)
         repeated = np.tile(self.spin[rows], count), np.tile(self.tool_length[rows], count)
-        left = shares(self.machine, tip.reshape(-1, 3), axis.reshape(-1, 3), *repeated)
+        left = normalised_margins(self.machine, tip.reshape(-1, 3), axis.reshape(-1, 3), *repeated)
         return left.reshape(count, len(rows), 3)
 
 
@@ -110,7 +110,7 @@ def best_position(
     free: str = "xyzc",
     weights: dict[int, float] | None = None,
     fixed: Array | None = None,
-) -> Position:
+) -> WorkpiecePosition:
     """Search for the work offset.
 
     Args:
@@ -133,25 +133,25 @@ def best_position(
     for _ in range(_ROUNDS):
 
         def worst(moves: Array, rows: Array = active) -> Array:
-            left = job.shares(moves, rows)
+            left = job.normalised_margins(moves, rows)
             scores = score(left.reshape(-1, 3), weights).reshape(len(moves), -1)
             return np.asarray(scores.min(axis=1))
 
-        move = compass_search(worst, move, _FIRST_STEP * chosen, _LAST_STEP)
-        scores = score(job.shares(move[None], every)[0], weights)
+        move = pattern_search(worst, move, _FIRST_STEP * chosen, _LAST_STEP)
+        scores = score(job.normalised_margins(move[None], every)[0], weights)
         if scores.min() >= worst(move[None])[0] - _EQUAL:
             break
         active = np.union1d(active, np.argsort(scores)[:_POSES_THAT_JOIN])
-    return Position(
+    return WorkpiecePosition(
         machine_from_work=_matrix(move, job.middle) @ trajectory.machine_from_work,
-        before=job.shares(np.zeros((1, 6)), every)[0].min(axis=0),
-        after=job.shares(move[None], every)[0].min(axis=0),
+        before=job.normalised_margins(np.zeros((1, 6)), every)[0].min(axis=0),
+        after=job.normalised_margins(move[None], every)[0].min(axis=0),
     )
 
 
 def _job(trajectory: Trajectory, machine: Machine, fixed: Array) -> _Job:
     """The poses that move with the workpiece; only the end of a segment from home or a tool change."""
-    samples = Samples.of(trajectory)
+    samples = SampledPoses.of(trajectory)
     from_elsewhere, at_end = np.append(True, fixed[:-1]), np.append(np.diff(samples.segment) > 0, True)
     rows = ~fixed[samples.segment] & (~from_elsewhere[samples.segment] | at_end)
     tip = samples.tip[rows]

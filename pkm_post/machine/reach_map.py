@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine.spin.normalised_margins import shares
+from pkm_post.machine.spin.normalised_margins import normalised_margins
 from pkm_post.model import Machine
 
 NOWHERE = -1.0
@@ -92,7 +92,7 @@ def reach_map(
 def _cones(machine: Machine, tool_length: float, angles: Array, azimuths: int, tip: Array) -> tuple[Array, Array]:
     """Half angles and limits at some places, (P,) each."""
     axis = _leaning(angles, azimuths)
-    left = shares(
+    left = normalised_margins(
         machine,
         np.repeat(tip, len(axis), axis=0),
         np.tile(axis, (len(tip), 1)),

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pkm_post.geometry import Array
-from pkm_post.machine import ZERO_TORSION, Policy
+from pkm_post.machine import ZERO_TORSION, SpinPolicy
 from pkm_post.model import NOTHING_KNOWN, Setup, Tolerances, Tool
 from pkm_post.system import result_files
 from pkm_post.toolpath import OffsetOptions, SurfaceSpeed
@@ -56,7 +56,7 @@ class Options:
     work_offset: str | Array = "G54"
     tip_tolerance: float = 1e-3
     axis_tolerance: float = math.radians(1e-3)
-    spin: Policy = ZERO_TORSION
+    spin: SpinPolicy = ZERO_TORSION
     contours: OffsetOptions = OffsetOptions()
     actual_tools: Mapping[int, Tool] = field(default_factory=dict)
     surface_speed: SurfaceSpeed | None = None

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.options.layers import ArgumentValues
 
 if TYPE_CHECKING:
-    from pkm_post.machine import Policy
+    from pkm_post.machine import SpinPolicy
     from pkm_post.model import Tolerances, Tool
     from pkm_post.options.choices import Options
     from pkm_post.reading import Reading
@@ -56,10 +56,10 @@ def _pose(x: float, y: float, z: float, turn_deg: float) -> Any:
     return pose
 
 
-def _policy(rule: str, heading_deg: float, objective: str) -> Policy:
-    from pkm_post.machine import Policy, Rule
+def _policy(rule: str, heading_deg: float, objective: str) -> SpinPolicy:
+    from pkm_post.machine import SpinPolicy, SpinRule
 
-    return Policy(Rule(rule), heading=math.radians(heading_deg), objective=objective)
+    return SpinPolicy(SpinRule(rule), heading=math.radians(heading_deg), objective=objective)
 
 
 def _surface_speed(metres_per_minute: float | None, keep_chip_load: bool) -> SurfaceSpeed | None:

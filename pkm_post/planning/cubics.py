@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, length_of, unit
-from pkm_post.machine import Demand, Ends, Inside, ToolCubics, bounded_demand, measured_demand
+from pkm_post.machine import Demand, Inside, KnotState, ToolCubics, bounded_demand, measured_demand
 from pkm_post.model import Machine, Poses, Tolerances
 from pkm_post.planning.glimpse import glimpse, glimpse_within
 from pkm_post.planning.places import Intervals, Places
@@ -125,7 +125,7 @@ class Cubics:
         """The same, from the kinematics of both ends and of the middle."""
         ms, row = np.unique(np.concatenate([intervals.start, intervals.end]), return_inverse=True)
         poses = poses_at(self._path, self._schedule, ms)
-        ends, (first, last) = Ends.of(self._machine, poses), np.split(row, 2)
+        ends, (first, last) = KnotState.of(self._machine, poses), np.split(row, 2)
         middle = cubics.at(0.5)
         attitude = self._path.attitude or (unit(middle[3:6].T), middle[6], poses.tool_length[last])
         inside = Inside(middle[:3].T, *attitude)

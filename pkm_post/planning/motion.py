@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine import Way, reach_faults, strut_rates
+from pkm_post.machine import PosePath, reach_faults, strut_rates
 from pkm_post.model import (
     Diagnostic,
     Event,
@@ -184,14 +184,14 @@ def _check_duration(s: Array, square: Array, marks: Stations) -> None:
         raise _TooLongError(seconds, int(segment))
 
 
-def _way(path: ToolPath, marks: Stations) -> tuple[Way, Array]:
+def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
     """The pose path through stations, straight from one to the next; and their segments."""
 
     def seen(rows: slice) -> tuple[Array, ...]:
         found = glimpse_within(path, marks.segment[rows], marks.u[rows])
         return found.tip, found.axis, found.spin, found.tool_length
 
-    return Way.straight(*in_pieces(len(marks.s), _STATIONS_AT_ONCE, seen)), marks.segment
+    return PosePath.straight(*in_pieces(len(marks.s), _STATIONS_AT_ONCE, seen)), marks.segment
 
 
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:

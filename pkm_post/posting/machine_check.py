@@ -15,9 +15,9 @@ import numpy as np
 
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import (
-    SHOWN,
+    DISPLAY_UNITS,
+    PosePath,
     ReachFinding,
-    Way,
     jacobian_of_tip,
     reach_findings,
     scaled_jacobian,
@@ -57,7 +57,7 @@ def at_home(machine: Machine) -> Home:
     """Evaluate the machine at home."""
     spin, tool_length = np.array([machine.home_spin]), np.array([machine.rest_tool_length])
     pose = machine.home_tip[None], machine.home_axis[None], spin, tool_length
-    way = Way.straight(*pose)
+    way = PosePath.straight(*pose)
     values = np.linalg.svd(scaled_jacobian(machine, *pose)[0], compute_uv=False)
     stiffness = None
     if machine.strut_stiffness is not None and values[-1] > _SINGULAR:
@@ -220,7 +220,7 @@ def _at_home(machine: Machine, home: Home) -> Iterator[tuple[str, str]]:
     if home.count_at_tip is not None:
         yield "  one count of each strut", f"moves the tip by {1000 * home.count_at_tip:.3f} um at most"
     for one in home.findings:
-        shown, factor = SHOWN[one.subject.unit]
+        shown, factor = DISPLAY_UNITS[one.subject.unit]
         if shown:  # the margin to singular poses is a bound; the value itself is listed above
             yield f"  room: {one.subject.name}", f"{one.margin[0] * factor:.3f} {shown}"
 

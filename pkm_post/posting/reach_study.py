@@ -13,7 +13,16 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine import ZERO_TORSION, Reach, Rule, best_position, find_collisions, least_shares, placed_part, reach
+from pkm_post.machine import (
+    ZERO_TORSION,
+    ReachReport,
+    SpinRule,
+    best_position,
+    check_reach,
+    find_collisions,
+    least_normalised_margins,
+    placed_workpiece,
+)
 from pkm_post.model import Diagnostic, Machine, Program, errors
 from pkm_post.options import Options
 from pkm_post.posting.known_setup import known_setup
@@ -32,7 +41,7 @@ class Study:
         machine_from_work: (4, 4) the work offset of the last stage.
     """
 
-    reach: Reach
+    reach: ReachReport
     stages: tuple[tuple[str, Array], ...]
     machine_from_work: Array
 
@@ -66,7 +75,7 @@ def study(
     placed, told = trajectory_of(program, machine, untwisted)
     if placed is None:
         return None, told
-    stages = [("as it is, zero torsion", least_shares(placed, machine))]
+    stages = [("as it is, zero torsion", least_normalised_margins(placed, machine))]
     if free:
         of_machine = placed.operation >= len(program.operations)  # the routes to tool changes and back
         offset = best_position(placed, machine, free, fixed=of_machine).machine_from_work
@@ -74,16 +83,16 @@ def study(
         placed, told = trajectory_of(program, machine, untwisted)
         if placed is None:
             return None, told
-        stages.append((f"moved in {', '.join(free)}", least_shares(placed, machine)))
-    if options.spin.rule is not Rule.ZERO:
+        stages.append((f"moved in {', '.join(free)}", least_normalised_margins(placed, machine)))
+    if options.spin.rule is not SpinRule.ZERO:
         placed, told = trajectory_of(program, machine, options)
         if placed is None:
             return None, told
-        stages.append((f"spin {options.spin.rule.value}", least_shares(placed, machine)))
+        stages.append((f"spin {options.spin.rule.value}", least_normalised_margins(placed, machine)))
     setup, faults = known_setup(options, program)
     if errors(faults):
         return None, (*told, *faults)
-    checked = reach(placed, machine, placed_part(setup, placed))
+    checked = check_reach(placed, machine, placed_workpiece(setup, placed))
     collisions = find_collisions(placed, machine, setup, options.tolerances)
     both = (*checked.faults(), *(fault for fault in collisions.faults if fault.code not in _IN_REACH))
     return Study(checked, tuple(stages), placed.machine_from_work), (*told, *both)

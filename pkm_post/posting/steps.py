@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from pkm_post.certificate import certify
-from pkm_post.machine import find_collisions, names_of
+from pkm_post.machine import find_collisions, setup_names
 from pkm_post.model import (
     Certificate,
     Coverage,
@@ -187,7 +187,7 @@ def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) ->
     with run.step(_COLLISIONS) as told:
         collisions = find_collisions(trajectory, frame.machine, setup, frame.tolerances)
         run.accept(collisions.faults)
-        told.extend(names_of(setup) or ["part and stock are not known"])
+        told.extend(setup_names(setup) or ["part and stock are not known"])
     return collisions.coverage
 
 

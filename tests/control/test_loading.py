@@ -27,7 +27,7 @@ from pkm_post.control.loading import certified, job_to_load  # noqa: E402
 from pkm_post.control.simulator import Controller  # noqa: E402
 from pkm_post.geometry import hermite_accelerations, hermite_lengths  # noqa: E402
 from pkm_post.machine import (
-    follow,  # noqa: E402
+    forward_along_path,  # noqa: E402
     machine_named,  # noqa: E402
     platform_rotation,  # noqa: E402
 )
@@ -172,7 +172,7 @@ def worst_of(text, trajectory, machine):
     length = hermite_lengths(*cubics, shares).reshape(-1, 6)
     tool = np.full(len(length), trajectory.tool_length()[0])
     begin = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
-    pose = follow(machine, length, tool, trajectory.start_tip, begin)
+    pose = forward_along_path(machine, length, tool, trajectory.start_tip, begin)
     assert pose.converged.all()
     ruler, every = TrajectoryRuler(trajectory, trajectory.tolerances), np.zeros(len(length), dtype=int)
     tip, _ = deviation_from_any(ruler, pose.tip, pose.axis, every, every + len(trajectory) - 1)

@@ -7,7 +7,7 @@ from programs import ON_PALLET, cone
 
 from pkm_post.machine.best_position import best_position
 from pkm_post.machine.description.presets import machine_named
-from pkm_post.machine.spin.normalised_margins import JOINTS, STROKE, Samples, shares
+from pkm_post.machine.spin.normalised_margins import JOINTS, STROKE, SampledPoses, normalised_margins
 from pkm_post.toolpath.place import place
 
 
@@ -23,10 +23,10 @@ def shifted(by):
 
 
 def least_shares(trajectory, machine):
-    samples = Samples.of(trajectory)
+    samples = SampledPoses.of(trajectory)
     cut = samples.s >= samples.row_s[0]
     pose = samples.tip[cut], samples.axis[cut], np.zeros(cut.sum()), samples.tool_length[cut]
-    return shares(machine, *pose).min(axis=0)
+    return normalised_margins(machine, *pose).min(axis=0)
 
 
 def placed(machine, offset):

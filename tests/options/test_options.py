@@ -6,7 +6,7 @@ import argparse
 import numpy as np
 import pytest
 
-from pkm_post.machine import ZERO_TORSION, Policy, Rule
+from pkm_post.machine import ZERO_TORSION, SpinPolicy, SpinRule
 from pkm_post.machine.spin.policy import OBJECTIVES
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
@@ -105,15 +105,15 @@ def test_surface_speed():
 
 
 def test_every_rule_of_the_spin_can_be_chosen():
-    assert set(arguments._SPINS) == {rule.value for rule in Rule}
+    assert set(arguments._SPINS) == {rule.value for rule in SpinRule}
     assert set(arguments._OBJECTIVES) == set(OBJECTIVES)
-    assert {options_from(parsed("--spin", rule)).spin.rule for rule in arguments._SPINS} == set(Rule)
+    assert {options_from(parsed("--spin", rule)).spin.rule for rule in arguments._SPINS} == set(SpinRule)
     assert options_from(parsed()).spin == ZERO_TORSION
 
 
 def test_the_numbers_of_the_spin():
     assert options_from(parsed("--spin", "x-in-plane=-90")).spin.heading == pytest.approx(-np.pi / 2)
-    assert options_from(parsed("--spin=optimise=singular")).spin == Policy(Rule.OPTIMISED, objective="singular")
+    assert options_from(parsed("--spin=optimise=singular")).spin == SpinPolicy(SpinRule.OPTIMISED, objective="singular")
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ from machines import example
 from programs import ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.geometry import hermite_accelerations, hermite_speeds
-from pkm_post.machine import Ends, Inside, strut_rates
-from pkm_post.machine.kinematics.strut_cubics import stray
+from pkm_post.machine import Inside, KnotState, strut_rates
+from pkm_post.machine.kinematics.strut_cubics import tool_deviation
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import cubics, interpolate, motion, plan_feed
 from pkm_post.planning.cubics import Cubics, poses_at
@@ -68,8 +68,12 @@ def dense(machine, path, schedule, start, end):
     """How far the struts' cubics take tip and axis off the plan at dense instants, by what cubics may use, (N,)."""
     time, duration = (start[:, None] + (end - start)[:, None] * DENSE) / 1000, (end - start) / 1000
     poses = path.at(schedule.at(time.ravel())[0])
-    ends = (Ends.of(machine, by_time(path.at(s), v, a)) for s, v, a in (schedule.at(ms / 1000) for ms in (start, end)))
-    found = stray(machine, *ends, Inside(poses.tip, poses.axis, poses.spin, poses.tool_length), duration, DENSE)
+    ends = (
+        KnotState.of(machine, by_time(path.at(s), v, a)) for s, v, a in (schedule.at(ms / 1000) for ms in (start, end))
+    )
+    found = tool_deviation(
+        machine, *ends, Inside(poses.tip, poses.axis, poses.spin, poses.tool_length), duration, DENSE
+    )
     return np.maximum(found.tip / TOLERANCES.tip, found.axis / TOLERANCES.axis).max(axis=1) / SHARE_OF_TOLERANCES
 
 

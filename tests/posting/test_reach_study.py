@@ -10,7 +10,7 @@ from machines import with_tool_change
 from programs import BALL, ON_PALLET, cone
 
 from pkm_post.cli import main
-from pkm_post.machine import Policy, Rule, machine_named, reach
+from pkm_post.machine import SpinPolicy, SpinRule, check_reach, machine_named
 from pkm_post.model import Event, EventKind
 from pkm_post.options.choices import Options
 from pkm_post.posting.placed import trajectory_of
@@ -42,12 +42,12 @@ def test_the_checks_are_those_of_the_way(machine):
     options = Options(work_offset=ON_PALLET)
     found, told = study(cone(60), machine, options)
     assert not told
-    assert found.reach.as_dict() == reach(trajectory_of(cone(60), machine, options)[0], machine).as_dict()
+    assert found.reach.as_dict() == check_reach(trajectory_of(cone(60), machine, options)[0], machine).as_dict()
     assert [name for name, _ in found.stages] == ["as it is, zero torsion"]
 
 
 def test_every_choice_is_told_with_what_it_leaves(machine):
-    options = Options(work_offset=off_centre(), spin=Policy(Rule.OPTIMISED))
+    options = Options(work_offset=off_centre(), spin=SpinPolicy(SpinRule.OPTIMISED))
     found, _ = study(cone(60), machine, options, free="xyz")
     assert [name for name, _ in found.stages] == ["as it is, zero torsion", "moved in x, y, z", "spin optimise"]
     # The search for the position leaves out the way from home; the stages count it.
@@ -60,7 +60,7 @@ def test_every_choice_is_told_with_what_it_leaves(machine):
 
 def test_the_spin_of_the_program_is_what_is_checked(machine):
     made = replace(cone(20), spin=np.full(20, 0.3))
-    found, _ = study(made, machine, Options(work_offset=ON_PALLET, spin=Policy(Rule.FILE)))
+    found, _ = study(made, machine, Options(work_offset=ON_PALLET, spin=SpinPolicy(SpinRule.FILE)))
     assert found.reach.trajectory.spin == pytest.approx(np.full(len(found.reach.trajectory), 0.3))
     assert [name for name, _ in found.stages] == ["as it is, zero torsion", "spin file"]
     assert not np.array_equal(found.stages[0][1], found.stages[1][1])

@@ -18,8 +18,8 @@ from station import new_station  # noqa: E402
 from pkm_post.cli import main  # noqa: E402
 from pkm_post.control.link.program import read_job  # noqa: E402
 from pkm_post.machine import (  # noqa: E402
-    Policy,
-    Rule,
+    SpinPolicy,
+    SpinRule,
     find_machine,  # noqa: E402
     strut_lengths,  # noqa: E402
 )
@@ -58,8 +58,8 @@ def covered(report):
 @pytest.mark.parametrize("seed", range(16))
 def test_whatever_the_tools_the_certificate_holds_and_the_struts_are_at_the_pose(machine, tmp_path, seed):
     rng = np.random.default_rng(seed)
-    rule = [Rule.ZERO, Rule.FILE, Rule.X_IN_PLANE, Rule.OPTIMISED][seed % 4]
-    posted = post(random_changes(rng), machine, tmp_path / "job.pmc", Options(spin=Policy(rule)))
+    rule = [SpinRule.ZERO, SpinRule.FILE, SpinRule.X_IN_PLANE, SpinRule.OPTIMISED][seed % 4]
+    posted = post(random_changes(rng), machine, tmp_path / "job.pmc", Options(spin=SpinPolicy(rule)))
     assert posted.report["certificate"]["holds"]
     assert covered(posted.report) == {
         "way to the start of the program": "not covered",

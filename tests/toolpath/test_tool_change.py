@@ -9,7 +9,7 @@ from machines import example, with_tool_change
 from programs import BALL, ON_PALLET, TOOLS, program, random_changes
 
 from pkm_post.geometry import norm
-from pkm_post.machine import Policy, Rule, with_spin
+from pkm_post.machine import SpinPolicy, SpinRule, with_spin
 from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.toolpath.place import place
 from pkm_post.toolpath.symmetry.transform import mirror, transform
@@ -164,12 +164,12 @@ def test_a_mirrored_program_changes_its_tools_at_the_same_pose(seed):
     np.testing.assert_allclose(one.length[cuts], two.length[cuts], atol=1e-9)
 
 
-@pytest.mark.parametrize("rule", [rule for rule in Rule if rule is not Rule.OPTIMISED])
+@pytest.mark.parametrize("rule", [rule for rule in SpinRule if rule is not SpinRule.OPTIMISED])
 def test_the_spin_at_a_change_is_that_of_the_machine_file(rule):
-    trajectory, _ = with_spin(placed(random_changes(np.random.default_rng(3))), MACHINE, Policy(rule))
+    trajectory, _ = with_spin(placed(random_changes(np.random.default_rng(3))), MACHINE, SpinPolicy(rule))
     at = np.array(changes(trajectory)) - 1
     assert trajectory.spin[at].tolist() == [POSE.spin] * len(at)
-    others, _ = with_spin(placed(random_changes(np.random.default_rng(3))), example(), Policy(rule))
+    others, _ = with_spin(placed(random_changes(np.random.default_rng(3))), example(), SpinPolicy(rule))
     differ = np.flatnonzero(trajectory.spin != others.spin)
     assert set(differ.tolist()) <= set(at.tolist())
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from pkm_post.control.link.status import MOTORS, Array, Status
 from pkm_post.geometry import angle_between, norm
-from pkm_post.machine import follow, newton, platform_rotation, strut_lengths
+from pkm_post.machine import forward_along_path, forward_from_rotation, platform_rotation, strut_lengths
 from pkm_post.model import Machine
 
 _STEPS_FROM_HOME = 128
@@ -54,7 +54,7 @@ class ToolPoseReadout:
     def pose(self, status: Status) -> Pose | None:
         """The pose of the actual lengths nearest to the previous one; None if there is none nearby."""
         for tip, rotation in ((self._tip, self._rotation), self._home):
-            found = newton(self._machine, status.length[None], self._tool, tip, rotation)
+            found = forward_from_rotation(self._machine, status.length[None], self._tool, tip, rotation)
             if found.converged[0]:
                 self._tip, self._rotation = found.tip, found.rotation
                 return Pose(found.tip[0], found.axis[0], float(spin_of(found.rotation)[0]))
@@ -83,7 +83,7 @@ def pose_from_home(machine: Machine, length: Array, tool_length: float) -> Pose 
     home = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin])
     share = np.linspace(0.0, 1.0, _STEPS_FROM_HOME)[:, None]
     way = (1 - share) * strut_lengths(machine, *home, tool[:1]) + share * length
-    found = follow(machine, way, tool, home[0][0], platform_rotation(*home[1:])[0])
+    found = forward_along_path(machine, way, tool, home[0][0], platform_rotation(*home[1:])[0])
     if not found.converged[-1]:
         return None
     return Pose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))

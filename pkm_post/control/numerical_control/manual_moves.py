@@ -17,7 +17,7 @@ import numpy as np
 
 from pkm_post.control.link.tool_pose import Pose, spin_of
 from pkm_post.geometry import Array, angle_between, norm
-from pkm_post.machine import Policy, Rule, follow, platform_rotation, strut_lengths
+from pkm_post.machine import SpinPolicy, SpinRule, forward_along_path, platform_rotation, strut_lengths
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Tool, Trajectory, errors
 from pkm_post.options import Options
 from pkm_post.posting import trajectory_of, work_offset
@@ -164,7 +164,7 @@ def _of_strut(jog: StrutJog, machine: Machine, here: Pose, tool_length: float) -
     lengths = np.repeat(_lengths(machine, here, tool_length), steps, axis=0)
     lengths[:, jog.strut - 1] += jog.by * np.arange(1, steps + 1) / steps
     rotation = platform_rotation(here.axis[None], np.array([here.spin]))[0]
-    found = follow(machine, lengths, tool, here.tip, rotation)
+    found = forward_along_path(machine, lengths, tool, here.tip, rotation)
     return (found.tip, found.axis, spin_of(found.rotation)) if found.converged.all() else None
 
 
@@ -263,7 +263,7 @@ def mdi_trajectory(
     if len(line.splitlines()) > 1:
         raise ValueError(f"line: expected one line, got {len(line.splitlines())}")
     reading = reading or MdiSettings()
-    options = Options(work_offset=reading.work_offset, spin=Policy(Rule.FILE))
+    options = Options(work_offset=reading.work_offset, spin=SpinPolicy(SpinRule.FILE))
     offset, told = work_offset(machine, options)
     if offset is None:
         return None, told

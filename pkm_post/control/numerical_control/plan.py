@@ -17,7 +17,14 @@ from pkm_post.certificate import certify
 from pkm_post.control.link.program import Job, read_job
 from pkm_post.control.link.tool_pose import Pose, spin_of
 from pkm_post.geometry import Array, hermite_lengths
-from pkm_post.machine import Solution, Way, faults_of, follow, platform_rotation, reach_findings
+from pkm_post.machine import (
+    ForwardSolution,
+    PosePath,
+    finding_diagnostics,
+    forward_along_path,
+    platform_rotation,
+    reach_findings,
+)
 from pkm_post.model import Certificate, Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, errors
 from pkm_post.options import MANUAL_MOVE_PROGRAM
 from pkm_post.planning import plan
@@ -117,7 +124,7 @@ def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> 
     lengths = _lengths(played)
     tool = np.full(len(lengths), trajectory.tool_length()[0])
     rotation = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
-    found = follow(machine, lengths, tool, trajectory.start_tip, rotation)
+    found = forward_along_path(machine, lengths, tool, trajectory.start_tip, rotation)
     if not found.converged.all():
         second = float(np.argmin(found.converged)) / len(lengths) * played.time_ms[-1] / 1000
         told = f"from about {second:.3f} s on the poses of the lengths do not hang together"
@@ -132,7 +139,7 @@ def _lengths(played: StrutMotion) -> Array:
     return np.vstack([played.length[:1], hermite_lengths(*cubics, _SHARES).reshape(-1, 6)])
 
 
-def _reach_faults(found: Solution, tool: Array, trajectory: Trajectory, machine: Machine) -> Findings:
-    way = Way.straight(found.tip, found.axis, spin_of(found.rotation), tool)
+def _reach_faults(found: ForwardSolution, tool: Array, trajectory: Trajectory, machine: Machine) -> Findings:
+    way = PosePath.straight(found.tip, found.axis, spin_of(found.rotation), tool)
     segment = np.zeros(len(tool), dtype=np.int64)
-    return faults_of(reach_findings(machine, way), trajectory, segment)
+    return finding_diagnostics(reach_findings(machine, way), trajectory, segment)

@@ -13,7 +13,13 @@ from pathlib import Path
 import numpy as np
 
 from pkm_post.geometry import norm
-from pkm_post.machine.calibration.identification import PARAMETERS, Calibration, Measured, calibrate, combination_text
+from pkm_post.machine.calibration.identification import (
+    PARAMETERS,
+    Calibration,
+    MeasuredPoses,
+    calibrate,
+    combination_text,
+)
 from pkm_post.machine.description.presets import find_machine, machine_named
 from pkm_post.machine.description.reader import machine_of
 from pkm_post.machine.description.rewrite import CannotRewriteError, with_entries
@@ -27,7 +33,7 @@ _LEAST_K = -0.99
 _LARGEST = 1e6
 
 
-def read_measurements(path: Path) -> tuple[Measured | None, tuple[Diagnostic, ...]]:
+def read_measurements(path: Path) -> tuple[MeasuredPoses | None, tuple[Diagnostic, ...]]:
     """Read a file of measurements.
 
     Args:
@@ -92,9 +98,9 @@ def _number(cell: str) -> float:
         return float("nan")
 
 
-def _measured(numbers: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Measured:
+def _measured(numbers: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> MeasuredPoses:
     axis = numbers[:, 3:6]
-    return Measured(
+    return MeasuredPoses(
         tip=numbers[:, :3],
         axis=axis / norm(axis)[:, None],
         spin=np.radians(numbers[:, 6]),
@@ -124,10 +130,10 @@ def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[st
     if machine is None or measured is None or path is None:
         return None, faults + wrong
     found = calibrate(machine, measured)
-    told = _told(found, str(measurements))
+    told = _diagnostics(found, str(measurements))
     if errors(told):
         return None, told
-    text, faults = _text(path, found, len(measured), measurements.name, str(out))
+    text, faults = _calibrated_text(path, found, len(measured), measurements.name, str(out))
     told += faults
     if text is None:
         return None, told
@@ -157,7 +163,7 @@ def report(machine: Machine, found: Calibration, poses: int) -> str:
     return "\n".join(rows)
 
 
-def _told(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
+def _diagnostics(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
     if not found.converged:
         return (
             Diagnostic("M203", Place(file), f"lengths are off by {found.before:.4f} mm, then {found.after:.4f} mm"),
@@ -167,7 +173,7 @@ def _told(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
     return ()
 
 
-def _text(
+def _calibrated_text(
     path: Path, found: Calibration, poses: int, source: str, out: str
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
     """Text of the new file, after parsing it again."""

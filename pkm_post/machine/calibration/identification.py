@@ -31,7 +31,7 @@ _LEAST_SHARE = 1e-6
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredPoses:
     """N measured poses with the strut lengths that the controller counted at them.
 
     Attributes:
@@ -91,7 +91,9 @@ class Calibration:
     left_over: Array
 
 
-def calibrate(machine: Machine, measured: Measured, least_share: float = 1e-4, iterations: int = 50) -> Calibration:
+def calibrate(
+    machine: Machine, measured: MeasuredPoses, least_share: float = 1e-4, iterations: int = 50
+) -> Calibration:
     """Identify the 42 parameters of a machine, or the part of them that the poses determine.
 
     Args:
@@ -116,7 +118,7 @@ def calibrate(machine: Machine, measured: Measured, least_share: float = 1e-4, i
     return _judged(machine, found, converged, measured, least_share)
 
 
-def identification_rows(machine: Machine, measured: Measured) -> Array:
+def identification_rows(machine: Machine, measured: MeasuredPoses) -> Array:
     """Derivatives of the counted lengths by the parameters of their struts, (6, N, 7), plain numbers."""
     struts = strut_vectors(machine, *measured.pose)
     distance = norm(struts)
@@ -132,7 +134,7 @@ def combination_text(strut: int, combination: Array) -> str:
     return f"strut {strut + 1}: " + " ".join(f"{share:+.2f} {name}" for share, name in shares)
 
 
-def _missing(machine: Machine, measured: Measured) -> Array:
+def _missing(machine: Machine, measured: MeasuredPoses) -> Array:
     """Counted lengths less those of the machine, (N, 6)."""
     struts = strut_vectors(machine, *measured.pose)
     distance, rotation = norm(struts), platform_rotation(measured.axis, measured.spin)
@@ -149,7 +151,7 @@ def _moved(machine: Machine, step: Array) -> Machine:
     )
 
 
-def _scaled(machine: Machine, measured: Measured) -> tuple[tuple[Array, Array, Array], Array]:
+def _scaled(machine: Machine, measured: MeasuredPoses) -> tuple[tuple[Array, Array, Array], Array]:
     """Singular value decompositions of the rows with unit columns, and the column lengths (6, 7)."""
     rows = identification_rows(machine, measured)
     scale = np.linalg.norm(rows, axis=1)
@@ -173,7 +175,9 @@ def _pseudo_inverse(decomposed: tuple[Array, Array, Array], scale: Array, least_
     return back / scale[..., None]
 
 
-def _judged(machine: Machine, found: Machine, converged: bool, measured: Measured, least_share: float) -> Calibration:
+def _judged(
+    machine: Machine, found: Machine, converged: bool, measured: MeasuredPoses, least_share: float
+) -> Calibration:
     decomposed, scale = _scaled(found, measured)
     values, right = decomposed[1:]
     known = _determined(values, least_share)

@@ -15,20 +15,27 @@ import numpy as np
 from pkm_post.geometry import Array, is_closed
 from pkm_post.machine.collisions.contacts import (
     ENOUGH,
-    Driven,
     Obstacle,
+    TrajectoryPath,
+    contact_faults,
     contacts,
     contacts_at_ends,
-    faults,
-    placed,
-    told,
+    mesh_faults,
+    placed_triangles,
 )
-from pkm_post.machine.collisions.moving_bodies import Mover, cutter_pieces, of_body, of_struts, of_tool, shank_pieces
+from pkm_post.machine.collisions.moving_bodies import (
+    MovingBody,
+    cutter_pieces,
+    platform_body,
+    shank_pieces,
+    strut_bodies,
+    tool_body,
+)
 from pkm_post.machine.collisions.stock_collisions import Intruder, body_of, rapid_cutter, shank_of, stock_faults
-from pkm_post.machine.collisions.tools_in_use import InUse, not_cut_before, tools_in_use
+from pkm_post.machine.collisions.tools_in_use import ToolUse, not_cut_before, tools_in_use
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
-from pkm_post.machine.reach.collision_mesh import Part
-from pkm_post.machine.reach.report import way_of
+from pkm_post.machine.reach.collision_mesh import CollisionMesh
+from pkm_post.machine.reach.report import pose_path_of
 from pkm_post.model import Coverage, Diagnostic, Extent, Machine, Mesh, Place, Setup, Tolerances, Topic, Trajectory
 
 PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN = (
@@ -45,7 +52,7 @@ _WHOLE = "along the whole path"
 
 
 @dataclass
-class Extents:
+class CoverageRows:
     """The rows under construction.
 
     Attributes:
@@ -74,7 +81,7 @@ class Extents:
         )
         for subject, stated, needed in pairs:
             extent = Extent.PROVEN if stated else Extent.NOT_COVERED
-            detail = _told(obstacle, _WHOLE) if stated else f"the machine file does not state {needed}"
+            detail = _detail(obstacle, _WHOLE) if stated else f"the machine file does not state {needed}"
             self._add(_against(subject, obstacle), extent, detail)
 
     def shanks(self, obstacle: Obstacle, unknown: Sequence[str]) -> None:
@@ -83,7 +90,7 @@ class Extents:
             detail = f"{', '.join(unknown)}: it is not known where the cutting edges end"
             self._add(_against("shanks", obstacle), Extent.NOT_COVERED, detail)
         else:
-            self._add(_against("shanks", obstacle), Extent.PROVEN, _told(obstacle, _WHOLE))
+            self._add(_against("shanks", obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
 
     def cutters(self, obstacle: Obstacle, allowance: float) -> None:
         """Record the check of cutters, if their size is known."""
@@ -98,7 +105,7 @@ class Extents:
                 detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
                 self._add(_against(subject, obstacle), Extent.NOT_COVERED, detail)
             else:
-                self._add(_against(subject, obstacle), extent, _told(obstacle, detail))
+                self._add(_against(subject, obstacle), extent, _detail(obstacle, detail))
 
     def cutters_in_all_moves(self, obstacle: Obstacle) -> None:
         """Record the check of cutters against a fixture, if their size is known."""
@@ -106,16 +113,16 @@ class Extents:
             detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
             self._add(_against("cutters", obstacle), Extent.NOT_COVERED, detail)
         else:
-            self._add(_against("cutters", obstacle), Extent.PROVEN, _told(obstacle, _WHOLE))
+            self._add(_against("cutters", obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
 
     def stock(self, obstacle: Obstacle, step: float, points: int) -> None:
         """Record the check of the stock by grid points."""
         detail = f"as it is left by the cuts before, in {points:,} points {step:.2g} mm apart"
-        self._add("machine and rapid moves against the stock", Extent.SAMPLED, _told(obstacle, detail))
+        self._add("machine and rapid moves against the stock", Extent.SAMPLED, _detail(obstacle, detail))
 
     def stock_open(self, obstacle: Obstacle) -> None:
         """Record that the stock is not a solid."""
-        detail = _told(obstacle, "its mesh is not closed: rapid moves were not looked at")
+        detail = _detail(obstacle, "its mesh is not closed: rapid moves were not looked at")
         self._add("machine and rapid moves against the stock", Extent.NOT_COVERED, detail)
 
 
@@ -124,7 +131,7 @@ def _against(subject: str, obstacle: Obstacle) -> str:
     return f"{subject} against the {obstacle.name}{source}"
 
 
-def _told(obstacle: Obstacle, how: str) -> str:
+def _detail(obstacle: Obstacle, how: str) -> str:
     return f"{obstacle.source}, {obstacle.triangles:,} triangles, {how}"
 
 
@@ -161,8 +168,8 @@ def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tole
     """
     if setup.is_empty:
         return Collisions((), NO_SETUP)
-    way, segment, _ = way_of(trajectory)
-    search = _Search(Driven(trajectory, way, segment), machine, setup, tolerances)
+    way, segment, _ = pose_path_of(trajectory)
+    search = _Search(TrajectoryPath(trajectory, way, segment), machine, setup, tolerances)
     search.part()
     search.fixtures()
     search.stock()
@@ -170,35 +177,35 @@ def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tole
     return Collisions(tuple(found), search.extents.rows())
 
 
-def names_of(setup: Setup) -> list[str]:
+def setup_names(setup: Setup) -> list[str]:
     """Names of the known items of the set-up, for display."""
     named = [("part", setup.part), ("stock", setup.stock), *(("fixture", mesh) for mesh in setup.fixtures)]
     return [f"{name} {mesh.source}" for name, mesh in named if mesh is not None]
 
 
-def placed_part(setup: Setup, trajectory: Trajectory) -> Part | None:
+def placed_workpiece(setup: Setup, trajectory: Trajectory) -> CollisionMesh | None:
     """The workpiece in the position of a trajectory on the machine; None if unknown."""
     if setup.part is None:
         return None
-    return Part.of(placed(setup.part, trajectory.machine_from_work))
+    return CollisionMesh.of(placed_triangles(setup.part, trajectory.machine_from_work))
 
 
 @dataclass
 class _Search:
     """The checks in sequence, with their results."""
 
-    driven: Driven
+    driven: TrajectoryPath
     machine: Machine
     setup: Setup
     tolerances: Tolerances
     found: list[Diagnostic] = field(default_factory=list)
-    extents: Extents = field(default_factory=Extents)
+    extents: CoverageRows = field(default_factory=CoverageRows)
 
     def __post_init__(self) -> None:
         way = self.driven.way
         self.used = tools_in_use(self.driven, self.setup)
-        self.bodies = [of_body(self.machine, way, body) for body in self.machine.bodies]
-        self.struts = of_struts(self.machine, way) if has_strut_bodies(self.machine) else None
+        self.bodies = [platform_body(self.machine, way, body) for body in self.machine.bodies]
+        self.struts = strut_bodies(self.machine, way) if has_strut_bodies(self.machine) else None
         self.off_tip = float(self.driven.trajectory.tip_tolerances(self.tolerances.tip).max())
 
     def part(self) -> None:
@@ -211,16 +218,16 @@ class _Search:
         self._shanks(part, "K130", ALLOWANCE)
         for used in self._with_size(part):
             pieces = cutter_pieces(used.tool, used.edge_length, ALLOWANCE + self.off_tip)
-            self._rapid(part, used, of_tool(f"{used.name} in a rapid move", self.driven.way, used.rapid, pieces))
-            mover = of_tool(used.name, self.driven.way, _sampled(used.cutting), pieces)
+            self._rapid(part, used, tool_body(f"{used.name} in a rapid move", self.driven.way, used.rapid, pieces))
+            mover = tool_body(used.name, self.driven.way, _sampled(used.cutting), pieces)
             met = contacts_at_ends(self.driven.way, mover, part.part, _TOUCH)
-            self.found += told(self.driven, "K132", mover, part, met, ALLOWANCE)
+            self.found += contact_faults(self.driven, "K132", mover, part, met, ALLOWANCE)
         self.extents.cutters(part, ALLOWANCE)
 
-    def _rapid(self, part: Obstacle, used: InUse, mover: Mover) -> None:
+    def _rapid(self, part: Obstacle, used: ToolUse, mover: MovingBody) -> None:
         met = contacts(self.driven.way, mover, part.part, _TOUCH, self.driven.operation, _ALL)
         met = not_cut_before(self.driven, self.used, met)
-        self.found += told(self.driven, "K131", mover, part, met, ALLOWANCE)
+        self.found += contact_faults(self.driven, "K131", mover, part, met, ALLOWANCE)
 
     def fixtures(self) -> None:
         """Check everything that moves against the fixtures, in all moves."""
@@ -232,8 +239,8 @@ class _Search:
             self._shanks(fixture, "K133", 0.0)
             for used in self._with_size(fixture):
                 pieces = cutter_pieces(used.largest, used.edge_length, 0.0)
-                mover = of_tool(used.name, self.driven.way, used.cells(), pieces)
-                self.found += faults(self.driven, "K133", mover, fixture, _TOUCH + self.off_tip)
+                mover = tool_body(used.name, self.driven.way, used.cells(), pieces)
+                self.found += mesh_faults(self.driven, "K133", mover, fixture, _TOUCH + self.off_tip)
             self.extents.cutters_in_all_moves(fixture)
 
     def stock(self) -> None:
@@ -257,7 +264,7 @@ class _Search:
 
     def _in_stock(self, stock: Obstacle, closed: bool) -> Iterator[Intruder]:
         """Movers not proven to stay clear of the uncut stock."""
-        movers: list[tuple[Mover, Intruder | None]] = [
+        movers: list[tuple[MovingBody, Intruder | None]] = [
             (mover, body_of(self.machine, body, self.used))
             for mover, body in zip(self.bodies, self.machine.bodies, strict=True)
         ]
@@ -270,32 +277,32 @@ class _Search:
             if len(met) and closed and intruder is not None:
                 yield intruder
             elif len(met):
-                self.found += told(self.driven, "K135", mover, stock, met, 0.0)
+                self.found += contact_faults(self.driven, "K135", mover, stock, met, 0.0)
 
     def _obstacle(self, name: str, mesh: Mesh) -> Obstacle:
         return Obstacle.of(name, mesh, self.driven.trajectory.machine_from_work)
 
-    def _machine(self, obstacle: Obstacle, of_bodies: str, of_struts: str) -> None:
+    def _machine(self, obstacle: Obstacle, of_bodies: str, strut_bodies: str) -> None:
         """Check bodies of the platform and struts against a mesh."""
-        movers: Sequence[tuple[str, Mover]] = [(of_bodies, mover) for mover in self.bodies]
-        movers = [*movers, (of_struts, self.struts)] if self.struts else movers
+        movers: Sequence[tuple[str, MovingBody]] = [(of_bodies, mover) for mover in self.bodies]
+        movers = [*movers, (strut_bodies, self.struts)] if self.struts else movers
         for code, mover in movers:
             clearance = self.machine.clearance + self.off_tip + self.tolerances.axis * mover.reach
-            self.found += faults(self.driven, code, mover, obstacle, max(clearance, _TOUCH))
+            self.found += mesh_faults(self.driven, code, mover, obstacle, max(clearance, _TOUCH))
         self.extents.machine(obstacle, bool(self.bodies), self.struts is not None)
 
     def _shanks(self, obstacle: Obstacle, code: str, allowance: float) -> None:
         for _, mover in self._shank_movers(allowance):
-            self.found += faults(self.driven, code, mover, obstacle, _TOUCH)
+            self.found += mesh_faults(self.driven, code, mover, obstacle, _TOUCH)
         self.extents.shanks(obstacle, [used.name for used in self.used if used.shank is None])
 
-    def _shank_movers(self, allowance: float) -> Iterator[tuple[InUse, Mover]]:
+    def _shank_movers(self, allowance: float) -> Iterator[tuple[ToolUse, MovingBody]]:
         for used in self.used:
             pieces = () if used.shank is None else shank_pieces(used.tool, used.shank, allowance + self.off_tip)
             if pieces:
-                yield used, of_tool(f"shank of {used.name}", self.driven.way, used.cells(), pieces)
+                yield used, tool_body(f"shank of {used.name}", self.driven.way, used.cells(), pieces)
 
-    def _with_size(self, obstacle: Obstacle) -> Iterator[InUse]:
+    def _with_size(self, obstacle: Obstacle) -> Iterator[ToolUse]:
         """The tools whose cutters are known; the others are recorded in the coverage."""
         self.extents.unknown_cutters = [used.name for used in self.used if not used.has_size]
         return (used for used in self.used if used.has_size)

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, Cylinders, dot, nearest_on_triangle, subdivide
-from pkm_post.machine.collisions.moving_bodies import Mover
+from pkm_post.machine.collisions.moving_bodies import MovingBody
 from pkm_post.machine.kinematics.inverse import Pose
-from pkm_post.machine.reach.collision_mesh import Part, pairs_within
+from pkm_post.machine.reach.collision_mesh import CollisionMesh, pairs_within
 from pkm_post.machine.reach.limit_checks import HUNDREDTH
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model import Diagnostic, Mesh, Trajectory
 
 _FINE = 1.0
@@ -53,7 +53,7 @@ class Contacts:
 class _Stretches:
     """Positions on the path combine cell and share in one number: cell i reaches from i - 1 to i."""
 
-    def __init__(self, way: Way, mover: Mover) -> None:
+    def __init__(self, way: PosePath, mover: MovingBody) -> None:
         self.way, self.change, self.total = way, mover.change, np.cumsum(mover.change)
         breaks = np.flatnonzero(np.diff(mover.cells) > 1) + 1
         runs = np.split(mover.cells, breaks) if len(mover.cells) else []
@@ -70,7 +70,9 @@ class _Stretches:
         return self.way.inside(cell, at - (cell - 1))
 
 
-def contacts(way: Way, mover: Mover, part: Part, clearance: float, operation: Array, enough: int = ENOUGH) -> Contacts:
+def contacts(
+    way: PosePath, mover: MovingBody, part: CollisionMesh, clearance: float, operation: Array, enough: int = ENOUGH
+) -> Contacts:
     """Contacts where a mover is closer to a part than its clearance.
 
     Args:
@@ -90,7 +92,7 @@ def contacts(way: Way, mover: Mover, part: Part, clearance: float, operation: Ar
         middle = np.where(one_cell, (start + end) / 2, np.floor((start + end) / 2))
         there = stretches.come(middle)
         change = np.maximum(there - stretches.come(start), stretches.come(end) - there)
-        distance, point = _looked_at(stretches, mover, part, middle, change, clearance)
+        distance, point = _distances_at(stretches, mover, part, middle, change, clearance)
         met = (distance < clearance) | ((distance < clearance + change) & (change < HUNDREDTH))
         found.append((middle[met], point[met], distance[met]))
         np.add.at(counted, operation[np.ceil(middle[met]).astype(np.int64)], 1)
@@ -103,11 +105,11 @@ def contacts(way: Way, mover: Mover, part: Part, clearance: float, operation: Ar
     return _in_order(at, point, distance)
 
 
-def contacts_at_ends(way: Way, mover: Mover, part: Part, clearance: float) -> Contacts:
+def contacts_at_ends(way: PosePath, mover: MovingBody, part: CollisionMesh, clearance: float) -> Contacts:
     """Contacts at the ends of the mover's cells only; the motion between them is not checked."""
     stretches = _Stretches(way, mover)
     at = mover.cells.astype(np.float64)
-    distance, point = _looked_at(stretches, mover, part, at, np.zeros(len(at)), clearance)
+    distance, point = _distances_at(stretches, mover, part, at, np.zeros(len(at)), clearance)
     met = distance < clearance
     return _in_order(at[met], point[met], distance[met])
 
@@ -121,8 +123,8 @@ def _in_order(at: Array, point: Array, distance: Array) -> Contacts:
 _NONE = np.empty(0), np.empty((0, 3)), np.empty(0)
 
 
-def _looked_at(
-    stretches: _Stretches, mover: Mover, part: Part, at: Array, change: Array, clearance: float
+def _distances_at(
+    stretches: _Stretches, mover: MovingBody, part: CollisionMesh, at: Array, change: Array, clearance: float
 ) -> tuple[Array, Array]:
     """Distances at positions (M,), and the contact points (M, 3).
 
@@ -135,20 +137,20 @@ def _looked_at(
         allowed = np.repeat(change[rows] + clearance, len(mover.rounding))
         rounding = np.tile(mover.rounding, len(allowed) // len(mover.rounding))
         fine = np.repeat(change[rows] < _FINE, len(mover.rounding))
-        told, met = np.full(len(allowed), np.inf), np.full((len(allowed), 3), np.nan)
+        cylinder_distance, met = np.full(len(allowed), np.inf), np.full((len(allowed), 3), np.nan)
         for level, of_level in _levels(part, change[rows], fine, len(mover.rounding)):
             pose, _, _ = pairs_within(cylinders.take(of_level), part, (allowed + rounding)[of_level], level)
-            told[of_level[pose]] = clearance
+            cylinder_distance[of_level[pose]] = clearance
         exact = np.flatnonzero(fine)
-        told[exact], met[exact] = _exactly(cylinders.take(exact), part, allowed[exact], rounding[exact])
-        by_pose = told.reshape(-1, len(mover.rounding))
+        cylinder_distance[exact], met[exact] = _exactly(cylinders.take(exact), part, allowed[exact], rounding[exact])
+        by_pose = cylinder_distance.reshape(-1, len(mover.rounding))
         best = np.argmin(by_pose, axis=1)
         picked = np.arange(len(best)) * len(mover.rounding) + best
-        distance[rows], point[rows] = told[picked], met[picked]
+        distance[rows], point[rows] = cylinder_distance[picked], met[picked]
     return distance, point
 
 
-def _levels(part: Part, change: Array, fine: Array, pieces: int) -> Iterator[tuple[int, Array]]:
+def _levels(part: CollisionMesh, change: Array, fine: Array, pieces: int) -> Iterator[tuple[int, Array]]:
     """For long stretches, the level of spheres small compared with them, and the cylinders checked at that level."""
     radii = np.array([np.median(radius) for _, radius in part.balls])
     small_enough = radii[None, :] < change[:, None] / 2
@@ -158,7 +160,7 @@ def _levels(part: Part, change: Array, fine: Array, pieces: int) -> Iterator[tup
         yield int(one), np.flatnonzero(~fine & (level == one))
 
 
-def _exactly(cylinders: Cylinders, part: Part, allowed: Array, rounding: Array) -> tuple[Array, Array]:
+def _exactly(cylinders: Cylinders, part: CollisionMesh, allowed: Array, rounding: Array) -> tuple[Array, Array]:
     """Distances (M,), infinite where they are at least the allowed one; and the nearest points."""
     distance, point = np.full(len(allowed), np.inf), np.full((len(allowed), 3), np.nan)
     pose, triangle, bound = pairs_within(cylinders, part, allowed + rounding)
@@ -194,7 +196,7 @@ _LOOKED_AT = 24
 """Contacts per operation whose depth is computed."""
 
 
-def placed(mesh: Mesh, machine_from_work: Array) -> Array:
+def placed_triangles(mesh: Mesh, machine_from_work: Array) -> Array:
     """The triangles of a mesh in {M}, (T, 3, 3)."""
     return mesh.triangles @ machine_from_work[:3, :3].T + machine_from_work[:3, 3]
 
@@ -212,19 +214,21 @@ class Obstacle:
 
     name: str
     source: str
-    part: Part
+    part: CollisionMesh
     triangles: int
 
     @classmethod
     def of(cls, name: str, mesh: Mesh, machine_from_work: Array) -> Obstacle:
         """An obstacle from a mesh in the work frame."""
-        triangles = placed(mesh, machine_from_work)
+        triangles = placed_triangles(mesh, machine_from_work)
         size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
-        return cls(name, mesh.source, Part.of(subdivide(triangles, max(size, 1e-3) / _PIECES)), len(mesh.triangles))
+        return cls(
+            name, mesh.source, CollisionMesh.of(subdivide(triangles, max(size, 1e-3) / _PIECES)), len(mesh.triangles)
+        )
 
 
 @dataclass(frozen=True)
-class Driven:
+class TrajectoryPath:
     """A trajectory as driven.
 
     Attributes:
@@ -234,7 +238,7 @@ class Driven:
     """
 
     trajectory: Trajectory
-    way: Way
+    way: PosePath
     segment: Array
 
     @property
@@ -242,19 +246,21 @@ class Driven:
         """Operation of each cell, (N,)."""
         return self.trajectory.operation[self.segment]
 
-    def told(self, code: str, cell: int, found: str) -> Diagnostic:
+    def fault(self, code: str, cell: int, found: str) -> Diagnostic:
         """A fault in a cell."""
         return Diagnostic(code, self.trajectory.place(int(self.segment[cell])), found)
 
 
-def faults(driven: Driven, code: str, mover: Mover, obstacle: Obstacle, clearance: float) -> Iterator[Diagnostic]:
+def mesh_faults(
+    driven: TrajectoryPath, code: str, mover: MovingBody, obstacle: Obstacle, clearance: float
+) -> Iterator[Diagnostic]:
     """One fault for each operation in which a mover comes too close to an obstacle, at the worst place."""
     met = contacts(driven.way, mover, obstacle.part, clearance, driven.operation)
-    yield from told(driven, code, mover, obstacle, met, clearance)
+    yield from contact_faults(driven, code, mover, obstacle, met, clearance)
 
 
-def told(
-    driven: Driven, code: str, mover: Mover, obstacle: Obstacle, met: Contacts, clearance: float
+def contact_faults(
+    driven: TrajectoryPath, code: str, mover: MovingBody, obstacle: Obstacle, met: Contacts, clearance: float
 ) -> Iterator[Diagnostic]:
     """One fault for each operation with contacts, at the worst of those evaluated."""
     operation = driven.operation[met.cell]
@@ -264,10 +270,10 @@ def told(
         lacking = [clearance - _distance(driven, mover, obstacle, met, row) for row in rows.tolist()]
         worst = int(np.argmax(lacking))
         found = f"{mover.name}, {obstacle.name} {obstacle.source}, by {max(lacking[worst], 0.0):.3f} mm"
-        yield driven.told(code, int(met.cell[rows[worst]]), found)
+        yield driven.fault(code, int(met.cell[rows[worst]]), found)
 
 
-def _distance(driven: Driven, mover: Mover, obstacle: Obstacle, met: Contacts, row: int) -> float:
+def _distance(driven: TrajectoryPath, mover: MovingBody, obstacle: Obstacle, met: Contacts, row: int) -> float:
     """Distance at a contact; where the bodies overlap, reduced by the depth of a mesh corner inside the mover."""
     if met.distance[row] > 0:
         return float(met.distance[row])

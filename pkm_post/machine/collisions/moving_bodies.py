@@ -15,16 +15,16 @@ from functools import partial
 import numpy as np
 
 from pkm_post.geometry import Array, Cylinders
-from pkm_post.machine.kinematics.inverse import Pose, arms_from_tip
-from pkm_post.machine.kinematics.placed_machine import Placed, lever_of_rod, reach_of_body, strut_cylinders
+from pkm_post.machine.kinematics.inverse import Pose, lever_arms
+from pkm_post.machine.kinematics.placed_machine import PlacedMachine, body_reach, rod_speed_ratio, strut_cylinders
 from pkm_post.machine.reach.limit_checks import shortest_distance
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model import Body, Machine, Shank, Tool
 from pkm_post.toolpath import Cutter
 
 
 @dataclass(frozen=True)
-class Piece:
+class ToolCylinder:
     """A cylinder about the tool axis, offset by a rounding radius.
 
     Attributes:
@@ -41,7 +41,7 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class Mover:
+class MovingBody:
     """A moving body.
 
     Attributes:
@@ -61,11 +61,11 @@ class Mover:
     cylinders: Callable[[Pose], Cylinders]
 
 
-def of_body(machine: Machine, way: Way, body: Body) -> Mover:
+def platform_body(machine: Machine, way: PosePath, body: Body) -> MovingBody:
     """A body of the platform, along the whole path."""
     offset = machine.spindle_nose + body.start, machine.spindle_nose + body.end
-    reach = reach_of_body(machine, way.tool_length, body)
-    return Mover(
+    reach = body_reach(machine, way.tool_length, body)
+    return MovingBody(
         body.name,
         np.arange(1, len(way)),
         _about_the_axis(way, reach),
@@ -75,27 +75,29 @@ def of_body(machine: Machine, way: Way, body: Body) -> Mover:
     )
 
 
-def of_tool(name: str, way: Way, cells: Array, pieces: Iterable[Piece]) -> Mover:
+def tool_body(name: str, way: PosePath, cells: Array, pieces: Iterable[ToolCylinder]) -> MovingBody:
     """A part of a tool, in the cells where it is in use."""
     start, end, radius, rounding = np.array([[p.start, p.end, p.radius, p.rounding] for p in pieces]).T
     reach = float((np.hypot(np.maximum(np.abs(start), np.abs(end)), radius) + rounding).max())
-    return Mover(
+    return MovingBody(
         name, cells, _about_the_axis(way, reach), reach, rounding, partial(_tool_cylinders, start, end, radius)
     )
 
 
-def of_struts(machine: Machine, way: Way) -> Mover | None:
+def strut_bodies(machine: Machine, way: PosePath) -> MovingBody | None:
     """The six struts; None if the joints of a strut coincide somewhere, which another check refuses."""
     shortest = shortest_distance(machine, way)
     if not shortest > 0:
         return None
-    lever, arm = lever_of_rod(machine, shortest), float(arms_from_tip(machine, way.tool_length).max())
-    pieces = len(list(strut_cylinders(Placed.of(machine, way.rows(slice(0, 1))))))
+    lever, arm = rod_speed_ratio(machine, shortest), float(lever_arms(machine, way.tool_length).max())
+    pieces = len(list(strut_cylinders(PlacedMachine.of(machine, way.rows(slice(0, 1))))))
     change = lever * (way.travel + arm * way.turn())
-    return Mover("strut", np.arange(1, len(way)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine))
+    return MovingBody(
+        "strut", np.arange(1, len(way)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine)
+    )
 
 
-def _about_the_axis(way: Way, reach: float) -> Array:
+def _about_the_axis(way: PosePath, reach: float) -> Array:
     """Bound of the motion of points that move with the tip and turn about it; the spin moves no solid of revolution."""
     return way.travel + way.angle * reach
 
@@ -115,7 +117,7 @@ def _tool_cylinders(start: Array, end: Array, radius: Array, pose: Pose) -> Cyli
 
 def _struts(machine: Machine, pose: Pose) -> Cylinders:
     """All pieces of all struts, pose by pose."""
-    pieces = list(strut_cylinders(Placed.of(machine, pose)))
+    pieces = list(strut_cylinders(PlacedMachine.of(machine, pose)))
     count = len(pose[0])
 
     def by_pose(columns: list[Array]) -> Array:
@@ -193,13 +195,13 @@ def cutter_profile(tool: Tool, length: float) -> Profile:
     return Profile(np.append(height[kept], length), np.append(radius[kept], np.interp(length, height, radius)))
 
 
-def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[Piece, ...]:
+def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[ToolCylinder, ...]:
     """Cylinders inside a cutter reduced by an allowance on all sides."""
     less = min(allowance, tool.diameter / 4)
     if tool.bottom_angle == 0.0 and tool.side_angle == 0.0:
         rounding = max(min(tool.corner_radius, tool.diameter / 2) - less, 0.0)
         start = less + rounding
-        return (Piece(start, max(length - rounding, start), tool.diameter / 2 - less - rounding, rounding),)
+        return (ToolCylinder(start, max(length - rounding, start), tool.diameter / 2 - less - rounding, rounding),)
     profile = cutter_profile(tool, length)
     edges = np.unique(np.concatenate([np.linspace(*ends, _STEPS + 1) for ends in _sections(profile)]))
     edges = edges[edges >= less]
@@ -207,7 +209,7 @@ def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[Piece, .
         np.minimum(*(np.interp(one, profile.height, profile.radius) for one in (edges[:-1] - less, edges[1:]))) - less
     )
     return tuple(
-        Piece(low, high, radius)
+        ToolCylinder(low, high, radius)
         for low, high, radius in zip(edges[:-1].tolist(), edges[1:].tolist(), wide.tolist(), strict=True)
         if radius > 0
     )
@@ -224,7 +226,7 @@ def _sections(profile: Profile) -> list[tuple[float, float]]:
     return [(float(low), float(high)) for low, high in zip(corner[:-1], corner[1:], strict=True) if high > low]
 
 
-def shank_pieces(tool: Tool, shank: Shank, allowance: float) -> tuple[Piece, ...]:
+def shank_pieces(tool: Tool, shank: Shank, allowance: float) -> tuple[ToolCylinder, ...]:
     """The shank below the spindle nose, reduced by an allowance; it may rub where the cutter has been."""
     start, radius = shank.start + allowance, shank.diameter / 2 - min(allowance, shank.diameter / 4)
-    return (Piece(start, tool.length, radius),) if start < tool.length else ()
+    return (ToolCylinder(start, tool.length, radius),) if start < tool.length else ()

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine.collisions.contacts import Driven
+from pkm_post.machine.collisions.contacts import TrajectoryPath
 from pkm_post.machine.collisions.moving_bodies import Profile, cylinder
-from pkm_post.machine.collisions.stock_grid import Grid, Swept, first_met, when_cut
-from pkm_post.machine.collisions.tools_in_use import InUse
+from pkm_post.machine.collisions.stock_grid import StockGrid, SweptPoses, first_met, when_cut
+from pkm_post.machine.collisions.tools_in_use import ToolUse
 from pkm_post.model import Body, Diagnostic, Machine, Mesh
 
 _SCALLOP = 0.1
@@ -41,19 +41,19 @@ class Intruder:
     shapes: tuple[tuple[Profile, Array], ...]
 
 
-def rapid_cutter(used: InUse) -> Intruder:
+def rapid_cutter(used: ToolUse) -> Intruder:
     """The cutting part of a tool in rapid moves."""
     return Intruder(f"{used.name} in a rapid move", ("K136", "K137"), ((used.profile(), used.rapid),))
 
 
-def shank_of(used: InUse) -> Intruder:
+def shank_of(used: ToolUse) -> Intruder:
     """The shank of a tool, if it has one."""
     assert used.shank is not None
     shape = cylinder(used.shank.start, used.tool.length, used.shank.diameter / 2)
     return Intruder(f"shank of {used.name}", ("K134", "K135"), ((shape, used.cells()),))
 
 
-def body_of(machine: Machine, body: Body, used: Sequence[InUse]) -> Intruder:
+def body_of(machine: Machine, body: Body, used: Sequence[ToolUse]) -> Intruder:
     """A body of the platform."""
     return Intruder(
         body.name,
@@ -66,8 +66,8 @@ def body_of(machine: Machine, body: Body, used: Sequence[InUse]) -> Intruder:
 
 
 def stock_faults(
-    driven: Driven, stock: Mesh, intruders: Sequence[Intruder], used: Sequence[InUse], tolerance: float
-) -> tuple[Grid, list[Diagnostic]]:
+    driven: TrajectoryPath, stock: Mesh, intruders: Sequence[Intruder], used: Sequence[ToolUse], tolerance: float
+) -> tuple[StockGrid, list[Diagnostic]]:
     """Intrusions into the stock, one fault for each operation; and the grid of points checked.
 
     Args:
@@ -77,7 +77,7 @@ def stock_faults(
         used: all tools in use, since each one cuts.
         tolerance: largest deviation of the tool from the trajectory, mm.
     """
-    grid = Grid.of(stock.triangles)
+    grid = StockGrid.of(stock.triangles)
     work_from_machine = np.linalg.inv(driven.trajectory.machine_from_work)
     cuts = [(one, _cuts(driven, one, grid, work_from_machine)) for one in used if one.has_size]
     ridge = max((swept.moved**2 / (4 * one.tool.diameter) for one, swept in cuts), default=0.0)
@@ -95,7 +95,7 @@ def stock_faults(
         certain = ~(may < met) & (not stock.assumed)
         hits = [(one.codes[0], certain)] if certain.any() else [(one.codes[1], ~(sure <= met))]
         for code, hit in hits:
-            found += _told(driven, one.name, code, stock, points[hit], met[hit])
+            found += _operation_faults(driven, one.name, code, stock, points[hit], met[hit])
     return grid, found
 
 
@@ -104,13 +104,15 @@ def _some(number: Array) -> Array:
     return number[np.unique(np.linspace(0, max(len(number) - 1, 0), _MOST_MET).astype(np.int64))[: len(number)]]
 
 
-def _cuts(driven: Driven, used: InUse, grid: Grid, work_from_machine: Array) -> Swept:
+def _cuts(driven: TrajectoryPath, used: ToolUse, grid: StockGrid, work_from_machine: Array) -> SweptPoses:
     """Poses in which a tool cuts, in steps whose ridges stay within ``_SCALLOP``."""
     step = float(np.sqrt(4 * used.tool.diameter * _SCALLOP))
     return _swept(driven, used.cutting, used.largest_profile(), grid, work_from_machine, step)
 
 
-def _first_met(driven: Driven, intruder: Intruder, grid: Grid, work_from_machine: Array, less: float) -> Array:
+def _first_met(
+    driven: TrajectoryPath, intruder: Intruder, grid: StockGrid, work_from_machine: Array, less: float
+) -> Array:
     """First positions at which stock points are inside an intruder by more than ``less``, (points,)."""
     first = np.full(grid.filled.size, np.inf)
     for profile, cells in intruder.shapes:
@@ -119,15 +121,19 @@ def _first_met(driven: Driven, intruder: Intruder, grid: Grid, work_from_machine
     return first
 
 
-def _swept(driven: Driven, cells: Array, profile: Profile, grid: Grid, work_from_machine: Array, step: float) -> Swept:
+def _swept(
+    driven: TrajectoryPath, cells: Array, profile: Profile, grid: StockGrid, work_from_machine: Array, step: float
+) -> SweptPoses:
     box = [len(axis) * grid.step for axis in grid.axes]
     wide = 2 * float(profile.radius.max())
     length = float(profile.height[-1] - profile.height[0])
     pairs = min(wide, box[0]) * min(wide, box[1]) * min(length, max(box)) / grid.step**3
-    return Swept.of(driven.way, cells, work_from_machine, profile.farthest, step, pairs)
+    return SweptPoses.of(driven.way, cells, work_from_machine, profile.farthest, step, pairs)
 
 
-def _told(driven: Driven, name: str, code: str, stock: Mesh, points: Array, met: Array) -> Iterator[Diagnostic]:
+def _operation_faults(
+    driven: TrajectoryPath, name: str, code: str, stock: Mesh, points: Array, met: Array
+) -> Iterator[Diagnostic]:
     """One fault for each operation, at its first intrusion, from the points met and their positions on the path."""
     cells = np.maximum(np.ceil(met).astype(np.int64), 1)
     operation = driven.operation[cells]
@@ -136,4 +142,4 @@ def _told(driven: Driven, name: str, code: str, stock: Mesh, points: Array, met:
         begin = mine[np.argmin(met[mine])]
         x, y, z = points[begin]
         found = f"{name}, stock {stock.source}, at X{x:.1f} Y{y:.1f} Z{z:.1f}"
-        yield driven.told(code, int(cells[begin]), found)
+        yield driven.fault(code, int(cells[begin]), found)

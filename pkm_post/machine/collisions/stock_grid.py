@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, dot, expand_counts, grid_points_inside
 from pkm_post.machine.collisions.moving_bodies import Profile
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 
 _POINTS = 60_000
 """Approximate number of grid points."""
@@ -34,7 +34,7 @@ _MOST_PAIRS = 6_000_000
 
 
 @dataclass(frozen=True)
-class Grid:
+class StockGrid:
     """Points in a box, with a mask of the stock.
 
     Attributes:
@@ -48,7 +48,7 @@ class Grid:
     filled: Array
 
     @classmethod
-    def of(cls, triangles: Array) -> Grid:
+    def of(cls, triangles: Array) -> StockGrid:
         """The grid of a closed mesh."""
         corners = triangles.reshape(-1, 3)
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -64,7 +64,7 @@ class Grid:
 
 
 @dataclass(frozen=True)
-class Swept:
+class SweptPoses:
     """Poses of a solid of revolution about the tool axis, M in order.
 
     Attributes:
@@ -82,7 +82,9 @@ class Swept:
     moved: float
 
     @classmethod
-    def of(cls, way: Way, cells: Array, work_from_machine: Array, farthest: float, step: float, pairs: float) -> Swept:
+    def of(
+        cls, way: PosePath, cells: Array, work_from_machine: Array, farthest: float, step: float, pairs: float
+    ) -> SweptPoses:
         """Poses spaced so no point moves by more than a step, unless that needs too many.
 
         Args:
@@ -114,7 +116,7 @@ class Swept:
         )
 
 
-def first_met(grid: Grid, swept: Swept, profile: Profile, more: float) -> Array:
+def first_met(grid: StockGrid, swept: SweptPoses, profile: Profile, more: float) -> Array:
     """First positions at which stock points are inside the swept solid, (points,); infinite if never.
 
     Args:
@@ -134,7 +136,7 @@ def first_met(grid: Grid, swept: Swept, profile: Profile, more: float) -> Array:
 
 
 def when_cut(
-    points: Array, met: Array, swept: Swept, smallest: Profile, largest: Profile, tolerance: float
+    points: Array, met: Array, swept: SweptPoses, smallest: Profile, largest: Profile, tolerance: float
 ) -> tuple[Array, Array]:
     """Positions at which points may have been cut and certainly have been cut, (K,) each.
 
@@ -174,7 +176,7 @@ def _cut(
     points: Array,
     point: Array,
     pose: Array,
-    swept: Swept,
+    swept: SweptPoses,
     smallest: Profile,
     largest: Profile,
     grown: float,
@@ -193,7 +195,7 @@ def _chunks(count: int, size: int) -> Iterator[Array]:
     return (np.arange(first, min(first + size, count)) for first in range(0, count, size))
 
 
-def _near(grid: Grid, swept: Swept, profile: Profile, more: float) -> Iterator[tuple[Array, Array]]:
+def _near(grid: StockGrid, swept: SweptPoses, profile: Profile, more: float) -> Iterator[tuple[Array, Array]]:
     """Poses and nearby stock points, in batches: those in boxes around short pieces of the shape."""
     radius = float(profile.radius.max()) + max(more, 0.0)
     low, top = float(profile.height[0]) - max(more, 0.0), float(profile.height[-1]) + max(more, 0.0)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array, dot, expand_counts
-from pkm_post.machine.collisions.contacts import Contacts, Driven
+from pkm_post.machine.collisions.contacts import Contacts, TrajectoryPath
 from pkm_post.machine.collisions.moving_bodies import Profile, cutter_profile
 from pkm_post.model import Kind, Setup, Shank, Tool, largest_corner
 
@@ -18,7 +18,7 @@ _STEP = 0.2
 
 
 @dataclass(frozen=True)
-class InUse:
+class ToolUse:
     """A tool and the cells in which it is used.
 
     Attributes:
@@ -63,12 +63,12 @@ class InUse:
         return cutter_profile(self.largest, self.edge_length)
 
 
-def tools_in_use(driven: Driven, setup: Setup) -> tuple[InUse, ...]:
+def tools_in_use(driven: TrajectoryPath, setup: Setup) -> tuple[ToolUse, ...]:
     """The tools of a trajectory by number."""
     trajectory, cells = driven.trajectory, np.arange(1, len(driven.way))
     number, rapid = trajectory.tool[driven.segment[1:]], trajectory.kind[driven.segment[1:]] == Kind.RAPID
     return tuple(
-        InUse(*_sizes(trajectory.tools[one], setup), setup.shanks.get(one), cells[mine & ~rapid], cells[mine & rapid])
+        ToolUse(*_sizes(trajectory.tools[one], setup), setup.shanks.get(one), cells[mine & ~rapid], cells[mine & rapid])
         for one, mine in ((int(one), number == one) for one in np.unique(number))
     )
 
@@ -80,7 +80,7 @@ def _sizes(tool: Tool, setup: Setup) -> tuple[Tool, Tool]:
     return replace(tool, corner_radius=largest_corner(tool.diameter, tool.bottom_angle, tool.side_angle)), tool
 
 
-def not_cut_before(driven: Driven, used: Sequence[InUse], met: Contacts) -> Contacts:
+def not_cut_before(driven: TrajectoryPath, used: Sequence[ToolUse], met: Contacts) -> Contacts:
     """The contacts whose points no cutter has reached at feed before."""
     cut = np.zeros(len(met), dtype=bool)
     for one in used:
@@ -92,7 +92,7 @@ def not_cut_before(driven: Driven, used: Sequence[InUse], met: Contacts) -> Cont
     return Contacts(met.cell[~cut], met.share[~cut], met.point[~cut], met.distance[~cut])
 
 
-def _reaches(driven: Driven, used: InUse, cells: Array, point: Array) -> bool:
+def _reaches(driven: TrajectoryPath, used: ToolUse, cells: Array, point: Array) -> bool:
     """Whether a cutter reaches a point in some cells, or nearly so."""
     profile, way = used.largest_profile(), driven.way
     change = way.travel[cells] + way.angle[cells] * profile.farthest

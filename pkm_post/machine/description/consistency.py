@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.machine.description.faults import Fault
-from pkm_post.machine.description.forms import Array
+from pkm_post.machine.description.value_types import Array
 from pkm_post.model import ToolChange
 
 Values = dict[str, Any]

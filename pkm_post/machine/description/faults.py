@@ -69,7 +69,9 @@ def _line(name: Name, lines: dict[Name, int]) -> int:
     return next((lines[name[:length]] for length in range(len(name), 0, -1) if name[:length] in lines), 0)
 
 
-def tell(faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]) -> tuple[Diagnostic, ...]:
+def fault_diagnostics(
+    faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]
+) -> tuple[Diagnostic, ...]:
     """Convert faults to diagnostics in line order; beyond the limit, report only how many more."""
     lines = entry_lines(text, document)
     placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])

@@ -11,10 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from pkm_post.machine.description import forms, units
-from pkm_post.machine.description import forms as solids
-from pkm_post.machine.description.forms import Form
+from pkm_post.machine.description import units
+from pkm_post.machine.description import value_types as forms
+from pkm_post.machine.description import value_types as solids
 from pkm_post.machine.description.units import Dimension
+from pkm_post.machine.description.value_types import ValueType
 
 Name = tuple[str, ...]
 REQUIRED: Any = object()
@@ -34,7 +35,7 @@ class Field:
     """
 
     entry: str
-    form: Form
+    form: ValueType
     dimension: Dimension = units.PLAIN
     default: Any = REQUIRED
     attribute: str = ""

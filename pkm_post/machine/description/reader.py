@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 
 from pkm_post.machine.description.consistency import contradictions, rest_axes, tool_change
-from pkm_post.machine.description.faults import MOST_BYTES, Fault, not_toml, tell, too_deep, too_large
+from pkm_post.machine.description.faults import MOST_BYTES, Fault, fault_diagnostics, not_toml, too_deep, too_large
 from pkm_post.machine.description.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
-from pkm_post.machine.description.forms import NAME, PROSE, Array, FormError, holds_unknown, shown
 from pkm_post.machine.description.units import Scale, stated_units
+from pkm_post.machine.description.value_types import NAME, PROSE, Array, WrongValueError, contains_unknown, quoted
 from pkm_post.model import Diagnostic, Machine, Place
 
 SECTION = "work_offsets"
@@ -114,7 +114,7 @@ def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnos
     values, faults = _read_entries(document, offsets)
     faults += stated_poses(offsets, document) + contradictions(values)
     if faults:
-        return None, tell(faults, file, text, document)
+        return None, fault_diagnostics(faults, file, text, document)
     return _machine(values, offsets, hashlib.sha256(content).hexdigest()), ()
 
 
@@ -130,14 +130,14 @@ def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[st
         try:
             if known is None:
                 faults.append(Fault("M105", name))
-            elif isinstance(known, Field) and known.form not in _FREE_TEXTS and holds_unknown(value):
+            elif isinstance(known, Field) and known.form not in _FREE_TEXTS and contains_unknown(value):
                 values.pop(".".join(name), None)
                 faults.append(Fault("M107", name, f"expected {known.form.words}"))
             elif isinstance(known, Field):
                 values[".".join(name)] = known.form.read(value, Scale.of(known.dimension, units))
             else:
-                faults.append(Fault("M104", name, f"expected a table, got {shown(value)}"))
-        except FormError as wrong:
+                faults.append(Fault("M104", name, f"expected a table, got {quoted(value)}"))
+        except WrongValueError as wrong:
             values.pop(".".join(name), None)
             faults.append(Fault("M104", name, f"expected {known.form.words}, got {wrong}"))
     return values, faults + _missing(present)

@@ -13,8 +13,8 @@ import numpy as np
 
 from pkm_post.machine.description.faults import entry_lines
 from pkm_post.machine.description.fields import FIELDS, Name
-from pkm_post.machine.description.forms import Array
 from pkm_post.machine.description.units import factor, stated_units
+from pkm_post.machine.description.value_types import Array
 
 
 class CannotRewriteError(Exception):

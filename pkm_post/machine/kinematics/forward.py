@@ -15,7 +15,7 @@ import numpy as np
 from pkm_post.geometry import Array, dot, norm
 from pkm_post.machine.kinematics.inverse import attitude_rates, platform_rotation, strut_lengths
 from pkm_post.machine.kinematics.jacobian import linearise, solve_regular
-from pkm_post.machine.kinematics.strut_cubics import carried
+from pkm_post.machine.kinematics.strut_cubics import map_to_tool
 from pkm_post.model import Machine
 
 _MOST_STEPS = 20
@@ -27,7 +27,7 @@ LENGTH_TOLERANCE = 1e-10
 
 
 @dataclass(frozen=True)
-class Solution:
+class ForwardSolution:
     """Solved poses.
 
     Attributes:
@@ -53,7 +53,7 @@ def forward(
     guess_tip: Array,
     guess_axis: Array,
     guess_spin: Array,
-) -> Solution:
+) -> ForwardSolution:
     """Solve for tool poses that have the given strut lengths.
 
     Args:
@@ -64,17 +64,19 @@ def forward(
         guess_axis: (N, 3) initial unit tool axes.
         guess_spin: (N,) initial spins.
     """
-    return newton(machine, lengths, tool_length, guess_tip, platform_rotation(guess_axis, guess_spin))
+    return forward_from_rotation(machine, lengths, tool_length, guess_tip, platform_rotation(guess_axis, guess_spin))
 
 
-def newton(machine: Machine, lengths: Array, tool_length: Array, guess_tip: Array, guess_rotation: Array) -> Solution:
+def forward_from_rotation(
+    machine: Machine, lengths: Array, tool_length: Array, guess_tip: Array, guess_rotation: Array
+) -> ForwardSolution:
     """The same from guesses with rotation matrices, (N, 3, 3)."""
     tip, rotation = np.array(guess_tip, dtype=np.float64), np.array(guess_rotation, dtype=np.float64)
     converged = np.zeros(len(tip), dtype=bool)
     for first in range(0, len(tip), _AT_ONCE):
         rows = slice(first, first + _AT_ONCE)
         _newton(machine, lengths[rows], tool_length[rows], tip[rows], rotation[rows], converged[rows])
-    return Solution(tip, rotation, converged)
+    return ForwardSolution(tip, rotation, converged)
 
 
 def _newton(
@@ -135,7 +137,7 @@ class NearPoses:
     spin: Array
 
 
-def near_poses(
+def refine_poses(
     machine: Machine, lengths: Array, guess: NearPoses, tool_length: Array, inverses: tuple[Array, Array], share: Array
 ) -> tuple[NearPoses, Array]:
     """Tool poses that have the given strut lengths, and which of them do, (N * M,); other rows are undefined.
@@ -156,12 +158,12 @@ def near_poses(
         goes = (off < _FAR) & ~found
         if step == _STEPS or not goes.any():
             break
-        twist = carried(*inverses, residual, share).reshape(6, -1)
-        at = moved(at, np.where(goes, twist, 0.0))
+        twist = map_to_tool(*inverses, residual, share).reshape(6, -1)
+        at = displaced(at, np.where(goes, twist, 0.0))
     return at, found
 
 
-def moved(pose: NearPoses, twist: Array) -> NearPoses:
+def displaced(pose: NearPoses, twist: Array) -> NearPoses:
     """Poses after a small tip displacement and a small platform rotation, (6, N), to first order in both."""
     swing, spun = attitude_rates(pose.axis, twist[3:].T)
     # Keeps the axis length to second order: without a root, an unmoved row stays identical to the last digit.
@@ -175,7 +177,9 @@ _SAME = 1e-6
 """mm, and as much in the entries of the rotation: poses that agree to this are equal."""
 
 
-def follow(machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array) -> Solution:
+def forward_along_path(
+    machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array
+) -> ForwardSolution:
     """Poses along a path.
 
     Args:
@@ -193,7 +197,7 @@ def follow(machine: Machine, lengths: Array, tool_length: Array, tip: Array, rot
     converged = np.zeros(count, dtype=bool)
 
     def solve(rows: Array, origin: Array, turned: Array) -> None:
-        found = newton(machine, lengths[rows], none[rows], origin, turned)
+        found = forward_from_rotation(machine, lengths[rows], none[rows], origin, turned)
         origins[rows], rotations[rows], converged[rows] = found.tip, found.rotation, found.converged
 
     stride = max(1, 1 << (max(count - 1, 1) // _FIRST_ROWS).bit_length())
@@ -206,16 +210,18 @@ def follow(machine: Machine, lengths: Array, tool_length: Array, tip: Array, rot
         stride //= 2
         rows = np.arange(stride, count, 2 * stride)
         solve(rows, origins[rows - stride], rotations[rows - stride])
-    converged &= _follows(machine, lengths, none, Solution(origins, rotations, converged), tip, rotation, reach[0])
-    return Solution(origins - reach[:, None] * rotations[:, :, 2], rotations, converged)
+    converged &= _follows(
+        machine, lengths, none, ForwardSolution(origins, rotations, converged), tip, rotation, reach[0]
+    )
+    return ForwardSolution(origins - reach[:, None] * rotations[:, :, 2], rotations, converged)
 
 
 def _follows(
-    machine: Machine, lengths: Array, none: Array, found: Solution, tip: Array, rotation: Array, reach: float
+    machine: Machine, lengths: Array, none: Array, found: ForwardSolution, tip: Array, rotation: Array, reach: float
 ) -> Array:
     """Whether each row, and all rows before it, is the Newton solution from its predecessor, (N,)."""
     before = np.vstack([tip + reach * rotation[:, 2], found.tip[:-1]])
     turned = np.concatenate([rotation[None], found.rotation[:-1]])
-    again = newton(machine, lengths, none, before, turned)
+    again = forward_from_rotation(machine, lengths, none, before, turned)
     apart = np.maximum(norm(again.tip - found.tip), np.abs(again.rotation - found.rotation).max(axis=(1, 2)))
     return np.logical_and.accumulate(again.converged & found.converged & (apart < _SAME))

@@ -105,19 +105,19 @@ def strut_vectors(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
 def strut_lengths(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
     """Strut lengths as the controller counts them, (N, 6) in mm; arguments as above."""
     lengths = np.empty((len(tip), 6))
-    form, middle = form_of_squares(machine)
+    form, middle = squared_length_coefficients(machine)
     space = np.empty((17, min(_CHUNK, len(tip))))
     for first in range(0, len(tip), _CHUNK):
         rows = slice(first, first + _CHUNK)
         pose = tip[rows], axis[rows], spin[rows], tool_length[rows]
-        numbers = _fill(space[:, : len(pose[0])], machine, middle, *pose)
+        numbers = _fill_pose_terms(space[:, : len(pose[0])], machine, middle, *pose)
         squares = np.matmul(numbers.T, form, out=lengths[rows])
         np.sqrt(np.maximum(squares, 0.0, out=squares), out=squares)
         squares += _counted_beyond_distance(machine, *pose)
     return lengths
 
 
-def lengths_at_tips(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+def lengths_at_constant_attitude(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
     """Strut lengths at tips (N, 3) that share one axis (1, 3), one spin (1,) and one gauge length (1,).
 
     Relative to the platform joints of a tip at 0, the base joints are fixed, so only point distances remain.
@@ -153,7 +153,7 @@ def _counted_beyond_distance(machine: Machine, tip: Array, axis: Array, spin: Ar
     return screw_correction(direction, platform_rotation(axis, spin), machine) - machine.length_offset
 
 
-def form_of_squares(machine: Machine) -> tuple[Array, Array]:
+def squared_length_coefficients(machine: Machine) -> tuple[Array, Array]:
     """Coefficients of the squared distances, (17, 6), and the middle of the base in {M}, (3,)."""
     middle = machine.base_joints.mean(axis=0)
     a, b = machine.platform_joints, machine.base_joints - middle
@@ -162,7 +162,7 @@ def form_of_squares(machine: Machine) -> tuple[Array, Array]:
     return np.concatenate([-2 * b.T, 2 * a.T, np.ones((1, 6)), squares[None], -2 * turned]), middle
 
 
-def _fill(
+def _fill_pose_terms(
     numbers: Array, machine: Machine, middle: Array, tip: Array, axis: Array, spin: Array, tool_length: Array
 ) -> Array:
     """Write the 17 numbers of each pose, (17, N): p, R^T p, |p|^2, 1, and the columns of R in sequence."""
@@ -179,7 +179,7 @@ def _fill(
     return numbers
 
 
-def arms_from_tip(machine: Machine, tool_length: Array) -> Array:
+def lever_arms(machine: Machine, tool_length: Array) -> Array:
     """Distances of the platform joints from the tip of the longest tool, (6,) in mm."""
     reach = machine.spindle_nose + np.array([tool_length.min(), tool_length.max()])
     return norm(machine.platform_joints + reach[:, None, None] * [0.0, 0.0, 1.0]).max(axis=0)

@@ -54,14 +54,14 @@ def linearise(machine: Machine, tip: Array, rotation: Array, tool_length: Array)
     direction /= distance[..., None]
     lengths = counted_lengths(machine, distance, direction, rotation)
     if machine.screw_lead == 0.0:
-        return moments(direction, arm), lengths
+        return plucker_rows(direction, arm), lengths
     of_joint, of_turn = screw_gradient(direction, distance, rotation, machine)
-    jacobian = moments(direction + of_joint, arm)
+    jacobian = plucker_rows(direction + of_joint, arm)
     jacobian[..., 3:] += of_turn
     return jacobian, lengths
 
 
-def moments(along: Array, arm: Array) -> Array:
+def plucker_rows(along: Array, arm: Array) -> Array:
     """The rows [u, r x u], (N, 6, 6), of directions u and arms r, (N, 6, 3) each."""
     rows = np.empty((*along.shape[:-1], 6))
     rows[..., :3] = along

@@ -10,12 +10,12 @@ import numpy as np
 
 from pkm_post.geometry import Array, Cylinders, norm
 from pkm_post.machine.kinematics.inverse import Pose, counted_lengths, platform_rotation
-from pkm_post.machine.kinematics.jacobian import moments
+from pkm_post.machine.kinematics.jacobian import plucker_rows
 from pkm_post.model import Body, Box, Machine
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedMachine:
     """A machine at N poses.
 
     Attributes:
@@ -35,7 +35,7 @@ class Placed:
     distance: Array
 
     @classmethod
-    def of(cls, machine: Machine, pose: Pose) -> Placed:
+    def of(cls, machine: Machine, pose: Pose) -> PlacedMachine:
         """Place the machine at poses."""
         tip, axis, spin, tool_length = pose
         origin = tip + (machine.spindle_nose + tool_length)[:, None] * axis
@@ -58,11 +58,11 @@ class Placed:
 
     def scaled_jacobian(self) -> Array:
         """Rows [u, a x u / characteristic length], (N, 6, 6), dimensionless."""
-        return moments(self.direction, self.arm / self.machine.characteristic_length)
+        return plucker_rows(self.direction, self.arm / self.machine.characteristic_length)
 
 
 @dataclass(frozen=True)
-class Pieces:
+class StrutCapsules:
     """The capsules of six struts: P pieces of each at M poses.
 
     Attributes:
@@ -76,7 +76,7 @@ class Pieces:
     radius: Array
 
     @classmethod
-    def of(cls, machine: Machine, distance: Array) -> Pieces:
+    def of(cls, machine: Machine, distance: Array) -> StrutCapsules:
         """Build the pieces of struts with joints at these distances, (M, 6); they vary linearly with the distance."""
         free, last = machine.base_joint_radius, distance - machine.platform_joint_radius
         inner = distance - machine.rod_length
@@ -108,28 +108,28 @@ def has_strut_bodies(machine: Machine) -> bool:
     return machine.tube_radius > 0 or machine.rod_radius > 0
 
 
-def lever_of_rod(machine: Machine, shortest: float) -> float:
+def rod_speed_ratio(machine: Machine, shortest: float) -> float:
     """Greatest speed ratio of a strut point to its platform joint: that of the far end of a long rod."""
     return max(1.0, machine.rod_length / shortest - 1.0)
 
 
-def reach_of_body(machine: Machine, tool_length: Array, body: Body) -> float:
+def body_reach(machine: Machine, tool_length: Array, body: Body) -> float:
     """Greatest distance of a point of a platform body from the tip, mm."""
     tips = machine.spindle_nose + tool_length.max(), machine.spindle_nose + tool_length.min()
     return float(np.hypot(body.radius, max(abs(end + tip) for end in (body.start, body.end) for tip in tips)))
 
 
-def cylinders_of(placed: Placed, body: Body) -> Cylinders:
+def body_cylinders(placed: PlacedMachine, body: Body) -> Cylinders:
     """Place a platform body in {M} at each pose."""
     axis = placed.rotation[:, :, 2]
     middle = placed.origin + (body.start + body.end) / 2 * axis
     return Cylinders(middle, axis, np.full(len(placed), (body.end - body.start) / 2), np.full(len(placed), body.radius))
 
 
-def strut_cylinders(placed: Placed) -> Iterator[Cylinders]:
+def strut_cylinders(placed: PlacedMachine) -> Iterator[Cylinders]:
     """Yield each strut piece in {M}, with flat ends: six cylinders per pose, pose by pose."""
     machine = placed.machine
-    pieces = Pieces.of(machine, placed.distance)
+    pieces = StrutCapsules.of(machine, placed.distance)
     direction = placed.direction.reshape(-1, 3)
     for number, radius in enumerate(pieces.radius):
         start, end = pieces.start[:, number], pieces.end[:, number]
@@ -138,7 +138,7 @@ def strut_cylinders(placed: Placed) -> Iterator[Cylinders]:
         yield Cylinders(middle.reshape(-1, 3), direction, half, np.full(len(half), radius))
 
 
-def corners_of(box: Box) -> Array:
+def box_corners(box: Box) -> Array:
     """The eight corners of a box, (8, 3)."""
     choose = np.indices((2, 2, 2)).reshape(3, 8).T
     return np.where(choose == 0, box.lowest, box.highest)

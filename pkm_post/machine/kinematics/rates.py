@@ -18,9 +18,9 @@ import numpy as np
 from pkm_post.geometry import Array, cross, dot, norm, write_frames
 from pkm_post.machine.kinematics.inverse import (
     angular_rates,
-    arms_from_tip,
-    form_of_squares,
+    lever_arms,
     platform_rotation,
+    squared_length_coefficients,
     strut_vectors,
 )
 from pkm_post.machine.kinematics.jacobian import linearise
@@ -39,7 +39,7 @@ def strut_rates(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
         poses: tool poses with their derivatives.
     """
     result = np.empty((3, len(poses), 6))
-    form, middle = form_of_squares(machine)
+    form, middle = squared_length_coefficients(machine)
     for first in range(0, len(poses), _CHUNK):
         rows = slice(first, first + _CHUNK)
         axes = poses.axis[rows], poses.axis_1[rows], poses.axis_2[rows]
@@ -171,7 +171,7 @@ _NEARER = 0.99
 Pair = tuple[Array, Array]
 
 
-def nearest_joints(machine: Machine) -> float:
+def least_joint_distance(machine: Machine) -> float:
     """Least distance between the two joints of a strut within the stroke, mm."""
     return _NEARER * (machine.strut_stroke[0] + float(machine.length_offset.min()))
 
@@ -191,11 +191,11 @@ def strut_rate_bounds(
         half_tilt: (N,) tangent of half the highest tilt.
         tool_length: (N,) gauge lengths.
     """
-    shortest = nearest_joints(machine)
+    shortest = least_joint_distance(machine)
     if machine.screw_lead != 0.0 or shortest <= 0:
         endless = np.full(len(half_tilt), np.inf)
         return endless, endless
-    arm = float(arms_from_tip(machine, tool_length).max())
+    arm = float(lever_arms(machine, tool_length).max())
     turn, turn_1 = _turning(axis, spin, half_tilt)
     speed = tip[0] + arm * turn
     return speed, tip[1] + arm * (turn_1 + turn**2) + speed**2 / shortest

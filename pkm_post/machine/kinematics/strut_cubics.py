@@ -17,13 +17,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, length_of
-from pkm_post.machine.kinematics.inverse import angular_rates, lengths_at_tips, platform_rotation, strut_lengths
+from pkm_post.machine.kinematics.inverse import (
+    angular_rates,
+    lengths_at_constant_attitude,
+    platform_rotation,
+    strut_lengths,
+)
 from pkm_post.machine.kinematics.jacobian import linearise
 from pkm_post.model import Machine, Poses
 
 
 @dataclass(frozen=True)
-class Ends:
+class KnotState:
     """Kinematic state at N knots where an interval may begin or end.
 
     Attributes:
@@ -37,16 +42,16 @@ class Ends:
     inverse: Array
 
     @classmethod
-    def of(cls, machine: Machine, poses: Poses) -> Ends:
+    def of(cls, machine: Machine, poses: Poses) -> KnotState:
         """State of N poses by time."""
-        length, speed, jacobian = moving(machine, poses)
+        length, speed, jacobian = strut_state(machine, poses)
         return cls(length, speed, np.linalg.inv(jacobian))
 
-    def __getitem__(self, rows: Array) -> Ends:
-        return Ends(*(np.take(column, rows, axis=0) for column in (self.length, self.speed, self.inverse)))
+    def __getitem__(self, rows: Array) -> KnotState:
+        return KnotState(*(np.take(column, rows, axis=0) for column in (self.length, self.speed, self.inverse)))
 
 
-def moving(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
+def strut_state(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
     """Strut lengths and speeds, (N, 6) each, and Jacobians of the tool tip, (N, 6, 6), of N poses by time."""
     jacobian, length = linearise(machine, poses.tip, platform_rotation(poses.axis, poses.spin), poses.tool_length)
     turn, _ = angular_rates(poses.axis, poses.axis_1, poses.axis_2, poses.spin_1, poses.spin_2)
@@ -73,7 +78,7 @@ class Inside:
 
 
 @dataclass(frozen=True)
-class Stray:
+class ToolDeviation:
     """Deviation of N intervals of cubics from the true motion at M instants of each.
 
     Attributes:
@@ -85,7 +90,9 @@ class Stray:
     axis: Array
 
 
-def stray(machine: Machine, start: Ends, end: Ends, inside: Inside, duration: Array, share: Array) -> Stray:
+def tool_deviation(
+    machine: Machine, start: KnotState, end: KnotState, inside: Inside, duration: Array, share: Array
+) -> ToolDeviation:
     """Play the intervals and compare them with the nominal tool poses.
 
     Args:
@@ -98,21 +105,21 @@ def stray(machine: Machine, start: Ends, end: Ends, inside: Inside, duration: Ar
     """
     shape = len(duration), len(share)
     lengths = hermite_lengths(start.length, start.speed, end.length, end.speed, duration, share)
-    lengths_at = lengths_at_tips if len(inside.axis) == 1 else strut_lengths
+    lengths_at = lengths_at_constant_attitude if len(inside.axis) == 1 else strut_lengths
     lengths -= lengths_at(machine, inside.tip, inside.axis, inside.spin, inside.tool_length).reshape(*shape, 6)
-    tip_x, tip_y, tip_z, x, y, z = carried(start.inverse, end.inverse, lengths, share)
+    tip_x, tip_y, tip_z, x, y, z = map_to_tool(start.inverse, end.inverse, lengths, share)
     k, m, n = (column.reshape(shape) for column in np.broadcast_to(inside.axis, inside.tip.shape).T)
     across = length_of(y * n - z * m, z * k - x * n, x * m - y * k)
-    return Stray(length_of(tip_x, tip_y, tip_z), across)
+    return ToolDeviation(length_of(tip_x, tip_y, tip_z), across)
 
 
-def steepest(start: Ends, end: Ends, duration: Array) -> Array:
+def max_strut_acceleration(start: KnotState, end: KnotState, duration: Array) -> Array:
     """Highest strut acceleration in each interval, (N,) mm/s^2; arguments as above."""
     both = hermite_accelerations(start.length, start.speed, end.length, end.speed, duration)
     return np.abs(np.stack(both)).max(axis=(0, 2))
 
 
-def fastest(start: Ends, end: Ends, duration: Array) -> Array:
+def max_strut_speed(start: KnotState, end: KnotState, duration: Array) -> Array:
     """Upper bound of the strut speeds in each interval, (N,) mm/s; arguments as above.
 
     The speed is a polynomial of degree two: at most the largest of its Bezier coefficients.
@@ -121,7 +128,7 @@ def fastest(start: Ends, end: Ends, duration: Array) -> Array:
     return np.abs(np.stack([start.speed, middle, end.speed])).max(axis=(0, 2))
 
 
-def carried(at_start: Array, at_end: Array, columns: Array, share: Array) -> Array:
+def map_to_tool(at_start: Array, at_end: Array, columns: Array, share: Array) -> Array:
     """Map strut columns to R tool columns by weighted means of matrices, (R, N, M).
 
     Args:

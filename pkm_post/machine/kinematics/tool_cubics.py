@@ -24,8 +24,14 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_powers, length_of
-from pkm_post.machine.kinematics.rates import nearest_joints
-from pkm_post.machine.kinematics.strut_cubics import Ends, Inside, fastest, steepest, stray
+from pkm_post.machine.kinematics.rates import least_joint_distance
+from pkm_post.machine.kinematics.strut_cubics import (
+    Inside,
+    KnotState,
+    max_strut_acceleration,
+    max_strut_speed,
+    tool_deviation,
+)
 from pkm_post.model import Machine
 
 ROUNDED_SHARE = 0.99
@@ -125,7 +131,7 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
         duration: (N,) s.
     """
     speed, bend, jerk = cubics.sizes()
-    shortest = nearest_joints(machine)
+    shortest = least_joint_distance(machine)
     if machine.screw_lead != 0.0 or min(shortest, machine.least_singular_value) <= 0:
         return Demand(*np.full((4, len(duration)), np.inf))
     turn = speed / shortest
@@ -144,7 +150,7 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
 
 
 def measured_demand(
-    machine: Machine, first: Ends, last: Ends, cubics: ToolCubics, inside: Inside, duration: Array
+    machine: Machine, first: KnotState, last: KnotState, cubics: ToolCubics, inside: Inside, duration: Array
 ) -> Demand:
     """The same, with the drift measured in the middle.
 
@@ -156,12 +162,12 @@ def measured_demand(
         inside: their tool poses in the middle of their durations.
         duration: (N,) s.
     """
-    found = stray(machine, first, last, inside, duration, _MIDDLE)
+    found = tool_deviation(machine, first, last, inside, duration, _MIDDLE)
     tip, axis = _ROOM * found.tip[:, 0], _ROOM * found.axis[:, 0]
     speed, bend, _ = cubics.sizes()
     by_limit = (
-        fastest(first, last, duration) / machine.strut_speed,
-        steepest(first, last, duration) / machine.strut_acceleration,
+        max_strut_speed(first, last, duration) / machine.strut_speed,
+        max_strut_acceleration(first, last, duration) / machine.strut_acceleration,
         (bend + _CURVED * tip) / duration**2 / (ROUNDED_SHARE * machine.tip_acceleration),
         (cubics.turn() + _STEEPEST * axis) / duration / machine.axis_speed,
     )

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import TRIANGLE_EDGES, Array, Cylinders, cross, dot, half_extents, norm, separation
-from pkm_post.machine.kinematics.placed_machine import corners_of
+from pkm_post.machine.kinematics.placed_machine import box_corners
 from pkm_post.model import Box
 
 _GROUP = 16
@@ -28,11 +28,11 @@ _BOX_FACES = np.array(
         [2, 3, 6], [3, 6, 7], [0, 2, 4], [2, 4, 6], [1, 3, 5], [3, 5, 7],
     ]
 )  # fmt: skip
-"""Corners of the twelve triangles of a box, in the numbering of ``corners_of``."""
+"""Corners of the twelve triangles of a box, in the numbering of ``box_corners``."""
 
 
 @dataclass(frozen=True)
-class Part:
+class CollisionMesh:
     """T triangles, and bounding spheres of each, of 16 neighbours, of 16 of these, and so on.
 
     Attributes:
@@ -47,7 +47,9 @@ class Part:
     balls: tuple[tuple[Array, Array], ...]
 
     @classmethod
-    def of(cls, triangles: Array | None = None, boxes: Sequence[Box] = (), points: Array | None = None) -> Part:
+    def of(
+        cls, triangles: Array | None = None, boxes: Sequence[Box] = (), points: Array | None = None
+    ) -> CollisionMesh:
         """Build a part of all arguments, at least one of them non-empty.
 
         Args:
@@ -56,7 +58,7 @@ class Part:
             points: (P, 3) single points.
         """
         pieces = [np.empty((0, 3, 3)) if triangles is None else np.asarray(triangles, dtype=np.float64)]
-        pieces += [corners_of(box)[_BOX_FACES] for box in boxes]
+        pieces += [box_corners(box)[_BOX_FACES] for box in boxes]
         if points is not None:
             pieces.append(np.repeat(np.asarray(points, dtype=np.float64)[:, None, :], 3, axis=1))
         every = np.concatenate(pieces)
@@ -96,13 +98,13 @@ def _along_a_curve(points: Array) -> Array:
     return order
 
 
-def distance_from_part(cylinders: Cylinders, part: Part, far: float) -> Array:
+def distance_from_mesh(cylinders: Cylinders, part: CollisionMesh, far: float) -> Array:
     """Lower bounds of the distances of cylinders from the part, (M,), none of them above ``far``."""
     passes = (cylinders.take(slice(first, first + _POSES)) for first in range(0, len(cylinders), _POSES))
     return np.concatenate([_distance(some, part, far) for some in passes])
 
 
-def _distance(cylinders: Cylinders, part: Part, far: float) -> Array:
+def _distance(cylinders: Cylinders, part: CollisionMesh, far: float) -> Array:
     """Descend to one near triangle of each pose, then to all that may be nearer."""
     poses, top = np.arange(len(cylinders)), np.arange(len(part.balls[-1][1]))
     near = np.tile(top, (len(poses), 1))
@@ -116,7 +118,9 @@ def _distance(cylinders: Cylinders, part: Part, far: float) -> Array:
     return _lowered(cylinders, part, least, plane, *pairs_within(cylinders, part, least))
 
 
-def pairs_within(cylinders: Cylinders, part: Part, within: Array, level: int = 0) -> tuple[Array, Array, Array]:
+def pairs_within(
+    cylinders: Cylinders, part: CollisionMesh, within: Array, level: int = 0
+) -> tuple[Array, Array, Array]:
     """Pairs of a cylinder and a ball of the part that may be nearer than a limit, and their least distance, (K,).
 
     Args:
@@ -138,7 +142,7 @@ def pairs_within(cylinders: Cylinders, part: Part, within: Array, level: int = 0
 
 
 def _lowered(
-    cylinders: Cylinders, part: Part, least: Array, plane: Array, pose: Array, triangle: Array, bound: Array
+    cylinders: Cylinders, part: CollisionMesh, least: Array, plane: Array, pose: Array, triangle: Array, bound: Array
 ) -> Array:
     """Lower the least distances (M,) by those from given triangles, paired with their poses, (K,) each.
 
@@ -171,6 +175,6 @@ def _from_balls(cylinders: Cylinders, balls: tuple[Array, Array], pose: Array, b
     return np.hypot(beside, np.maximum(np.abs(high) - cylinders.half[pose], 0.0)) - balls[1][ball]
 
 
-def _measure(cylinders: Cylinders, part: Part, pose: Array, triangle: Array) -> tuple[Array, Array]:
+def _measure(cylinders: Cylinders, part: CollisionMesh, pose: Array, triangle: Array) -> tuple[Array, Array]:
     """Distances (K,) and normals (K, 3) of planes between cylinders and triangles, pair by pair."""
     return separation(cylinders.take(pose), part.triangles[triangle], part.faces[triangle], TRIANGLE_EDGES)

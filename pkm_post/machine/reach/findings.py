@@ -11,7 +11,7 @@ import numpy as np
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Trajectory
 
-SHOWN: dict[str, tuple[str, float]] = {
+DISPLAY_UNITS: dict[str, tuple[str, float]] = {
     "mm": ("mm", 1.0),
     "rad": ("degrees", float(np.degrees(1.0))),
     "mm/s": ("mm/s", 1.0),
@@ -22,13 +22,13 @@ SHOWN: dict[str, tuple[str, float]] = {
 
 
 @dataclass(frozen=True)
-class Subject:
+class CheckedLimit:
     """Subject of a check.
 
     Attributes:
         name: display name.
         code: diagnostic code of a violation.
-        unit: of the margin, a key of ``SHOWN``.
+        unit: of the margin, a key of ``DISPLAY_UNITS``.
         parts: what may have the least margin: struts, pairs of bodies.
         told: message template of a violation, with {part} and {by}.
     """
@@ -41,7 +41,7 @@ class Subject:
 
     def tell(self, part: int, margin: float) -> str:
         """Format a violation."""
-        return self.told.format(part=self.parts[part], by=-margin * SHOWN[self.unit][1])
+        return self.told.format(part=self.parts[part], by=-margin * DISPLAY_UNITS[self.unit][1])
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class ReachFinding:
             only the rows were checked.
     """
 
-    subject: Subject = field(repr=False)
+    subject: CheckedLimit = field(repr=False)
     margin: Array
     part: Array
     at_least: float
@@ -74,7 +74,9 @@ class ReachFinding:
         return int(np.argmax(bad)) if bad.any() else None
 
 
-def faults_of(findings: Iterable[ReachFinding], trajectory: Trajectory, segment: Array) -> tuple[Diagnostic, ...]:
+def finding_diagnostics(
+    findings: Iterable[ReachFinding], trajectory: Trajectory, segment: Array
+) -> tuple[Diagnostic, ...]:
     """Diagnostics of violations: one for each operation and check, at the worst row.
 
     Args:

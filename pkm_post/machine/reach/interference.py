@@ -14,38 +14,38 @@ from functools import partial
 import numpy as np
 
 from pkm_post.geometry import Array, segment_to_box, segment_to_cylinder, segment_to_segment, separation
-from pkm_post.machine.kinematics.inverse import arms_from_tip
+from pkm_post.machine.kinematics.inverse import lever_arms
 from pkm_post.machine.kinematics.placed_machine import (
-    Pieces,
-    Placed,
-    corners_of,
-    cylinders_of,
+    PlacedMachine,
+    StrutCapsules,
+    body_cylinders,
+    body_reach,
+    box_corners,
     has_strut_bodies,
-    lever_of_rod,
-    reach_of_body,
+    rod_speed_ratio,
     strut_cylinders,
 )
-from pkm_post.machine.reach.collision_mesh import Part, distance_from_part
+from pkm_post.machine.reach.collision_mesh import CollisionMesh, distance_from_mesh
 from pkm_post.machine.reach.limit_checks import HUNDREDTH, STRUTS
 from pkm_post.machine.reach.path_bounds import Check
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model import Body, Machine
 
 COMFORT = 10.0
 """mm: distances that exceed the clearance by more are given as a lower bound."""
 _BOX_EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]])
-"""Corner pairs of the box edges, in the numbering of ``corners_of``."""
+"""Corner pairs of the box edges, in the numbering of ``box_corners``."""
 _FIRST, _SECOND = np.triu_indices(6, 1)
 _PAIRS = tuple(f"{one + 1} and {two + 1}" for one, two in zip(_FIRST, _SECOND, strict=True))
 
 
-def strut_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:
+def strut_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Check, ...]:
     """Check that struts keep clear of each other, the platform and the fixtures; none if struts have no bodies."""
     if not has_strut_bodies(machine):
         return ()
-    arm = float(arms_from_tip(machine, way.tool_length).max())
-    lever = lever_of_rod(machine, shortest)
-    reach = max((reach_of_body(machine, way.tool_length, body) for body in machine.bodies), default=0.0)
+    arm = float(lever_arms(machine, way.tool_length).max())
+    lever = rod_speed_ratio(machine, shortest)
+    reach = max((body_reach(machine, way.tool_length, body) for body in machine.bodies), default=0.0)
     bodies, boxes = (_names(other.name for other in others) for others in (machine.bodies, machine.fixtures))
     told, told_of_two = "strut {part} by {by:.3f} mm", "struts {part} by {by:.3f} mm"
     rows = (
@@ -60,7 +60,7 @@ def strut_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ..
     )
 
 
-def body_checks(machine: Machine, way: Way) -> tuple[Check, ...]:
+def body_checks(machine: Machine, way: PosePath) -> tuple[Check, ...]:
     """Check that each platform body keeps clear of the fixtures; none without either."""
     if not machine.fixtures:
         return ()
@@ -68,7 +68,7 @@ def body_checks(machine: Machine, way: Way) -> tuple[Check, ...]:
         Check(
             f"{body.name} and fixture", "K116", "mm", tuple(f"{body.name} and {box.name}" for box in machine.fixtures),
             "{part} by {by:.3f} mm", partial(_body_to_fixtures, body),
-            1.0, reach_of_body(machine, way.tool_length, body), HUNDREDTH, COMFORT,
+            1.0, body_reach(machine, way.tool_length, body), HUNDREDTH, COMFORT,
         )
         for body in machine.bodies
     )  # fmt: skip
@@ -78,10 +78,10 @@ def _names(others: Iterable[str]) -> tuple[str, ...]:
     return tuple(f"{strut} and {other}" for other in others for strut in STRUTS)
 
 
-def _strut_to_strut(placed: Placed) -> Array:
+def _strut_to_strut(placed: PlacedMachine) -> Array:
     """Margins of the 15 strut pairs, (M, 15)."""
     machine = placed.machine
-    pieces = Pieces.of(machine, placed.distance)
+    pieces = StrutCapsules.of(machine, placed.distance)
     start, end = pieces.ends(machine.base_joints, placed.direction)
     least = np.full((len(placed), len(_FIRST)), np.inf)
     for one, radius in enumerate(pieces.radius):
@@ -93,10 +93,10 @@ def _strut_to_strut(placed: Placed) -> Array:
     return least - machine.clearance
 
 
-def _strut_to_bodies(placed: Placed) -> Array:
+def _strut_to_bodies(placed: PlacedMachine) -> Array:
     """Margins of six struts to each platform body, (M, 6 B)."""
     machine = placed.machine
-    pieces = Pieces.of(machine, placed.distance)
+    pieces = StrutCapsules.of(machine, placed.distance)
     direction = placed.in_platform()
     base = machine.platform_joints - placed.distance[..., None] * direction
     start, end = pieces.ends(base, direction)
@@ -107,10 +107,10 @@ def _strut_to_bodies(placed: Placed) -> Array:
     return np.concatenate(columns, axis=1) - machine.clearance
 
 
-def _strut_to_fixtures(placed: Placed) -> Array:
+def _strut_to_fixtures(placed: PlacedMachine) -> Array:
     """Margins of six struts to each fixture, (M, 6 F)."""
     machine = placed.machine
-    pieces = Pieces.of(machine, placed.distance)
+    pieces = StrutCapsules.of(machine, placed.distance)
     start, end = pieces.ends(machine.base_joints, placed.direction)
     columns = []
     for box in machine.fixtures:
@@ -119,12 +119,12 @@ def _strut_to_fixtures(placed: Placed) -> Array:
     return np.concatenate(columns, axis=1) - machine.clearance
 
 
-def _body_to_fixtures(body: Body, placed: Placed) -> Array:
+def _body_to_fixtures(body: Body, placed: PlacedMachine) -> Array:
     """Margins of a platform body to each fixture, (M, F)."""
     count = len(placed)
-    faces, cylinders = np.broadcast_to(np.eye(3), (count, 3, 3)), cylinders_of(placed, body)
+    faces, cylinders = np.broadcast_to(np.eye(3), (count, 3, 3)), body_cylinders(placed, body)
     columns = [
-        separation(cylinders, np.broadcast_to(corners_of(box), (count, 8, 3)), faces, _BOX_EDGES)[0]
+        separation(cylinders, np.broadcast_to(box_corners(box), (count, 8, 3)), faces, _BOX_EDGES)[0]
         for box in placed.machine.fixtures
     ]
     return np.stack(columns, axis=1) - placed.machine.clearance
@@ -134,7 +134,7 @@ _FAR = 5 * COMFORT
 """mm: margins are capped here, which leaves the survey room for large steps."""
 
 
-def part_checks(machine: Machine, way: Way, shortest: float, part: Part) -> tuple[Check, ...]:
+def workpiece_checks(machine: Machine, way: PosePath, shortest: float, part: CollisionMesh) -> tuple[Check, ...]:
     """Check that platform bodies and struts keep clear of the part; none for those the machine file does not state.
 
     Args:
@@ -147,12 +147,12 @@ def part_checks(machine: Machine, way: Way, shortest: float, part: Part) -> tupl
     checks = [
         Check(
             f"{body.name} and part", "K117", "mm", (body.name,), "{part} by {by:.3f} mm",
-            partial(_of_body, body, part, far), 1.0, reach_of_body(machine, way.tool_length, body), HUNDREDTH, COMFORT,
+            partial(_of_body, body, part, far), 1.0, body_reach(machine, way.tool_length, body), HUNDREDTH, COMFORT,
         )
         for body in machine.bodies
     ]  # fmt: skip
     if has_strut_bodies(machine):
-        lever, arm = lever_of_rod(machine, shortest), float(arms_from_tip(machine, way.tool_length).max())
+        lever, arm = rod_speed_ratio(machine, shortest), float(lever_arms(machine, way.tool_length).max())
         checks.append(
             Check(
                 "strut and part", "K121", "mm", STRUTS, "strut {part} by {by:.3f} mm", partial(_of_struts, part, far),
@@ -162,12 +162,12 @@ def part_checks(machine: Machine, way: Way, shortest: float, part: Part) -> tupl
     return tuple(checks)
 
 
-def _of_body(body: Body, part: Part, far: float, placed: Placed) -> Array:
+def _of_body(body: Body, part: CollisionMesh, far: float, placed: PlacedMachine) -> Array:
     """Margins of one body, (M, 1)."""
-    return distance_from_part(cylinders_of(placed, body), part, far)[:, None] - placed.machine.clearance
+    return distance_from_mesh(body_cylinders(placed, body), part, far)[:, None] - placed.machine.clearance
 
 
-def _of_struts(part: Part, far: float, placed: Placed) -> Array:
+def _of_struts(part: CollisionMesh, far: float, placed: PlacedMachine) -> Array:
     """Margins of the struts, (M, 6)."""
-    pieces = [distance_from_part(piece, part, far) for piece in strut_cylinders(placed)]
+    pieces = [distance_from_mesh(piece, part, far) for piece in strut_cylinders(placed)]
     return np.min(pieces, axis=0).reshape(-1, 6) - placed.machine.clearance

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.machine.kinematics.inverse import arms_from_tip, strut_lengths
-from pkm_post.machine.kinematics.placed_machine import Placed
-from pkm_post.machine.reach.findings import ReachFinding, Subject
+from pkm_post.machine.kinematics.inverse import lever_arms, strut_lengths
+from pkm_post.machine.kinematics.placed_machine import PlacedMachine
+from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.path_bounds import Check
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model import Machine
 
 HUNDREDTH = 0.01
@@ -38,9 +38,9 @@ _SCREW_SLOPE = 4.0
 the fixed axes of its universal joints: 1 / sin 30 for each of them."""
 
 
-def shortest_distance(machine: Machine, way: Way) -> float:
+def shortest_distance(machine: Machine, way: PosePath) -> float:
     """Lower bound of a strut's joint distance on the whole path, mm; not above 0 if none is proven."""
-    arms, turn, shortest = arms_from_tip(machine, way.tool_length), way.turn(), np.inf
+    arms, turn, shortest = lever_arms(machine, way.tool_length), way.turn(), np.inf
     for first in range(0, len(way), _CHUNK):
         rows = slice(first, first + _CHUNK + 1)  # includes the first row of the next chunk
         lengths = strut_lengths(machine, *way.rows(rows)) + machine.length_offset - abs(machine.screw_lead) / 2
@@ -50,15 +50,15 @@ def shortest_distance(machine: Machine, way: Way) -> float:
     return float(shortest)
 
 
-def stroke_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:
+def stroke_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Check, ...]:
     """Check that no strut is too short or too long."""
     low, high = machine.strut_stroke
     per_turn = _SCREW_SLOPE * abs(machine.screw_lead) / (2 * np.pi)
     by_travel = 1.0 + per_turn / shortest
-    by_turn = arms_from_tip(machine, way.tool_length).max() * by_travel + per_turn
+    by_turn = lever_arms(machine, way.tool_length).max() * by_travel + per_turn
 
     def check(name: str, code: str, told: str, sign: float, limit: float) -> Check:
-        def margins(placed: Placed) -> Array:
+        def margins(placed: PlacedMachine) -> Array:
             return sign * (placed.lengths() - limit)
 
         return Check(name, code, "mm", STRUTS, told, margins, by_travel, by_turn, HUNDREDTH)
@@ -69,16 +69,16 @@ def stroke_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, .
     )
 
 
-def joint_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ...]:
+def joint_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Check, ...]:
     """Check that no joint swings too far from its rest axis."""
     by_travel = 1.0 / shortest
-    by_turn = arms_from_tip(machine, way.tool_length).max() / shortest
+    by_turn = lever_arms(machine, way.tool_length).max() / shortest
 
-    def base(placed: Placed) -> Array:
-        return machine.base_cone - swing(placed.direction, machine.base_rest)
+    def base(placed: PlacedMachine) -> Array:
+        return machine.base_cone - joint_swing(placed.direction, machine.base_rest)
 
-    def platform(placed: Placed) -> Array:
-        return machine.platform_cone - swing(placed.in_platform(), -machine.platform_rest)
+    def platform(placed: PlacedMachine) -> Array:
+        return machine.platform_cone - joint_swing(placed.in_platform(), -machine.platform_rest)
 
     told = "joint {part} by {by:.3f} degrees"
     return (
@@ -87,28 +87,28 @@ def joint_checks(machine: Machine, way: Way, shortest: float) -> tuple[Check, ..
     )
 
 
-def swing(direction: Array, rest: Array) -> Array:
+def joint_swing(direction: Array, rest: Array) -> Array:
     """Angles between unit vectors, (N, 6); half a chord is the sine of half the angle, accurate for small ones."""
     chord = direction - rest
     return 2.0 * np.arcsin(np.minimum(norm(chord) / 2, 1.0))
 
 
-def singularity_check(machine: Machine, way: Way, shortest: float) -> Check:
+def singularity_check(machine: Machine, way: PosePath, shortest: float) -> Check:
     """Check that no singular pose is near a row or lies between two rows.
 
     The least singular value of a matrix changes by at most the Frobenius norm of the matrix change. While it stays
     above zero, the determinant keeps its sign: a sign other than at the start means that a singular pose was passed.
     """
-    start = np.sign(np.linalg.det(Placed.of(machine, way.rows(slice(0, 1))).scaled_jacobian()))
+    start = np.sign(np.linalg.det(PlacedMachine.of(machine, way.rows(slice(0, 1))).scaled_jacobian()))
     least = machine.least_singular_value
 
-    def margins(placed: Placed) -> Array:
+    def margins(placed: PlacedMachine) -> Array:
         jacobian = placed.scaled_jacobian()
         value = np.linalg.svd(jacobian, compute_uv=False)[:, -1:]
         return np.where(np.sign(np.linalg.det(jacobian)) == start, 1.0, -1.0)[:, None] * value - least
 
     arm = norm(machine.platform_joints) / machine.characteristic_length
-    swing_by_turn = arms_from_tip(machine, way.tool_length) / shortest
+    swing_by_turn = lever_arms(machine, way.tool_length) / shortest
     by_travel = float(np.sqrt(np.sum(1 + arm**2)) / shortest)
     by_turn = float(np.sqrt(np.sum(swing_by_turn**2 + ((1 + swing_by_turn) * arm) ** 2)))
     told = f"smallest singular value below {least:g} by {{by:.4f}}"
@@ -155,14 +155,14 @@ def reach_margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
 
 def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> tuple[Array, ...]:
     """Margins of a chunk; in place of ``singular``, smallest singular value and sign of the determinant."""
-    placed = Placed.of(machine, (tip, axis, spin, tool_length))
+    placed = PlacedMachine.of(machine, (tip, axis, spin, tool_length))
     length, jacobian = placed.lengths(), placed.scaled_jacobian()
     determinant = np.linalg.det(jacobian)
     return (
         length - machine.strut_stroke[0],
         machine.strut_stroke[1] - length,
-        machine.base_cone - swing(placed.direction, machine.base_rest),
-        machine.platform_cone - swing(-placed.in_platform(), machine.platform_rest),
+        machine.base_cone - joint_swing(placed.direction, machine.base_rest),
+        machine.platform_cone - joint_swing(-placed.in_platform(), machine.platform_rest),
         smallest_singular_value(jacobian, determinant, machine.least_singular_value),
         np.sign(determinant),
     )
@@ -190,7 +190,7 @@ _SPEED_RESOLUTION = 1e-3
 """Resolution, as a share of the strut speed."""
 
 
-def pace_finding(machine: Machine, way: Way, shortest: float, duration: Array) -> ReachFinding:
+def strut_speed_finding(machine: Machine, way: PosePath, shortest: float, duration: Array) -> ReachFinding:
     """Margins of strut speed.
 
     Args:
@@ -200,7 +200,9 @@ def pace_finding(machine: Machine, way: Way, shortest: float, duration: Array) -
         duration: (N,) duration of each cell, s; that of cell 0 is ignored.
     """
     limit = machine.strut_speed
-    subject = Subject("strut speed", "K118", "mm/s", STRUTS, f"strut {{part}} by {{by:.1f}} mm/s; it reaches {limit:g}")
+    subject = CheckedLimit(
+        "strut speed", "K118", "mm/s", STRUTS, f"strut {{part}} by {{by:.1f}} mm/s; it reaches {limit:g}"
+    )
     lengths = strut_lengths(machine, *way.rows(slice(None)))
     cells = np.arange(1, len(way))
     margin, part = np.full(len(way), limit), np.zeros(len(way), dtype=np.int32)
@@ -213,9 +215,9 @@ def pace_finding(machine: Machine, way: Way, shortest: float, duration: Array) -
     return ReachFinding(subject, margin, part, at_least)
 
 
-def _second_derivative(machine: Machine, way: Way, shortest: float) -> Array:
+def _second_derivative(machine: Machine, way: PosePath, shortest: float) -> Array:
     """Bounds of |l''| by the share of each cell, (N,)."""
-    arm = arms_from_tip(machine, way.tool_length).max()
+    arm = lever_arms(machine, way.tool_length).max()
     half_tilt, turn = way.half_tilt(), way.turn()
     turn_1 = turn * way.angle + half_tilt * (1 + half_tilt**2) / 2 * way.angle**2
     return way.bend + arm * (turn_1 + turn**2) + (way.travel + turn * arm) ** 2 / shortest
@@ -229,16 +231,16 @@ def _fastest(start: Array, end: Array, duration: Array) -> tuple[Array, Array]:
 
 
 def _halve(
-    machine: Machine, way: Way, lengths: Array, duration: Array, bend: Array, margin: Array, part: Array
+    machine: Machine, way: PosePath, lengths: Array, duration: Array, bend: Array, margin: Array, part: Array
 ) -> float:
     """Write the margins found by halving; return the proven lower bound of the margin."""
     limit, at_least = machine.strut_speed, machine.strut_speed
     cell = np.arange(1, len(way))
     start, before, after, width, found = np.zeros(len(cell)), lengths[:-1], lengths[1:], 1.0, margin[1:].copy()
     while True:
-        swing = bend[cell] * width / 2 / duration[cell]
-        settled = (found >= swing) | (found < 0) | (swing < _SPEED_RESOLUTION * limit)
-        at_least = float(np.min(found[settled] - swing[settled], initial=at_least))
+        excess = bend[cell] * width / 2 / duration[cell]
+        settled = (found >= excess) | (found < 0) | (excess < _SPEED_RESOLUTION * limit)
+        at_least = float(np.min(found[settled] - excess[settled], initial=at_least))
         cell, start, before, after = cell[~settled], start[~settled], before[~settled], after[~settled]
         if not len(cell):
             return at_least

@@ -20,10 +20,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.machine.kinematics.inverse import arms_from_tip
-from pkm_post.machine.kinematics.placed_machine import Placed
-from pkm_post.machine.reach.findings import ReachFinding, Subject
-from pkm_post.machine.reach.pose_path import Way, turn_between
+from pkm_post.machine.kinematics.inverse import lever_arms
+from pkm_post.machine.kinematics.placed_machine import PlacedMachine
+from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
+from pkm_post.machine.reach.pose_path import PosePath, turn_between
 from pkm_post.model import Machine
 from pkm_post.system import workers
 
@@ -36,7 +36,7 @@ _THREE_QUARTERS = 0.75
 
 
 @dataclass(frozen=True)
-class Check(Subject):
+class Check(CheckedLimit):
     """One check of poses.
 
     Attributes:
@@ -47,15 +47,15 @@ class Check(Subject):
         comfort: margins beyond it need not be computed for every row.
     """
 
-    margins: Callable[[Placed], Array]
+    margins: Callable[[PlacedMachine], Array]
     by_travel: float
     by_turn: float
     resolution: float
     comfort: float = np.inf
 
 
-def survey(
-    machine: Machine, way: Way, checks: tuple[Check, ...], faults_alone: bool = False
+def check_path(
+    machine: Machine, way: PosePath, checks: tuple[Check, ...], faults_alone: bool = False
 ) -> tuple[ReachFinding, ...]:
     """Evaluate each check along the whole path.
 
@@ -67,13 +67,13 @@ def survey(
     """
     turn = way.turn()
     if faults_alone:
-        surveys = [_Survey(machine, way, replace(check, comfort=0.0), turn) for check in checks]
+        surveys = [_PathCheck(machine, way, replace(check, comfort=0.0), turn) for check in checks]
         return tuple(workers().map(lambda one: one.strided(_STRIDE_FOR_FAULTS, 0.0), surveys))
-    surveys = [_Survey(machine, way, check, turn) for check in checks]
+    surveys = [_PathCheck(machine, way, check, turn) for check in checks]
     thorough = [one for one in surveys if one.check.comfort == np.inf]
     if thorough:
         for rows in _chunks(np.arange(len(way))):
-            placed = Placed.of(machine, way.rows(rows))
+            placed = PlacedMachine.of(machine, way.rows(rows))
             for one in thorough:
                 one.note(rows, one.check.margins(placed))
     return tuple(one.refined() if one in thorough else one.strided(_STRIDE, _THREE_QUARTERS) for one in surveys)
@@ -83,10 +83,10 @@ def _chunks(rows: Array) -> Iterator[Array]:
     return (rows[first : first + _AT_ONCE] for first in range(0, len(rows), _AT_ONCE))
 
 
-class _Survey:
+class _PathCheck:
     """State of one check along the rows."""
 
-    def __init__(self, machine: Machine, way: Way, check: Check, turn: Array) -> None:
+    def __init__(self, machine: Machine, way: PosePath, check: Check, turn: Array) -> None:
         self.machine, self.way, self.check = machine, way, check
         self.change = check.by_travel * way.travel + check.by_turn * turn
         self.margin, self.part = np.empty(len(way)), np.zeros(len(way), dtype=np.int32)
@@ -107,7 +107,7 @@ class _Survey:
     def look(self, rows: Array) -> None:
         """Compute and store the margins of rows."""
         for chunk in _chunks(rows):
-            self.note(chunk, self.check.margins(Placed.of(self.machine, self.way.rows(chunk))))
+            self.note(chunk, self.check.margins(PlacedMachine.of(self.machine, self.way.rows(chunk))))
 
     def strided(self, stride: int, share: float) -> ReachFinding:
         """Survey every ``stride``-th row, then the rows between them where little margin may be left.
@@ -179,7 +179,7 @@ class _Survey:
         """Worst margins at shares of cells and the parts that have them, (M,) each."""
         margin, part = np.empty(len(cells)), np.empty(len(cells), dtype=np.int32)
         for chunk in _chunks(np.arange(len(cells))):
-            placed = Placed.of(self.machine, self.way.inside(cells[chunk], share[chunk]))
+            placed = PlacedMachine.of(self.machine, self.way.inside(cells[chunk], share[chunk]))
             margins = self.check.margins(placed)
             part[chunk] = np.argmin(margins, axis=1)
             margin[chunk] = margins.min(axis=1)
@@ -206,7 +206,9 @@ _NO_STRUT = 1.0
 """mm: keeps the slopes finite on any path."""
 
 
-def doubtful(machine: Machine, way: Way, checks_for: Callable[[float], tuple[Check, ...]]) -> tuple[int, ...]:
+def unproven_checks(
+    machine: Machine, way: PosePath, checks_for: Callable[[float], tuple[Check, ...]]
+) -> tuple[int, ...]:
     """Indices of the checks that are not proven to hold on the whole path.
 
     Args:
@@ -215,7 +217,7 @@ def doubtful(machine: Machine, way: Way, checks_for: Callable[[float], tuple[Che
         checks_for: the checks, with slopes that hold where every strut's joints are at least this far apart, mm.
     """
     stretches = _Stretches.of(machine, way)
-    shortest = max(_NEARER * float(Placed.of(machine, way.rows(stretches.row)).distance.min()), _NO_STRUT)
+    shortest = max(_NEARER * float(PlacedMachine.of(machine, way.rows(stretches.row)).distance.min()), _NO_STRUT)
     checks = checks_for(shortest)
     doubts = {number: np.ones(1, dtype=bool) for number in range(len(checks))}
     violated = set()
@@ -248,7 +250,7 @@ class _Stretches:
     turn: Array
 
     @classmethod
-    def of(cls, machine: Machine, way: Way) -> _Stretches:
+    def of(cls, machine: Machine, way: PosePath) -> _Stretches:
         travel, turn = np.cumsum(way.travel), np.cumsum(way.turn())
         number = np.floor((travel + _longest_arm(machine, way) * turn) / _STRETCH)
         ends = np.unique(np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1, [len(way) - 1]]))
@@ -276,16 +278,16 @@ class _Groups:
     turn: Array
     arm: float
 
-    def bounds(self, machine: Machine, way: Way, check: Check, at: Array, shortest: float) -> tuple[Array, Array]:
+    def bounds(self, machine: Machine, way: PosePath, check: Check, at: Array, shortest: float) -> tuple[Array, Array]:
         """Margins at the anchors of some groups, and the lower bound of each group in margin or distance."""
-        placed = Placed.of(machine, way.rows(self.anchor[at]))
+        placed = PlacedMachine.of(machine, way.rows(self.anchor[at]))
         margin = check.margins(placed).min(axis=1)
         travel, turn = self.travel[at], self.turn[at]
         apart = placed.distance.min(axis=1) - (travel + turn * self.arm)
         return margin, np.minimum(margin - (check.by_travel * travel + check.by_turn * turn), apart - shortest)
 
 
-def _partitions(machine: Machine, way: Way, stretches: _Stretches) -> Iterator[_Groups]:
+def _partitions(machine: Machine, way: PosePath, stretches: _Stretches) -> Iterator[_Groups]:
     """Yield all stretches as one group, then the groups split in two along their widest extent, and so on."""
     arm = _longest_arm(machine, way)
     tip, axis, spin, tool_length = way.rows(stretches.row)
@@ -313,5 +315,5 @@ def _partitions(machine: Machine, way: Way, stretches: _Stretches) -> Iterator[_
         parent = halves // 2
 
 
-def _longest_arm(machine: Machine, way: Way) -> float:
-    return float(arms_from_tip(machine, way.tool_length).max())
+def _longest_arm(machine: Machine, way: PosePath) -> float:
+    return float(lever_arms(machine, way.tool_length).max())

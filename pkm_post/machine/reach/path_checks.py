@@ -11,18 +11,18 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine.kinematics.jacobian import stiffness_along
-from pkm_post.machine.reach.collision_mesh import Part
-from pkm_post.machine.reach.findings import ReachFinding, Subject, faults_of
-from pkm_post.machine.reach.interference import body_checks, part_checks, strut_checks
+from pkm_post.machine.reach.collision_mesh import CollisionMesh
+from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding, finding_diagnostics
+from pkm_post.machine.reach.interference import body_checks, strut_checks, workpiece_checks
 from pkm_post.machine.reach.limit_checks import (
     joint_checks,
-    pace_finding,
     shortest_distance,
     singularity_check,
     stroke_checks,
+    strut_speed_finding,
 )
-from pkm_post.machine.reach.path_bounds import Check, doubtful, survey
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.path_bounds import Check, check_path, unproven_checks
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model import Diagnostic, Machine, Trajectory
 
 _NO_STRUT = 1e-3
@@ -31,8 +31,8 @@ _NO_STRUT = 1e-3
 
 def reach_findings(
     machine: Machine,
-    way: Way,
-    part: Part | None = None,
+    way: PosePath,
+    part: CollisionMesh | None = None,
     duration: Array | None = None,
     normal: Array | None = None,
     least_stiffness: float = 0.0,
@@ -48,15 +48,15 @@ def reach_findings(
         least_stiffness: required stiffness of the tip along the normals, N/mm.
     """
     shortest = _shortest(machine, way)
-    findings = survey(machine, way, all_checks(machine, way, shortest, part))
+    findings = check_path(machine, way, all_checks(machine, way, shortest, part))
     if duration is not None:
-        findings += (pace_finding(machine, way, shortest, duration),)
+        findings += (strut_speed_finding(machine, way, shortest, duration),)
     if normal is not None and machine.strut_stiffness is not None:
         findings += (_stiffness_finding(machine, way, normal, least_stiffness),)
     return findings
 
 
-def all_checks(machine: Machine, way: Way, shortest: float, part: Part | None) -> tuple[Check, ...]:
+def all_checks(machine: Machine, way: PosePath, shortest: float, part: CollisionMesh | None) -> tuple[Check, ...]:
     """All checks of a path, in the order of their codes.
 
     Args:
@@ -71,18 +71,18 @@ def all_checks(machine: Machine, way: Way, shortest: float, part: Part | None) -
         singularity_check(machine, way, shortest),
         *strut_checks(machine, way, shortest),
         *body_checks(machine, way),
-        *(part_checks(machine, way, shortest, part) if part is not None else ()),
+        *(workpiece_checks(machine, way, shortest, part) if part is not None else ()),
     )
 
 
-def _stiffness_finding(machine: Machine, way: Way, normal: Array, least: float) -> ReachFinding:
+def _stiffness_finding(machine: Machine, way: PosePath, normal: Array, least: float) -> ReachFinding:
     told = f"below {least:g} N/mm by {{by:.1f}}"
     margin = stiffness_along(machine, way.rows(slice(None)), normal) - least
-    subject = Subject("stiffness along the normal", "K119", "N/mm", ("",), told)
+    subject = CheckedLimit("stiffness along the normal", "K119", "N/mm", ("",), told)
     return ReachFinding(subject, margin, np.zeros(len(way), dtype=np.int32), -np.inf)
 
 
-def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Array) -> tuple[Diagnostic, ...]:
+def reach_faults(machine: Machine, trajectory: Trajectory, way: PosePath, segment: Array) -> tuple[Diagnostic, ...]:
     """Diagnostics for a path that violates a limit: one for each operation and limit, at its worst.
 
     The same as from ``reach_findings``, but margins are computed only where the slopes do not prove them positive:
@@ -94,13 +94,13 @@ def reach_faults(machine: Machine, trajectory: Trajectory, way: Way, segment: Ar
         way: N poses in order along the trajectory.
         segment: (N,) segment of each pose.
     """
-    left = doubtful(machine, way, lambda shortest: all_checks(machine, way, shortest, None))
+    left = unproven_checks(machine, way, lambda shortest: all_checks(machine, way, shortest, None))
     if not left:
         return ()
     checks = all_checks(machine, way, _shortest(machine, way), None)
-    found = survey(machine, way, tuple(checks[number] for number in left), faults_alone=True)
-    return faults_of(found, trajectory, segment)
+    found = check_path(machine, way, tuple(checks[number] for number in left), faults_alone=True)
+    return finding_diagnostics(found, trajectory, segment)
 
 
-def _shortest(machine: Machine, way: Way) -> float:
+def _shortest(machine: Machine, way: PosePath) -> float:
     return max(shortest_distance(machine, way), _NO_STRUT * max(machine.strut_stroke[0], 1.0))

@@ -22,7 +22,7 @@ from pkm_post.model import both_by_row, shifted, uniform
 
 
 @dataclass(frozen=True)
-class Way:
+class PosePath:
     """N poses and the cells between them; cell 0 has no extent.
 
     Attributes:
@@ -48,7 +48,7 @@ class Way:
     inside: Callable[[Array, Array], Pose]
 
     @classmethod
-    def straight(cls, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Way:
+    def straight(cls, tip: Array, axis: Array, spin: Array, tool_length: Array) -> PosePath:
         """Build the path through poses with straight tip motion; arguments as in ``inverse``.
 
         Where the gauge length changes, the platform is at rest, and the tip of the new tool starts elsewhere.

@@ -20,10 +20,10 @@ import numpy as np
 
 from pkm_post.geometry import Array, norm
 from pkm_post.machine.kinematics.inverse import Pose
-from pkm_post.machine.reach.collision_mesh import Part
-from pkm_post.machine.reach.findings import SHOWN, ReachFinding, faults_of
+from pkm_post.machine.reach.collision_mesh import CollisionMesh
+from pkm_post.machine.reach.findings import DISPLAY_UNITS, ReachFinding, finding_diagnostics
 from pkm_post.machine.reach.path_checks import reach_findings
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model import RULES, Diagnostic, Machine, Trajectory
 from pkm_post.toolpath import Segments
 
@@ -36,7 +36,7 @@ _CHUNK = 65536
 
 
 @dataclass(frozen=True)
-class Reach:
+class ReachReport:
     """Results of the checks of a trajectory; N poses, each the end of a path cell.
 
     Attributes:
@@ -55,7 +55,7 @@ class Reach:
 
     def faults(self) -> tuple[Diagnostic, ...]:
         """One diagnostic for each check and operation that violates it, at its worst pose."""
-        return faults_of(self.findings, self.trajectory, self.segment)
+        return finding_diagnostics(self.findings, self.trajectory, self.segment)
 
     def column(self, name: str) -> Array:
         """Margins of one check by pose, (N,), in internal units; for colouring the tips."""
@@ -78,7 +78,7 @@ class Reach:
 
     def _check(self, finding: ReachFinding) -> dict[str, Any]:
         subject, worst, first = finding.subject, finding.worst_row, finding.first_bad_row
-        unit, factor = SHOWN[subject.unit]
+        unit, factor = DISPLAY_UNITS[subject.unit]
         return {
             "name": subject.name,
             "code": subject.code,
@@ -116,23 +116,23 @@ def _row(check: dict[str, Any]) -> tuple[str, ...]:
         f"{check['margin']:.4g} {check['unit']}".rstrip(),
         "rows only" if proven is None else f"{proven:.4g}",
         check["part"],
-        _told(check["worst"]),
-        "none" if first is None else _told(first),
+        _place_text(check["worst"]),
+        "none" if first is None else _place_text(first),
     )
 
 
-def _told(where: dict[str, Any]) -> str:
+def _place_text(where: dict[str, Any]) -> str:
     operation = f"{where['operation']}, " if where["operation"] else ""
     return f"{operation}line {where['line']}"
 
 
-def reach(
+def check_reach(
     trajectory: Trajectory,
     machine: Machine,
-    part: Part | None = None,
+    part: CollisionMesh | None = None,
     normal: Array | None = None,
     least_stiffness: float = 0.0,
-) -> Reach:
+) -> ReachReport:
     """Check a whole trajectory.
 
     Args:
@@ -142,13 +142,13 @@ def reach(
         normal: (S, 3) unit normals of the surface at the ends of the S segments, in {M}, for the stiffness.
         least_stiffness: required stiffness of the tip along the normals, N/mm.
     """
-    way, segment, duration = way_of(trajectory)
+    way, segment, duration = pose_path_of(trajectory)
     by_pose = None if normal is None else normal[segment]
     findings = reach_findings(machine, way, part, duration, by_pose, least_stiffness)
-    return Reach(trajectory, machine, way.tip, segment, findings)
+    return ReachReport(trajectory, machine, way.tip, segment, findings)
 
 
-def way_of(trajectory: Trajectory) -> tuple[Way, Array, Array]:
+def pose_path_of(trajectory: Trajectory) -> tuple[PosePath, Array, Array]:
     """The pose path of a trajectory, the segment of each of its rows (N,), and the time at feed of each cell (N,)."""
     segments, tool_length = Segments.of(trajectory), trajectory.tool_length()
     turn = np.maximum(segments.turn(), np.abs(segments.spin_rate))
@@ -170,7 +170,7 @@ def way_of(trajectory: Trajectory) -> tuple[Way, Array, Array]:
         np.concatenate(columns) for columns in zip(*(inside(rows, np.ones(len(rows))) for rows in chunks), strict=True)
     )
     travel, bend = _motion_of_tip(segments)
-    way = Way(
+    way = PosePath(
         tip=tip,
         axis=axis,
         spin=spin,

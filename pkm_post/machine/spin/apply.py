@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, cross, norm, torsion
-from pkm_post.machine.spin.optimise import optimise
-from pkm_post.machine.spin.policy import Policy, Rule
+from pkm_post.machine.spin.optimise import optimise_spin
+from pkm_post.machine.spin.policy import SpinPolicy, SpinRule
 from pkm_post.model import Diagnostic, EventKind, Machine, Trajectory
 
 _NO_DIRECTION = 1e-6
@@ -46,7 +46,7 @@ _SAME = 1e-6
 
 
 def with_spin(
-    trajectory: Trajectory, machine: Machine, policy: Policy
+    trajectory: Trajectory, machine: Machine, policy: SpinPolicy
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The trajectory with the spin of a policy, or diagnostics where the policy leaves it undefined.
 
@@ -74,15 +74,15 @@ def _as_tools_change(trajectory: Trajectory, machine: Machine) -> Trajectory:
 
 
 def _by_policy(
-    trajectory: Trajectory, machine: Machine, policy: Policy
+    trajectory: Trajectory, machine: Machine, policy: SpinPolicy
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
-    if policy.rule is Rule.FILE:
+    if policy.rule is SpinRule.FILE:
         return trajectory, ()
-    if policy.rule is Rule.OPTIMISED:
-        return optimise(replace(trajectory, spin=np.zeros(len(trajectory))), machine, policy), ()
-    if policy.rule is Rule.ZERO:
+    if policy.rule is SpinRule.OPTIMISED:
+        return optimise_spin(replace(trajectory, spin=np.zeros(len(trajectory))), machine, policy), ()
+    if policy.rule is SpinRule.ZERO:
         return replace(trajectory, spin=np.zeros(len(trajectory))), ()
-    spin = spin_in_plane(trajectory.axis, policy.heading, of_y=policy.rule is Rule.Y_IN_PLANE)
+    spin = spin_in_plane(trajectory.axis, policy.heading, of_y=policy.rule is SpinRule.Y_IN_PLANE)
     open_rows = np.flatnonzero(np.isnan(spin))
     if len(open_rows):
         found = f"spin {policy.rule.value}, {len(open_rows)} of {len(spin)} moves"

@@ -24,7 +24,7 @@ _CHUNK = 16384
 """Poses per pass: the working arrays fit the processor's cache."""
 
 
-def shares(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+def normalised_margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
     """Shares at poses, (N, 3).
 
     The share is 1 at mid-stroke, for a joint at its rest axis, and for the Jacobian where all its singular values are
@@ -42,7 +42,7 @@ def shares(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: 
     found = np.empty((len(tip), 3))
     for first in range(0, len(tip), _CHUNK):
         rows = slice(first, first + _CHUNK)
-        found[rows] = _shares(machine, *(column[rows] for column in poses))
+        found[rows] = _margins_of_chunk(machine, *(column[rows] for column in poses))
     return found
 
 
@@ -59,7 +59,7 @@ def score(left: Array, weights: Mapping[int, float]) -> Array:
     return np.where(worst < 0, worst, wanted)
 
 
-def _shares(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
+def _margins_of_chunk(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> Array:
     struts, rotation = strut_vectors(machine, tip, axis, spin, tool_length), platform_rotation(axis, spin)
     distance = norm(struts)
     direction = struts / distance[..., None]
@@ -94,7 +94,7 @@ _APART = 10.0
 
 
 @dataclass(frozen=True)
-class Samples:
+class SampledPoses:
     """Columns of S samples of a path with N segments.
 
     Attributes:
@@ -116,7 +116,7 @@ class Samples:
     row_s: Array
 
     @classmethod
-    def of(cls, trajectory: Trajectory) -> Samples:
+    def of(cls, trajectory: Trajectory) -> SampledPoses:
         """The samples of a trajectory, including the end of each segment."""
         segments = Segments.of(trajectory)
         count = np.ceil(segments.extent / _APART).astype(np.int64)

@@ -13,15 +13,15 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine.spin.normalised_margins import Samples, score, shares
-from pkm_post.machine.spin.policy import Policy
+from pkm_post.machine.spin.normalised_margins import SampledPoses, normalised_margins, score
+from pkm_post.machine.spin.policy import SpinPolicy
 from pkm_post.model import Machine, Trajectory
 
 _SLACK = 1e-9
 """Tolerance in comparisons: relative for computed steps, absolute for scores."""
 
 
-def best_course(candidates: Array, scores: Array, start: float, limit: Array, extent: Array) -> Array:
+def best_sequence(candidates: Array, scores: Array, start: float, limit: Array, extent: Array) -> Array:
     """The index of the candidate to take at each node, (K,).
 
     Args:
@@ -80,7 +80,7 @@ _BLOCK = 1 << 16
 """Poses per pass, samples times candidates: limits memory."""
 
 
-def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Trajectory:
+def optimise_spin(trajectory: Trajectory, machine: Machine, policy: SpinPolicy) -> Trajectory:
     """Search for the spin.
 
     Args:
@@ -88,7 +88,7 @@ def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Trajec
         machine: geometry and limits.
         policy: objective, and range and rate of the spin.
     """
-    samples, home = Samples.of(trajectory), trajectory.start_spin
+    samples, home = SampledPoses.of(trajectory), trajectory.start_spin
     node_s = samples.row_s[_nodes(samples.row_s, policy.step / policy.rate)]
     extent = np.diff(node_s, prepend=0.0)
     course = np.full(len(node_s), home)
@@ -97,17 +97,17 @@ def optimise(trajectory: Trajectory, machine: Machine, policy: Policy) -> Trajec
         candidates = course[:, None] + step * np.arange(-count, count + 1)
         np.clip(candidates, home - policy.widest, home + policy.widest, out=candidates)
         scores = _scores(samples, node_s, machine, policy, candidates)
-        best = best_course(candidates, scores, home, policy.rate * extent, extent)
+        best = best_sequence(candidates, scores, home, policy.rate * extent, extent)
         course = candidates[np.arange(len(course)), best]
         step, count = step / _REFINEMENT, _REFINEMENT
     spin = np.interp(samples.row_s, np.append(0.0, node_s), np.append(home, course))
     return replace(trajectory, spin=spin)
 
 
-def least_shares(trajectory: Trajectory, machine: Machine) -> Array:
+def least_normalised_margins(trajectory: Trajectory, machine: Machine) -> Array:
     """Least shares over a trajectory, (3,): stroke, joints, distance to singular poses."""
-    samples = Samples.of(trajectory)
-    left = shares(machine, samples.tip, samples.axis, samples.spin, samples.tool_length)
+    samples = SampledPoses.of(trajectory)
+    left = normalised_margins(machine, samples.tip, samples.axis, samples.spin, samples.tool_length)
     return np.asarray(left.min(axis=0))
 
 
@@ -122,7 +122,7 @@ def _nodes(row_s: Array, least: float) -> list[int]:
     return nodes
 
 
-def _scores(samples: Samples, node_s: Array, machine: Machine, policy: Policy, candidates: Array) -> Array:
+def _scores(samples: SampledPoses, node_s: Array, machine: Machine, policy: SpinPolicy, candidates: Array) -> Array:
     """Score of each candidate at each node, (K, M): the worst of the samples nearest to the node."""
     halfway = (np.append(0.0, node_s[:-1]) + node_s) / 2
     # Samples nearest to the start of the path have the spin of the start.
@@ -136,6 +136,6 @@ def _scores(samples: Samples, node_s: Array, machine: Machine, policy: Policy, c
         tip, axis, length = (
             np.repeat(column[rows], choices, axis=0) for column in (samples.tip, samples.axis, samples.tool_length)
         )
-        left = shares(machine, tip, axis, candidates[node[first : first + block]].ravel(), length)
+        left = normalised_margins(machine, tip, axis, candidates[node[first : first + block]].ravel(), length)
         scores[first : first + block] = score(left, policy.weights).reshape(-1, choices)
     return np.asarray(np.minimum.reduceat(scores, np.searchsorted(node, np.arange(len(node_s))), axis=0))

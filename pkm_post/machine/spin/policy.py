@@ -12,7 +12,7 @@ from types import MappingProxyType
 from pkm_post.machine.spin.normalised_margins import JOINTS, SINGULAR, STROKE
 
 
-class Rule(enum.Enum):
+class SpinRule(enum.Enum):
     """Source of the spin."""
 
     ZERO = "zero"
@@ -39,7 +39,7 @@ OBJECTIVES: Mapping[str, Mapping[int, float]] = MappingProxyType(
 
 
 @dataclass(frozen=True)
-class Policy:
+class SpinPolicy:
     """A rule and its parameters.
 
     Attributes:
@@ -51,7 +51,7 @@ class Policy:
         step: first step of the search, rad; it is refined to a sixteenth.
     """
 
-    rule: Rule = Rule.ZERO
+    rule: SpinRule = SpinRule.ZERO
     heading: float = 0.0
     objective: str = "stroke"
     rate: float = math.radians(0.5)
@@ -70,4 +70,4 @@ class Policy:
         return OBJECTIVES[self.objective]
 
 
-ZERO_TORSION = Policy()
+ZERO_TORSION = SpinPolicy()

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from machines import direction, genhexkins, nategh, random_poses
 
-from pkm_post.machine.calibration.identification import Measured, calibrate, combination_text, identification_rows
+from pkm_post.machine.calibration.identification import MeasuredPoses, calibrate, combination_text, identification_rows
 from pkm_post.machine.description.presets import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.machine.kinematics.forward import forward
@@ -56,7 +56,7 @@ def measured(nominal, real, told, rng=None):
     axis = axis + noise * rng.normal(0, AXIS_NOISE, axis.shape)
     axis = axis / np.linalg.norm(axis, axis=1, keepdims=True)
     spin = spin + noise * rng.normal(0, AXIS_NOISE, spin.shape)
-    return Measured(tip, axis, spin, tool_length, sent + noise * rng.normal(0, LENGTH_NOISE, sent.shape))
+    return MeasuredPoses(tip, axis, spin, tool_length, sent + noise * rng.normal(0, LENGTH_NOISE, sent.shape))
 
 
 def tip_errors(believed, real, told):
@@ -113,7 +113,9 @@ def test_rank_and_condition_are_the_known_ones(count, rank, condition):
     nominal, real = machines()
     conditions = []
     for seed in range(25):
-        rows = identification_rows(nominal, Measured(*poses(np.random.default_rng(seed), count), np.zeros((count, 6))))
+        rows = identification_rows(
+            nominal, MeasuredPoses(*poses(np.random.default_rng(seed), count), np.zeros((count, 6)))
+        )
         values = np.linalg.svd(rows, compute_uv=False)
         assert (values > 1e-9 * values.max()).sum() == rank
         conditions.append(values.max() / values.min())
@@ -143,7 +145,7 @@ def test_poses_without_a_turn_leave_base_and_platform_apart():
     nominal, real = machines()
     tip = poses(np.random.default_rng(6), 30)[0]
     level = tip, np.tile(HOME[1], (30, 1)), np.zeros(30), np.zeros(30)
-    exact = Measured(*level, strut_lengths(real, *level))
+    exact = MeasuredPoses(*level, strut_lengths(real, *level))
     found = calibrate(nominal, exact)
     assert found.rank == 42 - 18
     assert np.isinf(found.deviation[:, :6]).all()
@@ -168,7 +170,7 @@ def test_rows_are_those_of_differences():
     )  # fmt: skip
     tip, axis, spin, tool = random_poses(np.random.default_rng(7), 20, 20.0)
     pose = tip + [0, 0, 250], axis, spin, tool
-    rows = identification_rows(machine, Measured(*pose, np.zeros((20, 6))))
+    rows = identification_rows(machine, MeasuredPoses(*pose, np.zeros((20, 6))))
     step = 1e-3
     for column in range(7):
         moved = []
@@ -193,7 +195,7 @@ def test_machine_with_a_screw_is_found_again():
         platform_joints=believed.platform_joints + rng.normal(0, 1, (6, 3)), length_offset=rng.normal(0, 1, 6),
     )  # fmt: skip
     told = poses(rng, 20)
-    found = calibrate(believed, Measured(*told, strut_lengths(real, *told)))
+    found = calibrate(believed, MeasuredPoses(*told, strut_lengths(real, *told)))
     assert found.converged
     assert np.abs(parameters(found.machine) - parameters(real)).max() < MICRON
 
@@ -206,6 +208,6 @@ def test_steps_that_do_not_end_are_said_so():
 
 def test_no_poses_are_refused():
     nominal, _ = machines()
-    none = Measured(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros((0, 6)))
+    none = MeasuredPoses(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros((0, 6)))
     with pytest.raises(ValueError, match="expected measured poses"):
         calibrate(nominal, none)

@@ -11,11 +11,11 @@ from meshes import ball, box
 from pkm_post.geometry.distances import point_to_cylinder, segment_to_segment
 from pkm_post.geometry.polygons import subdivide
 from pkm_post.machine.collisions.contacts import contacts, contacts_at_ends
-from pkm_post.machine.collisions.moving_bodies import Piece, of_body, of_struts, of_tool
-from pkm_post.machine.kinematics.placed_machine import Pieces, Placed
-from pkm_post.machine.reach.collision_mesh import Part
+from pkm_post.machine.collisions.moving_bodies import ToolCylinder, platform_body, strut_bodies, tool_body
+from pkm_post.machine.kinematics.placed_machine import PlacedMachine, StrutCapsules
+from pkm_post.machine.reach.collision_mesh import CollisionMesh
 from pkm_post.machine.reach.limit_checks import HUNDREDTH
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model.machine import Body
 
 LENGTH = 120.0
@@ -29,11 +29,11 @@ HOLDER = Body("holder", 25.0, -NOSE - 50.0, -NOSE)
 def straight(tips, axes=None, length=LENGTH, spins=0.0):
     tips = np.array(tips, dtype=float)
     axes = np.tile([0.0, 0.0, 1.0], (len(tips), 1)) if axes is None else np.array(axes, dtype=float)
-    return Way.straight(tips, axes, np.broadcast_to(spins, len(tips)).astype(float), np.full(len(tips), length))
+    return PosePath.straight(tips, axes, np.broadcast_to(spins, len(tips)).astype(float), np.full(len(tips), length))
 
 
 def found(way, mover, mesh, clearance, longest=25.0):
-    return contacts(way, mover, Part.of(subdivide(mesh, longest)), clearance, np.zeros(len(way), dtype=int))
+    return contacts(way, mover, CollisionMesh.of(subdivide(mesh, longest)), clearance, np.zeros(len(way), dtype=int))
 
 
 @pytest.mark.parametrize("clearance", [0.5, 3.0])
@@ -49,7 +49,7 @@ def found(way, mover, mesh, clearance, longest=25.0):
 )  # fmt: skip
 def test_a_holder_that_just_clears_is_clear_and_one_that_does_not_is_found(mesh, distance, clearance):
     way = straight([[-30, 0, 100], [40, 0, 100]])
-    mover = of_body(example(), way, HOLDER)
+    mover = platform_body(example(), way, HOLDER)
     towards = np.array([0.0, -1.0, 0.0] if distance in (15.0, 12.0) else [0.0, 0.0, 1.0])
     for hair in (HAIR, -HAIR):
         met = found(way, mover, mesh + towards * (distance - clearance - hair), clearance)
@@ -61,11 +61,11 @@ def test_a_holder_that_just_clears_is_clear_and_one_that_does_not_is_found(mesh,
 def test_a_thin_pin_between_two_far_poses_is_found_and_where_it_is():
     way = straight([[-150, 0, 100], [150, 0, 100]])
     pin = box([37.0, 3.0, 0.0], [37.2, 3.2, 175.0])
-    met = found(way, of_body(example(), way, HOLDER), pin, 0.001)
+    met = found(way, platform_body(example(), way, HOLDER), pin, 0.001)
     assert len(met) and set(met.cell) == {1}
     at = -150 + 300 * met.share
     assert np.all(np.abs(at - 37.1) < 25.2)
-    assert not len(contacts_at_ends(way, of_body(example(), way, HOLDER), Part.of(pin), 0.001))
+    assert not len(contacts_at_ends(way, platform_body(example(), way, HOLDER), CollisionMesh.of(pin), 0.001))
 
 
 def test_a_turn_of_the_axis_alone_swings_the_holder():
@@ -75,22 +75,22 @@ def test_a_turn_of_the_axis_alone_swings_the_holder():
     down = 100 + 70 * np.cos(np.pi / 6) - 25 * np.sin(np.pi / 6)
     for below, hit in ((0.05, False), (-0.05, True)):
         plate = box([-200, -200, 0], [200, 200, down - below])
-        assert bool(len(found(way, of_body(example(), way, HOLDER), plate, 0.001))) == hit
+        assert bool(len(found(way, platform_body(example(), way, HOLDER), plate, 0.001))) == hit
 
 
 def test_only_cells_in_use_are_looked_at():
     way = straight([[-100, 0, 100], [-50, 0, 100], [50, 0, 100], [100, 0, 100]])
     post = box([-5, -5, 0], [5, 5, 130])
-    pieces = [Piece(0.0, 40.0, 5.0)]
+    pieces = [ToolCylinder(0.0, 40.0, 5.0)]
     for cells, hit in ([[1, 3], False], [[1, 2, 3], True], [[2], True], [[], False]):
-        mover = of_tool("cutter", way, np.array(cells, dtype=int), pieces)
+        mover = tool_body("cutter", way, np.array(cells, dtype=int), pieces)
         met = found(way, mover, post, 0.001)
         assert bool(len(met)) == hit and set(met.cell) <= {2}
 
 
 def test_rounding_grows_a_piece_all_round():
     way = straight([[0, 0, 100], [1, 0, 100]])
-    mover = of_tool("ball", way, np.array([1]), [Piece(6.0, 40.0, 0.0, 6.0)])
+    mover = tool_body("ball", way, np.array([1]), [ToolCylinder(6.0, 40.0, 0.0, 6.0)])
     for height, hit in ((99.97, False), (100.03, True)):
         assert bool(len(found(way, mover, box([-50, -50, 0], [50, 50, height]), 0.001))) == hit
     # Across the corner a ball nose leaves what a flat end mill would touch.
@@ -129,10 +129,10 @@ def test_nothing_is_missed_and_nothing_is_found_that_is_not_there(seed):
     if seed % 2:
         mesh = ball(rng.uniform([-60, -60, 80], [60, 60, 200]), rng.uniform(5, 25), 10)
     body = dataclasses.replace(HOLDER, radius=float(rng.uniform(5, 30)))
-    tool = [Piece(5.0, 30.0, 3.0), Piece(30.0, 70.0, 8.0)]
+    tool = [ToolCylinder(5.0, 30.0, 3.0), ToolCylinder(30.0, 70.0, 8.0)]
     apart, shares = 6.0, np.linspace(0, 1, 17)
     points = points_of(mesh, apart)
-    for mover in (of_body(example(), way, body), of_tool("tool", way, np.arange(1, rows), tool)):
+    for mover in (platform_body(example(), way, body), tool_body("tool", way, np.arange(1, rows), tool)):
         cells, pieces = np.arange(1, rows), len(mover.rounding)
         brute = sampled_distance(way, cells, shares, mover.cylinders, pieces, points)
         for clearance in (0.01, 4.0, 12.0):
@@ -155,9 +155,9 @@ def test_struts_are_those_of_the_kinematics(seed):
     rng = np.random.default_rng(seed)
     machine = dataclasses.replace(example(), tube_radius=32.0, tube_length=700.0, rod_radius=20.0, rod_length=650.0)
     way = straight(rng.uniform([-80, -80, 120], [80, 80, 200], (5, 3)), spins=rng.uniform(-0.3, 0.3, 5))
-    mover = of_struts(machine, way)
-    middle = Placed.of(machine, way.inside(np.array([2]), np.array([0.5])))
-    pieces = Pieces.of(machine, middle.distance)
+    mover = strut_bodies(machine, way)
+    middle = PlacedMachine.of(machine, way.inside(np.array([2]), np.array([0.5])))
+    pieces = StrutCapsules.of(machine, middle.distance)
     start, end = pieces.ends(machine.base_joints, middle.direction)
     spot = (start + end)[0, 1, int(rng.integers(6))] / 2
     pin = box(spot - 1.0, spot + 1.0)
@@ -165,8 +165,8 @@ def test_struts_are_those_of_the_kinematics(seed):
     assert len(met) and 2 in met.cell
     # Far from all struts at dense samples, and from all points between them: nothing.
     far = spot + [0, 0, 400.0]
-    samples = Placed.of(machine, way.inside(np.repeat(np.arange(1, 5), 21), np.tile(np.linspace(0, 1, 21), 4)))
-    pieces = Pieces.of(machine, samples.distance)
+    samples = PlacedMachine.of(machine, way.inside(np.repeat(np.arange(1, 5), 21), np.tile(np.linspace(0, 1, 21), 4)))
+    pieces = StrutCapsules.of(machine, samples.distance)
     start, end = pieces.ends(machine.base_joints, samples.direction)
     apart = (segment_to_segment(start, end, far, far) - pieces.radius[:, None]).min()
     met = found(way, mover, box(far - 0.5, far + 0.5), 0.001)

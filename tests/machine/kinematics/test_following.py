@@ -8,7 +8,7 @@ import pytest
 from machines import example, screwed
 
 from pkm_post.geometry import norm
-from pkm_post.machine.kinematics.forward import follow
+from pkm_post.machine.kinematics.forward import forward_along_path
 from pkm_post.machine.kinematics.inverse import platform_rotation, strut_lengths
 
 NANOMETRE = 1e-6
@@ -29,7 +29,7 @@ def test_the_poses_are_those_of_the_path(count):
     machine = dataclasses.replace(screwed(example()), length_offset=np.linspace(-1, 1, 6))
     tip, axis, spin, tool_length = pose = path(count)
     rotation = platform_rotation(axis, spin)
-    found = follow(machine, strut_lengths(machine, *pose), tool_length, tip[0] + 3, rotation[0])
+    found = forward_along_path(machine, strut_lengths(machine, *pose), tool_length, tip[0] + 3, rotation[0])
     assert found.converged.all()
     assert norm(found.tip - tip).max() < 1e-9
     np.testing.assert_allclose(found.rotation, rotation, atol=1e-11)
@@ -40,7 +40,7 @@ def test_nothing_is_claimed_from_where_the_path_breaks():
     tip, axis, spin, tool_length = pose = path(5000)
     lengths = strut_lengths(example(), *pose)
     lengths[3000] = [1250.0, 250, 250, 250, 250, 250]
-    found = follow(example(), lengths, tool_length, tip[0], platform_rotation(axis, spin)[0])
+    found = forward_along_path(example(), lengths, tool_length, tip[0], platform_rotation(axis, spin)[0])
     assert found.converged[:3000].all() and not found.converged[3000:].any()
     assert norm(found.tip - tip)[:3000].max() < NANOMETRE
 
@@ -48,6 +48,8 @@ def test_nothing_is_claimed_from_where_the_path_breaks():
 def test_few_rows_far_apart_end_in_the_same_poses_or_in_none():
     # With 16 rows on three laps, steps are about 70 mm and 60 degrees of azimuth long.
     tip, axis, spin, tool_length = pose = path(16)
-    found = follow(example(), strut_lengths(example(), *pose), tool_length, tip[0], platform_rotation(axis, spin)[0])
+    found = forward_along_path(
+        example(), strut_lengths(example(), *pose), tool_length, tip[0], platform_rotation(axis, spin)[0]
+    )
     assert norm(found.tip - tip)[found.converged].max() < NANOMETRE
     assert found.converged[0]

@@ -6,7 +6,12 @@ import pytest
 from machines import INCH, axis_and_spin, direction, example, genhexkins, nategh, random_poses, rotation_about, screwed
 
 from pkm_post.geometry import norm
-from pkm_post.machine.kinematics.inverse import lengths_at_tips, platform_rotation, strut_lengths, strut_vectors
+from pkm_post.machine.kinematics.inverse import (
+    lengths_at_constant_attitude,
+    platform_rotation,
+    strut_lengths,
+    strut_vectors,
+)
 from pkm_post.machine.kinematics.screw import screw_correction
 
 PICOMETRE = 1e-9
@@ -109,7 +114,7 @@ def calibrated():
 def test_tips_with_one_attitude_in_common_have_the_lengths_of_their_poses(machine):
     tip, axis, spin, tool_length = (column[:200] for column in many_poses(machine))
     alike = [np.repeat(column[7:8], len(tip), axis=0) for column in (axis, spin, tool_length)]
-    found = lengths_at_tips(machine, tip, axis[7:8], spin[7:8], tool_length[7:8])
+    found = lengths_at_constant_attitude(machine, tip, axis[7:8], spin[7:8], tool_length[7:8])
     np.testing.assert_allclose(found, strut_lengths(machine, tip, *alike), rtol=0, atol=PICOMETRE)
 
 

@@ -5,9 +5,9 @@ from machines import example, screwed
 from test_rates import wandering_poses
 
 from pkm_post.geometry import norm, unit
-from pkm_post.machine.kinematics.forward import NearPoses, forward, near_poses
+from pkm_post.machine.kinematics.forward import NearPoses, forward, refine_poses
 from pkm_post.machine.kinematics.inverse import strut_lengths
-from pkm_post.machine.kinematics.strut_cubics import Ends
+from pkm_post.machine.kinematics.strut_cubics import KnotState
 
 SHARE = np.linspace(0, 1, 9)
 LENGTH = 1e-10
@@ -18,7 +18,7 @@ MACHINES = {"example": example, "screws": lambda: screwed(example())}
 def intervals(machine, count=150, duration=0.02):
     """Inverse Jacobians at both ends of intervals of a motion, and the poses in them."""
     start = np.sort(np.random.default_rng(15).uniform(0, 6, count))
-    inverses = tuple(Ends.of(machine, wandering_poses(time)).inverse for time in (start, start + duration))
+    inverses = tuple(KnotState.of(machine, wandering_poses(time)).inverse for time in (start, start + duration))
     return inverses, wandering_poses((start[:, None] + duration * SHARE).ravel())
 
 
@@ -38,7 +38,7 @@ def test_poses_found_are_those_of_forward_kinematics(machine, off):
     inverses, true = intervals(machine)
     tool = true.tool_length
     lengths = strut_lengths(machine, true.tip, true.axis, true.spin, tool)
-    pose, found = near_poses(machine, lengths.reshape(-1, 9, 6), beside(true, off), tool, inverses, SHARE)
+    pose, found = refine_poses(machine, lengths.reshape(-1, 9, 6), beside(true, off), tool, inverses, SHARE)
     assert found.all()
     assert np.abs(strut_lengths(machine, pose.tip, pose.axis, pose.spin, tool) - lengths).max() < LENGTH
     by_newton = forward(machine, lengths, tool, true.tip, true.axis, true.spin)
@@ -55,7 +55,7 @@ def test_what_is_far_away_is_not_said_to_be_found():
     wrong = lengths.reshape(-1, 9, 6).copy()
     wrong[5, 3, 2] += 30.0
     wrong[8, 0] = np.nan
-    _, found = near_poses(machine, wrong, beside(true, 1e-4), true.tool_length, inverses, SHARE)
+    _, found = refine_poses(machine, wrong, beside(true, 1e-4), true.tool_length, inverses, SHARE)
     assert np.flatnonzero(~found).tolist() == [5 * 9 + 3, 8 * 9]
 
 
@@ -66,12 +66,12 @@ def test_a_pose_does_not_depend_on_the_others():
     lengths = strut_lengths(machine, true.tip, true.axis, true.spin, tool).reshape(-1, 9, 6)
     guess = beside(true, 1e-3)
     guess.tip[::2] = true.tip[::2]  # every second one needs fewer steps
-    whole, _ = near_poses(machine, lengths, guess, tool, inverses, SHARE)
+    whole, _ = refine_poses(machine, lengths, guess, tool, inverses, SHARE)
     for row in range(40):
         part = slice(9 * row, 9 * row + 9)
         own = tuple(inverse[row : row + 1] for inverse in inverses)
         alone = NearPoses(guess.tip[part], guess.axis[part], guess.spin[part])
-        pose, _ = near_poses(machine, lengths[row : row + 1], alone, tool[part], own, SHARE)
+        pose, _ = refine_poses(machine, lengths[row : row + 1], alone, tool[part], own, SHARE)
         np.testing.assert_array_equal(pose.tip, whole.tip[part])
         np.testing.assert_array_equal(pose.axis, whole.axis[part])
 
@@ -82,6 +82,6 @@ def test_shares_may_differ_by_interval():
     lengths = strut_lengths(machine, true.tip, true.axis, true.spin, true.tool_length).reshape(-1, 9, 6)
     guess = beside(true, 1e-3)
     of_each = np.tile(SHARE, (30, 1))
-    one, _ = near_poses(machine, lengths, guess, true.tool_length, inverses, SHARE)
-    other, _ = near_poses(machine, lengths, guess, true.tool_length, inverses, of_each)
+    one, _ = refine_poses(machine, lengths, guess, true.tool_length, inverses, SHARE)
+    other, _ = refine_poses(machine, lengths, guess, true.tool_length, inverses, of_each)
     np.testing.assert_array_equal(one.tip, other.tip)

@@ -9,7 +9,15 @@ from pkm_post.geometry.vectors import cross
 from pkm_post.machine.kinematics.inverse import strut_lengths
 from pkm_post.machine.kinematics.jacobian import jacobian_of_tip
 from pkm_post.machine.kinematics.rates import strut_rates
-from pkm_post.machine.kinematics.strut_cubics import Ends, Inside, carried, fastest, moving, steepest, stray
+from pkm_post.machine.kinematics.strut_cubics import (
+    Inside,
+    KnotState,
+    map_to_tool,
+    max_strut_acceleration,
+    max_strut_speed,
+    strut_state,
+    tool_deviation,
+)
 
 SHARE = np.linspace(0.05, 0.95, 13)
 MACHINES = {"example": example, "screws": lambda: screwed(example())}
@@ -41,24 +49,24 @@ def test_deviations_agree_with_those_by_the_jacobian_of_each_instant(machine, lo
     # the inverse Jacobians misses, a part of the deviation, goes with the square of their length.
     start, end, inner = an_interval_each(200, long)
     duration = np.full(200, long)
-    ends = Ends.of(machine, start), Ends.of(machine, end)
+    ends = KnotState.of(machine, start), KnotState.of(machine, end)
     inside = Inside(inner.tip, inner.axis, inner.spin, inner.tool_length)
-    found = stray(machine, *ends, inside, duration, SHARE)
+    found = tool_deviation(machine, *ends, inside, duration, SHARE)
     tip, axis, acceleration = by_the_jacobian_of_each_instant(machine, start, end, inner, duration)
     rounding = 1e-11
     np.testing.assert_allclose(found.tip.ravel(), tip, rtol=50 * missed, atol=rounding)
     assert np.abs(found.tip.ravel() - tip).max() <= missed * tip.max() + rounding
     assert np.abs(found.axis.ravel() - axis).max() <= missed * axis.max() + rounding
-    np.testing.assert_allclose(steepest(*ends, duration), acceleration, rtol=1e-6)
+    np.testing.assert_allclose(max_strut_acceleration(*ends, duration), acceleration, rtol=1e-6)
 
 
 def test_no_strut_is_faster_than_its_bound():
     start, end, _ = an_interval_each(500, 0.3)
     duration = np.full(500, 0.3)
-    first, last = Ends.of(example(), start), Ends.of(example(), end)
+    first, last = KnotState.of(example(), start), KnotState.of(example(), end)
     share = np.linspace(0, 1, 101)
     speeds = hermite_speeds(first.length, first.speed, last.length, last.speed, duration, share)
-    highest, bound = np.abs(speeds).max(axis=(1, 2)), fastest(first, last, duration)
+    highest, bound = np.abs(speeds).max(axis=(1, 2)), max_strut_speed(first, last, duration)
     assert np.all(highest <= bound * (1 + 1e-12))
     assert np.median(highest / bound) > 0.95
 
@@ -67,28 +75,28 @@ def test_no_strut_is_faster_than_its_bound():
 def test_lengths_and_speeds_at_the_ends_are_those_of_the_rates(machine):
     poses = wandering_poses(np.linspace(0, 6, 200))
     length, speed, _ = strut_rates(machine, poses)
-    found = Ends.of(machine, poses)
+    found = KnotState.of(machine, poses)
     np.testing.assert_allclose(found.length, length, atol=1e-9)
     np.testing.assert_allclose(found.speed, speed, atol=1e-9)
 
 
 def test_ends_are_picked_by_row():
     poses, rows = wandering_poses(np.linspace(0, 6, 9)), np.array([7, 0, 7])
-    whole, some = Ends.of(example(), poses), Ends.of(example(), wandering_poses(np.linspace(0, 6, 9)[rows]))
+    whole, some = KnotState.of(example(), poses), KnotState.of(example(), wandering_poses(np.linspace(0, 6, 9)[rows]))
     np.testing.assert_allclose(whole[rows].inverse, some.inverse, rtol=1e-12)
     np.testing.assert_allclose(whole[rows].speed, some.speed, rtol=1e-12)
 
 
 def test_the_mean_of_the_inverses_is_off_by_a_quarter_of_the_square_of_the_change():
     # The bound of the module's docstring, for a Jacobian that is linear in time, by the largest singular values.
-    _, _, jacobian = moving(example(), wandering_poses(np.array([0.3, 0.4])))
+    _, _, jacobian = strut_state(example(), wandering_poses(np.array([0.3, 0.4])))
     scale = np.repeat([1.0, 200.0], 3)
     first, last = jacobian / scale
     inverse = np.linalg.inv(jacobian / scale)
     change = np.linalg.norm(inverse[0] @ last - np.eye(6), 2)
     share = np.linspace(0, 1, 21)
     middle = first + share[:, None, None] * (last - first)
-    found = carried(inverse[:1], inverse[1:], middle.transpose(0, 2, 1).reshape(1, -1, 6), np.repeat(share, 6))
+    found = map_to_tool(inverse[:1], inverse[1:], middle.transpose(0, 2, 1).reshape(1, -1, 6), np.repeat(share, 6))
     off = found[:, 0].reshape(6, 21, 6).transpose(1, 0, 2) - np.eye(6)
     worst = np.linalg.norm(off, 2, axis=(1, 2)).max()
     assert 0.05 * change**2 < worst <= change**2 / 4 / (1 - change)

@@ -12,7 +12,7 @@ from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_sp
 from pkm_post.geometry.vectors import cross, unit
 from pkm_post.machine.kinematics.forward import forward
 from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, scaled_jacobian
-from pkm_post.machine.kinematics.strut_cubics import Ends, Inside
+from pkm_post.machine.kinematics.strut_cubics import Inside, KnotState
 from pkm_post.machine.kinematics.tool_cubics import ToolCubics, bounded_demand, measured_demand
 from pkm_post.model import Poses
 
@@ -61,7 +61,7 @@ def everywhere(cubics):
 
 def played(machine, start, end, cubics, duration):
     """What the controller makes of intervals at its worst: drifts of tip and axis, tip speed, strut load."""
-    first, last = Ends.of(machine, start), Ends.of(machine, end)
+    first, last = KnotState.of(machine, start), KnotState.of(machine, end)
     struts = first.length, first.speed, last.length, last.speed, duration
     tip, axis, spin = everywhere(cubics)
     flat = tip.reshape(-1, 3), axis.reshape(-1, 3), spin.ravel()
@@ -110,7 +110,7 @@ def test_nothing_exceeds_the_bounds_where_the_attitude_stays():
     machine = dataclasses.replace(STROKED, least_singular_value=np.linalg.svd(jacobian, compute_uv=False).min())
     bound = bounded_demand(machine, LEVER, cubics_between(start, end, duration, 3), duration)
     drift, _, speed, struts = played(machine, start, end, cubics, duration)
-    assert Ends.of(machine, start).length.min() > machine.strut_stroke[0]
+    assert KnotState.of(machine, start).length.min() > machine.strut_stroke[0]
     assert np.all(drift <= bound.tip + FORWARD)
     assert np.all(speed <= bound.tip_speed * (1 + 1e-4) + FORWARD / duration)  # by the Jacobian beside the drift
     assert np.all(struts <= bound.limits * (1 + 1e-9))
@@ -140,7 +140,7 @@ def test_the_drift_in_the_middle_stands_for_the_whole_interval(machine, long):
     cubics = cubics_between(start, end, duration)
     middle = cubics.at(0.5)
     inside = Inside(middle[:3].T, unit(middle[3:6].T), middle[6], start.tool_length)
-    found = measured_demand(machine, Ends.of(machine, start), Ends.of(machine, end), cubics, inside, duration)
+    found = measured_demand(machine, KnotState.of(machine, start), KnotState.of(machine, end), cubics, inside, duration)
     tip, axis, speed, struts = played(machine, start, end, cubics, duration)
     for most, told in ((tip, found.tip), (axis, found.axis)):
         assert np.mean(most > told + FORWARD) < 0.05

@@ -6,10 +6,10 @@ import pytest
 from machines import screwed
 from pose_paths import bodied, counted, samples, upright, wandering, with_limit
 
-from pkm_post.machine.kinematics.placed_machine import Placed
-from pkm_post.machine.reach.path_bounds import doubtful
+from pkm_post.machine.kinematics.placed_machine import PlacedMachine
+from pkm_post.machine.reach.path_bounds import unproven_checks
 from pkm_post.machine.reach.path_checks import all_checks
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 
 SHARES = np.linspace(0.0, 1.0, 150)[1:]
 EXACT_ALONE = "K116"
@@ -22,7 +22,7 @@ def scan(lines, step=0.5):
     x = np.concatenate([along[:: 1 - 2 * (line % 2)] for line in range(lines)])
     y = np.repeat(np.linspace(-50, 50, lines), len(along))
     tips = np.column_stack([x, y, 200 + 5 * np.sin(x / 15)])
-    return Way.straight(*upright(tips))
+    return PosePath.straight(*upright(tips))
 
 
 def poses_for(way):
@@ -34,7 +34,7 @@ def poses_for(way):
         looked_at.append(looks)
         return checks
 
-    assert doubtful(bodied(), way, checks_for) == ()
+    assert unproven_checks(bodied(), way, checks_for) == ()
     return sum(map(sum, looked_at))
 
 
@@ -45,9 +45,9 @@ def test_what_is_proven_holds_everywhere(machine):
     proven = broken = 0
     for _ in range(6):
         corners = wandering(rng, 8, tilt_deg=20)
-        dense = Way.straight(*samples(corners, np.arange(1, 8), SHARES))
+        dense = PosePath.straight(*samples(corners, np.arange(1, 8), SHARES))
         for way in (corners, dense):
-            placed = Placed.of(machine, dense.rows(slice(None)))
+            placed = PlacedMachine.of(machine, dense.rows(slice(None)))
             exact = [check.margins(placed).min() for check in all_checks(machine, way, 500.0, None)]
             less = rng.uniform(-0.05, 0.3, len(exact)) * np.abs(exact)
             limits = np.array(exact) - less
@@ -55,7 +55,7 @@ def test_what_is_proven_holds_everywhere(machine):
             def checks_for(shortest, way=way, limits=limits):
                 return tuple(map(with_limit, all_checks(machine, way, shortest, None), limits))
 
-            left = doubtful(machine, way, checks_for)
+            left = unproven_checks(machine, way, checks_for)
             for number, check in enumerate(checks_for(500.0)):
                 if less[number] < 0 and check.code != EXACT_ALONE:
                     assert number in left, check.name
@@ -73,15 +73,15 @@ def test_one_bad_row_among_many_is_doubtful():
     way = scan(101)
     tip = way.tip.copy()
     tip[7000] += [400.0, 0.0, 0.0]
-    bad = Way.straight(tip, way.axis, way.spin, way.tool_length)
-    placed = Placed.of(bodied(), bad.rows(slice(7000, 7001)))
+    bad = PosePath.straight(tip, way.axis, way.spin, way.tool_length)
+    placed = PlacedMachine.of(bodied(), bad.rows(slice(7000, 7001)))
     broken = {
         number for number, check in enumerate(all_checks(bodied(), bad, 500.0, None)) if check.margins(placed).min() < 0
     }
-    left = doubtful(bodied(), bad, lambda shortest: all_checks(bodied(), bad, shortest, None))
+    left = unproven_checks(bodied(), bad, lambda shortest: all_checks(bodied(), bad, shortest, None))
     assert broken and broken <= set(left)
 
 
 def test_a_way_of_one_row_is_proven_by_itself():
-    way = Way.straight(*upright([[0.0, 0, 200]]))
+    way = PosePath.straight(*upright([[0.0, 0, 200]]))
     assert poses_for(way) == len(all_checks(bodied(), way, 500.0, None))

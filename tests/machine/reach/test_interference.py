@@ -9,22 +9,22 @@ from pose_paths import LENGTH, bodied, upright, wandering
 
 from pkm_post.geometry import unit
 from pkm_post.machine.kinematics.inverse import platform_joints, platform_rotation
-from pkm_post.machine.kinematics.placed_machine import Placed
-from pkm_post.machine.reach.collision_mesh import Part
+from pkm_post.machine.kinematics.placed_machine import PlacedMachine
+from pkm_post.machine.reach.collision_mesh import CollisionMesh
 from pkm_post.machine.reach.limit_checks import shortest_distance
 from pkm_post.machine.reach.path_checks import all_checks
-from pkm_post.machine.reach.pose_path import Way
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model.machine import Box
 
 STEP = 8.0
 """mm between points on the axes of struts."""
-PART = Part.of(boxes=[Box("part", [-40.0, -40, 100], [40.0, 40, 180])])
+PART = CollisionMesh.of(boxes=[Box("part", [-40.0, -40, 100], [40.0, 40, 180])])
 
 
 def margins_of(machine, way, code, part=PART):
     """Margins at the rows of all checks with a code, side by side, and what their columns are called."""
     checks = [one for one in all_checks(machine, way, shortest_distance(machine, way), part) if one.code == code]
-    placed = Placed.of(machine, way.rows(slice(None)))
+    placed = PlacedMachine.of(machine, way.rows(slice(None)))
     return [name for one in checks for name in one.parts], np.hstack([one.margins(placed) for one in checks])
 
 
@@ -67,7 +67,7 @@ def test_struts_are_as_far_apart_as_their_points(rod_length):
 
 def test_a_rod_that_comes_out_behind_counts_there():
     # The rods cross above the base where those inside do not.
-    way = Way.straight(*upright([[0.0, 0, 250]]))
+    way = PosePath.straight(*upright([[0.0, 0, 250]]))
     _, inside = margins_of(bodied(), way, "K113")
     _, behind = margins_of(dataclasses.replace(bodied(), rod_length=1700.0), way, "K113")
     assert np.all(behind <= inside + 1e-9) and np.any(behind < inside - 5)
@@ -134,11 +134,13 @@ def lathe(rows, columns):
 def test_a_mesh_is_never_nearer_than_told_and_groups_do_not_show():
     machine, way = bodied(), wandering(np.random.default_rng(4), 30, tilt_deg=35)
     triangles = lathe(40, 60)
-    parts, margins = margins_of(machine, way, "K117", Part.of(triangles))
-    one_by_one = np.min([margins_of(machine, way, "K117", Part.of(triangles[n::7]))[1] for n in range(7)], axis=0)
+    parts, margins = margins_of(machine, way, "K117", CollisionMesh.of(triangles))
+    one_by_one = np.min(
+        [margins_of(machine, way, "K117", CollisionMesh.of(triangles[n::7]))[1] for n in range(7)], axis=0
+    )
     np.testing.assert_allclose(margins, one_by_one, atol=0.006)  # each may be too low by 0.003 mm
     corners = triangles.reshape(-1, 3)
-    _, of_points = margins_of(machine, way, "K117", Part.of(points=corners))
+    _, of_points = margins_of(machine, way, "K117", CollisionMesh.of(points=corners))
     assert np.all(margins <= of_points + 1e-9)
     assert np.all(of_points - margins < 8.0)  # the triangles are up to 7 mm large
     assert parts == ["spindle", "tool holder"]
@@ -149,7 +151,7 @@ def test_struts_are_as_far_from_a_part_as_from_a_fixture():
     machine = dataclasses.replace(bodied(), fixtures=(box,))
     way = wandering(np.random.default_rng(6), 60, tilt_deg=35)
     _, as_fixture = margins_of(machine, way, "K115")
-    _, as_part = margins_of(machine, way, "K121", Part.of(boxes=[box]))
+    _, as_part = margins_of(machine, way, "K121", CollisionMesh.of(boxes=[box]))
     # A fixture is not told to be nearer than touching, and the ends of a strut are round there, flat here.
     near = (as_fixture > 0) & (as_fixture < 45)
     assert near.sum() > 20
@@ -161,7 +163,7 @@ def test_a_box_as_part_is_a_box_as_fixture():
     box = Box("stock", [-40.0, -30, 100], [50.0, 60, 190])
     machine = dataclasses.replace(bodied(), fixtures=(box,))
     way = wandering(np.random.default_rng(5), 60, tilt_deg=35)
-    _, as_part = margins_of(machine, way, "K117", Part.of(boxes=[box]))
+    _, as_part = margins_of(machine, way, "K117", CollisionMesh.of(boxes=[box]))
     _, as_fixture = margins_of(machine, way, "K116")
     near = (as_fixture > 0) & (as_fixture < 45)
     assert near.sum() > 10
@@ -172,11 +174,11 @@ def test_a_box_as_part_is_a_box_as_fixture():
 
 def test_a_part_of_nothing_is_refused():
     with pytest.raises(ValueError, match="at least one"):
-        Part.of()
+        CollisionMesh.of()
 
 
 def test_what_is_not_stated_is_not_checked():
-    way = Way.straight(*upright([[0.0, 0, 200]]))
+    way = PosePath.straight(*upright([[0.0, 0, 200]]))
 
     def codes(machine, part=None):
         return {check.code for check in all_checks(machine, way, 700, part)} - {"K101", "K102", "K103", "K104", "K105"}
@@ -193,13 +195,13 @@ def test_joints_of_one_ball_are_no_collision():
     machine = bodied()
     joints = machine.base_joints.copy()
     joints[1] = joints[2] = joints[1:3].mean(axis=0)
-    way = Way.straight(*upright([[0.0, 0, 200]]))
+    way = PosePath.straight(*upright([[0.0, 0, 200]]))
     shared = dataclasses.replace(machine, base_joints=joints, tube_radius=15.0)
     parts, margins = margins_of(dataclasses.replace(shared, base_joint_radius=0.0), way, "K113")
     pair = parts.index("2 and 3")
     assert margins[0, pair] < -30
     _, margins = margins_of(dataclasses.replace(shared, base_joint_radius=120.0), way, "K113")
-    u, v = unit(Placed.of(shared, way.rows(slice(None))).direction[0, 1:3])
+    u, v = unit(PlacedMachine.of(shared, way.rows(slice(None))).direction[0, 1:3])
     opening = np.arccos(u @ v)
     assert margins[0, pair] == pytest.approx(2 * 120 * np.sin(opening / 2) - 2 * 15 - 2, abs=0.01)
     assert LENGTH == 120.0

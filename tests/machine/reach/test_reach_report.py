@@ -11,8 +11,8 @@ from programs import ON_PALLET, cone, program, random_job, square_with_arc
 from pkm_post.machine.description.presets import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.machine.kinematics.inverse import strut_lengths
-from pkm_post.machine.reach.collision_mesh import Part
-from pkm_post.machine.reach.report import reach, way_of
+from pkm_post.machine.reach.collision_mesh import CollisionMesh
+from pkm_post.machine.reach.report import check_reach, pose_path_of
 from pkm_post.model import Kind
 from pkm_post.model.machine import Box
 from pkm_post.planning.tool_path import ToolPath
@@ -41,7 +41,7 @@ def finding(report, name):
 @pytest.mark.parametrize("job", [cone(), square_with_arc(), random_job(np.random.default_rng(4))], ids=range(3))
 def test_the_way_is_the_trajectory_and_its_bounds_hold(job, machine):
     trajectory = placed(job, machine)
-    way, segment, duration = way_of(trajectory)
+    way, segment, duration = pose_path_of(trajectory)
     ends = np.append(segment[1:] != segment[:-1], True)
     ends[0] = False
     np.testing.assert_allclose(way.tip[ends], trajectory.tip, atol=NANOMETRE)
@@ -63,7 +63,7 @@ def test_the_way_is_the_trajectory_and_its_bounds_hold(job, machine):
 
 def test_a_good_job_holds_all_checks_and_the_report_says_so(machine):
     trajectory = placed(cone(), machine)
-    report = reach(trajectory, machine)
+    report = check_reach(trajectory, machine)
     assert not report.faults()
     names = [finding.subject.name for finding in report.findings]
     assert names == [
@@ -85,9 +85,9 @@ def test_a_good_job_holds_all_checks_and_the_report_says_so(machine):
 
 
 def test_places_of_violations_are_those_of_the_program(machine):
-    lengths = strut_lengths(machine, *way_of(placed(cone(), machine))[0].rows(slice(None)))
+    lengths = strut_lengths(machine, *pose_path_of(placed(cone(), machine))[0].rows(slice(None)))
     tight = dataclasses.replace(machine, strut_stroke=(750.0, lengths.max() - 5.0))
-    report = reach(placed(cone(), machine), tight)
+    report = check_reach(placed(cone(), machine), tight)
     longest = finding(report, "longest struts")
     over = lengths.max(axis=1) > lengths.max() - 5.0
     trajectory = report.trajectory
@@ -112,7 +112,7 @@ def test_an_arc_is_followed_and_not_its_chord(machine):
     holder_end = 150 + 60 + 120 + 80 - 130
     for beside, bad in ((105.0 + 1.9, True), (105.0 + 2.1, False)):  # 80 mm, 25 mm of the holder, 2 mm of clearance
         pin = Box("pin", [-0.1, beside, 0.0], [0.1, beside + 1, holder_end + 20])
-        report = reach(placed(job, machine), dataclasses.replace(machine, fixtures=(pin,)))
+        report = check_reach(placed(job, machine), dataclasses.replace(machine, fixtures=(pin,)))
         found = finding(report, "tool holder and fixture")
         assert (found.first_bad_row is not None) == bad
         assert found.margin.min() == pytest.approx(beside - 107, abs=0.02)
@@ -121,10 +121,10 @@ def test_an_arc_is_followed_and_not_its_chord(machine):
 
 def test_the_part_and_the_normals_add_checks(machine):
     trajectory = placed(cone(), machine)
-    part = Part.of(boxes=[Box("stock", [-20.0, -20, 150], [20.0, 20, 200])])
+    part = CollisionMesh.of(boxes=[Box("stock", [-20.0, -20, 150], [20.0, 20, 200])])
     normal = np.tile([0.0, 0.0, 1.0], (len(trajectory), 1))
     stiff = dataclasses.replace(machine, strut_stiffness=1e5)
-    report = reach(trajectory, stiff, part, normal, least_stiffness=1e6)
+    report = check_reach(trajectory, stiff, part, normal, least_stiffness=1e6)
     assert finding(report, "tool holder and part").at_least > 0
     assert finding(report, "stiffness along the normal").margin.max() < 0
     assert [fault.code for fault in report.faults()] == ["K119"]
@@ -135,7 +135,7 @@ def test_the_part_and_the_normals_add_checks(machine):
 def test_strut_speed_is_that_of_the_feed(machine):
     job = cone()
     slow, fast = (
-        finding(reach(placed(dataclasses.replace(job, feed=np.where(np.isnan(job.feed), np.nan, feed)), machine),
+        finding(check_reach(placed(dataclasses.replace(job, feed=np.where(np.isnan(job.feed), np.nan, feed)), machine),
                       machine), "strut speed")
         for feed in (10.0, 100.0)
     )  # fmt: skip

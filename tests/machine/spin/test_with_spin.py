@@ -8,7 +8,7 @@ from programs import ON_PALLET, cone, program
 
 from pkm_post.machine.description.presets import machine_named
 from pkm_post.machine.spin.apply import with_spin
-from pkm_post.machine.spin.policy import Policy, Rule
+from pkm_post.machine.spin.policy import SpinPolicy, SpinRule
 from pkm_post.options import Options
 from pkm_post.posting import post
 from pkm_post.toolpath.place import place
@@ -21,23 +21,27 @@ def machine():
 
 def test_zero_torsion_and_the_file_leave_or_clear_the_spin(machine):
     placed, _ = place(cone(), machine, ON_PALLET)
-    turned, _ = with_spin(placed, machine, Policy(Rule.X_IN_PLANE, heading=0.1))
+    turned, _ = with_spin(placed, machine, SpinPolicy(SpinRule.X_IN_PLANE, heading=0.1))
     assert np.ptp(turned.spin) > 0
-    assert with_spin(turned, machine, Policy(Rule.FILE))[0] is turned
-    assert not with_spin(turned, machine, Policy(Rule.ZERO))[0].spin.any()
+    assert with_spin(turned, machine, SpinPolicy(SpinRule.FILE))[0] is turned
+    assert not with_spin(turned, machine, SpinPolicy(SpinRule.ZERO))[0].spin.any()
 
 
 def test_a_rule_that_leaves_the_spin_open_is_refused_with_its_place(machine):
     axis = np.array([[0, 0, 1.0], direction(89.99999, 90.0), [0, 0, 1.0]])
     placed, _ = place(program([[0, 0, 30], [10, 0, 30], [20, 0, 30]], axis), machine, ON_PALLET)
-    turned, faults = with_spin(placed, machine, Policy(Rule.X_IN_PLANE))
+    turned, faults = with_spin(placed, machine, SpinPolicy(SpinRule.X_IN_PLANE))
     assert turned is None
     assert [(fault.code, fault.place.line) for fault in faults] == [("K120", 2)]
 
 
 @pytest.mark.parametrize(
     "policy",
-    [Policy(Rule.X_IN_PLANE), Policy(Rule.Y_IN_PLANE, heading=0.2), Policy(Rule.OPTIMISED, objective="weighted")],
+    [
+        SpinPolicy(SpinRule.X_IN_PLANE),
+        SpinPolicy(SpinRule.Y_IN_PLANE, heading=0.2),
+        SpinPolicy(SpinRule.OPTIMISED, objective="weighted"),
+    ],
     ids=lambda policy: policy.rule.value,
 )
 def test_every_policy_is_posted_and_certified(tmp_path, machine, policy):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from programs import cone
 
-from pkm_post.machine import ZERO_TORSION, Policy, Rule, machine_named, strut_lengths
+from pkm_post.machine import ZERO_TORSION, SpinPolicy, SpinRule, machine_named, strut_lengths
 from pkm_post.model import Event, EventKind
 from pkm_post.model.diagnostics import errors
 from pkm_post.options.choices import LINUXCNC, Options
@@ -16,7 +16,7 @@ from pkm_post.posting.steps import post
 from pkm_post.reading.sources import Reading, read_part_program
 from pkm_post.writing import trajectory_file
 
-SPINS = [ZERO_TORSION, Policy(Rule.X_IN_PLANE, heading=0.3)]
+SPINS = [ZERO_TORSION, SpinPolicy(SpinRule.X_IN_PLANE, heading=0.3)]
 LENGTH_DIGIT = 1e-4
 """mm, the last decimal of X, Y, Z."""
 ANGLE_DIGIT = np.radians(1e-6)

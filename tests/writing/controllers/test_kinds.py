@@ -5,7 +5,7 @@ import pytest
 
 from pkm_post.machine import machine_named
 from pkm_post.machine.description.fields import FIELDS
-from pkm_post.machine.description.forms import FormError
+from pkm_post.machine.description.value_types import WrongValueError
 from pkm_post.posting import SUFFIX
 from pkm_post.writing.controllers import CONTROLLERS, TABLES, controller_of, part_names, part_siblings, pmac
 
@@ -19,7 +19,7 @@ def test_the_machine_file_knows_the_same_kinds():
     (form,) = (field.form for field in FIELDS if field.entry == "controller.kind")
     assert form.words == f"one of {', '.join(CONTROLLERS)}"
     assert [form.read(kind, 1.0) for kind in CONTROLLERS] == list(CONTROLLERS)
-    with pytest.raises(FormError):
+    with pytest.raises(WrongValueError):
         form.read("siemens", 1.0)
 
 

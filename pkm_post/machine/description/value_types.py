@@ -2,7 +2,7 @@
 """Forms: allowed values of an entry, as a description and a parser.
 
 Input: one value from ``tomllib`` and the scale of its unit. Output: a number, numpy array or text in mm, rad, s, or
-``FormError`` with what was found instead. The descriptions are those of the documentation.
+``WrongValueError`` with what was found instead. The descriptions are those of the documentation.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ MOST_SHOWN = 60
 """Characters of a wrong value that a diagnostic quotes."""
 
 
-class FormError(Exception):
+class WrongValueError(Exception):
     """A value does not have the required form; the text says what was found."""
 
 
 @dataclass(frozen=True)
-class Form:
+class ValueType:
     """One form: its description, after "expected", and the function that parses and converts a value."""
 
     words: str
@@ -61,16 +61,16 @@ _SHOWN: dict[type, Callable[[Any], str]] = {
 }
 
 
-def shown(value: Any) -> str:
+def quoted(value: Any) -> str:
     """Format a value of the file, shortened."""
     return _SHOWN.get(type(value), str)(value)
 
 
-def holds_unknown(value: Any) -> bool:
+def contains_unknown(value: Any) -> bool:
     """Whether a value, or any part of it, is still to be filled in."""
     if isinstance(value, dict):
         value = list(value.values())
-    return any(map(holds_unknown, value)) if isinstance(value, list) else value == UNKNOWN
+    return any(map(contains_unknown, value)) if isinstance(value, list) else value == UNKNOWN
 
 
 def _is_number(value: Any) -> bool:
@@ -88,7 +88,7 @@ def collect(value: Any, shape: tuple[int, ...], at: tuple[int, ...] = ()) -> Any
     if not shape and _is_number(value):
         return float(value)
     if not shape or not isinstance(value, list) or len(value) != shape[0]:
-        raise FormError(shown(value) + where)
+        raise WrongValueError(quoted(value) + where)
     return [collect(item, shape[1:], (*at, index)) for index, item in enumerate(value, start=1)]
 
 
@@ -101,7 +101,7 @@ def converted(value: Any, shape: tuple[int, ...], scale: Scale, is_positive: boo
     numbers: Array = np.array(collect(value, shape)) * scale.factor
     size = np.abs(numbers)
     if np.any(size > scale.most * _ROOM) or (is_positive and np.any((numbers > 0.0) & (size < scale.least / _ROOM))):
-        raise FormError(f"{_shorten(str(value))}; {scale.words}")
+        raise WrongValueError(f"{_shorten(str(value))}; {scale.words}")
     return numbers
 
 
@@ -111,16 +111,16 @@ def _numbers(
     accept: Callable[[Array], Any] = lambda numbers: True,
     finish: Callable[[Array], Any] = lambda numbers: numbers,
     is_positive: bool = False,
-) -> Form:
+) -> ValueType:
     """Form of numbers: shape, condition on the converted values, and result."""
 
     def read(value: Any, scale: Scale) -> Any:
         numbers = converted(value, shape, scale, is_positive)
         if not accept(numbers):
-            raise FormError(_shorten(str(value)))
+            raise WrongValueError(_shorten(str(value)))
         return finish(numbers)
 
-    return Form(words, read)
+    return ValueType(words, read)
 
 
 def _unit(directions: Array) -> Array:
@@ -132,7 +132,7 @@ def _read_pose(value: Any, scale: Scale) -> Array:
     rotation = pose[:3, :3]
     rigid = np.abs(rotation @ rotation.T - np.eye(3)).max() <= RIGID_TOLERANCE and np.linalg.det(rotation) > 0.0
     if not rigid or np.any(pose[3] != (0.0, 0.0, 0.0, 1.0)):
-        raise FormError("a matrix that is no rigid motion")
+        raise WrongValueError("a matrix that is no rigid motion")
     left, _, right = np.linalg.svd(rotation)
     pose[:3, :3] = left @ right  # nearest rotation: rounded decimals must not stretch a path
     pose[:3, 3] = converted(pose[:3, 3].tolist(), (3,), scale)
@@ -142,7 +142,7 @@ def _read_pose(value: Any, scale: Scale) -> Array:
 def _read_half_angles(value: Any, scale: Scale) -> Array:
     angles = converted(value, _one_or_six(value), scale, is_positive=True)
     if np.any((angles <= 0.0) | (angles > math.pi / 2.0)):
-        raise FormError(_shorten(str(value)))
+        raise WrongValueError(_shorten(str(value)))
     return np.full(STRUTS, angles)
 
 
@@ -153,40 +153,40 @@ def _one_or_six(value: Any) -> tuple[int, ...]:
 def _read_six_positive(value: Any, scale: Scale) -> Array:
     numbers = converted(value, _one_or_six(value), scale, is_positive=True)
     if np.any(numbers <= 0.0):
-        raise FormError(_shorten(str(value)))
+        raise WrongValueError(_shorten(str(value)))
     return np.full(STRUTS, numbers)
 
 
-def _text(words: str, accept: Callable[[str], Any]) -> Form:
+def _text(words: str, accept: Callable[[str], Any]) -> ValueType:
     def read(value: Any, scale: Scale) -> str:
         if not isinstance(value, str) or not accept(value):
-            raise FormError(shown(value))
+            raise WrongValueError(quoted(value))
         return value
 
-    return Form(words, read)
+    return ValueType(words, read)
 
 
-def choice(*names: str) -> Form:
+def choice(*names: str) -> ValueType:
     """Form of an entry with a fixed choice of words."""
     return _text(f"one of {', '.join(names)}", names.__contains__)
 
 
-def whole_number(least: int, most: int) -> Form:
+def whole_number(least: int, most: int) -> ValueType:
     """Form of a whole-number entry, from ``least`` to ``most``."""
 
     def read(value: Any, scale: Scale) -> int:
         if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
-            raise FormError(shown(value))
+            raise WrongValueError(quoted(value))
         return value
 
-    return Form(f"a whole number from {least} to {most}", read)
+    return ValueType(f"a whole number from {least} to {most}", read)
 
 
 def _read_letters(value: Any, scale: Scale) -> tuple[str, ...]:
     letters = value if isinstance(value, list) else []
     known = [letter for letter in letters if isinstance(letter, str) and len(letter) == 1 and letter in AXIS_LETTERS]
     if len(known) != len(letters) or len(set(known)) != STRUTS or len(letters) != STRUTS:
-        raise FormError(", ".join(map(shown, letters)) or shown(value))
+        raise WrongValueError(", ".join(map(quoted, letters)) or quoted(value))
     return tuple(known)
 
 
@@ -196,8 +196,8 @@ _CODE = re.compile(r"(?:[ -z|~]|\{value\}|\{value:d\}|\{value:\.[1-9]f\})+")
 NUMBER = _numbers("a number", finish=float)
 POSITIVE = _numbers("a number above 0", (), lambda number: number > 0.0, float, is_positive=True)
 NOT_NEGATIVE = _numbers("a number, 0 or above", (), lambda number: number >= 0.0, float)
-SIX_POSITIVE = Form("a number above 0, or 6 of them", _read_six_positive)
-HALF_ANGLES = Form("an angle above 0 and at most a right angle, or 6 of them", _read_half_angles)
+SIX_POSITIVE = ValueType("a number above 0, or 6 of them", _read_six_positive)
+HALF_ANGLES = ValueType("an angle above 0 and at most a right angle, or 6 of them", _read_half_angles)
 STROKE = _numbers(
     "2 numbers, 0 < first < second",
     (2,),
@@ -219,11 +219,11 @@ SIX_DIRECTIONS = _numbers(
     lambda rows: np.linalg.norm(rows, axis=1).min() > SHORTEST_DIRECTION,
     _unit,
 )
-POSE = Form("4 rows of 4 numbers, a rotation and a shift", _read_pose)
+POSE = ValueType("4 rows of 4 numbers, a rotation and a shift", _read_pose)
 NAME = _text("a text of one line", lambda text: text.strip() and text.isprintable())
 PROSE = _text("a text", lambda text: True)
 CODE = _text("a line of ASCII, the number as {value}, {value:d} or {value:.3f}", _CODE.fullmatch)
-LETTERS = Form(f"6 different letters out of {' '.join(AXIS_LETTERS)}", _read_letters)
+LETTERS = ValueType(f"6 different letters out of {' '.join(AXIS_LETTERS)}", _read_letters)
 
 
 _NAME = "name"
@@ -234,19 +234,19 @@ MOST_SOLIDS = 100
 def _tables(value: Any, shapes: dict[str, tuple[int, ...]], scale: Scale) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the name of each table and its numbers in mm; other keys are refused."""
     if not isinstance(value, list) or len(value) > MOST_SOLIDS:
-        raise FormError(shown(value))
+        raise WrongValueError(quoted(value))
     for place, table in enumerate(value, start=1):
         where = f" at place {place}"
         if not isinstance(table, dict):
-            raise FormError(shown(table) + where)
+            raise WrongValueError(quoted(table) + where)
         if stray := sorted({_NAME, *shapes} ^ set(table)):
             missing = stray[0] not in table
-            raise FormError(("no " if missing else "") + stray[0] + where)
+            raise WrongValueError(("no " if missing else "") + stray[0] + where)
         try:
             name = NAME.read(table[_NAME], scale)
             yield name, {key: converted(table[key], shape, scale) for key, shape in shapes.items()}
-        except FormError as wrong:
-            raise FormError(f"{wrong}{where}") from wrong
+        except WrongValueError as wrong:
+            raise WrongValueError(f"{wrong}{where}") from wrong
 
 
 def _read_bodies(value: Any, scale: Scale) -> tuple[Body, ...]:
@@ -254,7 +254,7 @@ def _read_bodies(value: Any, scale: Scale) -> tuple[Body, ...]:
     for name, numbers in _tables(value, {"radius": (), "from": (), "to": ()}, scale):
         body = Body(name, *(float(numbers[key]) for key in ("radius", "from", "to")))
         if body.radius < scale.least or body.start >= body.end:
-            raise FormError(f"{name} of radius {body.radius:g} mm from {body.start:g} to {body.end:g} mm")
+            raise WrongValueError(f"{name} of radius {body.radius:g} mm from {body.start:g} to {body.end:g} mm")
         bodies.append(body)
     return tuple(bodies)
 
@@ -263,12 +263,14 @@ def _read_boxes(value: Any, scale: Scale) -> tuple[Box, ...]:
     boxes = []
     for name, corners in _tables(value, {"lowest": (3,), "highest": (3,)}, scale):
         if np.any(corners["lowest"] >= corners["highest"]):
-            raise FormError(f"{name} with a corner 'lowest' that is not below 'highest' in x, y and z")
+            raise WrongValueError(f"{name} with a corner 'lowest' that is not below 'highest' in x, y and z")
         boxes.append(Box(name, **corners))
     return tuple(boxes)
 
 
-BODIES = Form(f"a list of at most {MOST_SOLIDS} tables with name, radius above 0, from, to above from", _read_bodies)
-FIXTURES = Form(
+BODIES = ValueType(
+    f"a list of at most {MOST_SOLIDS} tables with name, radius above 0, from, to above from", _read_bodies
+)
+FIXTURES = ValueType(
     f"a list of at most {MOST_SOLIDS} tables with name, lowest, highest, two corners of 3 numbers", _read_boxes
 )
