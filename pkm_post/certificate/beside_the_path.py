@@ -29,7 +29,7 @@ def beside_the_path(machine: Machine, trajectory: Trajectory) -> tuple[Coverage,
         ("spindle speed at the first cut", _spindle(machine, trajectory)),
     )
     return tuple(
-        Coverage(Topic.BESIDE_THE_PATH, subject, Extent.PROVEN if how else Extent.NOT_COVERED, how or why_not)
+        Coverage(Topic.AUXILIARY, subject, Extent.PROVEN if how else Extent.NOT_COVERED, how or why_not)
         for subject, (how, why_not) in rows
     )
 

@@ -24,7 +24,7 @@ from pkm_post.geometry import (
     take_rows,
     towards,
 )
-from pkm_post.model import Kind, Tolerances, Trajectory, both_by_row, uniform
+from pkm_post.model import Kind, Tolerances, Trajectory, map_row_pairs, uniform
 
 _NEARLY_CLOSED = 4.0
 """Tip tolerances: an arc whose gap is no larger may have a pose near both of its ends."""
@@ -44,7 +44,7 @@ class TrajectoryRuler:
         self.tip_tolerance = trajectory.tip_tolerances(tolerances.tip)
         self._tip_before = trajectory.tip_before()
         self._axis_before = trajectory.axis_before()
-        self._axis_turn = both_by_row(towards, self._axis_before, trajectory.axis)
+        self._axis_turn = map_row_pairs(towards, self._axis_before, trajectory.axis)
         self._bend = _bends(trajectory, self._tip_before)
 
     def bend(self, segment: Array) -> Array:

@@ -1,38 +1,53 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Model: frozen data that passes between the packages, and the faults that stop a job."""
+"""Model: frozen data that every room uses, and the table of diagnostics."""
 
-from pkm_post.model.certificate import Certificate, Coverage, Extent, Figure, Finding, Tolerances, Topic, meaning
+from pkm_post.model.certificate import (
+    Certificate,
+    Coverage,
+    Extent,
+    Figure,
+    Finding,
+    Tolerances,
+    Topic,
+    coverage_summary,
+)
 from pkm_post.model.columns import (
     Array,
-    Filled,
-    both_by_row,
-    by_row,
+    ColumnBuilder,
     freeze,
     in_pieces,
     is_uniform,
-    locked,
+    map_row_pairs,
+    map_rows,
     pieces,
-    rows_of,
+    read_only,
+    select_rows,
     shifted,
     uniform,
 )
 from pkm_post.model.diagnostics import Diagnostic, Place, Refused, errors
-from pkm_post.model.event import Event, EventKind
 from pkm_post.model.machine import Body, Box, Machine, ToolChange
-from pkm_post.model.motion import Motion
-from pkm_post.model.poses import Poses
-from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS, Kind, Program
+from pkm_post.model.motion import Motion, Poses, StrutMotion
+from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS, Event, EventKind, Kind, Program
 from pkm_post.model.rules import RULES, Severity
-from pkm_post.model.setup import NOTHING_KNOWN, Mesh, Setup, Shank
-from pkm_post.model.strut_motion import StrutMotion
-from pkm_post.model.tool import Tool, angles_fit, corner_reach, largest_corner, lengths_of
-from pkm_post.model.trajectory import LEAST_TOLERANCE, MOST_SPIN, TRAJECTORY_COLUMNS, Trajectory
+from pkm_post.model.setup import (
+    EMPTY_SETUP,
+    Mesh,
+    Setup,
+    Shank,
+    Tool,
+    corner_reach,
+    gauge_lengths,
+    largest_corner_radius,
+    valid_cutter_angles,
+)
+from pkm_post.model.trajectory import MAX_SPIN, MIN_TOLERANCE, TRAJECTORY_COLUMNS, Trajectory
 
 __all__ = [
-    "LEAST_TOLERANCE",
-    "MOST_SPIN",
+    "EMPTY_SETUP",
+    "MAX_SPIN",
+    "MIN_TOLERANCE",
     "MOTION_COLUMNS",
-    "NOTHING_KNOWN",
     "OPTIONAL_COLUMNS",
     "RULES",
     "TRAJECTORY_COLUMNS",
@@ -40,13 +55,13 @@ __all__ = [
     "Body",
     "Box",
     "Certificate",
+    "ColumnBuilder",
     "Coverage",
     "Diagnostic",
     "Event",
     "EventKind",
     "Extent",
     "Figure",
-    "Filled",
     "Finding",
     "Kind",
     "Machine",
@@ -65,20 +80,20 @@ __all__ = [
     "ToolChange",
     "Topic",
     "Trajectory",
-    "angles_fit",
-    "both_by_row",
-    "by_row",
     "corner_reach",
+    "coverage_summary",
     "errors",
     "freeze",
+    "gauge_lengths",
     "in_pieces",
     "is_uniform",
-    "largest_corner",
-    "lengths_of",
-    "locked",
-    "meaning",
+    "largest_corner_radius",
+    "map_row_pairs",
+    "map_rows",
     "pieces",
-    "rows_of",
+    "read_only",
     "shifted",
+    "select_rows",
     "uniform",
+    "valid_cutter_angles",
 ]

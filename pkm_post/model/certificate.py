@@ -85,7 +85,7 @@ class Topic(enum.Enum):
     PATH = "tool path"
     LIMITS = "machine limits"
     COLLISIONS = "collisions"
-    BESIDE_THE_PATH = "approach, tool change, spindle"
+    AUXILIARY = "approach, tool change, spindle"
     SETUP = "machine and set-up"
 
 
@@ -114,7 +114,7 @@ class Coverage:
     detail: str
 
 
-def meaning(coverage: tuple[Coverage, ...]) -> tuple[str, ...]:
+def coverage_summary(coverage: tuple[Coverage, ...]) -> tuple[str, ...]:
     """Lines on what certified means, and what it does not: one for each topic, by extent."""
     lines = []
     for topic in Topic:

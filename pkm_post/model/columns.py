@@ -20,7 +20,7 @@ Array = np.ndarray[Any, np.dtype[Any]]
 
 
 def freeze(table: Any, rows: int, columns: dict[str, RowType]) -> None:
-    """Convert and lock the array fields of a frozen dataclass.
+    """Convert the array fields of a frozen dataclass and make them read-only.
 
     Args:
         table: the dataclass instance, still in its ``__post_init__``.
@@ -34,20 +34,20 @@ def freeze(table: Any, rows: int, columns: dict[str, RowType]) -> None:
         column = np.asarray(getattr(table, name))
         if column.shape != (rows, *row_shape):
             raise ValueError(f"{type(table).__name__}.{name}: expected {(rows, *row_shape)}, got {column.shape}")
-        object.__setattr__(table, name, _kept(column, dtype))
+        object.__setattr__(table, name, _frozen(column, dtype))
 
 
-def _kept(column: Array, dtype: DTypeLike) -> Array:
+def _frozen(column: Array, dtype: DTypeLike) -> Array:
     if is_uniform(column) and len(column):
         return uniform(column[0], len(column), dtype)
     column = np.asarray(column, dtype=dtype)
     if column.flags.c_contiguous and _cannot_change(column):
         return column
-    return locked(np.array(column, order="C"))
+    return read_only(np.array(column, order="C"))
 
 
-class Filled:
-    """A column filled piece by piece; while all rows are equal it takes the memory of one."""
+class ColumnBuilder:
+    """A column built piece by piece; while all rows are equal it takes the memory of one."""
 
     def __init__(self, rows: int) -> None:
         """Start a column of this many rows."""
@@ -58,7 +58,7 @@ class Filled:
         """Store rows; pieces come in order and leave no gap."""
         if self._column is None:
             self._column = np.broadcast_to(np.array(piece[:1], order="C"), (self._rows, *piece.shape[1:]))
-        if len(piece) and is_uniform(self._column) and not _all_like(self._column[:1], piece):
+        if len(piece) and is_uniform(self._column) and not _all_equal(self._column[:1], piece):
             self._column = np.array(self._column, order="C")
         if not is_uniform(self._column):
             self._column[first : first + len(piece)] = piece
@@ -67,10 +67,10 @@ class Filled:
         """The complete column, read-only."""
         if self._column is None:
             raise ValueError("expected a column with at least one piece, got none")
-        return locked(self._column)
+        return read_only(self._column)
 
 
-def _all_like(one: Array, rows: Array) -> bool:
+def _all_equal(one: Array, rows: Array) -> bool:
     """Whether all rows equal a column of one row, bit for bit: NaN equals itself, and -0 differs from 0."""
     bits = np.ascontiguousarray(rows[:1] if is_uniform(rows) else rows).view(np.uint8)
     return bool((bits.reshape(-1, one.nbytes) == np.ascontiguousarray(one).view(np.uint8).reshape(1, -1)).all())
@@ -82,25 +82,25 @@ def pieces(rows: int, at_once: int) -> Iterator[slice]:
         yield slice(first, min(first + at_once, rows))
 
 
-def in_pieces(rows: int, at_once: int, of: Callable[[slice], Sequence[Array]]) -> tuple[Array, ...]:
+def in_pieces(rows: int, at_once: int, compute: Callable[[slice], Sequence[Array]]) -> tuple[Array, ...]:
     """Compute columns piece by piece, since intermediate results take more memory than the columns.
 
     Args:
         rows: of the columns.
         at_once: rows of a piece, except the last one.
-        of: columns of some rows, each row independent of the others.
+        compute: columns of some rows, each row independent of the others.
     """
-    columns: list[Filled] = []
+    columns: list[ColumnBuilder] = []
     for part in pieces(rows, at_once):
-        piece = of(part)
-        columns = columns or [Filled(rows) for _ in piece]
+        piece = compute(part)
+        columns = columns or [ColumnBuilder(rows) for _ in piece]
         for column, values in zip(columns, piece, strict=True):
             column.put(part.start, values)
     return tuple(column.whole() for column in columns)
 
 
-def locked(column: Array) -> Array:
-    """Lock the array and return it; only for arrays without another writer."""
+def read_only(column: Array) -> Array:
+    """Make the array read-only and return it; only for arrays without another writer."""
     column.flags.writeable = False
     return column
 
@@ -121,7 +121,7 @@ def uniform(row: ArrayLike, rows: int, dtype: DTypeLike | None = None) -> Array:
         rows: number of rows.
         dtype: of the column.
     """
-    one = locked(np.array(row, dtype=dtype))
+    one = read_only(np.array(row, dtype=dtype))
     return np.broadcast_to(one, (rows, *one.shape))
 
 
@@ -138,14 +138,14 @@ def is_uniform(column: Array) -> bool:
     return len(column) < 2 or column.strides[0] == 0
 
 
-def rows_of(column: Array, rows: Array) -> Array:
+def select_rows(column: Array, rows: Array) -> Array:
     """Select rows of a column; a uniform one stays compact, as ``numpy.take`` would expand it."""
     if is_uniform(column) and len(column):
         return np.broadcast_to(column[0], (len(rows), *column.shape[1:]))
     return np.take(column, rows, axis=0)
 
 
-def by_row(function: Callable[[Array], Array], column: Array) -> Array:
+def map_rows(function: Callable[[Array], Array], column: Array) -> Array:
     """Apply a function to each row, computed once where all rows are equal.
 
     Args:
@@ -157,8 +157,8 @@ def by_row(function: Callable[[Array], Array], column: Array) -> Array:
     return function(column)
 
 
-def both_by_row(function: Callable[[Array, Array], Array], left: Array, right: Array) -> Array:
-    """The same for row pairs of two columns."""
+def map_row_pairs(function: Callable[[Array, Array], Array], left: Array, right: Array) -> Array:
+    """Apply a function to each pair of rows, computed once where all pairs are equal."""
     if is_uniform(left) and is_uniform(right) and len(left):
         return uniform(function(left[:1], right[:1])[0], len(left))
     return function(left, right)

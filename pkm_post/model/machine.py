@@ -17,9 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.model.columns import freeze
-
-Array = np.ndarray[Any, np.dtype[Any]]
+from pkm_post.model.columns import Array, freeze
 
 
 @dataclass(frozen=True)

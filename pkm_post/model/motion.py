@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motion: tool poses by time in the machine frame {M}, with their exact rates."""
+"""Motion: tool poses by path parameter or time in the machine frame {M}, and strut lengths by time.
+
+Units: mm, rad, s; times of knots in whole milliseconds. Between two knots each strut follows the unique cubic with the
+lengths and speeds of both (position-velocity-time, PVT: a cubic Hermite).
+"""
 
 from __future__ import annotations
 
@@ -8,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.model.columns import RowType, freeze, uniform
-from pkm_post.model.event import Event
-from pkm_post.model.poses import Poses
-from pkm_post.model.program import Array
+from pkm_post.model.program import Array, Event
 
+_VECTOR: RowType = (np.float64, (3,))
+_NUMBER: RowType = (np.float64, ())
 MOTION_BY_TIME: dict[str, RowType] = {
     "time_ms": (np.int64, ()),
     "tip": (np.float64, (3,)),
@@ -23,6 +27,44 @@ MOTION_BY_TIME: dict[str, RowType] = {
     "tool_length": (np.float64, ()),
     "segment": (np.int32, ()),
 }
+STRUT_COLUMNS: dict[str, RowType] = {
+    "time_ms": (np.int64, ()),
+    "length": (np.float64, (6,)),
+    "speed": (np.float64, (6,)),
+}
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Columns of N tool poses in {M}; ``_1`` and ``_2`` are derivatives by the same parameter.
+
+    Attributes:
+        tip, tip_1, tip_2: (N, 3) tool tip in mm.
+        axis, axis_1, axis_2: (N, 3) unit tool axis.
+        spin, spin_1, spin_2: (N,) rotation of the platform about the tool axis.
+        tool_length: (N,) gauge length of the tool in use.
+        segment: (N,) trajectory segment the pose lies on.
+    """
+
+    tip: Array
+    tip_1: Array
+    tip_2: Array
+    axis: Array
+    axis_1: Array
+    axis_2: Array
+    spin: Array
+    spin_1: Array
+    spin_2: Array
+    tool_length: Array
+    segment: Array
+
+    def __post_init__(self) -> None:
+        vectors = dict.fromkeys(("tip", "tip_1", "tip_2", "axis", "axis_1", "axis_2"), _VECTOR)
+        numbers = dict.fromkeys(("spin", "spin_1", "spin_2", "tool_length"), _NUMBER)
+        freeze(self, len(self.tip), vectors | numbers | {"segment": (np.int64, ())})
+
+    def __len__(self) -> int:
+        return len(self.tip)
 
 
 @dataclass(frozen=True)
@@ -79,3 +121,40 @@ class Motion:
             tool_length=self.tool_length[rows],
             segment=self.segment[rows],
         )
+
+
+@dataclass(frozen=True)
+class StrutMotion:
+    """Columns of M knots in time.
+
+    Attributes:
+        time_ms: (M,) whole milliseconds since the start, strictly increasing; dwells do not count.
+        length: (M, 6) joint-to-joint strut lengths in mm.
+        speed: (M, 6) their rates in mm/s.
+        events: by knot: the motion rests at knot r, the event takes place, the motion continues.
+    """
+
+    time_ms: Array
+    length: Array
+    speed: Array
+    events: tuple[Event, ...]
+
+    def __post_init__(self) -> None:
+        freeze(self, len(self.time_ms), STRUT_COLUMNS)
+
+    def __len__(self) -> int:
+        return len(self.time_ms)
+
+    def cubics(self, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """Cubics that begin at some knots, in the form of ``geometry.curves``.
+
+        Args:
+            rows: (N,) the knots; none of them is the last.
+
+        Returns:
+            Lengths and speeds at the beginning, lengths and speeds at the end, (N, 6) each in mm and mm/s; and the
+            durations, (N,) in s.
+        """
+        after = rows + 1
+        duration = (self.time_ms[after] - self.time_ms[rows]) / 1000
+        return self.length[rows], self.speed[rows], self.length[after], self.speed[after], duration

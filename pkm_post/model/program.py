@@ -2,7 +2,8 @@
 """Program: cutter locations in the work frame {C}, modal state resolved, as read from the source.
 
 Row i moves the tool tip from ``position[i - 1]`` to ``position[i]`` and the tool axis with it. Row 0 is the start of
-the path, reached by a rapid move. Units: mm, rad, s, mm/s.
+the path, reached by a rapid move. Units: mm, rad, s, mm/s. Events happen between motions, while the machine is at rest:
+an event at row r takes place before the motion of row r; r = N, one past the last row, is after the last motion.
 """
 
 from __future__ import annotations
@@ -16,8 +17,31 @@ from numpy.typing import DTypeLike
 from pkm_post.model.columns import Array as Array  # the alias for all packages
 from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.diagnostics import Place
-from pkm_post.model.event import Event
-from pkm_post.model.tool import Tool
+from pkm_post.model.setup import Tool
+
+
+class EventKind(enum.IntEnum):
+    """Kind of event. Trajectory files store the numbers: kinds may be added, never changed."""
+
+    TOOL_CHANGE = 1
+    """value: the tool number."""
+    SPINDLE = 2
+    """value: speed in revolutions per minute, positive clockwise seen from the spindle, 0 stops it."""
+    COOLANT = 3
+    """value: 0 off, 1 flood, 2 mist."""
+    DWELL = 4
+    """value: duration in s."""
+    STOP = 5
+    """value: 0 program stop, 1 optional stop."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """One event at a row of a table of motions."""
+
+    row: int
+    kind: EventKind
+    value: float
 
 
 class Kind(enum.IntEnum):

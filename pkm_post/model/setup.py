@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Setup: known data of a job beside its motions: part, stock, fixtures and tools.
+"""Set-up: data of a job other than its motions: tools, part, stock and fixtures.
 
 Meshes are in the work frame {C}, in mm. Unknown items are None or missing; they are not checked, and the certificate
 states that.
@@ -7,12 +7,94 @@ states that.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from pkm_post.model.columns import Array, freeze
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A rotating cutter.
+
+    Attributes:
+        number: tool number, 0 when the source names none.
+        name: display name.
+        diameter: cutter diameter in mm, 0 when unknown: that of the circle where the lines of bottom and side meet.
+        corner_radius: corner radius in mm: 0 for a flat end mill, half the diameter for a ball.
+        length: gauge length in mm, from the spindle nose to the tip.
+        bottom_angle: rise of the bottom from the tip outwards, in rad: 0 for a flat bottom, 31 degrees for a drill
+            with a point of 118.
+        side_angle: angle of the side to the tool axis in rad, positive where the tool widens upwards.
+        corner_known: whether the source gives the corner radius; if not, it is 0: the flat end mill contains every
+            other cutter of its diameter.
+    """
+
+    number: int
+    name: str
+    diameter: float
+    corner_radius: float
+    length: float
+    bottom_angle: float = 0.0
+    side_angle: float = 0.0
+    corner_known: bool = True
+
+
+def corner_reach(bottom_angle: float, side_angle: float) -> float:
+    """Distance from the centre of a corner of radius 1 out to the circle where the lines of bottom and side meet.
+
+    (cos a - sin b) / cos(a + b), from the arc touching both lines; 1 for a flat bottom and an upright side.
+
+    Args:
+        bottom_angle: a, 0 <= a < pi/2, rad.
+        side_angle: b, with a + b < pi/2, rad.
+    """
+    return (math.cos(bottom_angle) - math.sin(side_angle)) / math.cos(bottom_angle + side_angle)
+
+
+def largest_corner_radius(diameter: float, bottom_angle: float = 0.0, side_angle: float = 0.0) -> float:
+    """Corner radius in mm that puts the centre of the corner on the axis: that of a ball.
+
+    Args:
+        diameter: of the circle where the lines of bottom and side meet, mm.
+        bottom_angle: rad.
+        side_angle: rad.
+    """
+    return diameter / 2.0 / corner_reach(bottom_angle, side_angle)
+
+
+def valid_cutter_angles(bottom_angle: float, side_angle: float) -> bool:
+    """Whether the lines of bottom and side meet: a bottom angle from 0, and a sum below a right angle."""
+    right = math.pi / 2.0
+    return 0.0 <= bottom_angle < right and -right < side_angle < right and bottom_angle + side_angle < right
+
+
+def gauge_lengths(tools: Mapping[int, Tool], numbers: Array) -> Array:
+    """Gauge lengths of a column of tool numbers, (N,) in mm.
+
+    Args:
+        tools: the tools by number.
+        numbers: (N,) numbers, all of them among the tools.
+    """
+    known = np.array(sorted(tools), dtype=np.int64)
+    lengths: Array = np.array([tools[number].length for number in known])[np.searchsorted(known, numbers)]
+    return lengths
+
+
+@dataclass(frozen=True)
+class Shank:
+    """Shape of a tool above its cutting edges.
+
+    Attributes:
+        start: height above the tip where the cutting edges end and the shank begins, mm.
+        diameter: mm.
+    """
+
+    start: float
+    diameter: float
 
 
 @dataclass(frozen=True)
@@ -31,19 +113,6 @@ class Mesh:
 
     def __post_init__(self) -> None:
         freeze(self, len(self.triangles), {"triangles": (np.float64, (3, 3))})
-
-
-@dataclass(frozen=True)
-class Shank:
-    """Shape of a tool above its cutting edges.
-
-    Attributes:
-        start: height above the tip where the cutting edges end and the shank begins, mm.
-        diameter: mm.
-    """
-
-    start: float
-    diameter: float
 
 
 @dataclass(frozen=True)
@@ -70,5 +139,5 @@ class Setup:
         return self.part is None and self.stock is None and not self.fixtures
 
 
-NOTHING_KNOWN = Setup()
+EMPTY_SETUP = Setup()
 """Setup of a program without further data."""

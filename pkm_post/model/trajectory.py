@@ -14,15 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.model.certificate import Tolerances
-from pkm_post.model.columns import RowType, by_row, freeze, is_uniform, shifted, uniform
+from pkm_post.model.columns import RowType, freeze, is_uniform, map_rows, shifted, uniform
 from pkm_post.model.diagnostics import Place
-from pkm_post.model.event import Event
-from pkm_post.model.program import MOTION_COLUMNS, Array
-from pkm_post.model.tool import Tool, lengths_of
+from pkm_post.model.program import MOTION_COLUMNS, Array, Event
+from pkm_post.model.setup import Tool, gauge_lengths
 
-MOST_SPIN = 1e6
+MAX_SPIN = 1e6
 """rad: a platform rotates by less than one turn; a larger number leaves too few digits for planning."""
-LEAST_TOLERANCE = 1e-9
+MIN_TOLERANCE = 1e-9
 """mm and rad: a tolerance below a thousandth of a nanometre is a typing error, and no plan meets it."""
 
 TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
@@ -120,11 +119,11 @@ class Trajectory:
 
     def tool_length(self) -> Array:
         """Gauge length of the tool in use, (N,) in mm."""
-        return by_row(lambda tool: lengths_of(self.tools, tool), self.tool)
+        return map_rows(lambda tool: gauge_lengths(self.tools, tool), self.tool)
 
-    def tip_tolerances(self, asked: float) -> Array:
+    def tip_tolerances(self, requested: float) -> Array:
         """Tip tolerance of each segment, (N,) in mm: that of the program, else the requested one."""
-        return by_row(lambda said: np.where(said > 0, said, asked), self.tip_tolerance)
+        return map_rows(lambda stated: np.where(stated > 0, stated, requested), self.tip_tolerance)
 
     def tip_before(self) -> Array:
         """Tool tip at the start of each segment, (N, 3).

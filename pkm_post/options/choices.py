@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, SpinPolicy
-from pkm_post.model import NOTHING_KNOWN, Setup, Tolerances, Tool
+from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool
 from pkm_post.system import result_files
 from pkm_post.toolpath import OffsetOptions, SurfaceSpeed
 
@@ -62,7 +62,7 @@ class Options:
     surface_speed: SurfaceSpeed | None = None
     also: tuple[str, ...] = ()
     mesh_files: MeshFiles = MeshFiles()
-    setup: Setup = NOTHING_KNOWN
+    setup: Setup = EMPTY_SETUP
 
     def __post_init__(self) -> None:
         known = result_files.SIDE_OUTPUTS

@@ -25,7 +25,7 @@ from pkm_post.model import (
     Trajectory,
     errors,
     in_pieces,
-    locked,
+    read_only,
 )
 from pkm_post.planning.cubics import Cubics, poses_at
 from pkm_post.planning.glimpse import glimpse_within
@@ -250,7 +250,7 @@ def _interpolated(feed_plan: FeedPlan) -> tuple[Motion, Array]:
         return times[:-1], _too_coarse(times, cubics, shortest)
 
     times, coarse = zip(*workers().map(knots_of, stretches), strict=True)
-    time_ms = locked(np.concatenate([*times, marks[-1:]]))
+    time_ms = read_only(np.concatenate([*times, marks[-1:]]))
     motion = _motion(feed_plan, time_ms)
     return motion, _slower(motion, np.concatenate(coarse, axis=1), machine.block_rate)
 

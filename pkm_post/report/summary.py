@@ -28,7 +28,7 @@ from pkm_post.model import (
     StrutMotion,
     Tolerances,
     Trajectory,
-    meaning,
+    coverage_summary,
 )
 
 _FORMAT = 1
@@ -105,7 +105,7 @@ def report(
         "certificate": {
             "holds": certificate.holds,
             "instants": certificate.instants,
-            "meaning": list(meaning(certificate.coverage)),
+            "meaning": list(coverage_summary(certificate.coverage)),
             "findings": [_finding(finding) for finding in certificate.findings],
             "figures": [_figure(figure) for figure in certificate.figures],
             "coverage": [_coverage(row) for row in certificate.coverage],

@@ -15,8 +15,8 @@ import numpy as np
 
 from pkm_post.geometry import Array, angle_between, arc_length, arc_sweep, cross, dot, norm, towards
 from pkm_post.model import (
-    LEAST_TOLERANCE,
-    MOST_SPIN,
+    MAX_SPIN,
+    MIN_TOLERANCE,
     Diagnostic,
     Event,
     EventKind,
@@ -26,7 +26,7 @@ from pkm_post.model import (
     Program,
     Trajectory,
     errors,
-    lengths_of,
+    gauge_lengths,
 )
 from pkm_post.toolpath.spindle_dwells import with_spindle_waits
 from pkm_post.toolpath.symmetry.transform import mirrors, transform
@@ -161,7 +161,7 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
     turns = x | y | z
     angle[turns] = angle_between(axis_before[turns], axis[turns])
     # At a tool change the platform stands still: the tip of a longer tool starts lower.
-    longer = np.diff(lengths_of(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
+    longer = np.diff(gauge_lengths(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
     tip_before = np.vstack([machine.home_tip, tip[:-1]]) - longer[:, None] * axis_before
     arc = placed.kind == Kind.ARC
     sweep, length = np.zeros(len(placed)), norm(tip - tip_before)
@@ -245,8 +245,8 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
         ("K106", angle > _HALF_TURN, np.degrees(angle), "{:.3f} degrees"),
         ("K102", ~(away < longest), away, "{:.6g} mm from the middle of the base"),
         ("K126", arc & (np.abs(way["longer"]) > _NO_MOVE), way["longer"], "{:.6g} mm longer"),
-        ("K146", (asked > 0) & (asked < LEAST_TOLERANCE), asked, "{:.3g} mm"),
-        ("K147", np.abs(way["spin"]) > MOST_SPIN, way["spin"], "{:.6g} rad"),
+        ("K146", (asked > 0) & (asked < MIN_TOLERANCE), asked, "{:.3g} mm"),
+        ("K147", np.abs(way["spin"]) > MAX_SPIN, way["spin"], "{:.6g} rad"),
         ("K127", (seconds > _DAY) & (away < longest), seconds / 3600, "{:.6g} hours"),
     ):
         for row in _first_of_each(program.operation, wrong):

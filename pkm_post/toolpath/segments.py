@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, across, along_rates, cross, dot, norm, towards
-from pkm_post.model import Kind, Trajectory, both_by_row, by_row, is_uniform, rows_of
+from pkm_post.model import Kind, Trajectory, is_uniform, map_row_pairs, map_rows, select_rows
 
 _TURNING_IN_PLACE = 0.01
 """mm of tip travel per degree of axis turn below which a segment counts as a turn in place."""
@@ -102,9 +102,9 @@ class Segments:
             tangent=way,
             arcs=arcs,
             axis=axis,
-            axis_rate=_by_length(both_by_row(towards, axis, trajectory.axis), extent[:, None]),
+            axis_rate=_by_length(map_row_pairs(towards, axis, trajectory.axis), extent[:, None]),
             spin=spin,
-            spin_rate=_by_length(both_by_row(np.subtract, trajectory.spin, spin), extent),
+            spin_rate=_by_length(map_row_pairs(np.subtract, trajectory.spin, spin), extent),
         )
 
     def __len__(self) -> int:
@@ -112,7 +112,7 @@ class Segments:
 
     def turn(self) -> Array:
         """The larger rate of turn of tool axis or arc, by path length, (N,)."""
-        turn = np.array(by_row(norm, self.axis_rate))
+        turn = np.array(map_rows(norm, self.axis_rate))
         turn[self.arcs.row] = np.maximum(turn[self.arcs.row], self.arcs.turn)
         return turn
 
@@ -145,7 +145,7 @@ class Segments:
 
     def axis_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
         """Tool axis with first and second derivative, (M, 3) each."""
-        axis, rate = rows_of(self.axis, segment), rows_of(self.axis_rate, segment)
+        axis, rate = select_rows(self.axis, segment), select_rows(self.axis_rate, segment)
         if not rate.any():  # as in all three-axis work
             return axis, rate, np.zeros_like(rate)
         return along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))

@@ -9,7 +9,7 @@ from pkm_post.certificate.coverage import coverage
 from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Event, EventKind
-from pkm_post.model.certificate import Extent, Topic, meaning
+from pkm_post.model.certificate import Extent, Topic, coverage_summary
 from pkm_post.toolpath.place import place
 
 TRAJECTORY = place(cone(9), machines.example(), ON_PALLET)[0]
@@ -27,7 +27,7 @@ def extents(machine, topic):
 
 def test_every_topic_is_one_line_and_every_hazard_stands_in_it_once():
     rows = coverage(example(), TRAJECTORY)
-    lines = meaning(rows)
+    lines = coverage_summary(rows)
     assert [line.split(":")[0] for line in lines] == [topic.value for topic in Topic]
     for row in rows:
         assert [row.subject in line for line in lines].count(True) == 1, row
@@ -53,16 +53,14 @@ def test_a_row_of_each_extent_is_named_with_it():
     (first, *_), (last, *_) = (
         [row for row in coverage(example(), TRAJECTORY) if row.topic is topic] for topic in (Topic.PATH, Topic.SETUP)
     )
-    lines = meaning((first, replace(first, extent=Extent.SAMPLED, subject="a sample"), last))
+    lines = coverage_summary((first, replace(first, extent=Extent.SAMPLED, subject="a sample"), last))
     assert lines[0] == f"tool path: proven: {first.subject}; sampled: a sample"
     assert lines[-1] == f"machine and set-up: not covered: {last.subject}"
 
 
 def beside_the_path(machine, trajectory):
     return {
-        row.subject: (row.extent, row.detail)
-        for row in coverage(machine, trajectory)
-        if row.topic is Topic.BESIDE_THE_PATH
+        row.subject: (row.extent, row.detail) for row in coverage(machine, trajectory) if row.topic is Topic.AUXILIARY
     }
 
 

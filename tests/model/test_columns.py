@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from pkm_post.model.columns import (
-    Filled,
-    both_by_row,
-    by_row,
+    ColumnBuilder,
     freeze,
     in_pieces,
     is_uniform,
-    locked,
+    map_row_pairs,
+    map_rows,
     pieces,
-    rows_of,
+    read_only,
+    select_rows,
     shifted,
     uniform,
 )
@@ -55,7 +55,7 @@ def test_a_column_that_someone_may_change_is_copied():
 
 
 def test_a_column_that_nobody_can_change_is_shared():
-    points = locked(POINT.copy())
+    points = read_only(POINT.copy())
     one = Table(np.arange(3), points)
     other = Table(np.arange(3), one.point[:])
     assert one.point is points
@@ -80,9 +80,9 @@ def test_a_function_of_rows_is_the_same_of_uniform_ones(rows):
         calls.append(len(column))
         return 2 * column
 
-    np.testing.assert_array_equal(by_row(double, uniform(3, rows)), np.full(rows, 6))
+    np.testing.assert_array_equal(map_rows(double, uniform(3, rows)), np.full(rows, 6))
     assert calls == [min(rows, 1)]
-    np.testing.assert_array_equal(by_row(double, POINT), 2 * POINT)
+    np.testing.assert_array_equal(map_rows(double, POINT), 2 * POINT)
 
 
 def test_another_shape_is_refused():
@@ -128,13 +128,13 @@ def test_no_rows_are_a_column_without_rows():
     (found,) = in_pieces(0, 7, lambda rows: (np.ones((4, 3))[rows],))
     assert found.shape == (0, 3)
     with pytest.raises(ValueError, match="at least one piece"):
-        Filled(3).whole()
+        ColumnBuilder(3).whole()
 
 
 def test_rows_of_a_uniform_column_take_no_memory():
-    few = rows_of(uniform([1.0, 2.0], 10**9), np.array([5, 7, 9]))
+    few = select_rows(uniform([1.0, 2.0], 10**9), np.array([5, 7, 9]))
     assert few.tolist() == [[1.0, 2.0]] * 3 and is_uniform(few)
-    assert rows_of(POINT, np.array([2, 0])).tolist() == POINT[[2, 0]].tolist()
+    assert select_rows(POINT, np.array([2, 0])).tolist() == POINT[[2, 0]].tolist()
 
 
 def test_a_shifted_column_begins_with_the_row_before():
@@ -146,5 +146,5 @@ def test_a_shifted_column_begins_with_the_row_before():
 
 def test_functions_of_two_uniform_columns_are_computed_once():
     long = uniform(2.0, 10**9)
-    assert is_uniform(both_by_row(np.subtract, long, long))
-    assert both_by_row(np.subtract, uniform(2.0, 3), np.arange(3.0)).tolist() == [2.0, 1.0, 0.0]
+    assert is_uniform(map_row_pairs(np.subtract, long, long))
+    assert map_row_pairs(np.subtract, uniform(2.0, 3), np.arange(3.0)).tolist() == [2.0, 1.0, 0.0]

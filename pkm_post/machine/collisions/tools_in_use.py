@@ -11,7 +11,7 @@ import numpy as np
 from pkm_post.geometry import Array, dot, expand_counts
 from pkm_post.machine.collisions.contacts import Contacts, TrajectoryPath
 from pkm_post.machine.collisions.moving_bodies import Profile, cutter_profile
-from pkm_post.model import Kind, Setup, Shank, Tool, largest_corner
+from pkm_post.model import Kind, Setup, Shank, Tool, largest_corner_radius
 
 _STEP = 0.2
 """mm: a workpiece point within half of it of a cutter counts as cut."""
@@ -77,7 +77,7 @@ def _sizes(tool: Tool, setup: Setup) -> tuple[Tool, Tool]:
     """The smallest and the largest possible size of a tool."""
     if tool.corner_known and tool.number not in setup.unknown_corners:
         return tool, tool
-    return replace(tool, corner_radius=largest_corner(tool.diameter, tool.bottom_angle, tool.side_angle)), tool
+    return replace(tool, corner_radius=largest_corner_radius(tool.diameter, tool.bottom_angle, tool.side_angle)), tool
 
 
 def not_cut_before(driven: TrajectoryPath, used: Sequence[ToolUse], met: Contacts) -> Contacts:

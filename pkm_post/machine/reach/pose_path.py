@@ -18,7 +18,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, along, angle_between, norm, tilt, towards, turn_by_tilt
 from pkm_post.machine.kinematics.inverse import Pose
-from pkm_post.model import both_by_row, shifted, uniform
+from pkm_post.model import map_row_pairs, shifted, uniform
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class PosePath:
         start, axis_before, spin_before, length_before = (
             shifted(column[0], column) for column in (tip, axis, spin, tool_length)
         )
-        change = both_by_row(np.subtract, spin, spin_before)
-        longer = both_by_row(np.subtract, tool_length, length_before)
+        change = map_row_pairs(np.subtract, spin, spin_before)
+        longer = map_row_pairs(np.subtract, tool_length, length_before)
         if longer.any():
             start, changes = np.array(start, order="C"), np.flatnonzero(longer)
             start[changes] -= longer[changes, None] * axis_before[changes]
@@ -75,7 +75,7 @@ class PosePath:
             tool_length=tool_length,
             travel=norm(tip - start),
             bend=uniform(0.0, len(tip)),
-            angle=both_by_row(_angles, axis_before, axis),
+            angle=map_row_pairs(_angles, axis_before, axis),
             spin_change=change,
             inside=inside,
         )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from pkm_post.model import EventKind, Tool, angles_fit, corner_reach, largest_corner
+from pkm_post.model import EventKind, Tool, corner_reach, largest_corner_radius, valid_cutter_angles
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement
 
@@ -63,10 +63,10 @@ def _new_cutter(state: ReaderState, row: int, diameter: float, corner: float, bo
     """Whether the cutter is possible; if so, it becomes the active one."""
     diameter, corner = diameter * state.scale, corner * state.scale
     bottom_angle, side_angle = math.radians(bottom), math.radians(side)
-    if not angles_fit(bottom_angle, side_angle):
+    if not valid_cutter_angles(bottom_angle, side_angle):
         state.report("L403", row, f"bottom angle {bottom:g} degrees, side angle {side:g} degrees")
         return False
-    largest = largest_corner(diameter, bottom_angle, side_angle)
+    largest = largest_corner_radius(diameter, bottom_angle, side_angle)
     if diameter < 0 or not 0 <= corner <= largest + 1e-3:
         state.report("L403", row, f"diameter {diameter:g} mm, corner radius {corner:g} mm")
         return False

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import torsion
-from pkm_post.model import Array, locked, uniform
+from pkm_post.model import Array, read_only, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Group
 from pkm_post.reading.gcode.findings import Findings
@@ -43,7 +43,7 @@ def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
         idle = modal.moves & (modal.in_force[Group.LENGTH] != code) & ~said
         idle &= (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
         faults.tell_all("G424", idle, lambda row: f"({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
-    return locked(axes)
+    return read_only(axes)
 
 
 def check_cycles(modal: Modal, axes: Array, faults: Findings) -> None:
@@ -113,7 +113,7 @@ def surface_normals(blocks: Blocks, faults: Findings) -> Array:
     faults.tell_all(
         "G423", (np.abs(length - 1) > _LENGTH_ERROR) & (length > 0), lambda row: f"length {length[row]:.6f}"
     )
-    return locked(np.column_stack(unit))
+    return read_only(np.column_stack(unit))
 
 
 def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> tuple[Array, Array]:
@@ -132,7 +132,7 @@ def spins(blocks: Blocks, modal: Modal, options: ReadOptions) -> Array:
     if options.axis_words != "RPY":
         return uniform(np.nan, len(blocks))
     angles = _in_rad(modal, _rotary_words(blocks, modal, options))
-    return locked(np.unwrap(torsion(axis_of(angles), x_of(angles))))
+    return read_only(np.unwrap(torsion(axis_of(angles), x_of(angles))))
 
 
 def _rotary_words(blocks: Blocks, modal: Modal, options: ReadOptions) -> dict[str, Array]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, by_row
+from pkm_post.model import Array, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import (
     ANY_BLOCK,
@@ -117,7 +117,7 @@ def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
             takes[code] = code == 800 or letter in meaning.letters or turns or letter in NORMAL_WORDS
             if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # on an arc they are its centre, or meaningless
                 takes[code] = letter in meaning.letters
-    return modal.moves & by_row(takes.__getitem__, modal.in_force[Group.MOTION])
+    return modal.moves & map_rows(takes.__getitem__, modal.in_force[Group.MOTION])
 
 
 def _rows_that_use(letter: str, blocks: Blocks) -> Array:
@@ -154,7 +154,7 @@ def _words_missing(blocks: Blocks, modal: Modal, faults: Findings) -> None:
             missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
             faults.tell_all("G405", missing, lambda _, c=code, w=letter: f"{name_of(c)} without {w}")  # type: ignore[misc]
     spindle = modal.explicit[Group.SPINDLE]
-    turning = by_row(lambda codes: np.isin(codes, (3, 4)), spindle)
+    turning = map_rows(lambda codes: np.isin(codes, (3, 4)), spindle)
     faults.tell_all("G405", turning & _before_first(blocks, "S"), lambda row: f"M{spindle[row]} without S")
     change = modal.explicit[Group.CHANGE] == 6
     faults.tell_all("G405", change & _before_first(blocks, "T"), lambda _: "M6 without T")
@@ -175,7 +175,7 @@ def _values(blocks: Blocks, modal: Modal, faults: Findings) -> None:
         if letter in _NOT_NEGATIVE:
             wrong |= value < 0
         faults.tell_all("G406", wrong, lambda row, name=letter, value=value: _word(name, value[row]))  # type: ignore[misc]
-    rows = np.flatnonzero(by_row(lambda codes: np.isin(codes, (410, 420)), modal.explicit[Group.SIDE]))
+    rows = np.flatnonzero(map_rows(lambda codes: np.isin(codes, (410, 420)), modal.explicit[Group.SIDE]))
     diameter = blocks.word("D")[rows]
     for row in rows[np.abs(diameter - np.round(diameter)) > 0].tolist():
         faults.tell("G406", row, f"D{blocks.word('D')[row]:g}")

@@ -12,7 +12,7 @@ import re
 
 import numpy as np
 
-from pkm_post.model import Array, by_row
+from pkm_post.model import Array, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Group
 from pkm_post.reading.gcode.cycles import DWELLS
@@ -55,7 +55,7 @@ def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, text: bytes
 
 def _dwells(blocks: Blocks, modal: Modal) -> Array:
     """Blocks whose P is a time; only the first execution of each."""
-    waits = modal.moves & by_row(lambda codes: np.isin(codes, DWELLS), modal.in_force[Group.MOTION])
+    waits = modal.moves & map_rows(lambda codes: np.isin(codes, DWELLS), modal.in_force[Group.MOTION])
     waits[blocks.g_row[blocks.g == 40]] = True
     rows = np.flatnonzero(waits & blocks.has("P"))
     return np.sort(rows[np.unique(blocks.line[rows], return_index=True)[1]])

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pkm_post.model import Array, by_row, is_uniform, uniform
+from pkm_post.model import Array, is_uniform, map_rows, uniform
 from pkm_post.reading.gcode.options import ReadOptions
 
 SYSTEMS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
@@ -139,7 +139,7 @@ def plane_axes(planes: Array) -> Array:
     table = np.zeros((max(PLANES) + 1, 3), dtype=np.uint8)
     for code, axes in PLANES.items():
         table[code] = axes
-    return by_row(table.__getitem__, planes)
+    return map_rows(table.__getitem__, planes)
 
 
 def normal_coordinate(planes: Array) -> Array:
@@ -174,7 +174,7 @@ class RowFrames:
             return vectors
         if len(self.turn) == 1:
             # Not with @: for three columns BLAS threading costs more than it gains.
-            return by_row(lambda some: np.einsum("ij,nj->ni", self.turn[0], some), vectors)
+            return map_rows(lambda some: np.einsum("ij,nj->ni", self.turn[0], some), vectors)
         return np.einsum("nij,nj->ni", self.turn[self.frame], vectors)
 
     def points(self, points: Array) -> Array:
@@ -186,7 +186,7 @@ class RowFrames:
 
     def hand(self) -> Array:
         """Handedness of each frame, (n,): 1 for right-handed, -1 for mirrored."""
-        return by_row(np.sign(np.linalg.det(self.turn)).__getitem__, self.frame)
+        return map_rows(np.sign(np.linalg.det(self.turn)).__getitem__, self.frame)
 
     def planes(self, normal: Array) -> tuple[Array, Array]:
         """Transform planes normal to a program coordinate.
@@ -200,5 +200,5 @@ class RowFrames:
         plane = np.argmax(np.abs(self.turn), axis=1)
         along = np.take_along_axis(self.turn, plane[:, None, :], axis=1)[:, 0, :]
         if len(self.turn) == 1:
-            return by_row(plane[0].astype(np.uint8).__getitem__, normal), by_row(along[0].__getitem__, normal)
+            return map_rows(plane[0].astype(np.uint8).__getitem__, normal), map_rows(along[0].__getitem__, normal)
         return plane[self.frame, normal], along[self.frame, normal]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, by_row, is_uniform, uniform
+from pkm_post.model import Array, is_uniform, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import ARCS, CYCLES, G_CODES, M_CODES, NONE, Group
 
@@ -130,12 +130,12 @@ def _scattered(rows: Array, codes: Array, count: int) -> Array:
 
 def is_arc(motion: Array) -> Array:
     """Whether each motion is an arc, (n,)."""
-    return by_row(lambda codes: np.isin(codes, ARCS), motion)
+    return map_rows(lambda codes: np.isin(codes, ARCS), motion)
 
 
 def is_cycle(motion: Array) -> Array:
     """Whether each motion is a cycle, (n,)."""
-    return by_row(lambda codes: np.isin(codes, CYCLES), motion)
+    return map_rows(lambda codes: np.isin(codes, CYCLES), motion)
 
 
 def _moves(

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, by_row, uniform
+from pkm_post.model import Array, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import G_CODES, Group
 from pkm_post.reading.gcode.findings import Findings
@@ -42,8 +42,8 @@ def path_modes(blocks: Blocks, modal: Modal, axis_words: str, faults: Findings) 
     stop, path = exact_codes(axis_words)
     in_force = modal.in_force[Group.PATH]
     return {
-        "exact_stop": by_row(lambda codes: codes == stop, in_force),
-        "exact_path": by_row(lambda codes: codes == path, in_force),
+        "exact_stop": map_rows(lambda codes: codes == stop, in_force),
+        "exact_path": map_rows(lambda codes: codes == path, in_force),
         "tip_tolerance": _tolerances(blocks, modal, faults),
     }
 

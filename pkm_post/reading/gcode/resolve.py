@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Kind, Program, Tool, by_row, is_uniform, locked, uniform
+from pkm_post.model import Array, Diagnostic, Kind, Program, Tool, is_uniform, map_rows, read_only, uniform
 from pkm_post.reading.gcode.arc_motions import arcs_of, known_ones, lengths, single_turns
 from pkm_post.reading.gcode.axes import check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.blocks import Blocks
@@ -150,7 +150,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
         **{name: motions.of_blocks(column) for name, column in modes.items()},
     }
     return Program(
-        **{name: locked(column) for name, column in columns.items()},
+        **{name: read_only(column) for name, column in columns.items()},
         events=events(
             happenings(blocks, modal, settings.tools, settings.spindle, dwells), motions.in_cycles, motions.block
         ),
@@ -211,7 +211,7 @@ def _compensation(
     blocks: Blocks, modal: Modal, motions: Motions, frames: RowFrames, sides: Array, faults: Findings
 ) -> tuple[Array, Array]:
     """Side offset and plane of each motion in {C}, (n,) each: a mirror changes the side."""
-    plane, along = frames.planes(by_row(normal_coordinate, motions.of_blocks(modal.in_force[Group.PLANE])))
+    plane, along = frames.planes(map_rows(normal_coordinate, motions.of_blocks(modal.in_force[Group.PLANE])))
     side = motions.of_blocks(sides)
     if not side.any():
         return side, plane

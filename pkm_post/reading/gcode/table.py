@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pkm_post.model import Array, locked
+from pkm_post.model import Array, read_only
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.row import Row
 from pkm_post.reading.gcode.shapes import Layouts
@@ -120,13 +120,13 @@ class Table:
         g, g_row = self._g.joined()
         m, m_row = self._m.joined()
         return Blocks(
-            line=locked(self._line)[: self._rows],
-            words={letter: locked(column)[: self._rows] for letter, column in self._words.items()},
+            line=read_only(self._line)[: self._rows],
+            words={letter: read_only(column)[: self._rows] for letter, column in self._words.items()},
             g=g,
             g_row=g_row,
             m=m,
             m_row=m_row,
-            deleted=locked(self._deleted)[: self._rows],
+            deleted=read_only(self._deleted)[: self._rows],
             special=self._special,
             comments=tuple(self.comments),
             source=source,

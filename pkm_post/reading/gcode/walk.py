@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, by_row, is_uniform
+from pkm_post.model import Array, is_uniform, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import CYCLES, NONE, Group, name_of
 from pkm_post.reading.gcode.drilling import Drilling
@@ -71,7 +71,7 @@ class Walk:
         """Mask of blocks that change the frame or move in a special manner, (N,)."""
         explicit = self.modal.explicit
         breaks = self.modal.moves & is_cycle(self.modal.in_force[Group.MOTION])
-        alone = by_row(lambda codes: np.isin(codes, _WORKS_ALONE), explicit[Group.ONCE])
+        alone = map_rows(lambda codes: np.isin(codes, _WORKS_ALONE), explicit[Group.ONCE])
         for group in (Group.CHANGE, *IN_ORDER[1:]):
             alone = alone | (explicit[group] != NONE)
         if not is_uniform(explicit[Group.LENGTH]):

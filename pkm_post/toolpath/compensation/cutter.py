@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Place, Tool, angles_fit, corner_reach, largest_corner
+from pkm_post.model import Diagnostic, Place, Tool, corner_reach, largest_corner_radius, valid_cutter_angles
 
 _TANGENT = 2e-3
 """Tolerance in mm of a given e or f against the arc tangent to bottom and side: files round to three decimals."""
@@ -105,7 +105,7 @@ class Cutter:
         if not (math.isfinite(radius) and radius > 0.0):
             raise ValueError(f"tool {tool.number}: expected a diameter above 0 mm, got {tool.diameter}")
         _check_angles(tool.bottom_angle, tool.side_angle)
-        largest = largest_corner(tool.diameter, tool.bottom_angle, tool.side_angle)
+        largest = largest_corner_radius(tool.diameter, tool.bottom_angle, tool.side_angle)
         if not 0.0 <= tool.corner_radius <= largest * (1.0 + 1e-9):
             raise ValueError(
                 f"tool {tool.number}: expected a corner radius from 0 to {largest} mm, got {tool.corner_radius}"
@@ -133,7 +133,7 @@ class Cutter:
 
 def _check_angles(a: float, b: float) -> None:
     """Bottom and side must meet: they are parallel where a + b is a right angle."""
-    if not angles_fit(a, b):
+    if not valid_cutter_angles(a, b):
         raise ValueError(
             "Cutter: expected a bottom angle from 0 and a side angle from -90 to less than 90 degrees, together less "
             f"than 90, got {math.degrees(a):.6g} and {math.degrees(b):.6g}"

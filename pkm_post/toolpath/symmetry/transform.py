@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pkm_post.geometry import Array, norm, unit
-from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Place, Program, by_row
+from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Place, Program, map_rows
 
 _RIGID = 1e-6
 """Largest deviation of R^T R from identity, and of the last row from 0 0 0 1: matrices are typed with six decimals."""
@@ -46,15 +46,15 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
         return None, (Diagnostic("K112", Place(program.source), "the plane is not parallel to two axes any more"),)
     moved = dataclasses.replace(
         program,
-        position=by_row(lambda points: _turned(points, turn) + shift, program.position),
-        tool_axis=by_row(lambda axes: unit(_turned(axes, turn)), program.tool_axis),
-        arc_centre=by_row(lambda points: _turned(points, turn) + shift, program.arc_centre),
-        arc_axis=by_row(lambda axes: _unit_or_nan(_turned(axes, hand * turn)), program.arc_axis),
+        position=map_rows(lambda points: _turned(points, turn) + shift, program.position),
+        tool_axis=map_rows(lambda axes: unit(_turned(axes, turn)), program.tool_axis),
+        arc_centre=map_rows(lambda points: _turned(points, turn) + shift, program.arc_centre),
+        arc_axis=map_rows(lambda axes: _unit_or_nan(_turned(axes, hand * turn)), program.arc_axis),
         side_offset=side_offset,
         plane=plane,
-        normal=by_row(lambda normals: _turned(normals, turn), program.normal),
+        normal=map_rows(lambda normals: _turned(normals, turn), program.normal),
         # A mirror M takes the platform to M R M, which reverses the rotation about the tool axis.
-        spin=by_row(lambda spin: hand * spin, program.spin),
+        spin=map_rows(lambda spin: hand * spin, program.spin),
     )
     return moved, ()
 
@@ -77,7 +77,7 @@ def _compensation(program: Program, turn: Array, hand: float) -> tuple[Array | N
     """
     normal_to = np.argmax(np.abs(turn), axis=0)  # per plane; the columns of ``turn`` are the new normals
     along = turn[normal_to, np.arange(3)]
-    plane = by_row(lambda planes: normal_to[planes], program.plane)
+    plane = map_rows(lambda planes: normal_to[planes], program.plane)
     if not program.side_offset.any():
         return plane, program.side_offset
     if np.any((np.abs(along) < 1 - _RIGID)[program.plane] & (program.side_offset != 0)):

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from pkm_post.geometry import Array, cross, dot, norm
-from pkm_post.model import EventKind, Kind, Trajectory, lengths_of
+from pkm_post.model import EventKind, Kind, Trajectory, gauge_lengths
 from pkm_post.writing.trajectory_file.parts import SEGMENTS
 
 SMOOTH = 1e-4
@@ -87,7 +87,7 @@ def _tangents(trajectory: Trajectory, rows: Array) -> tuple[Array, Array]:
 def _starts(trajectory: Trajectory, rows: Array) -> Array:
     """Tips at the starts of segments, (M, 3), as in ``Trajectory.tip_before``."""
     before = np.maximum(rows - 1, 0)
-    lengths = (lengths_of(trajectory.tools, trajectory.tool[each]) for each in (rows, before))
+    lengths = (gauge_lengths(trajectory.tools, trajectory.tool[each]) for each in (rows, before))
     longer = np.subtract(*lengths)
     first = rows == 0
     tip = np.where(first[:, None], trajectory.start_tip, trajectory.tip[before])

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.model import LEAST_TOLERANCE, MOST_SPIN, Event, EventKind, Kind, Tool, Trajectory
+from pkm_post.model import MAX_SPIN, MIN_TOLERANCE, Event, EventKind, Kind, Tool, Trajectory
 from pkm_post.writing.trajectory_file.parts import parts
 
 UNIT_TOLERANCE = 1e-5
@@ -63,8 +63,8 @@ def _of_start(trajectory: Trajectory) -> Iterator[str]:
         yield f"the start tip is not finite, or farther than {FARTHEST:g} mm"
     if not _is_unit(trajectory.start_axis):
         yield "the start axis is not of unit length"
-    if not abs(trajectory.start_spin) <= MOST_SPIN:
-        yield f"the start spin is not finite, or beyond {MOST_SPIN:g} rad"
+    if not abs(trajectory.start_spin) <= MAX_SPIN:
+        yield f"the start spin is not finite, or beyond {MAX_SPIN:g} rad"
     if not _is_rigid(trajectory.machine_from_work):
         yield "the work offset is not a rotation and a shift"
 
@@ -75,10 +75,8 @@ def _of_origin(trajectory: Trajectory) -> Iterator[str]:
     source, tolerances = trajectory.source_fingerprint, trajectory.tolerances
     if source and (not re.fullmatch(_FINGERPRINT, source) or not source.strip("0")):
         yield f"the fingerprint {source!r} of the source is not 64 digits of 0-9 and a-f, or all are 0"
-    if tolerances and not (
-        LEAST_TOLERANCE <= tolerances.tip <= FARTHEST and LEAST_TOLERANCE <= tolerances.axis <= math.pi
-    ):
-        yield f"the tolerances {tolerances.tip} mm and {tolerances.axis} rad are not both at least {LEAST_TOLERANCE:g}"
+    if tolerances and not (MIN_TOLERANCE <= tolerances.tip <= FARTHEST and MIN_TOLERANCE <= tolerances.axis <= math.pi):
+        yield f"the tolerances {tolerances.tip} mm and {tolerances.axis} rad are not both at least {MIN_TOLERANCE:g}"
 
 
 def _of_tools(tools: dict[int, Tool]) -> Iterator[str]:
@@ -126,7 +124,7 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
         "kind is unknown": ~np.isin(trajectory.kind, list(Kind)),
         f"tip is not finite, or farther than {FARTHEST:g} mm": ~_is_near(trajectory.tip),
         "axis is not of unit length": ~_is_unit(trajectory.axis),
-        f"spin is not finite, or beyond {MOST_SPIN:g} rad": ~(np.abs(trajectory.spin) <= MOST_SPIN),
+        f"spin is not finite, or beyond {MAX_SPIN:g} rad": ~(np.abs(trajectory.spin) <= MAX_SPIN),
         "feed is not a finite number above 0": ~(np.isfinite(trajectory.feed) & (trajectory.feed > 0)),
         f"arc centre is not finite, or farther than {FARTHEST:g} mm": _at(arc, ~_is_near(trajectory.arc_centre[arc])),
         "arc centre is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_centre),
@@ -137,8 +135,8 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
         "length is not a finite number of at least 0": ~(np.isfinite(length) & (length >= 0)),
         "angle is not between 0 and pi": ~_within(angle, 0, np.pi),
         "tip, the axis and the spin all stand": stands,
-        f"tip tolerance is not 0, nor a finite number of at least {LEAST_TOLERANCE:g} mm": ~(
-            (asked == 0) | _within(asked, LEAST_TOLERANCE, FARTHEST)
+        f"tip tolerance is not 0, nor a finite number of at least {MIN_TOLERANCE:g} mm": ~(
+            (asked == 0) | _within(asked, MIN_TOLERANCE, FARTHEST)
         ),
         "feed is so low that the segment takes more than a day": length > LONGEST * trajectory.feed,
         "tool is not in the table": ~np.isin(trajectory.tool, list(trajectory.tools)),

@@ -13,7 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.model import TRAJECTORY_COLUMNS, Diagnostic, Event, EventKind, Filled, Place, Tolerances, Tool, Trajectory
+from pkm_post.model import (
+    TRAJECTORY_COLUMNS,
+    ColumnBuilder,
+    Diagnostic,
+    Event,
+    EventKind,
+    Place,
+    Tolerances,
+    Tool,
+    Trajectory,
+)
 from pkm_post.writing.trajectory_file.container import Content, DamageError, bytes_of, opened
 from pkm_post.writing.trajectory_file.contradictions import contradictions
 from pkm_post.writing.trajectory_file.interpolation import blocks, strayed
@@ -123,7 +133,7 @@ def _columns(segments: Records) -> dict[str, Any]:
 
     A column with equal rows, such as the axis in three-axis work, takes the memory of one row.
     """
-    columns = {name: Filled(len(segments)) for name in TRAJECTORY_COLUMNS}
+    columns = {name: ColumnBuilder(len(segments)) for name in TRAJECTORY_COLUMNS}
     for begin in range(0, max(len(segments), 1), SEGMENTS):
         part = segments[begin : begin + SEGMENTS]
         for name, (dtype, _) in TRAJECTORY_COLUMNS.items():

@@ -9,7 +9,7 @@ import pytest
 from cutters import ALL, profile
 
 from pkm_post.model import Tool
-from pkm_post.model.tool import largest_corner
+from pkm_post.model.setup import largest_corner_radius
 from pkm_post.toolpath.compensation.cutter import Cutter
 
 ROUNDING = 1e-12
@@ -57,7 +57,7 @@ def test_corner_touches_bottom_and_side_and_leaves_them_on_one_side():
     for _ in range(200):
         a, b = rng.uniform(0.0, 1.2), rng.uniform(-1.2, 0.3)
         d = rng.uniform(1.0, 50.0)
-        r = rng.uniform(0.0, largest_corner(d, a, b))
+        r = rng.uniform(0.0, largest_corner_radius(d, a, b))
         cutter = Cutter.apt(d, r, a=a, b=b)
         assert cutter.radial_offset >= 0.0
         # distances of the arc's centre from both lines through the circle where they meet
@@ -81,8 +81,8 @@ def test_lens_begins_where_its_arc_meets_the_axis():
 
 
 def test_largest_corner_makes_a_ball():
-    assert largest_corner(12.0) == pytest.approx(6.0, abs=ROUNDING)
-    tapered = tool(12.0, largest_corner(12.0, 0.0, 0.1), side_angle=0.1)
+    assert largest_corner_radius(12.0) == pytest.approx(6.0, abs=ROUNDING)
+    tapered = tool(12.0, largest_corner_radius(12.0, 0.0, 0.1), side_angle=0.1)
     assert Cutter.of(tapered).radial_offset == pytest.approx(0.0, abs=ROUNDING)
 
 

@@ -12,7 +12,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Event, EventKind, Place, StrutMotion, locked
+from pkm_post.model import Array, Diagnostic, Event, EventKind, Place, StrutMotion, read_only
 from pkm_post.writing.controllers.pvt.moves import Lines, lines_of
 from pkm_post.writing.controllers.pvt.syntax import EFFECTS, FINISHED, START, Grammar, effect, state_after
 
@@ -84,7 +84,7 @@ class Reading:
 
     def _motion(self) -> StrutMotion:
         time_ms = np.cumsum(np.concatenate([[0], *self._intervals]))
-        return StrutMotion(locked(time_ms), _joined(self._lengths), _joined(self._speeds), tuple(self._events))
+        return StrutMotion(read_only(time_ms), _joined(self._lengths), _joined(self._speeds), tuple(self._events))
 
     def _check_rest(self, motion: StrutMotion) -> None:
         """Check that the struts rest at every interruption; the end is checked with the whole motion."""
@@ -167,7 +167,7 @@ def _joined(pieces: list[Array]) -> Array:
     """Join pieces into one column and release them: a long program does not fit into memory twice."""
     column = np.concatenate(pieces)
     pieces.clear()
-    return locked(column)
+    return read_only(column)
 
 
 def _kind(name: str) -> str:
