@@ -7,8 +7,7 @@ import tomllib
 
 import pytest
 
-from pkm_post.machine.collisions.contacts import mesh_faults
-from pkm_post.machine.description import reader
+from pkm_post.machine.description import faults, reader
 from pkm_post.machine.description.faults import DEEPEST, MOST_BYTES, MOST_SHOWN
 from pkm_post.machine.description.presets import FOLDER, presets
 from pkm_post.machine.description.reader import machine_of, read_machine
@@ -120,7 +119,7 @@ def test_more_solids_than_are_checked_are_refused(key):
 
 def test_of_very_many_faults_the_first_are_shown_with_little_work(monkeypatch):
     looked = []
-    monkeypatch.setattr(mesh_faults, "_suggestion", lambda name: looked.append(name) or "nothing")
+    monkeypatch.setattr(faults, "_suggestion", lambda name: looked.append(name) or "nothing")
     text = "".join(f"u{number} = 1\n" for number in range(20_000)) + PRESET
     machine, found = machine_of(text.encode(), "m.toml")
     assert machine is None
