@@ -17,8 +17,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from pkm_post.machine import (  # noqa: E402
-    Inside,
     KnotState,
+    ToolPoses,
     machine_named,  # noqa: E402
 )
 from pkm_post.machine.kinematics.strut_cubics import tool_deviation  # noqa: E402
@@ -40,7 +40,7 @@ def told(name, time_ms, path, schedule, machine):
         start = start[: len(end)]
         s, _, _ = schedule.at((start[:, None] + (end - start)[:, None] * SHARES).ravel() / 1000)
         seen = glimpse(path, s)
-        inside = Inside(seen.tip, seen.axis, seen.spin, seen.tool_length)
+        inside = ToolPoses(seen.tip, seen.axis, seen.spin, seen.tool_length)
         ends = (KnotState.of(machine, poses_at(path, schedule, ms)) for ms in (start, end))
         found = tool_deviation(machine, *ends, inside, (end - start) / 1000, SHARES)
         tip, axis = max(tip, found.tip.max()), max(axis, found.axis.max())

@@ -18,7 +18,7 @@ from pkm_post.certificate.knots import Knots, inverses_at
 from pkm_post.certificate.struts import cubics
 from pkm_post.certificate.tool_course import ToolCourse
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds, length_of
-from pkm_post.machine import NearPoses, forward, linearise, map_to_tool, refine_poses
+from pkm_post.machine import ToolPoses, forward, linearise, map_to_tool, refine_poses
 from pkm_post.model import Machine, Motion, StrutMotion
 
 _SPEED_MISSED = 2e-4
@@ -84,7 +84,7 @@ def by_kinematics(task: Task, rows: Array, shares: Array) -> ToolAt:
     tool_length = np.repeat(motion.tool_length[rows + 1], len(shares))
     inverses = inverses_at(machine, motion, rows)
     pose, found = refine_poses(
-        machine, length, _planned(motion, rows, cubic[-1], shares), tool_length, inverses, shares
+        machine, length, _planned(motion, rows, cubic[-1], shares, tool_length), inverses, shares
     )
     tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
     velocity = np.array(map_to_tool(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
@@ -100,14 +100,14 @@ def by_kinematics(task: Task, rows: Array, shares: Array) -> ToolAt:
     return ToolAt(columns[0], columns[1], columns[2], missed, found.reshape(len(rows), -1).T)
 
 
-def _planned(motion: Motion, rows: Array, duration: Array, shares: Array) -> NearPoses:
+def _planned(motion: Motion, rows: Array, duration: Array, shares: Array, tool_length: Array) -> ToolPoses:
     """The plan at shares of intervals, by cubics of tip, axis and spin."""
     place = motion.tip, motion.axis, motion.spin
     rate = motion.tip_rate, motion.axis_rate, motion.spin_rate
     p0, v0, p1, v1 = (np.column_stack([of[at] for of in some]).T for at in (rows, rows + 1) for some in (place, rate))
     columns = hermite_columns(p0, v0, p1, v1, duration, shares[:, None]).swapaxes(1, 2).reshape(7, -1)
     axis = columns[3:6] / length_of(*columns[3:6])
-    return NearPoses(columns[:3].T, axis.T, columns[6])
+    return ToolPoses(columns[:3].T, axis.T, columns[6], tool_length)
 
 
 def _by_newton(

@@ -23,7 +23,7 @@ from pkm_post.geometry import (
     hermite_lengths,
     length_of,
 )
-from pkm_post.machine import NearPoses, attitude_rates, displaced, map_to_tool, strut_lengths
+from pkm_post.machine import ToolPoses, attitude_rates, displaced, map_to_tool, strut_lengths
 from pkm_post.model import Machine, Motion, StrutMotion, pieces
 
 _LOOKS = np.array([[0.25], [0.5], [0.75]])
@@ -159,6 +159,7 @@ def _at_knots(
     residual = struts.length[rows] - knots.length[rows]
     near = np.abs(residual).max(axis=1) < _NEAR_PLAN
     step, twist = (inverse @ np.stack([residual, struts.speed[rows]], axis=2)).transpose(2, 1, 0)
-    pose = displaced(NearPoses(motion.tip[rows], motion.axis[rows], motion.spin[rows]), np.where(near, step, 0.0))
+    planned = ToolPoses(motion.tip[rows], motion.axis[rows], motion.spin[rows], motion.tool_length[rows])
+    pose = displaced(planned, np.where(near, step, 0.0))
     swing, spun = attitude_rates(pose.axis, twist[3:].T)
     return np.vstack([pose.tip.T, pose.axis.T, pose.spin]), np.vstack([twist[:3], swing.T, spun]), near

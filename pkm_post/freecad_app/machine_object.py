@@ -22,7 +22,7 @@ from pkm_post.freecad_app.document_object import EDITABLE, READ_ONLY, PropertyPr
 from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.geometry import Array
-from pkm_post.machine import Pose, PosePath, machine_named, reach_findings, reach_margins, strut_lengths
+from pkm_post.machine import PosePath, ToolPoses, machine_named, reach_findings, reach_margins, strut_lengths
 from pkm_post.model import Machine, Refused
 from pkm_post.posting import work_offset
 
@@ -124,7 +124,7 @@ def machine_of(obj: Any) -> Machine:
     return _machine_named(obj.MachineFile)
 
 
-def pose_of(obj: Any) -> Pose:
+def pose_of(obj: Any) -> ToolPoses:
     """The pose of the object in {M}, as one row for ``kinematics``.
 
     Raises:
@@ -137,7 +137,7 @@ def pose_of(obj: Any) -> Pose:
         raise ValueError(f"{obj.Label}: expected a tool axis with a direction, got (0, 0, 0)")
     tip = machine_from_work[:3, :3] @ np.array(obj.Tip) + machine_from_work[:3, 3]
     spin, gauge = math.radians(obj.Spin.Value), obj.ToolLength.Value
-    return tip[None], axis[None] / length, np.array([spin]), np.array([gauge])
+    return ToolPoses(tip[None], axis[None] / length, np.array([spin]), np.array([gauge]))
 
 
 def _machine_named(name: str) -> Machine:
@@ -177,7 +177,7 @@ def go_home(obj: Any, machine: Machine) -> None:
         obj.ToolLength = machine.rest_tool_length
 
 
-def _tell(obj: Any, machine: Machine, pose: Pose) -> None:
+def _tell(obj: Any, machine: Machine, pose: ToolPoses) -> None:
     """Fill in the results."""
     for name, length in zip(_STRUTS, strut_lengths(machine, *pose)[0], strict=True):
         setattr(obj, name, float(length))

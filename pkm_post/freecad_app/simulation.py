@@ -17,7 +17,7 @@ import numpy as np
 from pkm_post.freecad_app.job_setup import JobOnMachine, job_on_machine
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, norm, unit
-from pkm_post.machine import Pose, ReachFinding, ReachReport, check_reach
+from pkm_post.machine import ReachFinding, ReachReport, ToolPoses, check_reach
 from pkm_post.model import RULES, EventKind, Machine, Motion, Place, Refused, Severity, StrutMotion, Tool, Trajectory
 from pkm_post.planning import interpolate, plan_feed
 
@@ -98,7 +98,7 @@ class Simulation:
         greatest: Array = np.abs(reached).max(axis=0)
         return greatest
 
-    def pose_at(self, seconds: Array) -> Pose:
+    def pose_at(self, seconds: Array) -> ToolPoses:
         """Poses in {M} at times (T,)."""
         start, share, duration = self._between(seconds)
         motion, end = self.motion, start + 1
@@ -110,7 +110,7 @@ class Simulation:
         axis = unit(at(motion.axis, motion.axis_rate))
         spin = at(motion.spin[:, None], motion.spin_rate[:, None])[:, 0]
         length = motion.tool_length[end]  # at a tool change the spindle stands still, and the tip jumps
-        return nose - length[:, None] * axis, axis, spin, length
+        return ToolPoses(nose - length[:, None] * axis, axis, spin, length)
 
     def struts_at(self, seconds: Array) -> tuple[Array, Array]:
         """Strut lengths and speeds at times (T,), (T, 6) each."""

@@ -13,7 +13,7 @@ from pivy import coin
 from pkm_post.freecad_gui import lathe
 from pkm_post.freecad_gui.lathe import Colour
 from pkm_post.geometry import Array, norm
-from pkm_post.machine import Pose, platform_joints, platform_rotation, reach_margins
+from pkm_post.machine import ToolPoses, platform_joints, platform_rotation, reach_margins
 from pkm_post.model import Box, Machine
 
 STEEL: Colour = (0.62, 0.65, 0.7)
@@ -54,7 +54,7 @@ class MachineScene:
             for node in (lathe.material(GOLD), shift, body):
                 self._tool.addChild(node)
 
-    def show(self, pose: Pose) -> None:
+    def show(self, pose: ToolPoses) -> None:
         """Move to a pose in {M}, one row for ``kinematics``; struts out of limits are red."""
         tip, axis, spin, length = pose
         joints = platform_joints(self.machine, *pose)[0]

@@ -7,14 +7,19 @@ from pkm_post.machine.collisions.check import NO_SETUP, find_collisions, placed_
 from pkm_post.machine.description.presets import find_machine, machine_named, presets, templates
 from pkm_post.machine.kinematics.forward import (
     ForwardSolution,
-    NearPoses,
     displaced,
     forward,
     forward_along_path,
     forward_from_rotation,
     refine_poses,
 )
-from pkm_post.machine.kinematics.inverse import Pose, attitude_rates, platform_joints, platform_rotation, strut_lengths
+from pkm_post.machine.kinematics.inverse import (
+    ToolPoses,
+    attitude_rates,
+    platform_joints,
+    platform_rotation,
+    strut_lengths,
+)
 from pkm_post.machine.kinematics.jacobian import (
     jacobian_of_tip,
     linearise,
@@ -24,7 +29,7 @@ from pkm_post.machine.kinematics.jacobian import (
 )
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
 from pkm_post.machine.kinematics.rates import strut_rate_bounds, strut_rates, tool_rates
-from pkm_post.machine.kinematics.strut_cubics import Inside, KnotState, map_to_tool, strut_state
+from pkm_post.machine.kinematics.strut_cubics import KnotState, map_to_tool, strut_state
 from pkm_post.machine.kinematics.tool_cubics import Demand, ToolCubics, bounded_demand, measured_demand
 from pkm_post.machine.reach.collision_mesh import CollisionMesh
 from pkm_post.machine.reach.findings import DISPLAY_UNITS, ReachFinding, finding_diagnostics
@@ -43,11 +48,11 @@ __all__ = [
     "ZERO_TORSION",
     "Demand",
     "KnotState",
-    "Inside",
-    "NearPoses",
+    "ToolPoses",
+    "ToolPoses",
     "CollisionMesh",
     "SpinPolicy",
-    "Pose",
+    "ToolPoses",
     "ReachReport",
     "ReachFinding",
     "SpinRule",

@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, length_of, unit
-from pkm_post.machine import Demand, Inside, KnotState, ToolCubics, bounded_demand, measured_demand
+from pkm_post.machine import Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
 from pkm_post.model import Machine, Poses, Tolerances
 from pkm_post.planning.glimpse import glimpse, glimpse_within
 from pkm_post.planning.places import Intervals, Places
@@ -128,7 +128,7 @@ class Cubics:
         ends, (first, last) = KnotState.of(self._machine, poses), np.split(row, 2)
         middle = cubics.at(0.5)
         attitude = self._path.attitude or (unit(middle[3:6].T), middle[6], poses.tool_length[last])
-        inside = Inside(middle[:3].T, *attitude)
+        inside = ToolPoses(middle[:3].T, *attitude)
         return measured_demand(self._machine, ends[first], ends[last], cubics, inside, intervals.duration)
 
     def _off_at_joints(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:

@@ -8,7 +8,7 @@ from machines import example
 from programs import ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.geometry import hermite_accelerations, hermite_speeds
-from pkm_post.machine import Inside, KnotState, strut_rates
+from pkm_post.machine import KnotState, ToolPoses, strut_rates
 from pkm_post.machine.kinematics.strut_cubics import tool_deviation
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import cubics, interpolate, motion, plan_feed
@@ -72,7 +72,7 @@ def dense(machine, path, schedule, start, end):
         KnotState.of(machine, by_time(path.at(s), v, a)) for s, v, a in (schedule.at(ms / 1000) for ms in (start, end))
     )
     found = tool_deviation(
-        machine, *ends, Inside(poses.tip, poses.axis, poses.spin, poses.tool_length), duration, DENSE
+        machine, *ends, ToolPoses(poses.tip, poses.axis, poses.spin, poses.tool_length), duration, DENSE
     )
     return np.maximum(found.tip / TOLERANCES.tip, found.axis / TOLERANCES.axis).max(axis=1) / SHARE_OF_TOLERANCES
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, Cylinders, dot, nearest_on_triangle, subdivide
 from pkm_post.machine.collisions.moving_bodies import MovingBody
-from pkm_post.machine.kinematics.inverse import Pose
+from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.reach.collision_mesh import CollisionMesh, pairs_within
 from pkm_post.machine.reach.limit_checks import HUNDREDTH
 from pkm_post.machine.reach.pose_path import PosePath
@@ -65,7 +65,7 @@ class _Stretches:
         cell = np.ceil(at).astype(np.int64)
         return self.total[cell] - (cell - at) * self.change[cell]
 
-    def pose(self, at: Array) -> Pose:
+    def pose(self, at: Array) -> ToolPoses:
         cell = np.maximum(np.ceil(at).astype(np.int64), 1)
         return self.way.inside(cell, at - (cell - 1))
 

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from pkm_post.geometry import Array, Cylinders
-from pkm_post.machine.kinematics.inverse import Pose, lever_arms
+from pkm_post.machine.kinematics.inverse import ToolPoses, lever_arms
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine, body_reach, rod_speed_ratio, strut_cylinders
 from pkm_post.machine.reach.limit_checks import shortest_distance
 from pkm_post.machine.reach.pose_path import PosePath
@@ -58,7 +58,7 @@ class MovingBody:
     change: Array
     reach: float
     rounding: Array
-    cylinders: Callable[[Pose], Cylinders]
+    cylinders: Callable[[ToolPoses], Cylinders]
 
 
 def platform_body(machine: Machine, way: PosePath, body: Body) -> MovingBody:
@@ -102,20 +102,20 @@ def _about_the_axis(way: PosePath, reach: float) -> Array:
     return way.travel + way.angle * reach
 
 
-def _platform_cylinder(start: float, end: float, radius: float, pose: Pose) -> Cylinders:
+def _platform_cylinder(start: float, end: float, radius: float, pose: ToolPoses) -> Cylinders:
     tip, axis, _, tool_length = pose
     middle = tip + ((start + end) / 2 + tool_length)[:, None] * axis
     return Cylinders(middle, axis, np.full(len(tip), (end - start) / 2), np.full(len(tip), radius))
 
 
-def _tool_cylinders(start: Array, end: Array, radius: Array, pose: Pose) -> Cylinders:
+def _tool_cylinders(start: Array, end: Array, radius: Array, pose: ToolPoses) -> Cylinders:
     tip, axis, _, _ = pose
     middle = tip[:, None] + ((start + end) / 2)[:, None] * axis[:, None]
     repeated = np.repeat(axis, len(start), axis=0)
     return Cylinders(middle.reshape(-1, 3), repeated, *(np.tile(one, len(tip)) for one in ((end - start) / 2, radius)))
 
 
-def _struts(machine: Machine, pose: Pose) -> Cylinders:
+def _struts(machine: Machine, pose: ToolPoses) -> Cylinders:
     """All pieces of all struts, pose by pose."""
     pieces = list(strut_cylinders(PlacedMachine.of(machine, pose)))
     count = len(pose[0])

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, dot, norm
-from pkm_post.machine.kinematics.inverse import attitude_rates, platform_rotation, strut_lengths
+from pkm_post.machine.kinematics.inverse import ToolPoses, attitude_rates, platform_rotation, strut_lengths
 from pkm_post.machine.kinematics.jacobian import linearise, solve_regular
 from pkm_post.machine.kinematics.strut_cubics import map_to_tool
 from pkm_post.model import Machine
@@ -122,37 +122,21 @@ _FAR = 1.0
 """mm of strut error beyond which a linear step is unreliable and not taken."""
 
 
-@dataclass(frozen=True)
-class NearPoses:
-    """Columns of N poses.
-
-    Attributes:
-        tip: (N, 3) mm.
-        axis: (N, 3) unit tool axis.
-        spin: (N,) rad.
-    """
-
-    tip: Array
-    axis: Array
-    spin: Array
-
-
 def refine_poses(
-    machine: Machine, lengths: Array, guess: NearPoses, tool_length: Array, inverses: tuple[Array, Array], share: Array
-) -> tuple[NearPoses, Array]:
+    machine: Machine, lengths: Array, guess: ToolPoses, inverses: tuple[Array, Array], share: Array
+) -> tuple[ToolPoses, Array]:
     """Tool poses that have the given strut lengths, and which of them do, (N * M,); other rows are undefined.
 
     Args:
         machine: the geometry.
         lengths: (N, M, 6) strut lengths as the controller counts them, mm.
         guess: N * M initial poses.
-        tool_length: (N * M,) gauge lengths, mm.
         inverses: (N, 6, 6) inverse Jacobians of the tip at both ends of the intervals.
         share: (M,) or (N, M), elapsed share of the interval.
     """
     at = guess
     for step in range(_STEPS + 1):
-        residual = lengths - strut_lengths(machine, at.tip, at.axis, at.spin, tool_length).reshape(lengths.shape)
+        residual = lengths - strut_lengths(machine, *at).reshape(lengths.shape)
         off = np.abs(residual).max(axis=2).ravel()
         found = off < LENGTH_TOLERANCE
         goes = (off < _FAR) & ~found
@@ -163,12 +147,12 @@ def refine_poses(
     return at, found
 
 
-def displaced(pose: NearPoses, twist: Array) -> NearPoses:
+def displaced(pose: ToolPoses, twist: Array) -> ToolPoses:
     """Poses after a small tip displacement and a small platform rotation, (6, N), to first order in both."""
     swing, spun = attitude_rates(pose.axis, twist[3:].T)
     # Keeps the axis length to second order: without a root, an unmoved row stays identical to the last digit.
     swung = pose.axis + swing - (dot(swing, swing) / 2)[:, None] * pose.axis
-    return NearPoses(pose.tip + twist[:3].T, swung, pose.spin + spun)
+    return ToolPoses(pose.tip + twist[:3].T, swung, pose.spin + spun, pose.tool_length)
 
 
 _FIRST_ROWS = 128

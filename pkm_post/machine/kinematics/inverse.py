@@ -15,11 +15,29 @@ strut plus the offset of the middle of the platform joints, so the position of {
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from pkm_post.geometry import Array, cross, dot, length_of, norm, torsion_free_axes, write_frames
 from pkm_post.machine.kinematics.screw import screw_correction
 from pkm_post.model import Machine
+
+
+class ToolPoses(NamedTuple):
+    """Columns of N tool poses in {M}, the arguments of inverse kinematics; ``model.Poses`` has their rates as well.
+
+    Attributes:
+        tip: (N, 3) tool tips, mm.
+        axis: (N, 3) unit tool axes.
+        spin: (N,) rad.
+        tool_length: (N,) gauge lengths, mm.
+    """
+
+    tip: Array
+    axis: Array
+    spin: Array
+    tool_length: Array
 
 
 def platform_rotation(axis: Array, spin: Array) -> Array:
@@ -183,7 +201,3 @@ def lever_arms(machine: Machine, tool_length: Array) -> Array:
     """Distances of the platform joints from the tip of the longest tool, (6,) in mm."""
     reach = machine.spindle_nose + np.array([tool_length.min(), tool_length.max()])
     return norm(machine.platform_joints + reach[:, None, None] * [0.0, 0.0, 1.0]).max(axis=0)
-
-
-Pose = tuple[Array, Array, Array, Array]
-"""Tips (N, 3), unit tool axes (N, 3), spins (N,), gauge lengths (N,): the arguments of ``inverse``."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.machine.kinematics.inverse import Pose, counted_lengths, platform_rotation, strut_vectors
+from pkm_post.machine.kinematics.inverse import ToolPoses, counted_lengths, platform_rotation, strut_vectors
 from pkm_post.machine.kinematics.screw import screw_gradient
 from pkm_post.model import Machine
 
@@ -99,7 +99,7 @@ def strut_compliance(machine: Machine, distance: Array) -> Array:
     return 1.0 / machine.strut_stiffness + distance / machine.strut_rigidity
 
 
-def stiffness_along(machine: Machine, pose: Pose, normal: Array) -> Array:
+def stiffness_along(machine: Machine, pose: ToolPoses, normal: Array) -> Array:
     """Stiffness of the tip along unit normals, (N,) in N/mm; zero at exactly singular poses.
 
     Args:

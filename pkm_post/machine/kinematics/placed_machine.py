@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, Cylinders, norm
-from pkm_post.machine.kinematics.inverse import Pose, counted_lengths, platform_rotation
+from pkm_post.machine.kinematics.inverse import ToolPoses, counted_lengths, platform_rotation
 from pkm_post.machine.kinematics.jacobian import plucker_rows
 from pkm_post.model import Body, Box, Machine
 
@@ -35,7 +35,7 @@ class PlacedMachine:
     distance: Array
 
     @classmethod
-    def of(cls, machine: Machine, pose: Pose) -> PlacedMachine:
+    def of(cls, machine: Machine, pose: ToolPoses) -> PlacedMachine:
         """Place the machine at poses."""
         tip, axis, spin, tool_length = pose
         origin = tip + (machine.spindle_nose + tool_length)[:, None] * axis

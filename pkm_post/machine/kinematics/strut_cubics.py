@@ -18,6 +18,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, length_of
 from pkm_post.machine.kinematics.inverse import (
+    ToolPoses,
     angular_rates,
     lengths_at_constant_attitude,
     platform_rotation,
@@ -59,25 +60,6 @@ def strut_state(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
 
 
 @dataclass(frozen=True)
-class Inside:
-    """Nominal tool poses at M instants of each of N intervals, interval by interval.
-
-    If axis, spin and gauge length are constant, a single row of each stands for all.
-
-    Attributes:
-        tip: (N * M, 3) mm.
-        axis: (N * M, 3) unit tool axis.
-        spin: (N * M,) rad.
-        tool_length: (N * M,) mm.
-    """
-
-    tip: Array
-    axis: Array
-    spin: Array
-    tool_length: Array
-
-
-@dataclass(frozen=True)
 class ToolDeviation:
     """Deviation of N intervals of cubics from the true motion at M instants of each.
 
@@ -91,7 +73,7 @@ class ToolDeviation:
 
 
 def tool_deviation(
-    machine: Machine, start: KnotState, end: KnotState, inside: Inside, duration: Array, share: Array
+    machine: Machine, start: KnotState, end: KnotState, inside: ToolPoses, duration: Array, share: Array
 ) -> ToolDeviation:
     """Play the intervals and compare them with the nominal tool poses.
 
@@ -99,7 +81,8 @@ def tool_deviation(
         machine: the geometry.
         start: N knots.
         end: N knots.
-        inside: at N * M instants, the shares of the duration of each interval.
+        inside: N * M nominal poses at the shares of the duration, interval by interval; one row of axis, spin and gauge
+            length stands for all where they are constant.
         duration: (N,) s.
         share: (M,) shares of the duration.
     """

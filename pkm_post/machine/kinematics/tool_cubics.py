@@ -24,9 +24,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_powers, length_of
+from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.kinematics.rates import least_joint_distance
 from pkm_post.machine.kinematics.strut_cubics import (
-    Inside,
     KnotState,
     max_strut_acceleration,
     max_strut_speed,
@@ -150,7 +150,7 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
 
 
 def measured_demand(
-    machine: Machine, first: KnotState, last: KnotState, cubics: ToolCubics, inside: Inside, duration: Array
+    machine: Machine, first: KnotState, last: KnotState, cubics: ToolCubics, inside: ToolPoses, duration: Array
 ) -> Demand:
     """The same, with the drift measured in the middle.
 

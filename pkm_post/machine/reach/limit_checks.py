@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.machine.kinematics.inverse import lever_arms, strut_lengths
+from pkm_post.machine.kinematics.inverse import ToolPoses, lever_arms, strut_lengths
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.path_bounds import Check
@@ -155,7 +155,7 @@ def reach_margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_l
 
 def _margins(machine: Machine, tip: Array, axis: Array, spin: Array, tool_length: Array) -> tuple[Array, ...]:
     """Margins of a chunk; in place of ``singular``, smallest singular value and sign of the determinant."""
-    placed = PlacedMachine.of(machine, (tip, axis, spin, tool_length))
+    placed = PlacedMachine.of(machine, ToolPoses(tip, axis, spin, tool_length))
     length, jacobian = placed.lengths(), placed.scaled_jacobian()
     determinant = np.linalg.det(jacobian)
     return (

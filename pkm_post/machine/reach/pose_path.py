@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, along, angle_between, norm, tilt, towards, turn_by_tilt
-from pkm_post.machine.kinematics.inverse import Pose
+from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.model import map_row_pairs, shifted, uniform
 
 
@@ -45,7 +45,7 @@ class PosePath:
     bend: Array
     angle: Array
     spin_change: Array
-    inside: Callable[[Array, Array], Pose]
+    inside: Callable[[Array, Array], ToolPoses]
 
     @classmethod
     def straight(cls, tip: Array, axis: Array, spin: Array, tool_length: Array) -> PosePath:
@@ -62,11 +62,11 @@ class PosePath:
             start, changes = np.array(start, order="C"), np.flatnonzero(longer)
             start[changes] -= longer[changes, None] * axis_before[changes]
 
-        def inside(cell: Array, share: Array) -> Pose:
+        def inside(cell: Array, share: Array) -> ToolPoses:
             beginning, part = axis_before[cell], share[:, None]
             turned = along(beginning, part * towards(beginning, axis[cell]))
             tips = start[cell] + part * (tip[cell] - start[cell])
-            return tips, turned, spin_before[cell] + share * change[cell], tool_length[cell]
+            return ToolPoses(tips, turned, spin_before[cell] + share * change[cell], tool_length[cell])
 
         return cls(
             tip=tip,
@@ -83,9 +83,9 @@ class PosePath:
     def __len__(self) -> int:
         return len(self.tip)
 
-    def rows(self, rows: slice | Array) -> Pose:
+    def rows(self, rows: slice | Array) -> ToolPoses:
         """The poses of some rows."""
-        return self.tip[rows], self.axis[rows], self.spin[rows], self.tool_length[rows]
+        return ToolPoses(self.tip[rows], self.axis[rows], self.spin[rows], self.tool_length[rows])
 
     def half_tilt(self) -> Array:
         """Tangent of half the highest tilt in each cell, (N,)."""

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.machine.kinematics.inverse import Pose
+from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.reach.collision_mesh import CollisionMesh
 from pkm_post.machine.reach.findings import DISPLAY_UNITS, ReachFinding, finding_diagnostics
 from pkm_post.machine.reach.path_checks import reach_findings
@@ -160,10 +160,10 @@ def pose_path_of(trajectory: Trajectory) -> tuple[PosePath, Array, Array]:
     extent = np.concatenate([[0.0], width[segment[1:]]])
     start = np.concatenate([[0.0], number[1:] * extent[1:]])
 
-    def inside(cell: Array, share: Array) -> Pose:
+    def inside(cell: Array, share: Array) -> ToolPoses:
         at, u = segment[cell], start[cell] + share * extent[cell]
         spin = segments.spin[at] + u * segments.spin_rate[at]
-        return segments.tip_at(at, u)[0], segments.axis_at(at, u)[0], spin, tool_length[at]
+        return ToolPoses(segments.tip_at(at, u)[0], segments.axis_at(at, u)[0], spin, tool_length[at])
 
     chunks = [np.arange(first, min(first + _CHUNK, len(segment))) for first in range(0, len(segment), _CHUNK)]
     tip, axis, spin, length = (

@@ -6,11 +6,10 @@ from test_rates import wandering_poses
 
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds, norm
 from pkm_post.geometry.vectors import cross
-from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.machine.kinematics.inverse import ToolPoses, strut_lengths
 from pkm_post.machine.kinematics.jacobian import jacobian_of_tip
 from pkm_post.machine.kinematics.rates import strut_rates
 from pkm_post.machine.kinematics.strut_cubics import (
-    Inside,
     KnotState,
     map_to_tool,
     max_strut_acceleration,
@@ -50,7 +49,7 @@ def test_deviations_agree_with_those_by_the_jacobian_of_each_instant(machine, lo
     start, end, inner = an_interval_each(200, long)
     duration = np.full(200, long)
     ends = KnotState.of(machine, start), KnotState.of(machine, end)
-    inside = Inside(inner.tip, inner.axis, inner.spin, inner.tool_length)
+    inside = ToolPoses(inner.tip, inner.axis, inner.spin, inner.tool_length)
     found = tool_deviation(machine, *ends, inside, duration, SHARE)
     tip, axis, acceleration = by_the_jacobian_of_each_instant(machine, start, end, inner, duration)
     rounding = 1e-11

@@ -11,8 +11,9 @@ from test_rates import wandering_poses
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds, norm
 from pkm_post.geometry.vectors import cross, unit
 from pkm_post.machine.kinematics.forward import forward
+from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, scaled_jacobian
-from pkm_post.machine.kinematics.strut_cubics import Inside, KnotState
+from pkm_post.machine.kinematics.strut_cubics import KnotState
 from pkm_post.machine.kinematics.tool_cubics import ToolCubics, bounded_demand, measured_demand
 from pkm_post.model import Poses
 
@@ -139,7 +140,7 @@ def test_the_drift_in_the_middle_stands_for_the_whole_interval(machine, long):
     start, end = wandering_poses(time), wandering_poses(time + long)
     cubics = cubics_between(start, end, duration)
     middle = cubics.at(0.5)
-    inside = Inside(middle[:3].T, unit(middle[3:6].T), middle[6], start.tool_length)
+    inside = ToolPoses(middle[:3].T, unit(middle[3:6].T), middle[6], start.tool_length)
     found = measured_demand(machine, KnotState.of(machine, start), KnotState.of(machine, end), cubics, inside, duration)
     tip, axis, speed, struts = played(machine, start, end, cubics, duration)
     for most, told in ((tip, found.tip), (axis, found.axis)):
