@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from pkm_post.freecad_app.face_projection import nurbs_of
-from pkm_post.geometry import cross, dot, norm
-from pkm_post.toolpath import Array, Span, Surface
+from pkm_post.geometry import Array, cross, dot, norm
+from pkm_post.toolpath import ParameterRange, Surface
 
 _SAME = 1e-6
 """mm within which both ends of a range coincide: the surface is closed."""
@@ -47,8 +47,8 @@ def face_surface(face: Any, flipped: bool = False) -> Surface:
     return Surface(
         _turned(_by_poles(face) or _by_asking(face), -1.0 if flipped else 1.0),
         _everywhere if _untrimmed(face) else inside,
-        Span(first_u, last_u, closed_u),
-        Span(first_v, last_v, closed_v),
+        ParameterRange(first_u, last_u, closed_u),
+        ParameterRange(first_v, last_v, closed_v),
     )
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from pkm_post.freecad_app.face_surface import face_surface
 from pkm_post.geometry import Array, norm
 from pkm_post.model import Program
-from pkm_post.toolpath import Cutter, Sweep, stock_left
+from pkm_post.toolpath import Cutter, SweptVolume, stock_left
 
 _FEWEST = 3
 _SPREAD = (0.7548776662466927, 0.5698402909980532)
@@ -87,7 +87,7 @@ def _distances(
 ) -> Array:
     """Signed distances of points from the swept volume of the cutter, (N,), negative inside, infinite where far."""
     extent = float(norm(np.ptp(np.vstack([program.position, points]), axis=0)))
-    sweep = Sweep.of(program.position, program.tool_axis, cutter, _NEAR, extent)
+    sweep = SweptVolume.of(program.position, program.tool_axis, cutter, _NEAR, extent)
     return sweep.distances(points, tolerance, progress)[0]
 
 

@@ -29,7 +29,7 @@ from pkm_post.freecad_app.surface_check import check_faces
 from pkm_post.freecad_app.surface_finish_settings import add_missing_properties, read_inputs
 from pkm_post.freecad_app.tools import answered
 from pkm_post.model import Diagnostic, Place, Program, Refused
-from pkm_post.toolpath import Cutter, Poses, Settings, cover, program_of
+from pkm_post.toolpath import Cutter, Poses, SurfaceOptions, program_from_poses, surface_poses
 
 _VIEW = "pkm_post.freecad_gui.surface_finish_view"
 """The view is in a higher layer: referenced by name, not imported, as in saved documents."""
@@ -81,7 +81,7 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
         place = _place(obj)
         faces, cutter, settings = _value(*read_inputs(obj, self.job, place))
         covered = _covered(faces, cutter, settings, bool(obj.FlipNormals), place)
-        program = _value(*program_of(covered, settings, place))
+        program = _value(*program_from_poses(covered, settings, place))
         _tell(obj, covered, settings)
         _check(obj, program, cutter, faces, self.job)
         self.commandlist += commands_of(program)
@@ -116,7 +116,7 @@ def _place(obj: Any) -> Place:
     return Place(document_name(obj.Document), obj.Label)
 
 
-def _tell(obj: Any, covered: Sequence[Poses], settings: Settings) -> None:
+def _tell(obj: Any, covered: Sequence[Poses], settings: SurfaceOptions) -> None:
     """Fill in the results that need no further computation."""
     obj.PassCount = sum(int(poses.course.number.max()) + 1 for poses in covered)
     obj.ClampedAxes = sum(int(poses.clamped.sum()) for poses in covered)
@@ -146,13 +146,13 @@ def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace
 
 
 def _covered(
-    faces: Sequence[NamedFace], cutter: Cutter, settings: Settings, flipped: bool, place: Place
+    faces: Sequence[NamedFace], cutter: Cutter, settings: SurfaceOptions, flipped: bool, place: Place
 ) -> list[Poses]:
     """The poses over all faces, in sequence."""
     covered: list[Poses] = []
     with Progress(place.operation, _STEPS * len(faces)) as bar:
         for named in faces:
-            found = cover(face_surface(named.face, flipped), cutter, settings, place, _steps(bar))
+            found = surface_poses(face_surface(named.face, flipped), cutter, settings, place, _steps(bar))
             covered.append(_value(*found, f"{named.name}: "))
     return covered
 

@@ -23,7 +23,17 @@ from pkm_post.geometry import Array
 from pkm_post.machine import machine_named, reach_margins
 from pkm_post.model import Diagnostic, Machine, Place, errors
 from pkm_post.posting import work_offset
-from pkm_post.toolpath import AxisRule, CutMode, Cutter, LeadMove, Lines, Order, Settings, Stepover, Tolerances
+from pkm_post.toolpath import (
+    AxisRule,
+    CutMode,
+    Cutter,
+    LeadMove,
+    PassLines,
+    PassOrder,
+    Stepover,
+    SurfaceOptions,
+    Tolerances,
+)
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
@@ -38,9 +48,9 @@ _P, _S, _A, _L = "Pattern", "Stepover and Tolerances", "Tool Axis", "Approach an
 _C, _R = "Check", "Result"
 PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyEnumeration", "Lines", _P,
-     QT_TRANSLATE_NOOP("App::Property", "What the passes run along"), _choices(Lines)),
+     QT_TRANSLATE_NOOP("App::Property", "What the passes run along"), _choices(PassLines)),
     ("App::PropertyEnumeration", "Order", _P,
-     QT_TRANSLATE_NOOP("App::Property", "How passes follow each other"), _choices(Order)),
+     QT_TRANSLATE_NOOP("App::Property", "How passes follow each other"), _choices(PassOrder)),
     ("App::PropertyVector", "PlaneNormal", _P,
      QT_TRANSLATE_NOOP("App::Property", "Normal of the parallel planes"), App.Vector(1, 0, 0)),
     ("App::PropertyBool", "Reversed", _P,
@@ -103,7 +113,7 @@ def add_missing_properties(obj: Any) -> None:
     add_missing(obj, RESULTS, READ_ONLY)
 
 
-def read_settings(obj: Any, cone: float, place: Place) -> tuple[Settings | None, tuple[Diagnostic, ...]]:
+def read_settings(obj: Any, cone: float, place: Place) -> tuple[SurfaceOptions | None, tuple[Diagnostic, ...]]:
     """Read the settings from the properties of the operation and of its tool controller.
 
     Args:
@@ -124,16 +134,16 @@ def read_settings(obj: Any, cone: float, place: Place) -> tuple[Settings | None,
         return None, (Diagnostic("N309", place, str(wrong)),)
 
 
-def _settings(obj: Any, cone: float, feed: float, plunge: float) -> Settings:
+def _settings(obj: Any, cone: float, feed: float, plunge: float) -> SurfaceOptions:
     by_distance = str(obj.StepoverMode) == DISTANCE
     lead, tilt = math.radians(obj.Lead.Value), math.radians(obj.Tilt.Value)
-    return Settings(
+    return SurfaceOptions(
         safe_height=obj.SafeHeight.Value,
         clearance_height=obj.ClearanceHeight.Value,
         feed=feed,
         plunge_feed=plunge,
-        lines=Lines(obj.Lines),
-        order=Order(obj.Order),
+        lines=PassLines(obj.Lines),
+        order=PassOrder(obj.Order),
         plane=tuple(obj.PlaneNormal),
         reversed=bool(obj.Reversed),
         stepover=Stepover(obj.Stepover.Value, None) if by_distance else Stepover(None, obj.ScallopHeight.Value),
@@ -207,7 +217,7 @@ def upright(cone_axis: Any) -> bool:
     return bool(z > 0.0 and math.hypot(x, y) <= 1e-9 * z)
 
 
-Inputs = tuple[tuple[NamedFace, ...], Cutter, Settings]
+Inputs = tuple[tuple[NamedFace, ...], Cutter, SurfaceOptions]
 """Faces, cutter and settings."""
 
 

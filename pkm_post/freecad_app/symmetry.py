@@ -22,7 +22,7 @@ from pkm_post.freecad_app.frames import axis_of, plane_of
 from pkm_post.freecad_app.symmetry_report import SIDES, report
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Place, Program
-from pkm_post.toolpath import joined, mirror, reversed_passes, rotation, transform
+from pkm_post.toolpath import concatenate, mirror, reversed_passes, rotation, transform
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
@@ -139,7 +139,7 @@ class _SymmetricOperation(DerivedOperation):
             if copy is None:
                 return None, tuple(told)
             copies.append(copy)
-        made, faults = self.sequence(obj, joined(copies))
+        made, faults = self.sequence(obj, concatenate(copies))
         if made is not None:
             report(obj, program, copies, made)
         return made, (*told, *faults)

@@ -21,13 +21,13 @@ from pkm_post.geometry import Array
 from pkm_post.model import Kind, Program
 from pkm_post.toolpath import (
     Coverage,
-    Joint,
-    beside_plane,
+    Seam,
     coverage,
     cut_lengths,
-    joint,
-    joints,
-    passes,
+    mirror_gap,
+    pass_rows,
+    seam,
+    seams,
     sector,
     transform,
 )
@@ -96,7 +96,7 @@ class Family:
     label: str
     members: int
     coverage: Coverage | None
-    joints: tuple[Joint, ...]
+    joints: tuple[Seam, ...]
 
 
 def report(obj: Any, base: Program, copies: Sequence[Program], made: Program) -> None:
@@ -117,11 +117,11 @@ def report(obj: Any, base: Program, copies: Sequence[Program], made: Program) ->
     obj.JointTurn = math.degrees(max((each.turn for each in met), default=0.0))
 
 
-def _beside(obj: Any, base: Program, copy: Program) -> tuple[Joint, ...]:
-    obj.GapToBase, obj.OverlapWithBase = beside_plane(base, obj.Point, obj.Normal)
-    obj.ReversedPasses = len(passes(copy)) if obj.KeepClimb else 0
+def _beside(obj: Any, base: Program, copy: Program) -> tuple[Seam, ...]:
+    obj.GapToBase, obj.OverlapWithBase = mirror_gap(base, obj.Point, obj.Normal)
+    obj.ReversedPasses = len(pass_rows(copy)) if obj.KeepClimb else 0
     obj.SwappedArcs = _swapped_arcs(base, copy, bool(obj.KeepClimb))
-    return (joint(base, copy),) if len(passes(base)) else ()
+    return (seam(base, copy),) if len(pass_rows(base)) else ()
 
 
 def _swapped_arcs(base: Program, copy: Program, run_back: bool) -> int:
@@ -134,7 +134,7 @@ def _swapped_arcs(base: Program, copy: Program, run_back: bool) -> int:
     return int(np.sum((senses[0] != senses[1]) != run_back))
 
 
-def _around(obj: Any, programs: list[Program]) -> tuple[Joint, ...]:
+def _around(obj: Any, programs: list[Program]) -> tuple[Seam, ...]:
     found, met = _circle(programs, np.array(obj.Point), np.array(obj.Axis))
     angles = (found.covered, found.overlap, found.gap) if found else (0.0, 0.0, 2 * math.pi)
     obj.Covered, obj.Overlap, obj.Gap = (math.degrees(angle) for angle in angles)
@@ -142,12 +142,12 @@ def _around(obj: Any, programs: list[Program]) -> tuple[Joint, ...]:
     return met
 
 
-def _circle(programs: list[Program], point: Array, axis: Array) -> tuple[Coverage | None, tuple[Joint, ...]]:
+def _circle(programs: list[Program], point: Array, axis: Array) -> tuple[Coverage | None, tuple[Seam, ...]]:
     """Coverage of programs about an axis, and their joints; nothing if one of them has no cut."""
     sectors = [found for program in programs if (found := sector(program, point, axis))]
     if not programs or len(sectors) < len(programs):
         return None, ()
-    return coverage(sectors), joints(programs, sectors)
+    return coverage(sectors), seams(programs, sectors)
 
 
 def family_of(obj: Any) -> Family:

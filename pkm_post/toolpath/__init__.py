@@ -5,61 +5,60 @@ from pkm_post.toolpath.compensation.compensate import compensate
 from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.cutter import Cutter
-from pkm_post.toolpath.compensation.swept_volume import Sweep, stock_left
+from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
 from pkm_post.toolpath.place import place
 from pkm_post.toolpath.segments import Segments
-from pkm_post.toolpath.surface.moves import program_of
-from pkm_post.toolpath.surface.options import CutMode, LeadMove, Lines, Order, Settings
-from pkm_post.toolpath.surface.passes import cover
+from pkm_post.toolpath.surface.moves import program_from_poses
+from pkm_post.toolpath.surface.options import CutMode, LeadMove, PassLines, PassOrder, SurfaceOptions
+from pkm_post.toolpath.surface.passes import surface_poses
 from pkm_post.toolpath.surface.poses import Poses, Tolerances
 from pkm_post.toolpath.surface.stepover import Stepover
-from pkm_post.toolpath.surface.surface import Array, Span, Surface
+from pkm_post.toolpath.surface.surface import ParameterRange, Surface
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
 from pkm_post.toolpath.surface_speed import SurfaceSpeed, with_surface_speed
-from pkm_post.toolpath.symmetry.coverage import Coverage, Joint, beside_plane, coverage, joint, joints, sector
+from pkm_post.toolpath.symmetry.coverage import Coverage, Seam, coverage, mirror_gap, seam, seams, sector
 from pkm_post.toolpath.symmetry.cut_direction import cut_lengths
-from pkm_post.toolpath.symmetry.passes import passes
+from pkm_post.toolpath.symmetry.passes import pass_rows
 from pkm_post.toolpath.symmetry.reverse import reversed_passes
-from pkm_post.toolpath.symmetry.transform import joined, mirror, rotation, transform
-from pkm_post.toolpath.tool_change import ToolPose, columns, safe_way
+from pkm_post.toolpath.symmetry.transform import concatenate, mirror, rotation, transform
+from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 __all__ = [
-    "Array",
     "AxisRule",
     "Coverage",
     "CutMode",
     "Cutter",
-    "Joint",
+    "Seam",
     "LeadMove",
-    "Lines",
+    "PassLines",
     "OffsetOptions",
-    "Order",
+    "PassOrder",
     "Poses",
     "Segments",
-    "Settings",
-    "Span",
+    "SurfaceOptions",
+    "ParameterRange",
     "Stepover",
     "Surface",
     "SurfaceSpeed",
-    "Sweep",
+    "SweptVolume",
     "Tolerances",
     "ToolPose",
-    "beside_plane",
-    "columns",
+    "mirror_gap",
+    "pose_columns",
     "compensate",
-    "cover",
+    "surface_poses",
     "coverage",
     "cut_lengths",
-    "joined",
-    "joint",
-    "joints",
+    "concatenate",
+    "seam",
+    "seams",
     "mirror",
-    "passes",
+    "pass_rows",
     "place",
-    "program_of",
+    "program_from_poses",
     "reversed_passes",
     "rotation",
-    "safe_way",
+    "clearance_path",
     "sector",
     "stock_left",
     "tip_from_contact",

@@ -71,7 +71,7 @@ class ToolPose:
         return (ToolPose(self.tip + rise * self.axis, self.axis, self.spin),) if rise > 0.0 else ()
 
 
-def safe_way(start: ToolPose, end: ToolPose, height: float) -> tuple[ToolPose, ...]:
+def clearance_path(start: ToolPose, end: ToolPose, height: float) -> tuple[ToolPose, ...]:
     """The poses to pass through by straight moves, including the end.
 
     Args:
@@ -82,7 +82,7 @@ def safe_way(start: ToolPose, end: ToolPose, height: float) -> tuple[ToolPose, .
     return (*start.above(height), *end.above(height), end)
 
 
-def columns(poses: list[ToolPose]) -> tuple[Array, Array, Array]:
+def pose_columns(poses: list[ToolPose]) -> tuple[Array, Array, Array]:
     """Tips (N, 3), axes (N, 3) and spins (N,) of poses."""
     tips, axes = (np.array([getattr(pose, name) for pose in poses]).reshape(-1, 3) for name in ("tip", "axis"))
     return tips, axes, np.array([pose.spin for pose in poses])
@@ -167,17 +167,17 @@ def _goes_on(program: Program, machine: Machine, row: int) -> ToolPose | None:
 def _approach(program: Program, machine: Machine, pose: ToolChange) -> _Detour:
     """The route from home to the first point; the first row is its last move."""
     return _Detour(
-        0, "approach", (), safe_way(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
+        0, "approach", (), clearance_path(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
     )
 
 
 def _change(program: Program, machine: Machine, pose: ToolChange, row: int, before: Tool, after: Tool) -> _Detour:
     there, back = (ToolPose(pose.tip(tool.length), pose.axis, pose.spin) for tool in (before, after))
     target = _goes_on(program, machine, row)
-    way_back = () if target is None else safe_way(back, target, pose.safe_height)
+    way_back = () if target is None else clearance_path(back, target, pose.safe_height)
     if target is not None and program.kind[row] == Kind.RAPID:
         way_back = way_back[:-1]  # the row itself moves there
-    way_there = safe_way(_pose_before(program, machine, row), there, pose.safe_height)
+    way_there = clearance_path(_pose_before(program, machine, row), there, pose.safe_height)
     return _Detour(row, f"tool change T{after.number}", way_there, way_back)
 
 
@@ -209,7 +209,7 @@ def _inserted(program: Program, detours: list[_Detour]) -> Program:
     names = list(dict.fromkeys(detour.name for detour in detours))
     ways = [(detour, pose) for detour in detours for pose in detour.moves]
     at = np.array([detour.row for detour, _ in ways])
-    tip, axis, spin = columns([pose for _, pose in ways])
+    tip, axis, spin = pose_columns([pose for _, pose in ways])
     added = _blank(len(ways)) | {
         "kind": np.full(len(ways), Kind.RAPID),
         "position": tip,

@@ -18,7 +18,7 @@ from cam_jobs import add_operation, new_job  # noqa: E402
 from examples.tapered_column.build import Column, build  # noqa: E402
 from pkm_post.freecad_app.document_object import program_of  # noqa: E402
 from pkm_post.freecad_app.symmetry_report import family_of  # noqa: E402
-from pkm_post.toolpath.symmetry.passes import passes  # noqa: E402
+from pkm_post.toolpath.symmetry.passes import pass_rows  # noqa: E402
 
 QUARTER = ["G0 X60 Y0 Z90", "G0 Z40", "G1 Z30 F5", "G3 X0 Y60 I-60 J0 F20", "G0 Z40", "G0 Z90"]
 SIX_DECIMALS = 1e-6
@@ -37,7 +37,7 @@ def lap():
 
 def test_the_macro_makes_one_lap(lap):
     programs = [program_of(operation) for operation in lap]
-    rows = [passes(program)[0] for program in programs]
+    rows = [pass_rows(program)[0] for program in programs]
     begins = [program.position[first - 1] for program, (first, _) in zip(programs, rows, strict=True)]
     ends = [program.position[behind - 1] for program, (_, behind) in zip(programs, rows, strict=True)]
     np.testing.assert_allclose(np.roll(begins, -1, axis=0), ends, atol=SIX_DECIMALS)

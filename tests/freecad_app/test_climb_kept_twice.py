@@ -10,7 +10,7 @@ from surface_finishes import finish, valid
 
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.symmetry import create_mirror
-from pkm_post.toolpath.symmetry.passes import moving, passes
+from pkm_post.toolpath.symmetry.passes import moving, pass_rows
 
 SIX_DECIMALS = 1e-6
 PLUNGE = 5.0
@@ -59,7 +59,7 @@ def test_twice_is_the_operation_and_once_plunges_as_it_did(document, choices):
     (_, before), (between, _), (_, after) = (moves_of(valid(each)) for each in (operation, once, twice))
     for name, column in before.items():
         np.testing.assert_allclose(after[name], column, atol=SIX_DECIMALS, err_msg=name)
-    begins = passes(between)[:, 0] - 1
+    begins = pass_rows(between)[:, 0] - 1
     np.testing.assert_allclose(between.feed[begins], PLUNGE)
     approach = operation.ApproachDistance.Value
     down = np.linalg.norm(between.position[begins] - between.position[begins - 1], axis=1)

@@ -22,7 +22,7 @@ from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, P
 from pkm_post.options import Options
 from pkm_post.posting import trajectory_of, work_offset
 from pkm_post.reading import gcode
-from pkm_post.toolpath import ToolPose, columns, safe_way
+from pkm_post.toolpath import ToolPose, clearance_path, pose_columns
 
 _JOG = "jog"
 _STEP_MM = 0.5
@@ -114,11 +114,11 @@ def approach_trajectory(
     begin, end = (ToolPose(pose.tip, pose.axis, pose.spin) for pose in (here, start))
     if not (begin.rises_to(height) and end.rises_to(height)):
         return None, (Diagnostic("K142", Place("approach_trajectory"), f"to z {height:.3f} mm"),)
-    way = [begin, *safe_way(begin, end, height)]
+    way = [begin, *clearance_path(begin, end, height)]
     moved = [pose for before, pose in itertools.pairwise(way) if not before.is_at(pose)]
     if not moved:
         return None, (Diagnostic("C201", Place("approach_trajectory"), "the tool is at the start of the program"),)
-    trajectory, told = _through(machine, here, columns(moved), tool_length, min(feed, machine.feed_speed))
+    trajectory, told = _through(machine, here, pose_columns(moved), tool_length, min(feed, machine.feed_speed))
     return None if trajectory is None else replace(trajectory, source="approach_trajectory"), told
 
 

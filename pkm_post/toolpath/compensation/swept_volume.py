@@ -36,7 +36,7 @@ _AT_ONCE = 1 << 16
 
 
 @dataclass(frozen=True)
-class Sweep:
+class SweptVolume:
     """A cutter on its path, in M short steps.
 
     Attributes:
@@ -58,7 +58,7 @@ class Sweep:
     within: float
 
     @classmethod
-    def of(cls, tips: Array, axes: Array, cutter: Cutter, within: float, tallest: float) -> Sweep:
+    def of(cls, tips: Array, axes: Array, cutter: Cutter, within: float, tallest: float) -> SweptVolume:
         """The steps of a path.
 
         Args:
@@ -255,12 +255,12 @@ def stock_left(
     if not len(start):
         return StockLeft(np.zeros(0), np.zeros(0, dtype=np.int64))
     everything = np.vstack([tip, start])
-    sweep = Sweep.of(tip, axis, cutter, reach, float(norm(np.ptp(everything, axis=0))) + reach)
+    sweep = SweptVolume.of(tip, axis, cutter, reach, float(norm(np.ptp(everything, axis=0))) + reach)
     return _entries(sweep, start, normal, tolerance / 2.0, progress)
 
 
 def _entries(
-    sweep: Sweep, start: Array, normal: Array, enough: float, progress: Callable[[float], Any] | None
+    sweep: SweptVolume, start: Array, normal: Array, enough: float, progress: Callable[[float], Any] | None
 ) -> StockLeft:
     """Where the lines through the points along their normals enter the swept volume.
 

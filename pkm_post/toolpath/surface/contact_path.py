@@ -11,8 +11,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from pkm_post.geometry import cross, dot
-from pkm_post.toolpath.surface.surface import Array, Patch, Span, Surface
+from pkm_post.geometry import Array, cross, dot
+from pkm_post.toolpath.surface.surface import ParameterRange, Patch, Surface
 
 _ROUNDS = 8
 """Newton steps to a plane: each squares the error."""
@@ -103,7 +103,7 @@ class Pattern:
         return u, v
 
 
-def _free(span: Span, values: Array) -> Array:
+def _free(span: ParameterRange, values: Array) -> Array:
     """Values that are not at an end of an open range."""
     if span.closed:
         return np.ones(len(values), dtype=bool)

@@ -12,10 +12,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Kind, Place, Program
-from pkm_post.toolpath.surface.options import LeadMove, Settings
+from pkm_post.toolpath.surface.options import LeadMove, SurfaceOptions
 from pkm_post.toolpath.surface.poses import Poses
-from pkm_post.toolpath.surface.surface import Array
 from pkm_post.toolpath.surface.tool_axis import clamped
 
 _UP = np.array([0.0, 0.0, 1.0])
@@ -47,7 +47,9 @@ class _Rows:
         )
 
 
-def program_of(covered: list[Poses], settings: Settings, place: Place) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+def program_from_poses(
+    covered: list[Poses], settings: SurfaceOptions, place: Place
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """The program through all poses.
 
     Args:
@@ -71,7 +73,7 @@ def program_of(covered: list[Poses], settings: Settings, place: Place) -> tuple[
 
 
 def _visit(
-    poses: Poses, rows: Array, come: float, leave: float, settings: Settings, place: Place
+    poses: Poses, rows: Array, come: float, leave: float, settings: SurfaceOptions, place: Place
 ) -> tuple[list[_Rows], list[Diagnostic]]:
     """Rows down from a plane, along a run, and up to a plane; and their diagnostics."""
     first, last = int(rows[0]), int(rows[-1])
@@ -97,7 +99,7 @@ def _runs(poses: Poses) -> list[Array]:
     return np.split(np.arange(len(run)), np.flatnonzero(run[1:] != run[:-1]) + 1)
 
 
-def _lead(poses: Poses, row: int, sense: float, settings: Settings) -> Array:
+def _lead(poses: Poses, row: int, sense: float, settings: SurfaceOptions) -> Array:
     """Lead tips from a pose outwards, nearest first: along the feed, or on a quarter circle off the surface."""
     length, along, off = settings.lead_length, sense * poses.frame.feed[row], poses.normal[row]
     if settings.lead_move is LeadMove.NONE or length == 0.0:
@@ -116,7 +118,7 @@ def _on_plane(tip: Array, axis: Array, height: float) -> Array:
     return place
 
 
-def _descent(begin: Array, axis: Array, height: float, settings: Settings, normal: Array) -> list[_Rows]:
+def _descent(begin: Array, axis: Array, height: float, settings: SurfaceOptions, normal: Array) -> list[_Rows]:
     """Upright on the plane, then tilted, then down along the axis, the last piece at plunge feed.
 
     The normal belongs to the contact where the descent ends, NaN if it ends in a lead.
@@ -131,14 +133,14 @@ def _descent(begin: Array, axis: Array, height: float, settings: Settings, norma
     ]
 
 
-def _ascent(end: Array, axis: Array, height: float, settings: Settings) -> list[_Rows]:
+def _ascent(end: Array, axis: Array, height: float, settings: SurfaceOptions) -> list[_Rows]:
     """Up along the axis, then upright."""
     above = _on_plane(end, axis, height)[None]
     resting = _resting(settings)
     return [_Rows.of(Kind.RAPID, above, axis, np.nan), _Rows.of(Kind.RAPID, above, resting, np.nan)]
 
 
-def _resting(settings: Settings) -> Array:
+def _resting(settings: SurfaceOptions) -> Array:
     """The tool axis between runs: upright, or as close to it as the cone allows."""
     rule = settings.rule
     return clamped(_UP[None], np.asarray(rule.cone_axis, dtype=np.float64), rule.cone)[0]

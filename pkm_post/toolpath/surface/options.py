@@ -14,7 +14,7 @@ from pkm_post.toolpath.surface.stepover import Stepover
 from pkm_post.toolpath.surface.tool_axis import AxisRule
 
 
-class Lines(enum.Enum):
+class PassLines(enum.Enum):
     """Lines that the passes follow."""
 
     ALONG_U = "Along U"
@@ -22,7 +22,7 @@ class Lines(enum.Enum):
     PLANES = "Parallel planes"
 
 
-class Order(enum.Enum):
+class PassOrder(enum.Enum):
     """Order of the passes."""
 
     ZIGZAG = "Zigzag"
@@ -47,7 +47,7 @@ class LeadMove(enum.Enum):
 
 
 @dataclass(frozen=True)
-class Settings:
+class SurfaceOptions:
     """Options for covering faces. Units: mm, mm/s, rad.
 
     Attributes:
@@ -73,8 +73,8 @@ class Settings:
     clearance_height: float
     feed: float
     plunge_feed: float
-    lines: Lines = Lines.ALONG_U
-    order: Order = Order.ZIGZAG
+    lines: PassLines = PassLines.ALONG_U
+    order: PassOrder = PassOrder.ZIGZAG
     plane: tuple[float, float, float] = (1.0, 0.0, 0.0)
     reversed: bool = False
     stepover: Stepover = field(default_factory=lambda: Stepover(distance=1.0))
@@ -88,9 +88,9 @@ class Settings:
 
     def __post_init__(self) -> None:
         if not (self.feed > 0.0 and self.plunge_feed > 0.0):
-            raise ValueError(f"Settings: expected feeds above 0, got {self.feed} and {self.plunge_feed} mm/s")
+            raise ValueError(f"SurfaceOptions: expected feeds above 0, got {self.feed} and {self.plunge_feed} mm/s")
         if not (self.lead_length >= 0.0 and self.approach >= 0.0):
             got = f"{self.lead_length} and {self.approach} mm"
-            raise ValueError(f"Settings: expected lead length and approach not below 0, got {got}")
+            raise ValueError(f"SurfaceOptions: expected lead length and approach not below 0, got {got}")
         if not any(self.plane):
-            raise ValueError("Settings: expected a normal of the planes with a direction, got (0, 0, 0)")
+            raise ValueError("SurfaceOptions: expected a normal of the planes with a direction, got (0, 0, 0)")

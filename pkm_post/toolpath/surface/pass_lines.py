@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.geometry import cross, dot
+from pkm_post.geometry import Array, cross, dot
 from pkm_post.toolpath.surface.contact_path import Course
-from pkm_post.toolpath.surface.surface import Array, Grid, Span, Surface
+from pkm_post.toolpath.surface.surface import Grid, ParameterRange, Surface
 
 
-def lines(u: Span, v: Array, nodes: int) -> Course:
+def lines(u: ParameterRange, v: Array, nodes: int) -> Course:
     """Passes along the whole range of u, each at a constant v.
 
     Args:
@@ -25,7 +25,7 @@ def lines(u: Span, v: Array, nodes: int) -> Course:
     return Course.of(np.tile(np.linspace(u.first, u.last, nodes), len(v)), v[number], number)
 
 
-def spiral(u: Span, v: Array, nodes: int) -> Course:
+def spiral(u: ParameterRange, v: Array, nodes: int) -> Course:
     """One pass: a full turn at the first v, a spiral from each v to the next, and a full turn at the last v.
 
     Args:

@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.geometry import cross, dot, norm, unit
+from pkm_post.geometry import Array, cross, dot, norm, unit
 from pkm_post.model import Diagnostic, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import Course, Pattern, thinned, trimmed
-from pkm_post.toolpath.surface.options import CutMode, Lines, Order, Settings
+from pkm_post.toolpath.surface.options import CutMode, PassLines, PassOrder, SurfaceOptions
 from pkm_post.toolpath.surface.pass_lines import lines, sections, spiral
 from pkm_post.toolpath.surface.poses import Poses, Progress, Stepping
 from pkm_post.toolpath.surface.stepover import levels_of_planes, passes_along_u
-from pkm_post.toolpath.surface.surface import Array, Surface, unit_or_nan
+from pkm_post.toolpath.surface.surface import Surface, unit_or_nan
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
 
 _LOOKS = 17
@@ -118,8 +118,8 @@ def quiet(share: float) -> None:
     """Ignore progress."""
 
 
-def cover(
-    surface: Surface, cutter: Cutter, settings: Settings, place: Place, progress: Progress = quiet
+def surface_poses(
+    surface: Surface, cutter: Cutter, settings: SurfaceOptions, place: Place, progress: Progress = quiet
 ) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
     """The poses of a cutter along its path over a surface.
 
@@ -137,11 +137,11 @@ def cover(
         ValueError: the cutter is tapered or a lens.
     """
     if cutter.bottom_angle or cutter.side_angle or cutter.radial_offset < 0.0:
-        raise ValueError(f"cover: expected a ball, bull nose or flat end mill, got {cutter}")
-    if settings.lines is Lines.ALONG_V:
+        raise ValueError(f"surface_poses: expected a ball, bull nose or flat end mill, got {cutter}")
+    if settings.lines is PassLines.ALONG_V:
         surface = surface.exchanged()
-    if settings.order is Order.SPIRAL and (settings.lines is Lines.PLANES or not surface.u.closed):
-        told = "planes" if settings.lines is Lines.PLANES else "an open surface"
+    if settings.order is PassOrder.SPIRAL and (settings.lines is PassLines.PLANES or not surface.u.closed):
+        told = "planes" if settings.lines is PassLines.PLANES else "an open surface"
         return None, (Diagnostic("N301", place, told),)
     pattern, widest = _pattern(surface, cutter, settings)
     if math.isnan(widest):
@@ -151,15 +151,15 @@ def cover(
     if not len(course):
         return None, (Diagnostic("N302", place, "no pass lies on it"),)
     course = _in_order(surface, pattern, course, settings)
-    course = linked(surface, course, _LINK * widest, settings.order is Order.ZIGZAG)
+    course = linked(surface, course, _LINK * widest, settings.order is PassOrder.ZIGZAG)
     stepping = Stepping(surface, pattern, cutter, settings.rule, settings.tolerances, place)
     return stepping.poses(course, progress)
 
 
-def _pattern(surface: Surface, cutter: Cutter, settings: Settings) -> tuple[Pattern, float]:
+def _pattern(surface: Surface, cutter: Cutter, settings: SurfaceOptions) -> tuple[Pattern, float]:
     """The lines in the order of cutting, and the largest distance of neighbours; NaN if there is none."""
     chosen = settings.stepover, cutter, settings.rule
-    if settings.lines is Lines.PLANES:
+    if settings.lines is PassLines.PLANES:
         plane = unit(np.asarray(settings.plane, dtype=np.float64))
         level, widest = levels_of_planes(surface, plane, *chosen)
         return Pattern(plane, level[::-1] if settings.reversed else level), widest
@@ -167,7 +167,7 @@ def _pattern(surface: Surface, cutter: Cutter, settings: Settings) -> tuple[Patt
     return Pattern(None, level[::-1] if settings.reversed else level), widest
 
 
-def _passes(surface: Surface, pattern: Pattern, cutter: Cutter, settings: Settings) -> Course:
+def _passes(surface: Surface, pattern: Pattern, cutter: Cutter, settings: SurfaceOptions) -> Course:
     """The untrimmed passes."""
     if pattern.plane is not None:
         course = sections(surface, pattern.plane, pattern.level)
@@ -175,7 +175,7 @@ def _passes(surface: Surface, pattern: Pattern, cutter: Cutter, settings: Settin
         return replace(course, u=u, v=v)
     if not len(pattern.level):
         return Course.of(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
-    make = spiral if settings.order is Order.SPIRAL else lines
+    make = spiral if settings.order is PassOrder.SPIRAL else lines
     return make(surface.u, pattern.level, _nodes(surface, pattern.level, cutter))
 
 
@@ -189,14 +189,14 @@ def _nodes(surface: Surface, v: Array, cutter: Cutter) -> int:
     return int(np.clip(wanted, *_NODES))
 
 
-def _in_order(surface: Surface, pattern: Pattern, course: Course, settings: Settings) -> Course:
+def _in_order(surface: Surface, pattern: Pattern, course: Course, settings: SurfaceOptions) -> Course:
     """The pieces in the order and direction of travel."""
     backwards = np.zeros(len(course), dtype=bool)
     if settings.cut_mode is not CutMode.AS_IT_COMES:
-        first = course.taken(course.number == course.number[0]) if settings.order is Order.ZIGZAG else course
+        first = course.taken(course.number == course.number[0]) if settings.order is PassOrder.ZIGZAG else course
         rising = -1.0 if settings.reversed else 1.0
         climbing = climbs(surface, pattern, first, settings.rule, rising) == settings.clockwise
         backwards ^= climbing != (settings.cut_mode is CutMode.CLIMB)
-    if settings.order is Order.ZIGZAG:
+    if settings.order is PassOrder.ZIGZAG:
         backwards = backwards ^ (course.number % 2 == 1)
     return turned(course, backwards)

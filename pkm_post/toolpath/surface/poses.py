@@ -9,13 +9,13 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from pkm_post.geometry import along, angle_between, dot, norm, towards
+from pkm_post.geometry import Array, along, angle_between, dot, norm, towards
 from pkm_post.model import Diagnostic, Place
 from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import Course, Pattern
 from pkm_post.toolpath.surface.stepover import gap
-from pkm_post.toolpath.surface.surface import Array, Patch, Surface
+from pkm_post.toolpath.surface.surface import Patch, Surface
 from pkm_post.toolpath.surface.tool_axis import AxisRule, Frame, Links, frame_of, tool_axes
 
 

@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import cross, dot, norm
+from pkm_post.geometry import Array, cross, dot, norm
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import Pattern
-from pkm_post.toolpath.surface.surface import Array, Grid, Span, Surface, normal_curvatures, unit_or_nan
+from pkm_post.toolpath.surface.surface import Grid, ParameterRange, Surface, normal_curvatures, unit_or_nan
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
 
 _FLAT_ON_IT = 1e-9
@@ -244,7 +244,7 @@ def _face_alone(surface: Surface) -> Surface:
         return surface
     first = _halved(reached, v[rising], v[rising - 1]) if rising > 0 else v[0]
     last = _halved(reached, v[falling], v[falling + 1]) if falling < len(v) - 1 else v[-1]
-    return replace(surface, v=Span(first, last)) if first < last else surface
+    return replace(surface, v=ParameterRange(first, last)) if first < last else surface
 
 
 def _halved(reached: Callable[[float], bool], within: float, beyond: float) -> float:

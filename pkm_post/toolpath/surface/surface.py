@@ -9,13 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import cross, dot, norm
-
-Array = np.ndarray[Any, np.dtype[Any]]
+from pkm_post.geometry import Array, cross, dot, norm
 
 _NO_LENGTH = 1e-9
 """mm below which a line of the surface is a pole."""
@@ -25,7 +22,7 @@ _DIFFERENCE = 1e-4
 
 
 @dataclass(frozen=True)
-class Span:
+class ParameterRange:
     """The range of a parameter; if closed, its end coincides with its start."""
 
     first: float
@@ -34,7 +31,7 @@ class Span:
 
     def __post_init__(self) -> None:
         if not self.first < self.last:
-            raise ValueError(f"Span: expected first < last, got {self.first} and {self.last}")
+            raise ValueError(f"ParameterRange: expected first < last, got {self.first} and {self.last}")
 
     @property
     def width(self) -> float:
@@ -82,8 +79,8 @@ class Surface:
 
     evaluate: Callable[[Array, Array], tuple[Array, Array, Array, Array]]
     inside: Callable[[Array, Array], Array]
-    u: Span
-    v: Span
+    u: ParameterRange
+    v: ParameterRange
 
     def at(self, u: Array, v: Array) -> Patch:
         """The surface at columns of parameters; closed ones may exceed their range."""
@@ -160,7 +157,7 @@ def normal_curvatures(surface: Surface, u: Array, v: Array, patch: Patch, direct
     return curvature
 
 
-def _change_of_normal(span: Span, values: Array, normal_at: Callable[[Array], Array]) -> Array:
+def _change_of_normal(span: ParameterRange, values: Array, normal_at: Callable[[Array], Array]) -> Array:
     """Derivative of the normal by a parameter, by a central difference, or one-sided at an end."""
     step = _DIFFERENCE * span.width
     before, after = values - step, values + step

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import along, angle_between, cross, dot, norm, towards, unit
+from pkm_post.geometry import Array, along, angle_between, cross, dot, norm, towards, unit
 from pkm_post.toolpath.surface.contact_path import Course, Pattern
-from pkm_post.toolpath.surface.surface import Array, Patch, unit_or_nan
+from pkm_post.toolpath.surface.surface import Patch, unit_or_nan
 
 
 @dataclass(frozen=True)

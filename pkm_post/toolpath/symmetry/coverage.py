@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from pkm_post.geometry import Array, cross, dot, norm, unit
 from pkm_post.model import Program
-from pkm_post.toolpath.symmetry.passes import chords, passes
+from pkm_post.toolpath.symmetry.passes import chords, pass_rows
 
 ROUND = 2 * np.pi
 _ON_AXIS = 1e-6
@@ -143,7 +143,7 @@ def _longest(length: Array, empty: Array) -> float:
     return float(longest)
 
 
-def beside_plane(program: Program, point: ArrayLike, normal: ArrayLike) -> tuple[float, float]:
+def mirror_gap(program: Program, point: ArrayLike, normal: ArrayLike) -> tuple[float, float]:
     """Distance in mm between a cut and its mirror image, and the depth of their overlap; one is zero.
 
     Args:
@@ -164,14 +164,14 @@ def beside_plane(program: Program, point: ArrayLike, normal: ArrayLike) -> tuple
 
 
 @dataclass(frozen=True)
-class Joint:
+class Seam:
     """Where two copies meet: distance of the tips in mm and angle of the tool axes in rad, the worst of all passes."""
 
     distance: float
     turn: float
 
 
-def joints(programs: Sequence[Program], sectors: Sequence[Sector]) -> tuple[Joint, ...]:
+def seams(programs: Sequence[Program], sectors: Sequence[Sector]) -> tuple[Seam, ...]:
     """Mismatch of the copies that begin where another one ends.
 
     Args:
@@ -187,18 +187,18 @@ def joints(programs: Sequence[Program], sectors: Sequence[Sector]) -> tuple[Join
     hole = (start - (start + width)[:, None] + np.pi) % ROUND - np.pi
     meet = np.abs(hole) <= np.maximum(spacing, spacing[:, None]) + MEET
     np.fill_diagonal(meet, False)
-    return tuple(joint(programs[one], programs[other]) for one, other in np.argwhere(meet).tolist())
+    return tuple(seam(programs[one], programs[other]) for one, other in np.argwhere(meet).tolist())
 
 
-def joint(one: Program, other: Program) -> Joint:
+def seam(one: Program, other: Program) -> Seam:
     """Mismatch of the passes of one copy and the same passes of another one at their nearest ends.
 
     Raises:
         ValueError: they have different numbers of passes, or none.
     """
-    runs = [passes(program) for program in (one, other)]
+    runs = [pass_rows(program) for program in (one, other)]
     if len(runs[0]) != len(runs[1]) or not len(runs[0]):
-        raise ValueError(f"joint: expected copies of one program, got {len(runs[0])} and {len(runs[1])} passes")
+        raise ValueError(f"seam: expected copies of one program, got {len(runs[0])} and {len(runs[1])} passes")
     rows = [run - 1 for run in runs]
     tips = [program.position[row] for program, row in zip((one, other), rows, strict=True)]
     axes = [program.tool_axis[row] for program, row in zip((one, other), rows, strict=True)]
@@ -207,4 +207,4 @@ def joint(one: Program, other: Program) -> Joint:
     # Of equally near ends, those with the smallest axis angle count: a closed pass has both ends in one place.
     nearest = np.argmin(np.round(between, 6) + chord * 1e-9, axis=1)[:, None]
     turn = 2 * np.arcsin(np.clip(np.take_along_axis(chord, nearest, axis=1) / 2, 0.0, 1.0))
-    return Joint(float(np.take_along_axis(between, nearest, axis=1).max()), float(turn.max()))
+    return Seam(float(np.take_along_axis(between, nearest, axis=1).max()), float(turn.max()))

@@ -93,7 +93,7 @@ def cutting(program: Program) -> Array:
     return found
 
 
-def passes(program: Program) -> Array:
+def pass_rows(program: Program) -> Array:
     """The passes, (P, 2): the first row, and the one after the last row."""
     edge = np.diff(np.concatenate([[0], cutting(program).astype(np.int8), [0]]))
     return np.column_stack([np.flatnonzero(edge > 0), np.flatnonzero(edge < 0)])

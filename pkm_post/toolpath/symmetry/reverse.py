@@ -22,7 +22,7 @@ import numpy as np
 from pkm_post.geometry import Array, dot
 from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Event, EventKind, Kind, Program, errors
 from pkm_post.toolpath.symmetry.leads import LEVEL, Exchange, Rows, as_is, exchanges
-from pkm_post.toolpath.symmetry.passes import Link, closed, links, passes, same_pose, without_plunges
+from pkm_post.toolpath.symmetry.passes import Link, closed, links, pass_rows, same_pose, without_plunges
 
 _ANYWHERE = (EventKind.DWELL, EventKind.STOP)
 """Events allowed in the middle of a pass: they belong to a point."""
@@ -102,7 +102,7 @@ def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic,
     Args:
         program: cutter locations; a program without passes is returned unchanged.
     """
-    runs = without_plunges(program, passes(program))
+    runs = without_plunges(program, pass_rows(program))
     if not len(runs):
         return program, ()
     between, whole = links(program, runs), closed(program, runs)

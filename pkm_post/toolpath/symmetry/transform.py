@@ -158,7 +158,7 @@ def _fault(matrix: Array) -> str:
     return ""
 
 
-def joined(programs: Sequence[Program]) -> Program:
+def concatenate(programs: Sequence[Program]) -> Program:
     """Concatenate programs that share operations, tools and source, as copies do.
 
     Args:
@@ -168,7 +168,7 @@ def joined(programs: Sequence[Program]) -> Program:
         ValueError: there is none, or they do not have the same operations.
     """
     if not programs or any(program.operations != programs[0].operations for program in programs):
-        raise ValueError("joined: expected programs of the same operations, at least one")
+        raise ValueError("concatenate: expected programs of the same operations, at least one")
     names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS, "position", "tool_axis"}
     first_rows = np.cumsum([0, *map(len, programs)])
     columns: dict[str, Any] = {name: np.concatenate([getattr(program, name) for program in programs]) for name in names}

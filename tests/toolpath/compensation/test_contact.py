@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool tips from contact points: worked numbers, the paper's special case, laws, and refusals."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from cutters import ALL, BALL, BULL_NOSE, DRILL, FLAT, LENS, TAPERED, cloud, frame_with_z
+from programs import program
 
-from pkm_post.model import Place
-from pkm_post.toolpath.compensation.contact import tip_from_contact
+from pkm_post.model import Event, EventKind, Kind, Place
+from pkm_post.toolpath.compensation.compensate import compensate_tips
+from pkm_post.toolpath.compensation.contact import sideways, tip_from_contact, tip_shift
+from pkm_post.toolpath.compensation.cutter import Cutter
 
 MICRON = 1e-3
 ROUNDING = 1e-9
@@ -231,3 +236,186 @@ def test_wrong_shapes_are_the_callers_fault(shape):
 
 def test_no_contacts_give_no_tips():
     assert tips(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)), BULL_NOSE).shape == (0, 3)
+
+
+NAN = np.full(3, np.nan)
+SLOPE = (X + Z) * np.sqrt(0.5)
+SMALLER_BALL = Cutter(4.0, 0.0, 4.0)
+
+
+def contacts(count, seed):
+    rng = np.random.default_rng(seed)
+    azimuth, angle = rng.uniform(0, 2 * np.pi, count), rng.uniform(0.1, 1.3, count)
+    normals = np.column_stack([np.sin(angle) * np.cos(azimuth), np.sin(angle) * np.sin(azimuth), np.cos(angle)])
+    return rng.uniform(-50, 50, (count, 3)), normals, np.tile(Z, (count, 1))
+
+
+@pytest.mark.parametrize("actual", [BALL, FLAT, BULL_NOSE, TAPERED])
+@pytest.mark.parametrize("nominal", [BALL, FLAT, BULL_NOSE, TAPERED])
+def test_shift_is_the_difference_of_the_tips_at_one_contact(nominal, actual):
+    points, normals, axes = contacts(100, seed=1)
+    before, after = (tip_from_contact(points, normals, axes, cutter)[0] for cutter in (nominal, actual))
+    shift, told = tip_shift(normals, axes, nominal, actual, points)
+    assert told == ()
+    assert before + shift == pytest.approx(after, abs=ROUNDING)
+
+
+def test_worn_ball_comes_nearer_along_normal_and_axis():
+    # dr (n - k) with dr = -1, n = (1, 0, 1) / sqrt 2
+    shift, _ = tip_shift([SLOPE], [Z], BALL, SMALLER_BALL)
+    assert shift[0] == pytest.approx([-np.sqrt(0.5), 0.0, 1.0 - np.sqrt(0.5)], abs=ROUNDING)
+
+
+def test_corner_of_both_cutters_has_to_touch():
+    place = Place("part.h", "LN")
+    for pair in ((BALL, TAPERED), (TAPERED, BALL)):
+        found, told = tip_shift([X], [Z], *pair, place=place)
+        assert found is None
+        assert [(item.code, item.place) for item in told] == [("N102", Place("part.h", "LN", 1))]
+
+
+def test_points_give_the_direction_where_normal_and_axis_are_parallel():
+    path = np.outer([0.0, 1.0], Y)
+    wider = Cutter(0.0, 6.0, 0.0)
+    assert tip_shift([Z, Z], [Z, Z], FLAT, wider, path)[0] == pytest.approx(np.array([Y, Y]), abs=ROUNDING)
+    assert [item.code for item in tip_shift([Z, Z], [Z, Z], FLAT, wider)[1]] == ["N103", "N103"]
+
+
+def test_wrong_shapes_of_a_shift_are_the_callers_fault():
+    with pytest.raises(ValueError, match=r"tip_shift: expected 3 arrays \(N, 3\)"):
+        tip_shift(np.zeros((2, 3)), np.zeros((3, 3)), BALL, FLAT)
+
+
+RAPID, LINE, ARC = Kind.RAPID, Kind.LINE, Kind.ARC
+
+
+def passes():
+    """Two passes along slopes that face each other, with approach, retract and rapids between, which have no normal."""
+    other = SLOPE * [-1.0, 1.0, 1.0]
+    normal = [NAN, NAN, SLOPE, SLOPE, NAN, NAN, NAN, NAN, other, NAN]
+    kind = [RAPID, LINE, LINE, LINE, LINE, RAPID, RAPID, LINE, LINE, RAPID]
+    position = np.cumsum(np.random.default_rng(3).normal(size=(10, 3)), axis=0)
+    return dataclasses.replace(program(position, kind=np.array(kind)), normal=normal)
+
+
+def test_rows_without_a_normal_keep_their_distance_to_the_contact_they_leave_or_approach():
+    before = passes()
+    after, told = compensate_tips(before, BALL, SMALLER_BALL)
+    assert told == ()
+    first, second = (tip_shift([n], [Z], BALL, SMALLER_BALL)[0][0] for n in (before.normal[2], before.normal[8]))
+    # The first rapid after a pass retracts; what follows it approaches the next pass.
+    assert after.position - before.position == pytest.approx(np.array([first] * 6 + [second] * 4), abs=ROUNDING)
+
+
+def test_all_but_the_tips_stays():
+    before = passes()
+    after, _ = compensate_tips(before, BALL, SMALLER_BALL)
+    assert after.events == before.events
+    for name in ("kind", "tool_axis", "feed", "line", "normal"):
+        assert np.array_equal(getattr(after, name), getattr(before, name), equal_nan=True)
+
+
+def test_same_cutter_moves_nothing():
+    before = passes()
+    assert np.array_equal(compensate_tips(before, BULL_NOSE, BULL_NOSE)[0].position, before.position)
+
+
+def test_there_and_back_again():
+    before = passes()
+    there, _ = compensate_tips(before, BALL, BULL_NOSE)
+    back, _ = compensate_tips(there, BULL_NOSE, BALL)
+    assert back.position == pytest.approx(before.position, abs=ROUNDING)
+
+
+def arc_program(normals):
+    centre, turn = np.full((3, 3), np.nan), np.full((3, 3), np.nan)
+    centre[2], turn[2] = [5.0, 0.0, 0.0], Z
+    made = program([[0, 0, 5], [0, 0, 0], [10, 0, 0]], kind=np.array([RAPID, LINE, ARC]), centre=centre, turn=turn)
+    return dataclasses.replace(made, normal=normals)
+
+
+def test_arc_on_a_plane_is_shifted_as_it_is_and_one_on_a_wall_is_refused():
+    flat = arc_program([NAN, SLOPE, SLOPE])
+    moved, _ = compensate_tips(flat, BALL, SMALLER_BALL)
+    shift = moved.position[1] - flat.position[1]
+    assert moved.arc_centre[2] == pytest.approx(flat.arc_centre[2] + shift, abs=ROUNDING)
+    found, told = compensate_tips(arc_program([NAN, -X + Z, X + Z]), BALL, SMALLER_BALL)
+    assert found is None
+    assert [(item.code, item.place, item.found) for item in told] == [
+        ("N107", Place("part.FCStd", "Finish", 3), "its ends would move 1.414 mm apart")
+    ]
+
+
+def test_faults_name_the_row_of_the_program():
+    made = dataclasses.replace(passes(), normal=[NAN] * 8 + [-Z, NAN])
+    found, told = compensate_tips(made, BALL, SMALLER_BALL)
+    assert found is None
+    assert [(item.code, item.place.line) for item in told] == [("N102", 9)]
+
+
+def test_program_without_normals_is_refused():
+    found, told = compensate_tips(program(np.zeros((2, 3))), BALL, SMALLER_BALL)
+    assert found is None
+    assert [item.code for item in told] == ["N108"]
+
+
+def test_rows_of_other_tools_stay():
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(5, EventKind.TOOL_CHANGE, 2))
+    before = dataclasses.replace(passes(), events=events)
+    with pytest.raises(ValueError, match="expected the number of a tool"):
+        compensate_tips(before, BALL, SMALLER_BALL)
+    after, _ = compensate_tips(before, BALL, SMALLER_BALL, tool=2)
+    assert np.array_equal(after.position[:5], before.position[:5])
+    assert np.all(np.any(after.position[5:] != before.position[5:], axis=1))
+
+
+TENTH_MICRON = 1e-4
+E = 6.0
+
+
+def leaning(sine, azimuth):
+    sine, azimuth = np.broadcast_arrays(sine, azimuth)
+    return np.column_stack([sine * np.cos(azimuth), sine * np.sin(azimuth), np.sqrt(1.0 - sine**2)])
+
+
+def upright(count):
+    return np.tile(Z, (count, 1))
+
+
+def test_direction_is_where_the_normal_leans():
+    azimuth = np.linspace(0.0, 6.0, 50)
+    m, near = sideways(np.zeros((50, 3)), leaning(0.5, azimuth), upright(50), E)
+    assert np.allclose(m, leaning(1.0, azimuth), rtol=0, atol=1e-12)
+    assert not near.any()
+
+
+def test_noise_of_rounded_normals_is_averaged_out():
+    # Normals 0.06 degrees from the axis and 3e-5 off, which is what four decimals do: the azimuth is off by 2 degrees.
+    count, sine = 400, 1e-3
+    true = leaning(1.0, np.linspace(0.0, 0.5, count))
+    rounded = leaning(sine, np.linspace(0.0, 0.5, count)) + np.random.default_rng(2).normal(0.0, 3e-5, (count, 3))
+    m, near = sideways(np.zeros((count, 3)), rounded / np.linalg.norm(rounded, axis=1)[:, None], upright(count), E)
+    raw = rounded[:, :2] / np.linalg.norm(rounded[:, :2], axis=1)[:, None]
+    assert near.all()
+    error, raw_error = np.linalg.norm(m - true, axis=1), np.linalg.norm(raw - true[:, :2], axis=1)
+    assert np.sqrt(np.mean(error**2)) < 0.5 * np.sqrt(np.mean(raw_error**2))
+
+
+def test_averaging_never_lets_the_cutter_into_the_surface_by_more_than_a_tenth_of_a_micron():
+    rng = np.random.default_rng(1)
+    normals = leaning(10 ** rng.uniform(-5.5, -1.0, 3000), rng.uniform(0.0, 2 * np.pi, 3000))
+    m, near = sideways(np.zeros((3000, 3)), normals, upright(3000), E)
+    exact = normals - normals[:, 2:] * Z
+    exact /= np.linalg.norm(exact, axis=1)[:, None]
+    into_surface = E * np.einsum("nj,nj->n", exact - m, normals)
+    assert np.all(into_surface <= TENTH_MICRON * (1 + 1e-9))
+    assert np.max(into_surface) > 0.5 * TENTH_MICRON
+    assert np.array_equal(m[~near], exact[~near])
+
+
+def test_only_parallel_rows_are_carried():
+    normals = leaning(np.array([0.5, 0.0, 1e-7, 0.5]), np.array([0.0, 0.0, 2.0, 1.0]))
+    m, near = sideways(np.outer(np.arange(4.0), Y), normals, upright(4), E)
+    assert np.allclose(m[:3], X, rtol=0, atol=1e-12)
+    assert np.allclose(m[3], [np.cos(1.0), np.sin(1.0), 0.0], rtol=0, atol=1e-12)
+    assert not near.any()

@@ -5,9 +5,9 @@ import numpy as np
 
 from pkm_post.model import Place
 from pkm_post.toolpath.compensation.cutter import Cutter
-from pkm_post.toolpath.surface.options import Settings
-from pkm_post.toolpath.surface.passes import cover
-from pkm_post.toolpath.surface.surface import Span, Surface
+from pkm_post.toolpath.surface.options import SurfaceOptions
+from pkm_post.toolpath.surface.passes import surface_poses
+from pkm_post.toolpath.surface.surface import ParameterRange, Surface
 
 PLACE = Place("part.FCStd", "Finish")
 MICRON = 1e-3
@@ -29,7 +29,7 @@ def plate(width=40.0, depth=20.0, inside=everywhere):
         one, nil = np.ones_like(u), np.zeros_like(u)
         return columns(u, v, nil), columns(nil, nil, one), columns(one, nil, nil), columns(nil, one, nil)
 
-    return Surface(evaluate, inside, Span(0.0, width), Span(0.0, depth))
+    return Surface(evaluate, inside, ParameterRange(0.0, width), ParameterRange(0.0, depth))
 
 
 def cylinder(radius=20.0, height=30.0):
@@ -45,7 +45,7 @@ def cylinder(radius=20.0, height=30.0):
             columns(nil, nil, np.ones_like(u)),
         )
 
-    return Surface(evaluate, everywhere, Span(0.0, 2 * np.pi, closed=True), Span(0.0, height))
+    return Surface(evaluate, everywhere, ParameterRange(0.0, 2 * np.pi, closed=True), ParameterRange(0.0, height))
 
 
 def sphere(radius=25.0, lowest=0.3, highest=np.pi / 2, hollow=False):
@@ -57,7 +57,7 @@ def sphere(radius=25.0, lowest=0.3, highest=np.pi / 2, hollow=False):
         along_v = radius * columns(-np.sin(v) * np.cos(u), -np.sin(v) * np.sin(u), np.cos(v))
         return radius * out, -out if hollow else out, along_u, along_v
 
-    return Surface(evaluate, everywhere, Span(0.0, 2 * np.pi, closed=True), Span(lowest, highest))
+    return Surface(evaluate, everywhere, ParameterRange(0.0, 2 * np.pi, closed=True), ParameterRange(lowest, highest))
 
 
 def torus(ring=40.0, tube=10.0, lowest=0.2, highest=np.pi - 0.2):
@@ -71,7 +71,7 @@ def torus(ring=40.0, tube=10.0, lowest=0.2, highest=np.pi - 0.2):
         along_v = tube * columns(-np.sin(v) * np.cos(u), -np.sin(v) * np.sin(u), np.cos(v))
         return middle + tube * out, out, along_u, along_v
 
-    return Surface(evaluate, everywhere, Span(0.0, 2 * np.pi, closed=True), Span(lowest, highest))
+    return Surface(evaluate, everywhere, ParameterRange(0.0, 2 * np.pi, closed=True), ParameterRange(lowest, highest))
 
 
 def distance_to_torus(points, ring=40.0, tube=10.0):
@@ -88,11 +88,13 @@ def distance_to_cutter(points, tip, axis, cutter):
 
 
 def settings(**chosen):
-    return Settings(**({"safe_height": 60.0, "clearance_height": 80.0, "feed": 20.0, "plunge_feed": 5.0} | chosen))
+    return SurfaceOptions(
+        **({"safe_height": 60.0, "clearance_height": 80.0, "feed": 20.0, "plunge_feed": 5.0} | chosen)
+    )
 
 
 def covered(surface, cutter=BALL, **chosen):
-    poses, faults = cover(surface, cutter, settings(**chosen), PLACE)
+    poses, faults = surface_poses(surface, cutter, settings(**chosen), PLACE)
     assert poses is not None, [str(fault) for fault in faults]
     return poses
 

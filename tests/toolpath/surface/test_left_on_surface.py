@@ -8,8 +8,8 @@ import pytest
 from shapes import BALL, BULL, FLAT, PLACE, covered, plate, settings, torus
 
 from pkm_post.toolpath.compensation.swept_volume import stock_left
-from pkm_post.toolpath.surface.moves import program_of
-from pkm_post.toolpath.surface.options import LeadMove, Lines, Order
+from pkm_post.toolpath.surface.moves import program_from_poses
+from pkm_post.toolpath.surface.options import LeadMove, PassLines, PassOrder
 from pkm_post.toolpath.surface.poses import Tolerances
 from pkm_post.toolpath.surface.stepover import Stepover
 from pkm_post.toolpath.surface.tool_axis import AxisRule
@@ -20,7 +20,7 @@ TOLERANCE = 1e-4
 def left_on(surface, cutter, count=12, **chosen):
     """Material left at points all over the middle of a surface, by a whole program with its leads and lifts."""
     poses = covered(surface, cutter, **chosen)
-    program, faults = program_of([poses], settings(**chosen), PLACE)
+    program, faults = program_from_poses([poses], settings(**chosen), PLACE)
     assert program is not None, faults
     rng = np.random.default_rng(5)
     u, v = (rng.uniform(span.first + 0.2 * span.width, span.last - 0.2 * span.width, count**2)
@@ -50,7 +50,7 @@ def test_sharp_corner_leaves_no_more_than_wanted():
     assert left.max() < 0.05 + TOLERANCE
 
 
-@pytest.mark.parametrize("lines", [Lines.ALONG_U, Lines.PLANES])
+@pytest.mark.parametrize("lines", [PassLines.ALONG_U, PassLines.PLANES])
 def test_torus_is_neither_gouged_nor_left(lines):
     chord, height = 0.02, 0.1
     left = left_on(
@@ -58,7 +58,7 @@ def test_torus_is_neither_gouged_nor_left(lines):
         BALL,
         7,
         lines=lines,
-        order=Order.ONE_WAY,
+        order=PassOrder.ONE_WAY,
         stepover=Stepover(scallop=height),
         tolerances=Tolerances(chord, 0.01),
         rule=AxisRule(lead=0.1, cone=1.0),

@@ -8,8 +8,8 @@ import pytest
 from shapes import BALL, PLACE, covered, cylinder, plate, settings
 
 from pkm_post.model import Kind
-from pkm_post.toolpath.surface.moves import program_of
-from pkm_post.toolpath.surface.options import LeadMove, Order
+from pkm_post.toolpath.surface.moves import program_from_poses
+from pkm_post.toolpath.surface.options import LeadMove, PassOrder
 from pkm_post.toolpath.surface.tool_axis import AxisRule, clamped
 
 LEAN = AxisRule(lead=math.radians(10.0), tilt=math.radians(15.0))
@@ -19,7 +19,7 @@ UP = np.array([0.0, 0.0, 1.0])
 def made(surface, **chosen):
     """The program, and the poses it was made from."""
     poses = covered(surface, BALL, **chosen)
-    program, faults = program_of([poses], settings(**chosen), PLACE)
+    program, faults = program_from_poses([poses], settings(**chosen), PLACE)
     assert program is not None, faults
     return program, poses
 
@@ -29,7 +29,7 @@ def contacts(program):
 
 
 def test_every_pose_is_a_row_with_its_normal():
-    program, poses = made(plate(), rule=LEAN, order=Order.ONE_WAY)
+    program, poses = made(plate(), rule=LEAN, order=PassOrder.ONE_WAY)
     rows = contacts(program)
     assert program.position[rows] == pytest.approx(poses.tip)
     assert program.tool_axis[rows] == pytest.approx(poses.axis)
@@ -41,7 +41,7 @@ def test_every_pose_is_a_row_with_its_normal():
 
 
 def test_first_and_last_move_are_at_clearance_and_the_others_at_safe_height():
-    program, _ = made(plate(), rule=LEAN, order=Order.ONE_WAY)
+    program, _ = made(plate(), rule=LEAN, order=PassOrder.ONE_WAY)
     heights = program.position[:, 2]
     assert (program.kind[0], heights[0], heights[-1]) == (Kind.RAPID, 80.0, pytest.approx(80.0))
     crossing = (program.kind == Kind.RAPID) & (np.abs(program.tool_axis - UP).max(axis=1) < 1e-12)
@@ -54,7 +54,7 @@ def test_first_and_last_move_are_at_clearance_and_the_others_at_safe_height():
 
 
 def test_tool_comes_and_leaves_along_its_axis():
-    program, _ = made(plate(), rule=LEAN, order=Order.ONE_WAY, approach=3.0)
+    program, _ = made(plate(), rule=LEAN, order=PassOrder.ONE_WAY, approach=3.0)
     rows = contacts(program)
     last = rows[np.flatnonzero(np.append(np.diff(rows) > 1, True))]
     way = program.position[last + 1] - program.position[last]
@@ -99,7 +99,7 @@ def test_cone_that_excludes_upright_rests_as_near_to_it_as_it_can():
 
 def test_surfaces_follow_one_another_in_their_order():
     both = [covered(plate()), covered(plate(width=10.0))]
-    program, _ = program_of(both, settings(), PLACE)
+    program, _ = program_from_poses(both, settings(), PLACE)
     rows = contacts(program)
     assert len(rows) == sum(len(poses.tip) for poses in both)
     assert program.position[rows] == pytest.approx(np.vstack([poses.tip for poses in both]))
@@ -107,7 +107,7 @@ def test_surfaces_follow_one_another_in_their_order():
 
 def refused(surface, rule=AxisRule(), **chosen):  # noqa: B008 - frozen
     poses = covered(surface, rule=rule)
-    program, faults = program_of([poses], settings(rule=rule, **chosen), PLACE)
+    program, faults = program_from_poses([poses], settings(rule=rule, **chosen), PLACE)
     assert program is None
     return {fault.code for fault in faults}
 

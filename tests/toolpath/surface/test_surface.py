@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from shapes import cylinder, plate, sphere, torus
 
-from pkm_post.toolpath.surface.surface import Grid, Span, normal_curvatures
+from pkm_post.toolpath.surface.surface import Grid, ParameterRange, normal_curvatures
 
 ONE_IN_MILLION = 1e-6
 
@@ -69,4 +69,4 @@ def test_grid_is_the_surface_row_by_row():
 
 def test_empty_range_is_the_callers_fault():
     with pytest.raises(ValueError, match="expected first < last"):
-        Span(1.0, 1.0)
+        ParameterRange(1.0, 1.0)

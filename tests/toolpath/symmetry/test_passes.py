@@ -7,7 +7,7 @@ from programs import program, square_with_arc
 
 from pkm_post.geometry import norm
 from pkm_post.model import Kind
-from pkm_post.toolpath.symmetry.passes import chords, closed, lifts, links, passes
+from pkm_post.toolpath.symmetry.passes import chords, closed, lifts, links, pass_rows
 
 LEANING = np.array([0.6, 0, 0.8])
 R, L = Kind.RAPID, Kind.LINE
@@ -28,11 +28,11 @@ TWO = leaning(
 
 def test_moves_along_the_tool_axis_lead_to_passes_and_away():
     assert lifts(TWO).tolist() == [0, 0, -1, -1, 0, 0, 0, 1, 0, -1, 0, 1, 1]
-    assert passes(TWO).tolist() == [[4, 7], [10, 11]]
+    assert pass_rows(TWO).tolist() == [[4, 7], [10, 11]]
 
 
 def test_rows_of_the_links():
-    before, between, behind = links(TWO, passes(TWO))
+    before, between, behind = links(TWO, pass_rows(TWO))
     assert [each.tolist() for each in (before.travel, before.approach)] == [[0, 1], [2, 3]]
     assert [each.tolist() for each in (between.departure, between.travel, between.approach)] == [[7], [8], [9]]
     assert [each.tolist() for each in (behind.departure, behind.travel, behind.approach)] == [[11, 12], [], []]
@@ -40,26 +40,26 @@ def test_rows_of_the_links():
 
 def test_a_rapid_move_aslant_counts_where_none_goes_along_the_axis():
     made = program([[0, 0, 0], [9, 0, 0], [20, 5, 30], [30, 9, 0], [40, 0, 0]], kind=[R, L, R, R, L])
-    _, between, _ = links(made, passes(made))
+    _, between, _ = links(made, pass_rows(made))
     assert [each.tolist() for each in (between.departure, between.travel, between.approach)] == [[2], [], [3]]
 
 
 def test_a_plunge_ends_a_pass():
     made = program([[0, 0, 9], [0, 0, 5], [9, 0, 5], [9, 0, 1], [0, 0, 1]])
-    assert passes(made).tolist() == [[2, 3], [4, 5]]
+    assert pass_rows(made).tolist() == [[2, 3], [4, 5]]
 
 
 def test_a_turn_of_the_tool_axis_on_the_way_down_is_no_plunge():
     made = program([[0, 0, 9], [0, 0, 5]], np.array([[0, 0, 1], LEANING]))
-    assert passes(made).tolist() == [[1, 2]]
+    assert pass_rows(made).tolist() == [[1, 2]]
 
 
 def test_a_closed_pass_has_its_axis_back_as_well():
     square = [[0, 0, 5], [9, 0, 5], [9, 9, 5], [0, 0, 5]]
     upright = program(square)
-    assert closed(upright, passes(upright)).tolist() == [True]
+    assert closed(upright, pass_rows(upright)).tolist() == [True]
     turned = program(square, np.array([[0, 0, 1], [0, 0, 1], [0, 0, 1], LEANING]))
-    assert closed(turned, passes(turned)).tolist() == [False]
+    assert closed(turned, pass_rows(turned)).tolist() == [False]
 
 
 def test_chords_join_the_ends_of_what_is_cut_and_keep_to_the_arcs():
@@ -74,11 +74,11 @@ def test_chords_join_the_ends_of_what_is_cut_and_keep_to_the_arcs():
 
 
 def test_a_program_without_a_cut_has_no_passes():
-    assert passes(program([[0, 0, 9], [0, 0, 5]])).shape == (0, 2)
+    assert pass_rows(program([[0, 0, 9], [0, 0, 5]])).shape == (0, 2)
     assert chords(program([[0, 0, 9]]))[0].shape == (0, 3)
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_rapid_moves_alone(count):
     made = program(np.arange(3.0 * count).reshape(-1, 3), kind=[R] * count)
-    assert len(passes(made)) == 0
+    assert len(pass_rows(made)) == 0

@@ -8,7 +8,7 @@ from programs import program
 from pkm_post.geometry import norm
 from pkm_post.geometry.vectors import dot, unit
 from pkm_post.model import Kind
-from pkm_post.toolpath.symmetry.passes import passes, steps
+from pkm_post.toolpath.symmetry.passes import pass_rows, steps
 from pkm_post.toolpath.symmetry.reverse import reversed_passes
 from pkm_post.toolpath.symmetry.transform import mirror, transform
 
@@ -172,7 +172,7 @@ def test_what_comes_down_to_a_pass_has_the_feed_of_the_plunge(kind, seed):
     begins = [
         row for row in range(1, len(once)) if once.feed[row] in (LEAD, CUT) and once.feed[row - 1] not in (LEAD, CUT)
     ]
-    assert len(begins) == len(passes(made))
+    assert len(begins) == len(pass_rows(made))
     assert once.feed[np.array(begins) - 1].tolist() == [PLUNGE] * len(begins)
     assert {*map(tuple, np.round(once.position[np.isin(once.feed, (LEAD, CUT))], 6).tolist())} & {*cuts}
 

@@ -24,8 +24,8 @@ from shapes import (
 )  # fmt: skip
 
 from pkm_post.toolpath.compensation.cutter import Cutter
-from pkm_post.toolpath.surface.options import CutMode, Lines, Order
-from pkm_post.toolpath.surface.passes import cover
+from pkm_post.toolpath.surface.options import CutMode, PassLines, PassOrder
+from pkm_post.toolpath.surface.passes import surface_poses
 from pkm_post.toolpath.surface.poses import Tolerances
 from pkm_post.toolpath.surface.stepover import Stepover
 from pkm_post.toolpath.surface.tool_axis import AxisRule
@@ -47,7 +47,7 @@ def test_passes_on_a_plate_are_evenly_apart_and_reach_its_borders():
         assert sorted(poses.point[rows[[0, -1]], 0]) == pytest.approx([0.0, 40.0])
 
 
-@pytest.mark.parametrize("lines", [Lines.ALONG_U, Lines.ALONG_V])
+@pytest.mark.parametrize("lines", [PassLines.ALONG_U, PassLines.ALONG_V])
 def test_neighbours_on_a_torus_are_nowhere_farther_apart_than_the_stepover(lines):
     step = 2.0
     poses = covered(torus(), lines=lines, stepover=Stepover(distance=step))
@@ -78,7 +78,7 @@ def test_scallops_between_passes_on_a_sphere_have_the_height(hollow):
     assert np.pi / 2 - latitude[-1] == pytest.approx(half[-1], rel=0.01)
 
 
-@pytest.mark.parametrize("order", [Order.ZIGZAG, Order.SPIRAL])
+@pytest.mark.parametrize("order", [PassOrder.ZIGZAG, PassOrder.SPIRAL])
 @pytest.mark.parametrize("chord", [0.05, 0.005])
 def test_ball_stays_within_the_chord_tolerance_of_a_torus_all_the_way(order, chord):
     tolerances = Tolerances(chord, axis=1.0)
@@ -102,7 +102,7 @@ def test_bull_nose_stays_within_the_chord_tolerance_of_a_sphere():
 @pytest.mark.parametrize("cutter", [BALL, BULL], ids=["ball", "bull"])
 def test_passes_that_meet_at_a_pole_turn_the_tool_about_it_without_gouging(cutter):
     chord, radius = 0.005, 25.0
-    poses = covered(sphere(radius, lowest=1.0), cutter, lines=Lines.ALONG_V, stepover=Stepover(distance=6.0),
+    poses = covered(sphere(radius, lowest=1.0), cutter, lines=PassLines.ALONG_V, stepover=Stepover(distance=6.0),
                     rule=AxisRule(lead=0.3), tolerances=Tolerances(chord, 0.01))  # fmt: skip
     tip, axis, _ = played(poses)
     tip, axis = tip.reshape(-1, 3), axis.reshape(-1, 3)
@@ -113,7 +113,7 @@ def test_passes_that_meet_at_a_pole_turn_the_tool_about_it_without_gouging(cutte
 def test_axis_stays_within_its_tolerance_on_a_cylinder():
     tolerance, lead = math.radians(0.02), math.radians(20.0)
     poses = covered(
-        cylinder(), rule=AxisRule(lead=lead, tilt=0.4), tolerances=Tolerances(1.0, tolerance), order=Order.ONE_WAY
+        cylinder(), rule=AxisRule(lead=lead, tilt=0.4), tolerances=Tolerances(1.0, tolerance), order=PassOrder.ONE_WAY
     )
     tip, axis, moving = played(poses)
     point = poses.point[moving] + np.linspace(0, 1, 11)[:, None, None] * (poses.point[moving + 1] - poses.point[moving])
@@ -175,9 +175,9 @@ def test_tool_goes_round_its_contact_where_the_feed_turns():
     assert poses.axis[in_link, 1].min() > 0.0
 
 
-@pytest.mark.parametrize("lines", [Lines.ALONG_U, Lines.PLANES])
+@pytest.mark.parametrize("lines", [PassLines.ALONG_U, PassLines.PLANES])
 def test_passes_on_a_trimmed_disc_end_on_its_border(lines):
-    poses = covered(DISC, lines=lines, plane=(1.0, 0.5, 0.0), order=Order.ONE_WAY)
+    poses = covered(DISC, lines=lines, plane=(1.0, 0.5, 0.0), order=PassOrder.ONE_WAY)
     away = np.hypot(poses.point[:, 0] - 20.0, poses.point[:, 1] - 10.0)
     assert away.max() <= 9.0
     for rows in passes(poses):
@@ -207,14 +207,14 @@ def test_zigzag_goes_to_and_fro_without_lifting():
 
 
 def test_one_way_lifts_between_passes_but_not_round_a_column():
-    lifted, round_ = (covered(each, order=Order.ONE_WAY, rule=AxisRule(tilt=0.5)) for each in (plate(), cylinder()))
+    lifted, round_ = (covered(each, order=PassOrder.ONE_WAY, rule=AxisRule(tilt=0.5)) for each in (plate(), cylinder()))
     assert len(np.unique(lifted.course.run)) == len(passes(lifted)) == 21
     assert np.unique(round_.course.run).tolist() == [0]
     assert set(round_.course.sense) == {1.0}
 
 
 def test_spiral_is_one_pass_round_both_borders():
-    poses = covered(cylinder(), order=Order.SPIRAL, rule=AxisRule(tilt=0.5), stepover=Stepover(distance=4.0))
+    poses = covered(cylinder(), order=PassOrder.SPIRAL, rule=AxisRule(tilt=0.5), stepover=Stepover(distance=4.0))
     assert len(passes(poses)) == 1
     z = poses.point[:, 2]
     assert np.diff(z).min() > -ROUNDING
@@ -226,7 +226,7 @@ def test_spiral_is_one_pass_round_both_borders():
 
 def test_parallel_planes_are_planes_and_all_lines_run_one_way():
     normal = np.array([2.0, 1.0, 0.0]) / math.sqrt(5.0)
-    poses = covered(torus(), lines=Lines.PLANES, plane=(2.0, 1.0, 0.0), order=Order.ONE_WAY,
+    poses = covered(torus(), lines=PassLines.PLANES, plane=(2.0, 1.0, 0.0), order=PassOrder.ONE_WAY,
                     stepover=Stepover(distance=3.0), rule=AxisRule(cone=0.8))  # fmt: skip
     place = poses.point @ normal
     for rows in passes(poses):
@@ -237,7 +237,7 @@ def test_parallel_planes_are_planes_and_all_lines_run_one_way():
 
 
 def test_level_planes_go_round_a_column_from_its_seam():
-    poses = covered(cylinder(), lines=Lines.PLANES, plane=(0.0, 0.0, 1.0), rule=AxisRule(tilt=0.5))
+    poses = covered(cylinder(), lines=PassLines.PLANES, plane=(0.0, 0.0, 1.0), rule=AxisRule(tilt=0.5))
     assert np.unique(poses.course.run).tolist() == [0]
     for rows in passes(poses):
         angle = np.unwrap(np.arctan2(poses.point[rows, 1], poses.point[rows, 0]))
@@ -253,16 +253,16 @@ def sideways(poses):
 
 
 @pytest.mark.parametrize("reversed_", [False, True])
-@pytest.mark.parametrize("lines", [Lines.ALONG_U, Lines.ALONG_V, Lines.PLANES])
+@pytest.mark.parametrize("lines", [PassLines.ALONG_U, PassLines.ALONG_V, PassLines.PLANES])
 @pytest.mark.parametrize(("mode", "side"), [(CutMode.CLIMB, 1.0), (CutMode.CONVENTIONAL, -1.0)])
 def test_on_a_floor_climbing_has_the_next_passes_on_the_right(reversed_, lines, mode, side):
-    chosen = {"order": Order.ONE_WAY, "lines": lines, "plane": (0.0, 1.0, 0.0), "reversed": reversed_}
+    chosen = {"order": PassOrder.ONE_WAY, "lines": lines, "plane": (0.0, 1.0, 0.0), "reversed": reversed_}
     assert sideways(covered(plate(), cut_mode=mode, **chosen)) == side
     assert sideways(covered(plate(), cut_mode=mode, clockwise=False, **chosen)) == -side
 
 
 @pytest.mark.parametrize(("mode", "sense"), [(CutMode.CLIMB, -1.0), (CutMode.CONVENTIONAL, 1.0)])
-@pytest.mark.parametrize("order", [Order.ONE_WAY, Order.SPIRAL])
+@pytest.mark.parametrize("order", [PassOrder.ONE_WAY, PassOrder.SPIRAL])
 def test_round_a_column_climbing_is_clockwise_from_above(mode, sense, order):
     # outside of a part, with a cutter that turns clockwise, climb milling keeps the part on the right
     poses = covered(cylinder(), order=order, cut_mode=mode, rule=AxisRule(cone=math.radians(30.0)))
@@ -275,14 +275,14 @@ def test_reversed_passes_begin_on_the_other_side():
 
 
 def fault(surface, cutter=BALL, **chosen):
-    poses, faults = cover(surface, cutter, settings(**chosen), PLACE)
+    poses, faults = surface_poses(surface, cutter, settings(**chosen), PLACE)
     assert poses is None
     return {each.code for each in faults}
 
 
 def test_what_cannot_be_covered_is_told():
-    assert fault(plate(), order=Order.SPIRAL) == {"N301"}
-    assert fault(cylinder(), order=Order.SPIRAL, lines=Lines.PLANES) == {"N301"}
+    assert fault(plate(), order=PassOrder.SPIRAL) == {"N301"}
+    assert fault(cylinder(), order=PassOrder.SPIRAL, lines=PassLines.PLANES) == {"N301"}
     assert fault(plate(inside=lambda u, v: np.zeros(len(u), dtype=bool))) == {"N302"}
     assert fault(sphere(2.5, hollow=True), stepover=Stepover(scallop=0.01)) == {"N303"}
     bowl = sphere(25.0, lowest=-1.2, highest=0.0, hollow=False)
@@ -290,7 +290,9 @@ def test_what_cannot_be_covered_is_told():
 
 
 def test_undercut_is_told_once_with_its_place():
-    poses, (only,) = cover(sphere(25.0, lowest=-1.2, highest=0.0), BALL, settings(rule=AxisRule(cone=0.1)), PLACE)
+    poses, (only,) = surface_poses(
+        sphere(25.0, lowest=-1.2, highest=0.0), BALL, settings(rule=AxisRule(cone=0.1)), PLACE
+    )
     assert poses is None
     assert (only.code, only.place) == ("N102", PLACE)
     place = [float(number) for number in only.found.removeprefix("at (").split(")")[0].split(",")]
@@ -300,12 +302,12 @@ def test_undercut_is_told_once_with_its_place():
 
 def test_cutters_of_other_shapes_are_the_callers_fault():
     with pytest.raises(ValueError, match="expected a ball"):
-        cover(plate(), Cutter.apt(10.0, 1.0, b=0.1), settings(), PLACE)
+        surface_poses(plate(), Cutter.apt(10.0, 1.0, b=0.1), settings(), PLACE)
 
 
 def test_progress_is_told_and_may_stop_the_work():
     told = []
-    cover(torus(), BALL, settings(), PLACE, told.append)
+    surface_poses(torus(), BALL, settings(), PLACE, told.append)
     assert told == sorted(told)
     assert 0.0 <= told[0] <= told[-1] <= 1.0
 
@@ -313,4 +315,4 @@ def test_progress_is_told_and_may_stop_the_work():
         raise InterruptedError
 
     with pytest.raises(InterruptedError):
-        cover(torus(), BALL, settings(), PLACE, stop)
+        surface_poses(torus(), BALL, settings(), PLACE, stop)

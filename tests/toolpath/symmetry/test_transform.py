@@ -11,7 +11,8 @@ from programs import cone, program, square_with_arc
 from pkm_post.geometry import arc_points, arc_sweep, norm
 from pkm_post.geometry.curves import arc_length
 from pkm_post.model import Event, EventKind, Kind
-from pkm_post.toolpath.symmetry.transform import mirror, mirrors, rotation, transform
+from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS
+from pkm_post.toolpath.symmetry.transform import concatenate, mirror, mirrors, rotation, transform
 
 ROUNDING = 1e-12
 VECTORS = ("position", "tool_axis", "arc_centre", "arc_axis")
@@ -224,3 +225,40 @@ def test_what_a_program_says_of_corners_stays_with_its_rows():
     after = moved(made, mirror((0, 0, 0), (1, 0, 0)))
     for name in ("exact_stop", "exact_path", "tip_tolerance"):
         np.testing.assert_array_equal(getattr(after, name), getattr(made, name))
+
+
+def test_rows_and_events_follow_each_other():
+    events = (Event(0, EventKind.SPINDLE, 5000), Event(3, EventKind.SPINDLE, 0))
+    first = program([[0, 0, 30], [1, 2, 0], [3, 4, 0]], events=events)
+    second, _ = transform(dataclasses.replace(first, side_offset=[0, 2, 2]), mirror((0, 0, 0), (1, 0, 0)))
+    both = concatenate([first, second])
+    assert both.position[:, 0].tolist() == [0, 1, 3, 0, -1, -3]
+    assert both.side_offset.tolist() == [0, 0, 0, 0, -2, -2]
+    assert [(event.row, event.value) for event in both.events] == [(0, 5000), (3, 0), (3, 5000), (6, 0)]
+    assert np.array_equal(both.line, [1, 2, 3, 1, 2, 3])
+
+
+def test_one_program_stays_as_it_is():
+    made = program([[0, 0, 30], [1, 2, 0]])
+    assert np.array_equal(concatenate([made]).position, made.position)
+    assert concatenate([made]).events == made.events
+
+
+def test_programs_of_other_operations_are_a_fault_of_the_caller():
+    made = program([[0, 0, 30]])
+    for programs in ([], [made, dataclasses.replace(made, operations=("Other",))]):
+        with pytest.raises(ValueError, match="same operations"):
+            concatenate(programs)
+
+
+def test_every_column_of_each_program_is_there():
+    rows = np.arange(3)
+    first = program([[0, 0, 30], [1, 2, 0], [3, 4, 0]])
+    told = {"exact_stop": rows == 1, "exact_path": rows == 2, "tip_tolerance": 0.01 * rows, "side_offset": 1.0 * rows}
+    told |= {"plane": [0, 1, 2], "normal": np.eye(3), "spin": 0.1 * rows, "smaller_tool": rows == 0}
+    assert set(told) == set(OPTIONAL_COLUMNS)
+    second = dataclasses.replace(first, **told)
+    both = concatenate([first, second, first])
+    for name in (*MOTION_COLUMNS, *OPTIONAL_COLUMNS, "position", "tool_axis"):
+        for begin, made in enumerate([first, second, first]):
+            np.testing.assert_array_equal(getattr(both, name)[3 * begin : 3 * begin + 3], getattr(made, name), name)

@@ -11,7 +11,7 @@ from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.toolpath.compensation.compensate import compensate
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
-from pkm_post.toolpath.symmetry.passes import lifts, passes, steps
+from pkm_post.toolpath.symmetry.passes import lifts, pass_rows, steps
 from pkm_post.toolpath.symmetry.reverse import reversed_passes
 from pkm_post.toolpath.symmetry.transform import mirror, transform
 
@@ -79,7 +79,7 @@ def points_of(made):
 
 def cut_points(made):
     """Where passes begin, lead to, and end."""
-    rows = np.concatenate([np.arange(first - 1, behind) for first, behind in passes(made)])
+    rows = np.concatenate([np.arange(first - 1, behind) for first, behind in pass_rows(made)])
     return {tuple(point) for point in np.round(made.position[rows], 9).tolist()}
 
 
@@ -93,7 +93,7 @@ def off_the_ways(made, before):
 
 def ways_of(made):
     """Feed, middle, length and centre of each row that cuts, in no order."""
-    rows = np.concatenate([np.arange(first, behind) for first, behind in passes(made)])
+    rows = np.concatenate([np.arange(first, behind) for first, behind in pass_rows(made)])
     middle = made.position[rows] - steps(made)[rows] / 2
     length, centre = norm(steps(made))[rows], np.nan_to_num(made.arc_centre[rows])
     table = np.column_stack([made.feed[rows], middle, length, centre, made.line[rows]])
@@ -127,17 +127,17 @@ def test_feeds_go_with_their_ways(make):
 
 def test_each_pass_is_run_the_other_way_and_depths_keep_their_sequence():
     before, after = open_profile(), turned(open_profile())
-    for (first, behind), (start, end) in zip(passes(before), passes(after), strict=True):
+    for (first, behind), (start, end) in zip(pass_rows(before), pass_rows(after), strict=True):
         np.testing.assert_allclose(
             after.position[start - 1 : end], before.position[first - 1 : behind][::-1], atol=ROUNDING
         )
-    assert after.position[:, 2][passes(after)[:, 0]].tolist() == [10.0, 5.0, 0.0]
+    assert after.position[:, 2][pass_rows(after)[:, 0]].tolist() == [10.0, 5.0, 0.0]
 
 
 @pytest.mark.parametrize("make", [open_profile, closed_profile, with_arcs])
 def test_no_rapid_move_comes_to_where_a_pass_begins(make):
     after = turned(make())
-    starts = passes(after)[:, 0] - 1
+    starts = pass_rows(after)[:, 0] - 1
     assert np.all(after.kind[starts] == Kind.LINE)
     assert np.all(lifts(after)[starts] == -1)
 
@@ -167,7 +167,7 @@ def test_a_lift_through_what_may_be_material_is_not_gone_back_rapidly():
 
 def test_a_closed_contour_is_reached_and_left_as_before():
     before, after = closed_profile(), turned(closed_profile())
-    leads = np.setdiff1d(np.arange(len(before)), np.concatenate([np.arange(*run) for run in passes(before)]))
+    leads = np.setdiff1d(np.arange(len(before)), np.concatenate([np.arange(*run) for run in pass_rows(before)]))
     np.testing.assert_array_equal(after.position[leads], before.position[leads])
     np.testing.assert_array_equal(after.feed[leads], before.feed[leads])
 
@@ -182,13 +182,13 @@ def test_arcs_turn_the_other_way_about_the_same_centre():
 def test_compensation_to_the_left_is_to_the_right_then():
     before = dataclasses.replace(open_profile(), side_offset=np.full(len(open_profile()), 3.0))
     after = turned(before)
-    assert all(np.all(after.side_offset[first:behind] == -3.0) for first, behind in passes(after))
+    assert all(np.all(after.side_offset[first:behind] == -3.0) for first, behind in pass_rows(after))
 
 
 def test_a_mirror_and_a_reversal_keep_the_side_of_the_compensation():
     before = dataclasses.replace(open_profile(), side_offset=np.full(len(open_profile()), 3.0))
     after = turned(transform(before, mirror([0, 0, 0], [1, 0, 0]))[0])
-    assert all(np.all(after.side_offset[first:behind] == 3.0) for first, behind in passes(after))
+    assert all(np.all(after.side_offset[first:behind] == 3.0) for first, behind in pass_rows(after))
 
 
 def test_compensation_that_begins_and_ends_on_leads_does_so_on_the_other_one_then():
@@ -205,12 +205,12 @@ def test_compensation_that_begins_and_ends_on_leads_does_so_on_the_other_one_the
 
 def test_what_a_program_says_of_corners_goes_with_the_way_and_a_stop_with_its_point():
     before = open_profile()
-    (first, behind), rows = passes(before)[0], np.arange(len(before))
+    (first, behind), rows = pass_rows(before)[0], np.arange(len(before))
     before = dataclasses.replace(
         before, exact_path=rows == first + 1, tip_tolerance=np.where(rows == first, 0.05, 0.0), exact_stop=rows == first
     )
     after = turned(before)
-    begin, end = passes(after)[0]
+    begin, end = pass_rows(after)[0]
     assert np.flatnonzero(after.exact_path).tolist() == [begin + behind - first - 2]
     assert np.flatnonzero(after.tip_tolerance).tolist() == [end - 1]
     (stop,) = np.flatnonzero(after.exact_stop)
@@ -219,7 +219,7 @@ def test_what_a_program_says_of_corners_goes_with_the_way_and_a_stop_with_its_po
 
 def test_events_between_passes_stay_there_and_a_dwell_stays_at_its_point():
     before, events = open_profile(), [(0, EventKind.TOOL_CHANGE, 1), (0, EventKind.SPINDLE, 9000)]
-    runs, rows = passes(before), len(before)
+    runs, rows = pass_rows(before), len(before)
     events += [(runs[0, 0] + 1, EventKind.DWELL, 0.5), (runs[0, 1] + 2, EventKind.SPINDLE, 7000)]
     events += [(rows, EventKind.SPINDLE, 0)]
     before = dataclasses.replace(before, events=tuple(Event(int(row), *rest) for row, *rest in events))
@@ -281,7 +281,7 @@ def test_a_rapid_way_with_corners_is_not_cut_short():
 
 def test_a_change_of_speed_in_the_middle_of_a_pass_is_refused():
     before = open_profile()
-    event = Event(int(passes(before)[0, 0]) + 1, EventKind.SPINDLE, 3000)
+    event = Event(int(pass_rows(before)[0, 0]) + 1, EventKind.SPINDLE, 3000)
     result, (fault,) = reversed_passes(dataclasses.replace(before, events=(event,)))
     assert result is None
     assert (fault.code, fault.found, fault.place.line) == ("K125", "spindle", event.row + 1)
