@@ -23,7 +23,7 @@ import Path.Main.Job
 import Path.Op.Custom
 import Path.Preferences
 
-from pkm_post.freecad_app.face_projection import surface_points
+from pkm_post.freecad_app.face_surface import surface_points
 from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
 from pkm_post.freecad_app.tools import set_gauge_length
 from pkm_post.model import Tool

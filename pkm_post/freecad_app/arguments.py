@@ -54,13 +54,13 @@ _MORE: dict[str, dict[str, dict[str, Any]]] = {
 """Additional arguments of some post-processors."""
 
 
-def given_by(arguments: str | ArgumentValues) -> ArgumentValues:
+def values_of(arguments: str | ArgumentValues) -> ArgumentValues:
     """Parse a text into the options it sets, without defaults; already parsed options are returned unchanged.
 
     Raises:
         Refused: as ``job_arguments``.
     """
-    return explicit_values(parsed(arguments, Place("arguments"))) if isinstance(arguments, str) else arguments
+    return explicit_values(parse_arguments(arguments, Place("arguments"))) if isinstance(arguments, str) else arguments
 
 
 def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.Namespace:
@@ -75,14 +75,14 @@ def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.N
         Refused: the arguments are invalid, J117.
     """
     place = Place(document_name(job.Document), job.Label)
-    chosen = parsed(text, place, post_processor)
+    chosen = parse_arguments(text, place, post_processor)
     strangers = inapplicable_options(explicit_values(chosen), {InputKind.JOB})
     if strangers:
         raise Refused([Diagnostic("J117", place, each) for each in strangers])
     return chosen
 
 
-def parsed(text: str, place: Place, post_processor: str = PMAC) -> argparse.Namespace:
+def parse_arguments(text: str, place: Place, post_processor: str = PMAC) -> argparse.Namespace:
     """Parse arguments as typed by the user; ``place`` states their origin.
 
     Raises:
@@ -118,12 +118,12 @@ def own_text(job: Any) -> str:
     if job.PostProcessor not in POST_PROCESSORS:
         return ""
     try:
-        return rewritten(job.PostProcessorArgs, dict.fromkeys(_MORE.get(job.PostProcessor, {})))
+        return replace_arguments(job.PostProcessorArgs, dict.fromkeys(_MORE.get(job.PostProcessor, {})))
     except ValueError:  # the parser reports the error
         return str(job.PostProcessorArgs)
 
 
-def rewritten(text: str, chosen: Mapping[str, str | None]) -> str:
+def replace_arguments(text: str, chosen: Mapping[str, str | None]) -> str:
     """Replace some arguments; all others stay unchanged.
 
     Args:
@@ -147,7 +147,7 @@ def _by_flag(words: list[str]) -> Iterator[tuple[str, list[str]]]:
         words = words[size:]
 
 
-def remember(job: Any, text: str, program: str) -> None:
+def store_in_job(job: Any, text: str, program: str) -> None:
     """Store arguments and output file in the job, so that CAM's own post command gives the same result.
 
     Args:

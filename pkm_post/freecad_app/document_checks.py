@@ -19,7 +19,7 @@ from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
 
 
-def intact(file: FilePath) -> DocumentContent:
+def read_content(file: FilePath) -> DocumentContent:
     """Contents listed in a document, after checking its file.
 
     Raises:
@@ -33,7 +33,7 @@ def intact(file: FilePath) -> DocumentContent:
         raise Refused([Diagnostic(damaged.code, Place(str(file)), damaged.found)]) from damaged
 
 
-def check_read(document: Any, content: DocumentContent) -> None:
+def check_operations(document: Any, content: DocumentContent) -> None:
     """Compare the operations of a newly opened document with those listed in its file.
 
     Raises:
@@ -64,7 +64,7 @@ def file_faults(document: Any) -> tuple[Diagnostic, ...]:
 def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...]:
     """The same, cached by file state: document objects ask at every recompute."""
     try:
-        intact(file)
+        read_content(file)
     except Refused as refused:
         return refused.diagnostics
     return ()
@@ -73,24 +73,24 @@ def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...
 _OURS = "pkm_post."
 
 
-def is_ours(operation: Any) -> bool:
+def is_pkm_object(operation: Any) -> bool:
     """Whether the object belongs to this add-on, whose objects transform tool axes together with points."""
     return type(getattr(operation, "Proxy", None)).__module__.startswith(_OURS)
 
 
-def bases(operation: Any) -> list[Any]:
+def base_operations(operation: Any) -> list[Any]:
     """The operations directly below; faces and edges from which an operation is made are excluded."""
     base = getattr(operation, "Base", None)
     linked = base if isinstance(base, list | tuple) else [base]
     return [below for below in linked if hasattr(below, "isDerivedFrom") and below.isDerivedFrom("Path::Feature")]
 
 
-def spoilers(operation: Any) -> Iterator[Any]:
+def incompatible_dressups(operation: Any) -> Iterator[Any]:
     """Yield third-party layers, the object itself or below it, on top of moves with tool-axis words."""
-    for below in bases(operation):
-        if not is_ours(operation) and Words.of(below.Path.Commands).axis_words().any():
+    for below in base_operations(operation):
+        if not is_pkm_object(operation) and Words.of(below.Path.Commands).axis_words().any():
             yield operation
-        yield from spoilers(below)
+        yield from incompatible_dressups(below)
 
 
 _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
@@ -110,7 +110,7 @@ def state_faults(operation: Any, source: str) -> list[Diagnostic]:
         if told:
             return [Diagnostic(code, place, told)]
     try:
-        return [Diagnostic("J108", place, layer.Label) for layer in spoilers(operation)]
+        return [Diagnostic("J108", place, layer.Label) for layer in incompatible_dressups(operation)]
     except UnicodeDecodeError as fault:
         return [not_text(fault, source, operation.Label)]
 
@@ -126,7 +126,7 @@ def _not_read(operation: Any) -> str:
 def _not_valid(operation: Any) -> str:
     if not operation.isValid():
         return str(operation.getStatusString())
-    return "the operation it copies is gone" if is_ours(operation) and operation.Base is None else ""
+    return "the operation it copies is gone" if is_pkm_object(operation) and operation.Base is None else ""
 
 
 def _not_computed(operation: Any) -> str:
@@ -135,11 +135,13 @@ def _not_computed(operation: Any) -> str:
 
 def _empty(operation: Any) -> str:
     """A path that CAM computes has at least a comment; only one made from an inactive operation is entirely empty."""
-    return "" if operation.Path.Size or _stands_on_inactive(operation) else "no command, not even a comment"
+    return "" if operation.Path.Size or _has_inactive_base(operation) else "no command, not even a comment"
 
 
-def _stands_on_inactive(operation: Any) -> bool:
-    return any(getattr(below, "Active", True) is False or _stands_on_inactive(below) for below in bases(operation))
+def _has_inactive_base(operation: Any) -> bool:
+    return any(
+        getattr(below, "Active", True) is False or _has_inactive_base(below) for below in base_operations(operation)
+    )
 
 
 _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (

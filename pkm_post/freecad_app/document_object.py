@@ -1,26 +1,34 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Object properties: adds user-visible properties to our document objects, from tables.
+"""Document object: base classes of our document objects' proxies, their properties, faults and warnings.
 
-Takes rows; adds the properties. The same happens when a document is opened: one of an older version lacks
-later properties. Names, types and units are a file format: they can be extended, not changed.
+Proxies keep all their state in properties, which come from tables. The properties are also added when a document is
+opened: one of an older version lacks later ones. Names, types and units are a file format: they can be extended, not
+changed. Saved documents store the module names of the subclasses, never this one.
+
+FreeCAD has one way to mark an object as failed: its ``execute`` raises. It then shows the text as the status of the
+object, and writes it to the Report view with the traceback. The traceback does not help the user who set a property,
+so it is removed where the input is at fault, and kept for errors of our own.
 """
 
 from __future__ import annotations
 
 import abc
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import wraps
 from types import MappingProxyType
 from typing import Any, ClassVar
 
 import FreeCAD as App
-import numpy as np
 import Path
 
 from pkm_post.freecad_app.commands import commands_of, read_commands
-from pkm_post.model import Diagnostic, Program, Refused
+from pkm_post.freecad_app.frames import matrix_of
+from pkm_post.model import Diagnostic, Program, Refused, Severity
 from pkm_post.system import memory_guard
 from pkm_post.toolpath import transform
+
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 Row = tuple[str, str, str, str, Any]
 """A property: its type, name, group, description, and its initial value or its choices."""
@@ -29,10 +37,12 @@ EDITABLE, READ_ONLY, HIDDEN = 0, 1, 2
 """Editor modes: whether the user can edit a property, only read it, or does not see it."""
 NO_RECOMPUTE = 16
 """Attribute of a property whose change does not recompute the object."""
-_NONE: Mapping[str, int] = MappingProxyType({})
+_NO_ATTRIBUTES: Mapping[str, int] = MappingProxyType({})
 
 
-def add_missing(obj: Any, rows: Iterable[Row], mode: int = EDITABLE, attributes: Mapping[str, int] = _NONE) -> None:
+def add_missing(
+    obj: Any, rows: Iterable[Row], mode: int = EDITABLE, attributes: Mapping[str, int] = _NO_ATTRIBUTES
+) -> None:
     """Add the properties that an object lacks.
 
     Args:
@@ -89,7 +99,7 @@ Execute = Callable[[Any, Any], Any]
 """The method of a proxy that computes its object."""
 
 
-def briefly_refused(execute: Execute) -> Execute:
+def without_traceback(execute: Execute) -> Execute:
     """Remove the traceback from refusals and memory errors that ``execute`` raises."""
 
     @wraps(execute)
@@ -103,7 +113,29 @@ def briefly_refused(execute: Execute) -> Execute:
     return brief
 
 
-QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
+def value_of(result: tuple[Any, Iterable[Diagnostic]], about: str = "") -> Any:
+    """The value of a step, after printing its warnings.
+
+    Args:
+        result: the value, or None, and the diagnostics of the step.
+        about: what they are about, to precede each.
+
+    Raises:
+        Refused: there is no value.
+    """
+    value, diagnostics = result
+    if value is None:
+        raise Refused([replace(fault, found=f"{about}{fault.found}") for fault in diagnostics])
+    print_diagnostics(diagnostics, about)
+    return value
+
+
+def print_diagnostics(diagnostics: Iterable[Diagnostic], about: str = "") -> None:
+    """Print diagnostics in the Report view."""
+    for each in diagnostics:
+        show = App.Console.PrintError if each.severity is Severity.ERROR else App.Console.PrintWarning
+        show(f"{about}{each}\n")
+
 
 BASE_AND_ACTIVE: tuple[Row, ...] = (
     ("App::PropertyLink", "Base", "Path",
@@ -120,14 +152,14 @@ class DerivedOperation(PropertyProxy, abc.ABC):
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
         """The program of the object, or None, and its faults; from the program of its base, in the frame of the job."""
 
-    @briefly_refused
+    @without_traceback
     def execute(self, obj: Any) -> None:
         """Recompute the path: FreeCAD calls this when the base or a property has changed."""
         obj.Path = Path.Path()  # after an error no outdated path remains to be posted
         if not obj.Active:
             obj.Path = Path.Path("(inactive operation)")
         elif obj.Base is not None:
-            obj.Path = Path.Path(commands_of(_value(*self.derive(obj, program_of(obj.Base)))))
+            obj.Path = Path.Path(commands_of(value_of(self.derive(obj, program_of(obj.Base)))))
 
 
 def program_of(base: Any) -> Program:
@@ -136,15 +168,5 @@ def program_of(base: Any) -> Program:
     Raises:
         Refused: its commands cannot be read.
     """
-    placement = np.array(base.Placement.Matrix.A).reshape(4, 4)
-    program = _value(*read_commands(base.Path.Commands, base.Document.Name, base.Label))
-    return _value(*transform(program, placement))
-
-
-def _value(value: Any, diagnostics: tuple[Diagnostic, ...]) -> Any:
-    """Return the value and show its warnings; or raise an exception that FreeCAD shows at the object."""
-    if value is None:
-        raise Refused(diagnostics)
-    for warning in diagnostics:
-        App.Console.PrintWarning(f"{warning}\n")
-    return value
+    program = value_of(read_commands(base.Path.Commands, base.Document.Name, base.Label))
+    return value_of(transform(program, matrix_of(base.Placement)))

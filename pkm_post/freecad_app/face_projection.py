@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Feet on faces: a numeric form of a face, to find the feet of many points without OpenCASCADE.
+"""Face projection: the feet of points on the surface of a Part face, with outward normals.
 
-Takes a Part face; returns a function from points (N, 3) to feet. Planes, cylinders, cones, spheres and tori use closed
-forms, B-spline surfaces their poles, and others the B-splines into which OpenCASCADE converts them. Rows without a
-result are marked and projected by OpenCASCADE itself, about half a millisecond each.
+Takes a face and points near it; returns feet, unit normals and signed distances as arrays, in mm, in the frame of the
+shape. Normals point out of the material: they honour the orientation of the face in its solid, which the underlying
+surface does not have.
+
+Planes, cylinders, cones, spheres and tori use closed forms, B-spline surfaces their poles, and others the B-splines
+into which OpenCASCADE converts them. Rows without a result are projected by OpenCASCADE itself, at about half a
+millisecond each.
 """
 
 from __future__ import annotations
@@ -36,257 +40,37 @@ from pkm_post.geometry import (
 
 _SINGULAR = 1e-9
 """Sine of the angle between both derivatives, times their lengths in mm: below this a surface has no normal."""
+_BATCH = 20_000
+"""Points projected between two progress reports."""
+_CHORDS = 32
+"""Number of chords that approximate an edge in the parameter plane."""
+_SHARE = 1e-3
+"""Share of its greatest length that a derivative counts as having at least."""
+_SHORT = 1e-9
+"""Smallest length of a derivative by which parameters are divided, mm."""
+_EDGE = 1e-3
+"""A foot this close to the edge of a face, in mm, counts as on the face."""
 
 
 @dataclass(frozen=True)
-class Feet:
+class FootPoints:
     """Feet of N points on the surface of a face.
 
     Attributes:
         points: (N, 3) the feet, mm.
         normals: (N, 3) unit normals out of the material; NaN where the surface has none.
         parameters: (N, 2) u and v of the feet; NaN where not known yet.
-        asked: (N,) whether OpenCASCADE projected the point.
+        by_occ: (N,) whether OpenCASCADE projected the point.
         face: the face to which the parameters of these rows belong.
-        written: the face to which the other parameters belong: the same one, or its B-spline form.
+        nurbs_face: the face to which the other parameters belong: the same one, or its B-spline form.
     """
 
     points: Array
     normals: Array
     parameters: Array
-    asked: Array
+    by_occ: Array
     face: Any
-    written: Any
-
-
-def finder(face: Any) -> Callable[[Array], Feet]:
-    """Return the function that finds feet on a face.
-
-    Args:
-        face: a Part face.
-    """
-    formula = _formula(face.Surface)
-    quick = _by_formula(face, formula) if formula else _by_poles(face)
-
-    def find(points: Array) -> Feet:
-        feet = quick(points)
-        unknown = np.flatnonzero(~np.isfinite(feet.points).all(axis=1) | ~np.isfinite(feet.normals).all(axis=1))
-        _ask(points, feet, unknown)
-        return feet
-
-    return find
-
-
-def _formula(surface: Any) -> Callable[[Array], tuple[Array, Array]] | None:
-    """The closed form for an OpenCASCADE surface, if it has one."""
-    kind = surface.TypeId
-    if kind == "Part::GeomPlane":
-        return partial(plane_feet, origin=_vector(surface.Position), axis=_vector(surface.Axis))
-    if kind == "Part::GeomSphere":
-        return partial(sphere_feet, centre=_vector(surface.Center), radius=surface.Radius)
-    about = {"axis": _vector(surface.Axis)} if hasattr(surface, "Axis") else {}
-    if kind == "Part::GeomCylinder":
-        return partial(cylinder_feet, centre=_vector(surface.Center), radius=surface.Radius, **about)
-    if kind == "Part::GeomCone":
-        return partial(cone_feet, apex=_vector(surface.Apex), half_angle=abs(surface.SemiAngle), **about)
-    if kind == "Part::GeomToroid" and surface.MajorRadius > surface.MinorRadius:
-        sizes = {"major": surface.MajorRadius, "minor": surface.MinorRadius}
-        return partial(torus_feet, centre=_vector(surface.Center), **sizes, **about)
-    return None
-
-
-def _by_formula(face: Any, formula: Callable[[Array], tuple[Array, Array]]) -> Callable[[Array], Feet]:
-    """The closed form, with normals oriented as the face is."""
-    u, v = _middle(face)
-    _, own = formula(_vector(face.valueAt(u, v))[None])
-    side = np.sign(float(own[0] @ _vector(face.normalAt(u, v))))
-
-    def find(points: Array) -> Feet:
-        feet, normals = formula(points)
-        return Feet(feet, side * normals, np.full((len(points), 2), np.nan), _none(points), face, face)
-
-    return find
-
-
-def _by_poles(face: Any) -> Callable[[Array], Feet]:
-    """Newton's method on the poles; feet at the border of a patch of a larger surface are left to OpenCASCADE."""
-    own = face.Surface.TypeId == "Part::GeomBSplineSurface"
-    written = face if own else face.toNurbs().Faces[0]
-    surface, closed = nurbs_of(written)
-    side = -1.0 if written.Orientation == "Reversed" else 1.0
-    low, high = surface.bounds.T
-
-    def find(points: Array) -> Feet:
-        at, known = nearest_on_nurbs(surface, points, closed)
-        if not own:
-            known &= (((at > low) & (at < high)) | np.array(closed)).all(axis=1)
-        feet, along_u, along_v = surface.derivatives(*at.T, order=1)
-        normals = cross(along_u, along_v)
-        length = norm(normals)
-        normals *= (side / np.where(length > _SINGULAR, length, np.nan))[:, None]
-        feet[~known] = np.nan
-        return Feet(feet, normals, at, _none(points), face, written)
-
-    return find
-
-
-def nurbs_of(face: Any) -> tuple[NurbsSurface, Closed]:
-    """The B-spline surface of a face, and whether it is closed in u and in v.
-
-    Args:
-        face: a Part face on a B-spline surface; ``face.toNurbs()`` converts any face to one.
-    """
-    surface = face.Surface.copy()
-    closed = bool(surface.isUClosed()), bool(surface.isVClosed())
-    surface.setUNotPeriodic()
-    surface.setVNotPeriodic()
-    knots = (
-        np.repeat(surface.getUKnots(), surface.getUMultiplicities()),
-        np.repeat(surface.getVKnots(), surface.getVMultiplicities()),
-    )
-    poles = np.array([[_vector(pole) for pole in row] for row in surface.getPoles()])
-    return NurbsSurface((surface.UDegree, surface.VDegree), knots, poles, np.array(surface.getWeights())), closed
-
-
-def _ask(points: Array, feet: Feet, rows: Array) -> None:
-    """Project some rows by OpenCASCADE."""
-    surface = feet.face.Surface
-    feet.asked[rows] = True
-    for row in rows.tolist():
-        u, v = surface.parameter(App.Vector(*points[row]))
-        feet.points[row], feet.parameters[row] = _vector(feet.face.valueAt(u, v)), (u, v)
-        try:
-            feet.normals[row] = _vector(feet.face.normalAt(u, v))
-        except Part.OCCError:  # raised where the surface has no normal
-            feet.normals[row] = np.nan
-
-
-def _none(points: Array) -> Array:
-    return np.zeros(len(points), dtype=np.bool_)
-
-
-def _middle(face: Any) -> tuple[float, float]:
-    first_u, last_u, first_v, last_v = face.ParameterRange
-    return (first_u + last_u) / 2, (first_v + last_v) / 2
-
-
-def _vector(vector: Any) -> Array:
-    return np.array([vector.x, vector.y, vector.z])
-
-
-_CHORDS = 32
-"""Number of chords that approximate an edge in the parameter plane."""
-
-_SHARE = 1e-3
-"""Share of its greatest length that a derivative counts as having at least."""
-
-_SHORT = 1e-9
-"""Smallest length of a derivative by which parameters are divided, mm."""
-
-_EDGE = 1e-3
-"""A foot this close to the edge of a face, in mm, counts as on the face."""
-
-
-def on_face(feet: Feet) -> Array:
-    """Whether the feet are on the face, or within a micron of its edge: (N,) bool.
-
-    The edges of the face are polylines in the parameter plane. OpenCASCADE decides where a foot is near one of them:
-    about 12 us each, and more for faces with many edges.
-
-    Args:
-        feet: result of the function that ``finder`` returns.
-    """
-    at = feet.parameters.copy()
-    for row in np.flatnonzero(np.isnan(at).any(axis=1)).tolist():
-        at[row] = feet.written.Surface.parameter(App.Vector(*feet.points[row]))
-    inside = np.zeros(len(at), dtype=np.bool_)
-    for face, rows in ((feet.written, ~feet.asked), (feet.face, feet.asked)):
-        if rows.any():
-            inside[rows] = _in_domain(face, at[rows])
-    return inside
-
-
-def _in_domain(face: Any, at: Array) -> Array:
-    """Whether parameters (N, 2) are on the face, or almost."""
-    first_u, _, first_v, _ = face.ParameterRange
-    surface = face.Surface
-    u, v = at.T
-    u = first_u + np.mod(u - first_u, surface.UPeriod()) if surface.isUPeriodic() else u
-    v = first_v + np.mod(v - first_v, surface.VPeriod()) if surface.isVPeriodic() else v
-    inside, doubt = points_within(np.column_stack([u, v]), *_edges(face))
-    for row in np.flatnonzero(doubt).tolist():
-        inside[row] = face.isPartOfDomain(*at[row].tolist()) or _beside_edge(face, *at[row].tolist())
-    return inside
-
-
-def _edges(face: Any) -> tuple[Array, Array]:
-    """The edges of a face as segments in the parameter plane (S, 4), and the uncertain distance around them (S,)."""
-    segments, sags = [], []
-    for edge in (edge for wire in face.Wires for edge in wire.OrderedEdges):
-        curve, first, last = face.curveOnSurface(edge)
-        count = 1 if isinstance(curve, Part.Geom2d.Line2d) else _CHORDS
-        values = [curve.value(share) for share in np.linspace(first, last, 2 * count + 1).tolist()]
-        points = np.array([(value.x, value.y) for value in values])
-        ends, middles = points[::2], points[1::2]
-        sags.append(np.linalg.norm(middles - (ends[:-1] + ends[1:]) / 2, axis=1))
-        segments.append(np.hstack([ends[:-1], ends[1:]]))
-    lines = np.vstack(segments)
-    return lines, 2 * np.concatenate(sags) + _micron(face, lines[:, :2])
-
-
-def _micron(face: Any, at: Array) -> Array:
-    """Upper bound of two microns in parameters, at each of some places on the face."""
-    lengths = np.array([[way.Length for way in face.derivative1At(u, v)] for u, v in at.tolist()])
-    # At a pole one derivative is 0: the other one, and the places beside it, are used instead.
-    least: Array = np.maximum(lengths, _SHARE * lengths.max(axis=0)).min(axis=1)
-    return 2 * _EDGE / least
-
-
-def _beside_edge(face: Any, u: float, v: float) -> bool:
-    along_u, along_v = (max(derivative.Length, _SHORT) for derivative in face.derivative1At(u, v))
-    steps = ((_EDGE / along_u, 0.0), (-_EDGE / along_u, 0.0), (0.0, _EDGE / along_v), (0.0, -_EDGE / along_v))
-    return any(face.isPartOfDomain(u + du, v + dv) for du, dv in steps)
-
-
-_TOGETHER = 20_000
-"""Points projected between two progress reports."""
-
-
-def surface_points(face: Any, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-    """Points and outward unit normals at pairs (u, v).
-
-    Args:
-        face: a Part face.
-        u: (N,) surface parameters, in the face's own range.
-        v: (N,) surface parameters, one for each u.
-
-    Returns:
-        Points (N, 3) in mm and unit normals (N, 3).
-
-    Raises:
-        ValueError: u and v are not columns of one length.
-    """
-    u, v = np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64)
-    if u.ndim != 1 or u.shape != v.shape:
-        raise ValueError(f"surface_points: expected u and v of one shape (N,), got {u.shape} and {v.shape}")
-    pairs = list(zip(u.tolist(), v.tolist(), strict=True))
-    return _rows(face.valueAt(*pair) for pair in pairs), _rows(face.normalAt(*pair) for pair in pairs)
-
-
-def surface_grid(face: Any, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
-    """Points and outward unit normals at every combination of u and v.
-
-    Args:
-        face: a Part face.
-        u: (M,) surface parameters, in the face's own range.
-        v: (N,) surface parameters, in the face's own range.
-
-    Returns:
-        Points (M, N, 3) in mm and unit normals (M, N, 3).
-    """
-    all_u, all_v = np.meshgrid(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64), indexing="ij")
-    points, normals = surface_points(face, all_u.ravel(), all_v.ravel())
-    return points.reshape(*all_u.shape, 3), normals.reshape(*all_u.shape, 3)
+    nurbs_face: Any
 
 
 def project(
@@ -318,23 +102,180 @@ def project(
         raise ValueError(f"project: expected points (N, 3), got {points.shape}")
     if not np.isfinite(points).all():
         raise ValueError(f"project: expected finite points, got {int((~np.isfinite(points)).sum())} other numbers")
-    find = finder(face)
-    found, normals, inside = np.empty_like(points), np.empty_like(points), np.ones(len(points), dtype=np.bool_)
-    for start in range(0, len(points), _TOGETHER):
-        part = slice(start, start + _TOGETHER)
+    find = _foot_point_finder(face)
+    feet_points, normals, inside = np.empty_like(points), np.empty_like(points), np.ones(len(points), dtype=np.bool_)
+    for start in range(0, len(points), _BATCH):
+        part = slice(start, start + _BATCH)
         feet = find(points[part])
-        found[part], normals[part] = feet.points, feet.normals
+        feet_points[part], normals[part] = feet.points, feet.normals
         if trimmed:
-            inside[part] = on_face(feet)
-        done = min(start + _TOGETHER, len(points)) / len(points)
+            inside[part] = _on_face(feet)
+        done = min(start + _BATCH, len(points)) / len(points)
         if progress is not None and progress(done) is False:
             raise Stopped(f"{100 * done:.0f} % of the points were projected")
-    way = points - found
-    outside = np.einsum("nj,nj->n", way, normals)
-    distances = np.copysign(np.linalg.norm(way, axis=1), outside)
-    return (found, normals, distances, inside) if trimmed else (found, normals, distances)
+    offsets = points - feet_points
+    outside = np.einsum("nj,nj->n", offsets, normals)
+    distances = np.copysign(np.linalg.norm(offsets, axis=1), outside)
+    return (feet_points, normals, distances, inside) if trimmed else (feet_points, normals, distances)
 
 
-def _rows(vectors: Any) -> Array:
-    """FreeCAD vectors as the rows of an array (N, 3)."""
-    return np.array([(vector.x, vector.y, vector.z) for vector in vectors], dtype=np.float64).reshape(-1, 3)
+def _foot_point_finder(face: Any) -> Callable[[Array], FootPoints]:
+    """Return the function that finds feet on a face."""
+    formula = _formula(face.Surface)
+    quick = _by_formula(face, formula) if formula else _by_poles(face)
+
+    def find(points: Array) -> FootPoints:
+        feet = quick(points)
+        unknown = np.flatnonzero(~np.isfinite(feet.points).all(axis=1) | ~np.isfinite(feet.normals).all(axis=1))
+        _project_by_occ(points, feet, unknown)
+        return feet
+
+    return find
+
+
+def _formula(surface: Any) -> Callable[[Array], tuple[Array, Array]] | None:
+    """The closed form for an OpenCASCADE surface, if it has one."""
+    kind = surface.TypeId
+    if kind == "Part::GeomPlane":
+        return partial(plane_feet, origin=_vector(surface.Position), axis=_vector(surface.Axis))
+    if kind == "Part::GeomSphere":
+        return partial(sphere_feet, centre=_vector(surface.Center), radius=surface.Radius)
+    about = {"axis": _vector(surface.Axis)} if hasattr(surface, "Axis") else {}
+    if kind == "Part::GeomCylinder":
+        return partial(cylinder_feet, centre=_vector(surface.Center), radius=surface.Radius, **about)
+    if kind == "Part::GeomCone":
+        return partial(cone_feet, apex=_vector(surface.Apex), half_angle=abs(surface.SemiAngle), **about)
+    if kind == "Part::GeomToroid" and surface.MajorRadius > surface.MinorRadius:
+        sizes = {"major": surface.MajorRadius, "minor": surface.MinorRadius}
+        return partial(torus_feet, centre=_vector(surface.Center), **sizes, **about)
+    return None
+
+
+def _by_formula(face: Any, formula: Callable[[Array], tuple[Array, Array]]) -> Callable[[Array], FootPoints]:
+    """The closed form, with normals oriented as the face is."""
+    first_u, last_u, first_v, last_v = face.ParameterRange
+    u, v = (first_u + last_u) / 2, (first_v + last_v) / 2
+    _, own = formula(_vector(face.valueAt(u, v))[None])
+    side = np.sign(float(own[0] @ _vector(face.normalAt(u, v))))
+
+    def find(points: Array) -> FootPoints:
+        feet, normals = formula(points)
+        unknown, by_occ = np.full((len(points), 2), np.nan), np.zeros(len(points), dtype=np.bool_)
+        return FootPoints(feet, side * normals, unknown, by_occ, face, face)
+
+    return find
+
+
+def _by_poles(face: Any) -> Callable[[Array], FootPoints]:
+    """Newton's method on the poles; feet at the border of a patch of a larger surface are left to OpenCASCADE."""
+    own = face.Surface.TypeId == "Part::GeomBSplineSurface"
+    nurbs_face = face if own else face.toNurbs().Faces[0]
+    surface, closed = nurbs_of(nurbs_face)
+    side = -1.0 if nurbs_face.Orientation == "Reversed" else 1.0
+    low, high = surface.bounds.T
+
+    def find(points: Array) -> FootPoints:
+        at, known = nearest_on_nurbs(surface, points, closed)
+        if not own:
+            known &= (((at > low) & (at < high)) | np.array(closed)).all(axis=1)
+        feet, along_u, along_v = surface.derivatives(*at.T, order=1)
+        normals = cross(along_u, along_v)
+        length = norm(normals)
+        normals *= (side / np.where(length > _SINGULAR, length, np.nan))[:, None]
+        feet[~known] = np.nan
+        return FootPoints(feet, normals, at, np.zeros(len(points), dtype=np.bool_), face, nurbs_face)
+
+    return find
+
+
+def nurbs_of(face: Any) -> tuple[NurbsSurface, Closed]:
+    """The B-spline surface of a face, and whether it is closed in u and in v.
+
+    Args:
+        face: a Part face on a B-spline surface; ``face.toNurbs()`` converts any face to one.
+    """
+    surface = face.Surface.copy()
+    closed = bool(surface.isUClosed()), bool(surface.isVClosed())
+    surface.setUNotPeriodic()
+    surface.setVNotPeriodic()
+    knots = (
+        np.repeat(surface.getUKnots(), surface.getUMultiplicities()),
+        np.repeat(surface.getVKnots(), surface.getVMultiplicities()),
+    )
+    poles = np.array([[_vector(pole) for pole in row] for row in surface.getPoles()])
+    return NurbsSurface((surface.UDegree, surface.VDegree), knots, poles, np.array(surface.getWeights())), closed
+
+
+def _project_by_occ(points: Array, feet: FootPoints, rows: Array) -> None:
+    """Project some rows by OpenCASCADE."""
+    surface = feet.face.Surface
+    feet.by_occ[rows] = True
+    for row in rows.tolist():
+        u, v = surface.parameter(App.Vector(*points[row]))
+        feet.points[row], feet.parameters[row] = _vector(feet.face.valueAt(u, v)), (u, v)
+        try:
+            feet.normals[row] = _vector(feet.face.normalAt(u, v))
+        except Part.OCCError:  # raised where the surface has no normal
+            feet.normals[row] = np.nan
+
+
+def _vector(vector: Any) -> Array:
+    return np.array([vector.x, vector.y, vector.z])
+
+
+def _on_face(feet: FootPoints) -> Array:
+    """Whether the feet are on the face, or within a micron of its edge: (N,) bool.
+
+    The edges of the face are polylines in the parameter plane. OpenCASCADE decides where a foot is near one of them:
+    about 12 us each, and more for faces with many edges.
+    """
+    at = feet.parameters.copy()
+    for row in np.flatnonzero(np.isnan(at).any(axis=1)).tolist():
+        at[row] = feet.nurbs_face.Surface.parameter(App.Vector(*feet.points[row]))
+    inside = np.zeros(len(at), dtype=np.bool_)
+    for face, rows in ((feet.nurbs_face, ~feet.by_occ), (feet.face, feet.by_occ)):
+        if rows.any():
+            inside[rows] = _in_domain(face, at[rows])
+    return inside
+
+
+def _in_domain(face: Any, at: Array) -> Array:
+    """Whether parameters (N, 2) are on the face, or almost."""
+    first_u, _, first_v, _ = face.ParameterRange
+    surface = face.Surface
+    u, v = at.T
+    u = first_u + np.mod(u - first_u, surface.UPeriod()) if surface.isUPeriodic() else u
+    v = first_v + np.mod(v - first_v, surface.VPeriod()) if surface.isVPeriodic() else v
+    inside, doubt = points_within(np.column_stack([u, v]), *_edges(face))
+    for row in np.flatnonzero(doubt).tolist():
+        inside[row] = face.isPartOfDomain(*at[row].tolist()) or _near_edge(face, *at[row].tolist())
+    return inside
+
+
+def _edges(face: Any) -> tuple[Array, Array]:
+    """The edges of a face as segments in the parameter plane (S, 4), and the uncertain distance around them (S,)."""
+    segments, sags = [], []
+    for edge in (edge for wire in face.Wires for edge in wire.OrderedEdges):
+        curve, first, last = face.curveOnSurface(edge)
+        count = 1 if isinstance(curve, Part.Geom2d.Line2d) else _CHORDS
+        values = [curve.value(share) for share in np.linspace(first, last, 2 * count + 1).tolist()]
+        points = np.array([(value.x, value.y) for value in values])
+        ends, middles = points[::2], points[1::2]
+        sags.append(np.linalg.norm(middles - (ends[:-1] + ends[1:]) / 2, axis=1))
+        segments.append(np.hstack([ends[:-1], ends[1:]]))
+    lines = np.vstack(segments)
+    return lines, 2 * np.concatenate(sags) + _micron(face, lines[:, :2])
+
+
+def _micron(face: Any, at: Array) -> Array:
+    """Upper bound of two microns in parameters, at each of some places on the face."""
+    lengths = np.array([[way.Length for way in face.derivative1At(u, v)] for u, v in at.tolist()])
+    # At a pole one derivative is 0: the other one, and the places beside it, are used instead.
+    least: Array = np.maximum(lengths, _SHARE * lengths.max(axis=0)).min(axis=1)
+    return 2 * _EDGE / least
+
+
+def _near_edge(face: Any, u: float, v: float) -> bool:
+    along_u, along_v = (max(derivative.Length, _SHORT) for derivative in face.derivative1At(u, v))
+    steps = ((_EDGE / along_u, 0.0), (-_EDGE / along_u, 0.0), (0.0, _EDGE / along_v), (0.0, -_EDGE / along_v))
+    return any(face.isPartOfDomain(u + du, v + dv) for du, dv in steps)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Face surface: a Part face as the parametric surface on which passes are laid out.
 
-Takes a face, in the frame of its shape; returns functions of columns (u, v), in mm. B-spline faces are evaluated from
-their poles, all points at once. For others OpenCASCADE evaluates point by point, at some ten microseconds each;
-testing whether a point lies on a trimmed face takes as long again.
+Takes a face, in the frame of its shape; returns functions of columns (u, v), or points and outward unit normals at
+them, in mm. B-spline faces are evaluated from their poles, all points at once. For others OpenCASCADE evaluates point
+by point, at some ten microseconds each; testing whether a point lies on a trimmed face takes as long again.
 """
 
 from __future__ import annotations
@@ -12,8 +12,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pkm_post.freecad_app.face_projection import nurbs_of
+from pkm_post.freecad_app.frames import rows_of
 from pkm_post.geometry import Array, cross, dot, norm
 from pkm_post.toolpath import ParameterRange, Surface
 
@@ -45,14 +47,35 @@ def face_surface(face: Any, flipped: bool = False) -> Surface:
     closed_u = _coincide(face, np.full(9, first_u), v, np.full(9, last_u), v)
     closed_v = _coincide(face, u, np.full(9, first_v), u, np.full(9, last_v))
     return Surface(
-        _turned(_by_poles(face) or _by_asking(face), -1.0 if flipped else 1.0),
+        _oriented(_from_poles(face) or _from_occ(face), -1.0 if flipped else 1.0),
         _everywhere if _untrimmed(face) else inside,
         ParameterRange(first_u, last_u, closed_u),
         ParameterRange(first_v, last_v, closed_v),
     )
 
 
-def _turned(evaluate: Evaluate, side: float) -> Evaluate:
+def surface_points(face: Any, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
+    """Points and outward unit normals at pairs (u, v).
+
+    Args:
+        face: a Part face.
+        u: (N,) surface parameters, in the face's own range.
+        v: (N,) surface parameters, one for each u.
+
+    Returns:
+        Points (N, 3) in mm and unit normals (N, 3).
+
+    Raises:
+        ValueError: u and v are not columns of one length.
+    """
+    u, v = np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64)
+    if u.ndim != 1 or u.shape != v.shape:
+        raise ValueError(f"surface_points: expected u and v of one shape (N,), got {u.shape} and {v.shape}")
+    pairs = list(zip(u.tolist(), v.tolist(), strict=True))
+    return rows_of([face.valueAt(*pair) for pair in pairs]), rows_of([face.normalAt(*pair) for pair in pairs])
+
+
+def _oriented(evaluate: Evaluate, side: float) -> Evaluate:
     """The same surface with its normals multiplied by 1 or -1."""
 
     def turned(u: Array, v: Array) -> Columns:
@@ -62,23 +85,23 @@ def _turned(evaluate: Evaluate, side: float) -> Evaluate:
     return turned
 
 
-def _by_asking(face: Any) -> Evaluate:
+def _from_occ(face: Any) -> Evaluate:
     """Points, normals and derivatives from OpenCASCADE."""
 
     def evaluate(u: Array, v: Array) -> Columns:
         pairs = list(zip(u.tolist(), v.tolist(), strict=True))
         derivatives = [face.derivative1At(*pair) for pair in pairs]
         return (
-            _rows([face.valueAt(*pair) for pair in pairs]),
-            _rows([face.normalAt(*pair) for pair in pairs]),
-            _rows([by_u for by_u, _ in derivatives]),
-            _rows([by_v for _, by_v in derivatives]),
+            rows_of([face.valueAt(*pair) for pair in pairs]),
+            rows_of([face.normalAt(*pair) for pair in pairs]),
+            rows_of([by_u for by_u, _ in derivatives]),
+            rows_of([by_v for _, by_v in derivatives]),
         )
 
     return evaluate
 
 
-def _by_poles(face: Any) -> Evaluate | None:
+def _from_poles(face: Any) -> Evaluate | None:
     """The same for a B-spline face within one period of its surface; OpenCASCADE handles points without a normal."""
     if face.Surface.TypeId != "Part::GeomBSplineSurface":
         return None
@@ -87,17 +110,17 @@ def _by_poles(face: Any) -> Evaluate | None:
     first_u, last_u, first_v, last_v = face.ParameterRange
     if not (low_u <= first_u and last_u <= high_u and low_v <= first_v and last_v <= high_v):
         return None
-    ask = _by_asking(face)
-    _, normal, along_u, along_v = ask(np.array([(first_u + last_u) / 2]), np.array([(first_v + last_v) / 2]))
+    occ = _from_occ(face)
+    _, normal, along_u, along_v = occ(np.array([(first_u + last_u) / 2]), np.array([(first_v + last_v) / 2]))
     side = -1.0 if dot(normal, cross(along_u, along_v))[0] < 0.0 else 1.0
 
     def evaluate(u: Array, v: Array) -> Columns:
         point, along_u, along_v = surface.derivatives(u, v, order=1)
         normal = side * cross(along_u, along_v)
         length = norm(normal)
-        lost = np.flatnonzero(length <= _SINGULAR)
+        singular = np.flatnonzero(length <= _SINGULAR)
         normal = normal / np.where(length > _SINGULAR, length, 1.0)[:, None]
-        normal[lost] = ask(u[lost], v[lost])[1]
+        normal[singular] = occ(u[singular], v[singular])[1]
         return point, normal, along_u, along_v
 
     return evaluate
@@ -117,8 +140,3 @@ def _untrimmed(face: Any) -> bool:
 
 def _everywhere(u: Array, _v: Array) -> Array:
     return np.ones(len(u), dtype=bool)
-
-
-def _rows(vectors: list[Any]) -> Array:
-    """FreeCAD vectors as the rows of an array (N, 3)."""
-    return np.array([(vector.x, vector.y, vector.z) for vector in vectors], dtype=np.float64).reshape(-1, 3)

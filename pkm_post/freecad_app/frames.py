@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Frames: conversion between FreeCAD placements and (4, 4) numpy matrices."""
+"""Frames: FreeCAD placements and vectors as arrays, and the plane or axis of a picked element.
+
+An element is picked by a link as stored in properties: an object with the names of its elements. Its plane or axis is a
+point in mm and a direction, in document coordinates. Planes come from flat faces and datum planes, axes from straight
+or round edges, faces of revolution, and datum lines.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -21,6 +26,16 @@ def matrix_of(placement: Any) -> Array:
 def placement_of(matrix: Array) -> Any:
     """The placement of a rigid (4, 4) matrix."""
     return App.Placement(App.Matrix(*(float(value) for value in np.asarray(matrix).ravel())))
+
+
+def rows_of(vectors: Sequence[Any]) -> Array:
+    """FreeCAD vectors as the rows of an array (N, 3)."""
+    return np.array([(vector.x, vector.y, vector.z) for vector in vectors], dtype=np.float64).reshape(-1, 3)
+
+
+def vectors_of(points: Array) -> list[Any]:
+    """The rows of an array (N, 3) as FreeCAD vectors."""
+    return [App.Vector(*point) for point in points.tolist()]
 
 
 def apply(matrix: Array, points: Array) -> Array:
@@ -46,7 +61,7 @@ def plane_of(link: Link) -> Placed:
     shape = _element(link, lambda whole: whole.Faces)
     plane = shape.findPlane() if shape is not None and shape.ShapeType == "Face" else None
     if plane is None:
-        raise ValueError(f"Plane: expected a flat face or a datum plane, got {_told(link)}")
+        raise ValueError(f"Plane: expected a flat face or a datum plane, got {_name(link)}")
     return plane.Position, plane.Axis
 
 
@@ -63,7 +78,7 @@ def axis_of(link: Link) -> Placed:
     form = {"Edge": "Curve", "Face": "Surface"}.get("" if shape is None else shape.ShapeType, "")
     known = _FORMS.get(getattr(shape, form).TypeId) if form else None
     if known is None:
-        raise ValueError(f"Line: expected a straight or round edge, a round face or a datum line, got {_told(link)}")
+        raise ValueError(f"Line: expected a straight or round edge, a round face or a datum line, got {_name(link)}")
     point, direction = known
     return getattr(getattr(shape, form), point), getattr(getattr(shape, form), direction)
 
@@ -98,6 +113,6 @@ def _element(link: Link, parts: Callable[[Any], list[Any]]) -> Any:
     return shape
 
 
-def _told(link: Link) -> str:
+def _name(link: Link) -> str:
     obj, names = link
     return " ".join([obj.Label, *names]).strip()

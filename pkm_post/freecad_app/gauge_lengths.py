@@ -42,7 +42,7 @@ class ToolRow:
     bit_length: float
     in_use: bool
 
-    def unknown(self, found: str = "") -> Diagnostic:
+    def missing_length(self, found: str = "") -> Diagnostic:
         """The diagnostic of posting for a tool without a gauge length; ``found`` is the input given instead."""
         return Diagnostic("J113", self.place, f"T{self.number}{found and ', '}{found}")
 
@@ -69,7 +69,7 @@ def tool_rows(job: Any) -> tuple[ToolRow, ...]:
     )
 
 
-def keep_gauge_lengths(job: Any, lengths: Mapping[str, float]) -> None:
+def store_gauge_lengths(job: Any, lengths: Mapping[str, float]) -> None:
     """Store gauge lengths in the tool controllers of a job; controllers that already have them are not touched.
 
     Args:
@@ -95,7 +95,7 @@ _USUAL = "100 mm"
 """A length typical of a tool; a number without a unit is in the unit in which this one is displayed."""
 
 
-def typed_length(text: str, point: str = ".") -> float | None:
+def parse_length(text: str, point: str = ".") -> float | None:
     """The typed length, mm; None if it is not a positive length.
 
     Args:
@@ -117,7 +117,7 @@ def typed_length(text: str, point: str = ".") -> float | None:
     return mm if 0.0 < mm < math.inf else None
 
 
-def length_text(mm: float, point: str = ".") -> str:
+def format_length(mm: float, point: str = ".") -> str:
     """A length in the unit that FreeCAD is set to, with all its digits."""
     _, factor, unit = App.Units.Quantity(f"{mm!r} mm").getUserPreferred()
     return f"{mm / factor:.{_DIGITS}g} {unit}".replace(".", point)

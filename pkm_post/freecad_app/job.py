@@ -20,6 +20,7 @@ from Path.Base.Util import opProperty, toolControllerForOp
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.document import document_name
 from pkm_post.freecad_app.document_checks import file_faults, state_faults
+from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.tools import read_tools
 from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Event, EventKind, Place, Program, Tool, errors
 from pkm_post.toolpath import transform
@@ -76,7 +77,7 @@ def read_job(
     Returns:
         The program, or None if there are errors; and all diagnostics.
     """
-    way = _Way(job)
+    way = _ProgramBuilder(job)
     faults = [*file_faults(job.Document), *_selection_faults(job, selection, Place(way.source, job.Label))]
     active = [each for each in selection.operations_of(job) if opProperty(each, "Active") is not False]
     for operation in active:
@@ -98,7 +99,7 @@ def _selection_faults(job: Any, selection: Selection, place: Place) -> list[Diag
     return faults + [Diagnostic("J127", place, each.Label) for each in strangers]
 
 
-class _Way:
+class _ProgramBuilder:
     """The program under construction, with the machine state at its current end.
 
     Attributes:
@@ -119,7 +120,7 @@ class _Way:
 
     def add(self, operation: Any) -> list[Diagnostic]:
         """Append an operation, with its placement applied to points and tool axes."""
-        work_from_operation = np.array(operation.Placement.Matrix.A).reshape(4, 4)
+        work_from_operation = matrix_of(operation.Placement)
         start = np.linalg.solve(work_from_operation, [*self._tip, 1.0])[:3]
         program, read_faults = read_commands(operation.Path.Commands, self.source, operation.Label, start)
         faults = list(read_faults)

@@ -67,7 +67,7 @@ def settings_of(
     options: Options | None = None,
     post_processor: str = "",
     selection: Selection = EVERYTHING,
-    beside: Sequence[Any] = (),
+    other_jobs: Sequence[Any] = (),
 ) -> JobSettings:
     """Determine the settings with which a job is posted.
 
@@ -77,7 +77,7 @@ def settings_of(
         options: replace everything that ``Options`` holds.
         post_processor: post-processor of the job's arguments, if the job's own property does not state it.
         selection: the part of the job to use.
-        beside: other jobs to which the given options also apply.
+        other_jobs: jobs to which the given options also apply.
 
     Raises:
         Refused: the arguments of the job are invalid, J117.
@@ -90,7 +90,7 @@ def settings_of(
         *_replaced(job, explicit_values(own), given, options, selection),
         *_replaced_lengths(job, lengths),
         *_unknown_tools(job, explicit_values(own), ()),
-        *_unknown_tools(job, given, beside),
+        *_unknown_tools(job, given, other_jobs),
     )
     return JobSettings(
         chosen.machine,
@@ -169,10 +169,10 @@ def _replaced_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diagno
             yield Diagnostic("J125", Place(source, controller.Label), str(told))
 
 
-def _unknown_tools(job: Any, given: ArgumentValues, beside: Sequence[Any]) -> Iterator[Diagnostic]:
+def _unknown_tools(job: Any, given: ArgumentValues, other_jobs: Sequence[Any]) -> Iterator[Diagnostic]:
     """Yield J126 for each gauge length whose number no tool controller has."""
     here = {int(controller.ToolNumber) for controller in job.Tools.Group}
-    known = here.union(int(controller.ToolNumber) for other in beside for controller in other.Tools.Group)
+    known = here.union(int(controller.ToolNumber) for other in other_jobs for controller in other.Tools.Group)
     for number, mm in given.get("tool_length", ()):
         if number not in known:
             told = f"{flag_of('tool_length')} {format_value('tool_length', (number, mm))}, {_tools(here)}"

@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job set-up: part, stock and tool shanks of a CAM job, for posting and for checks.
+"""Job set-up: a CAM job on its machine, for posting, checks and display.
 
-Takes a job; returns a set-up, in mm, in the work frame {C} of the job. A job has no data on clamps. The end of the
-cutting edges is known for tool bits with a CuttingEdgeHeight and a ShankDiameter, as end mills have.
-The box that CAM puts around the model of a new job counts as assumed: the user did not choose it.
+Takes a job with its settings, and optionally a machine object, whose machine file and work offset then override those
+of the settings. Returns the job before it is placed, with part, stock and tool shanks in the work frame {C}, or its
+trajectory in the machine frame {M}, or the study of its reach. Lengths are in mm. The document is not recomputed where
+document objects prepare and place a job during a recompute.
+
+A job has no data on clamps. The end of the cutting edges is known for tool bits with a CuttingEdgeHeight and a
+ShankDiameter, as end mills have. The box that CAM puts around the model of a new job counts as assumed: the user did
+not choose it.
 """
 
 from __future__ import annotations
@@ -12,12 +17,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-import FreeCAD as App
 import numpy as np
 from Path.Main.Stock import StockType
 
-from pkm_post.freecad_app.arguments import POST_PROCESSORS, rewritten
+from pkm_post.freecad_app.arguments import POST_PROCESSORS, replace_arguments
 from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.document_object import print_diagnostics
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
@@ -29,8 +34,66 @@ from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Sha
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
 from pkm_post.posting import Prepared, Study, known_setup, study, told_offset, work_offset
 
+_SAME_PLACE = 1e-6
+"""mm and directions: FreeCAD rounds placements when it stores them."""
 
-def job_setup(job: Any) -> Setup:
+
+@dataclass(frozen=True)
+class PlacedJob:
+    """A job on its machine. Of its warnings only replaced settings are shown; posting reports the others.
+
+    Attributes:
+        trajectory: of the job, in {M}, with its spin.
+        machine: the machine it runs on.
+        part: the model of the job in {M}; None if it has no faces.
+        tolerances: for rounded corners.
+    """
+
+    trajectory: Trajectory
+    machine: Machine
+    part: CollisionMesh | None
+    tolerances: Tolerances
+
+
+def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) -> Prepared:
+    """Read a job and its machine; the faults of both are collected together.
+
+    Args:
+        job: the CAM job, recomputed.
+        settings: the settings of the job.
+        machine_object: from ``create_machine``; without one the settings define the machine.
+
+    Raises:
+        Refused: the file of the machine object has faults.
+    """
+    options = replace(settings.options, setup=setup_of(job))
+    if machine_object is None:
+        machine, diagnostics = machine_named(settings.machine)
+    else:
+        machine = machine_of(machine_object)
+        options = replace(options, work_offset=matrix_of(machine_object.Frame.inverse()))
+        diagnostics = tuple(_machine_differences(job, settings, machine_object, machine, options))
+    program, job_diagnostics = read_job(job, settings.tool_lengths, settings.selection)
+    return Prepared(program, machine, options, (*diagnostics, *settings.found, *job_diagnostics))
+
+
+def _machine_differences(
+    job: Any, settings: JobSettings, machine_object: Any, machine: Machine, options: Options
+) -> Iterator[Diagnostic]:
+    """Yield J125 where the machine object has another machine or placement than the job is posted for."""
+    place = Place(document_name(job.Document), machine_object.Label)
+    if find_machine(machine_object.MachineFile) != find_machine(settings.machine):
+        machines = Override(flag_of("machine"), settings.machine, machine_object.MachineFile)
+        yield Diagnostic("J125", place, str(machines))
+    offset, _ = work_offset(machine, settings.options)
+    if offset is not None and not np.allclose(offset, options.work_offset, atol=_SAME_PLACE):
+        values = (
+            format_value("work_offset", argument_values(each)["work_offset"]) for each in (settings.options, options)
+        )
+        yield Diagnostic("J125", place, str(Override(flag_of("work_offset"), *values)))
+
+
+def setup_of(job: Any) -> Setup:
     """The set-up of a recomputed job."""
     shanks = dict(_shanks(job.Tools.Group))
     stock = _mesh([job.Stock] if job.Stock else [], StockType.FromStock(job.Stock) == StockType.FromBase)
@@ -51,66 +114,7 @@ def _shanks(controllers: Iterable[Any]) -> Iterator[tuple[int, Shank]]:
             yield int(controller.ToolNumber), Shank(start, diameter)
 
 
-_SAME_PLACE = 1e-6
-"""mm and directions: FreeCAD rounds placements when it stores them."""
-
-
-def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) -> Prepared:
-    """Read a job and its machine; the faults of both are collected together.
-
-    Args:
-        job: the CAM job, recomputed.
-        settings: the settings of the job.
-        machine_object: from ``create_machine``; without one the settings define the machine.
-
-    Raises:
-        Refused: the file of the machine object has faults.
-    """
-    options = replace(settings.options, setup=job_setup(job))
-    if machine_object is None:
-        machine, found = machine_named(settings.machine)
-    else:
-        machine = machine_of(machine_object)
-        options = replace(options, work_offset=matrix_of(machine_object.Frame.inverse()))
-        found = tuple(_elsewhere(job, settings, machine_object, machine, options))
-    program, told = read_job(job, settings.tool_lengths, settings.selection)
-    return Prepared(program, machine, options, (*found, *settings.found, *told))
-
-
-def _elsewhere(
-    job: Any, settings: JobSettings, machine_object: Any, machine: Machine, options: Options
-) -> Iterator[Diagnostic]:
-    """Yield J125 where the machine object has another machine or placement than the job is posted for."""
-    place = Place(document_name(job.Document), machine_object.Label)
-    if find_machine(machine_object.MachineFile) != find_machine(settings.machine):
-        told = Override(flag_of("machine"), settings.machine, machine_object.MachineFile)
-        yield Diagnostic("J125", place, str(told))
-    offset, _ = work_offset(machine, settings.options)
-    if offset is not None and not np.allclose(offset, options.work_offset, atol=_SAME_PLACE):
-        values = (
-            format_value("work_offset", argument_values(each)["work_offset"]) for each in (settings.options, options)
-        )
-        yield Diagnostic("J125", place, str(Override(flag_of("work_offset"), *values)))
-
-
-@dataclass(frozen=True)
-class JobOnMachine:
-    """A job on its machine. Of its warnings only replaced settings are shown; posting reports the others.
-
-    Attributes:
-        trajectory: of the job, in {M}, with its spin.
-        machine: the machine it runs on.
-        part: the model of the job in {M}; None if it has no faces.
-        tolerances: for rounded corners.
-    """
-
-    trajectory: Trajectory
-    machine: Machine
-    part: CollisionMesh | None
-    tolerances: Tolerances
-
-
-def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
+def placed_job(job: Any, machine_object: Any = None) -> PlacedJob:
     """Put a job on its machine.
 
     Args:
@@ -120,14 +124,13 @@ def job_on_machine(job: Any, machine_object: Any = None) -> JobOnMachine:
     Raises:
         Refused: the job cannot be read or placed.
     """
-    read = prepared_job(job, settings_of(job), machine_object)
-    for each in read.found:
-        if each.code == "J125":  # the display differs from the job's settings, or from what is posted
-            App.Console.PrintWarning(f"{each}\n")
-    trajectory, _ = read.placed()
-    program, machine = read.sound
-    setup, _ = known_setup(read.options, program)
-    return JobOnMachine(trajectory, machine, placed_workpiece(setup, trajectory), read.options.tolerances)
+    prepared = prepared_job(job, settings_of(job), machine_object)
+    # with J125 the display differs from the job's settings, or from what is posted
+    print_diagnostics(each for each in prepared.found if each.code == "J125")
+    trajectory, _ = prepared.placed()
+    program, machine = prepared.sound
+    setup, _ = known_setup(prepared.options, program)
+    return PlacedJob(trajectory, machine, placed_workpiece(setup, trajectory), prepared.options.tolerances)
 
 
 def study_job(job: Any, free: str = "") -> Study:
@@ -141,15 +144,15 @@ def study_job(job: Any, free: str = "") -> Study:
         Refused: the job cannot be read or placed. A job out of reach is reported in the study instead.
     """
     job.Document.recompute()
-    read = prepared_job(job, settings_of(job))
-    found, told = study(*read.sound, read.options, free)
-    if found is None:
-        raise Refused((*read.found, *told))
-    return found
+    prepared = prepared_job(job, settings_of(job))
+    result, faults = study(*prepared.sound, prepared.options, free)
+    if result is None:
+        raise Refused((*prepared.found, *faults))
+    return result
 
 
-def place_job(job: Any, free: str = "xyzc") -> Study:
-    """Give a job the work offset with the largest margin on its machine.
+def set_best_work_offset(job: Any, free: str = "xyzc") -> Study:
+    """Set the argument ``--work-offset`` of a job to the offset with the largest margin on its machine.
 
     Args:
         job: the CAM job, for a post-processor of PKM Post.
@@ -165,9 +168,9 @@ def place_job(job: Any, free: str = "xyzc") -> Study:
     if job.PostProcessor not in POST_PROCESSORS:
         known = ", ".join(POST_PROCESSORS)
         raise ValueError(f"expected a job for {known}, got one for {job.PostProcessor or 'none'}")
-    found = study_job(job, free)
-    flag, equals, offset = told_offset(found.machine_from_work).partition("=")
+    result = study_job(job, free)
+    flag, equals, offset = told_offset(result.machine_from_work).partition("=")
     if not equals:
         raise ValueError(f"expected a work offset that is turned about z alone, got {flag}")
-    job.PostProcessorArgs = rewritten(job.PostProcessorArgs, {flag: offset})
-    return found
+    job.PostProcessorArgs = replace_arguments(job.PostProcessorArgs, {flag: offset})
+    return result

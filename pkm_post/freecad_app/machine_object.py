@@ -18,7 +18,7 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
-from pkm_post.freecad_app.document_object import EDITABLE, READ_ONLY, PropertyProxy, Row, briefly_refused
+from pkm_post.freecad_app.document_object import EDITABLE, READ_ONLY, PropertyProxy, Row, without_traceback
 from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.geometry import Array
@@ -79,13 +79,13 @@ class MachineObject(PropertyProxy):
     properties = PROPERTIES
     results = RESULTS
 
-    @briefly_refused
+    @without_traceback
     def execute(self, obj: Any) -> None:
         """Compute the results from the properties."""
         machine = machine_of(obj)
         _take_work_offset(obj, machine)
         obj.Frame = placement_of(_document_from_work(obj) @ np.linalg.inv(matrix_of(obj.WorkOffset)))
-        _tell(obj, machine, pose_of(obj))
+        _set_results(obj, machine, pose_of(obj))
 
 
 def create_machine(document: Any, machine: str = "", job: Any = None, label: str = "") -> Any:
@@ -177,7 +177,7 @@ def go_home(obj: Any, machine: Machine) -> None:
         obj.ToolLength = machine.rest_tool_length
 
 
-def _tell(obj: Any, machine: Machine, pose: ToolPoses) -> None:
+def _set_results(obj: Any, machine: Machine, pose: ToolPoses) -> None:
     """Fill in the results."""
     for name, length in zip(_STRUTS, strut_lengths(machine, *pose)[0], strict=True):
         setattr(obj, name, float(length))

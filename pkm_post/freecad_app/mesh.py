@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import Part
 
+from pkm_post.freecad_app.frames import rows_of
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Place
 from pkm_post.reading import mesh_of_triangles
@@ -24,8 +25,7 @@ _DEVIATION = 0.1
 def mesh_of(shape: Any) -> Array:
     """Triangles of a shape, (T, 3, 3)."""
     points, corners = shape.tessellate(_DEVIATION)
-    at = np.array([(point.x, point.y, point.z) for point in points]).reshape(-1, 3)
-    return at[np.array(corners, dtype=np.int64).reshape(-1, 3)]
+    return rows_of(points)[np.array(corners, dtype=np.int64).reshape(-1, 3)]
 
 
 def read_step(path: Path, name: str) -> Any:

@@ -19,9 +19,9 @@ import numpy as np
 from Path.Base.Util import toolControllerForOp
 from PathScripts import PathUtils
 
-from pkm_post.freecad_app.cutter_contact import Compensation, compensated, guides
+from pkm_post.freecad_app.cutter_contact import Compensation, compensate_contacts, guide_rows
 from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperation, Row
-from pkm_post.freecad_app.model_faces import Contacts, NamedFace, contacts, model_faces, nearest_face
+from pkm_post.freecad_app.model_faces import Contacts, NamedFace, find_contacts, model_faces, nearest_face
 from pkm_post.freecad_app.tools import read_cutter
 from pkm_post.model import Diagnostic, Kind, Place, Program
 from pkm_post.reading import with_chords
@@ -73,10 +73,13 @@ class NormalCompensation(DerivedOperation):
         cutter, tool_faults = read_cutter(toolControllerForOp(obj), place)
         if faces is None or cutter is None:
             return None, (*face_faults, *tool_faults)
-        found = contacts(faces, program.position, obj.Tolerance.Value, obj.Label)
-        guide, astray = guides(program, found.face >= 0, obj.LeadLength.Value)
-        faults = (*_astray(program, astray, faces, obj.Tolerance.Value), *_at_edges(program, found, faces))
-        return (None, faults) if faults else compensated(program, found.normal, guide, _rule(obj, cutter))
+        contacts = find_contacts(faces, program.position, obj.Tolerance.Value, obj.Label)
+        guide, off_face = guide_rows(program, contacts.face >= 0, obj.LeadLength.Value)
+        faults = (
+            *_off_face_faults(program, off_face, faces, obj.Tolerance.Value),
+            *_edge_faults(program, contacts, faces),
+        )
+        return (None, faults) if faults else compensate_contacts(program, contacts.normal, guide, _rule(obj, cutter))
 
     def unsetupObject(self, obj: Any) -> None:
         """Return the base to the job: FreeCAD calls this before the object is deleted."""
@@ -93,31 +96,31 @@ def _rule(obj: Any, cutter: Cutter) -> Compensation:
     return Compensation(cutter, obj.StockToLeave.Value, obj.ChordTolerance.Value, lean)
 
 
-def _astray(program: Program, astray: Any, faces: Sequence[NamedFace], tolerance: float) -> list[Diagnostic]:
+def _off_face_faults(program: Program, off_face: Any, faces: Sequence[NamedFace], tolerance: float) -> list[Diagnostic]:
     """Report the first cutting move that ends on no face, and the number of such moves."""
-    rows = np.flatnonzero(astray).tolist()
+    rows = np.flatnonzero(off_face).tolist()
     if not rows:
         return []
     name, distance = nearest_face(faces, program.position[rows[0]])
-    text = f"{_told(program, rows[0])} is {distance:.4g} mm from {name}, Tolerance {tolerance:.4g} mm"
-    return [Diagnostic("N111", program.place(rows[0]), text + _more(rows))]
+    text = f"{_position_text(program, rows[0])} is {distance:.4g} mm from {name}, Tolerance {tolerance:.4g} mm"
+    return [Diagnostic("N111", program.place(rows[0]), text + _count_text(rows))]
 
 
-def _at_edges(program: Program, found: Contacts, faces: Sequence[NamedFace]) -> list[Diagnostic]:
+def _edge_faults(program: Program, contacts: Contacts, faces: Sequence[NamedFace]) -> list[Diagnostic]:
     """Report the first point on two faces with different normals, and the number of such points."""
-    rows = np.flatnonzero(found.other >= 0).tolist()
+    rows = np.flatnonzero(contacts.other >= 0).tolist()
     if not rows:
         return []
-    one, other = (faces[index[rows[0]]].name for index in (found.face, found.other))
-    text = f"{_told(program, rows[0])} is on {one} and on {other}"
-    return [Diagnostic("N112", program.place(rows[0]), text + _more(rows))]
+    one, other = (faces[index[rows[0]]].name for index in (contacts.face, contacts.other))
+    text = f"{_position_text(program, rows[0])} is on {one} and on {other}"
+    return [Diagnostic("N112", program.place(rows[0]), text + _count_text(rows))]
 
 
-def _told(program: Program, row: int) -> str:
+def _position_text(program: Program, row: int) -> str:
     return "X{:.6g} Y{:.6g} Z{:.6g}".format(*(program.position[row] + 0.0))
 
 
-def _more(rows: list[int]) -> str:
+def _count_text(rows: list[int]) -> str:
     return f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
 
 

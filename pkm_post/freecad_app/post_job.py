@@ -14,9 +14,9 @@ from typing import Any
 
 import FreeCAD as App
 
-from pkm_post.freecad_app.arguments import given_by
+from pkm_post.freecad_app.arguments import values_of
 from pkm_post.freecad_app.document import document_name, is_job
-from pkm_post.freecad_app.document_checks import check_read, intact
+from pkm_post.freecad_app.document_checks import check_operations, read_content
 from pkm_post.freecad_app.job import NO_LENGTHS
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_setup import prepared_job
@@ -34,7 +34,7 @@ def post_job(
     log: Log = quiet,
     progress: Progress = unwatched,
     arguments: str | ArgumentValues = "",
-    beside: Sequence[Any] = (),
+    other_jobs: Sequence[Any] = (),
 ) -> Posted:
     """Post a CAM job. Unspecified settings are those of the job; replaced ones are reported as J125.
 
@@ -47,7 +47,7 @@ def post_job(
         log: callback for a line per step.
         progress: callback at the start of each step; if it raises, the work ends and nothing is written.
         arguments: options that override those of the job one by one, as typed, or parsed.
-        beside: other jobs to which the gauge lengths also apply.
+        other_jobs: jobs to which the gauge lengths also apply.
 
     Raises:
         Refused: the job, the machine file or the folder has faults; nothing was written.
@@ -55,24 +55,15 @@ def post_job(
     """
     if options is not None and arguments:
         raise ValueError("expected options or arguments, got both")
-    given = {**given_by(arguments), **_said(machine, tool_lengths)}
-    settings = settings_of(job, given, options, beside=beside)
+    given = {**values_of(arguments), **_call_values(machine, tool_lengths)}
+    settings = settings_of(job, given, options, other_jobs=other_jobs)
     return post_to(FilePath(out) / file_name(job), job, settings, log, progress)
 
 
-def _said(machine: str | FilePath | None, tool_lengths: Mapping[int, float]) -> ArgumentValues:
+def _call_values(machine: str | FilePath | None, tool_lengths: Mapping[int, float]) -> ArgumentValues:
     """Machine and gauge lengths of a call, as if typed."""
     lengths = {"tool_length": list(tool_lengths.items())} if tool_lengths else {}
     return lengths | ({} if machine is None else {"machine": str(machine)})
-
-
-def post_as_the_job_says(job: Any, out: str | FilePath, log: Log = quiet) -> Posted:
-    """Post a CAM job with its own arguments for a post-processor of PKM Post, and no others.
-
-    Raises:
-        Refused: as ``post_job``, and J117 for the arguments.
-    """
-    return post_job(job, out=out, log=log)
 
 
 def post_document(
@@ -121,7 +112,7 @@ def read_document(file: str | FilePath, given: ArgumentValues, job_name: str | N
     with _opened(FilePath(file)) as document:
         jobs = _jobs_named(document, job_name)
         document.recompute()
-        return tuple(prepared_job(job, settings_of(job, given, beside=jobs)) for job in jobs)
+        return tuple(prepared_job(job, settings_of(job, given, other_jobs=jobs)) for job in jobs)
 
 
 def _jobs_named(document: Any, name: str | None) -> list[Any]:
@@ -190,7 +181,7 @@ def file_name(job: Any) -> str:
 @contextlib.contextmanager
 def _opened(file: FilePath) -> Iterator[Any]:
     """Open, check and read the document of a file; close it again unless it was open before."""
-    content, open_before = intact(file), set(App.listDocuments())
+    content, open_before = read_content(file), set(App.listDocuments())
     try:
         document = App.openDocument(str(file))
     except UnicodeEncodeError as fault:
@@ -200,7 +191,7 @@ def _opened(file: FilePath) -> Iterator[Any]:
         raise Refused([Diagnostic("J101", Place(str(file)), str(fault))]) from fault
     try:
         if document.Name not in open_before:
-            check_read(document, content)
+            check_operations(document, content)
         yield document
     finally:
         if document.Name not in open_before:

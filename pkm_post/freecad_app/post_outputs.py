@@ -58,7 +58,7 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
         with staged(target.parent, manifest.manifest_name(target.stem)) as folder:
             stored = folder / target.name
             trajectory_file.write(replace(trajectory, tolerances=settings.options.tolerances), stored)
-            _value(trajectory_file.read(stored), found)
+            _require(trajectory_file.read(stored), found)
             manifest.write(folder, target.stem)
     except OSError as fault:
         raise Refused([*found, write_fault(target, fault)]) from fault
@@ -80,15 +80,15 @@ _NO_PARENTHESES = str.maketrans("()", "[]")
 def _linuxcnc(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """G-code for LinuxCNC's hexapod."""
     trajectory, found = _reachable(job, settings)
-    return _value(outputs.linuxcnc_text(trajectory, settings.options.tip_tolerance), found)
+    return _require(outputs.linuxcnc_text(trajectory, settings.options.tip_tolerance), found)
 
 
 def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """The program of the job as G-code."""
     job.Document.recompute()
     program, told = read_job(job, settings.tool_lengths, settings.selection)
-    program, found = _value((program, (*settings.found, *told)))
-    return _value(write(program, Form(settings.arguments.form), inch=settings.arguments.inch), found)
+    program, found = _require((program, (*settings.found, *told)))
+    return _require(write(program, Form(settings.arguments.form), inch=settings.arguments.inch), found)
 
 
 OUTPUTS: dict[str, Callable[[Any, JobSettings, FilePath], Written]] = {
@@ -104,14 +104,14 @@ def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     """The trajectory of a job, verified to be reachable for its machine, and the warnings."""
     job.Document.recompute()
     read = prepared_job(job, settings)
-    trajectory, found = _value(read.placed())
+    trajectory, found = _require(read.placed())
     program, machine = read.sound
-    setup, told = _value(known_setup(read.options, program), found)
+    setup, told = _require(known_setup(read.options, program), found)
     collisions = find_collisions(trajectory, machine, setup, read.options.tolerances)
-    return _value((trajectory, (*check_reach(trajectory, machine).faults(), *collisions.faults)), told)
+    return _require((trajectory, (*check_reach(trajectory, machine).faults(), *collisions.faults)), told)
 
 
-def _value(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:
+def _require(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:
     """The value of a step, and all findings so far.
 
     Raises:

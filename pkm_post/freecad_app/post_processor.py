@@ -67,7 +67,7 @@ class HexapodPost(PostProcessor):
                 settings = settings_of(self._job, post_processor=self.name, selection=self._chosen)
                 text, diagnostics = OUTPUTS[self.name](self._job, settings, program_path(self._job))
         except Refused as refused:
-            _tell(refused)
+            _report(refused)
             raise
         except Stopped as stopped:
             App.Console.PrintWarning(f"{stopped}\n")
@@ -112,7 +112,7 @@ def program_path(job: Any) -> FilePath:
     return FilePath(next(generator.generate_filenames()))
 
 
-def _tell(refused: Exception) -> None:
+def _report(refused: Exception) -> None:
     """Show the reasons in the report view, and in the notification area if there is a window."""
     for line in str(refused).splitlines():
         App.Console.PrintError(f"{line}\n")

@@ -20,9 +20,9 @@ import Path
 import Path.Op.Custom
 
 from pkm_post.freecad_app.commands import commands_of
-from pkm_post.freecad_app.document_object import PropertyProxy, Row
-from pkm_post.freecad_app.tools import answered
-from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused, Severity
+from pkm_post.freecad_app.document_object import PropertyProxy, Row, print_diagnostics
+from pkm_post.freecad_app.tools import preselected
+from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
 from pkm_post.reading import (
     AXIS_WORDS,
     CONTOUR_DATA,
@@ -43,7 +43,7 @@ Findings = tuple[Diagnostic, ...]
 _VIEW = "pkm_post.freecad_gui.program_view"
 """The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 
-AS_THE_FILE_SAYS = "file"
+FROM_FILE = "file"
 """The choice that defers to the file."""
 CYCLE_ORDERS = ("depth,feed,clearance", "depth,feed,clearance,step", "depth,feed")
 """The usual meanings of cycle parameters; the command line accepts others."""
@@ -56,15 +56,15 @@ _PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyEnumeration", "DwellUnit", _G,
      QT_TRANSLATE_NOOP("App::Property", "The unit of dwells of G-code"), list(DWELL_UNITS)),
     ("App::PropertyEnumeration", "Unit", _G,
-     QT_TRANSLATE_NOOP("App::Property", "Unit of length of the part program"), [AS_THE_FILE_SAYS, *UNITS]),
+     QT_TRANSLATE_NOOP("App::Property", "Unit of length of the part program"), [FROM_FILE, *UNITS]),
     ("App::PropertyEnumeration", "ContourData", _G,
      QT_TRANSLATE_NOOP("App::Property", "What the points of CL data under CUTCOM are: tool centre or part contour"),
-     [AS_THE_FILE_SAYS, *CONTOUR_DATA]),
+     [FROM_FILE, *CONTOUR_DATA]),
     ("App::PropertyEnumeration", "ClDialect", _G,
-     QT_TRANSLATE_NOOP("App::Property", "The CAM system that wrote the CL data"), [AS_THE_FILE_SAYS, *DIALECTS]),
+     QT_TRANSLATE_NOOP("App::Property", "The CAM system that wrote the CL data"), [FROM_FILE, *DIALECTS]),
     ("App::PropertyEnumeration", "CycleValues", _G,
      QT_TRANSLATE_NOOP("App::Property", "What the numbers of a CYCLE statement are where they have no words"),
-     [AS_THE_FILE_SAYS, *CYCLE_ORDERS]),
+     [FROM_FILE, *CYCLE_ORDERS]),
     ("App::PropertyBool", "OpenEnd", _G,
      QT_TRANSLATE_NOOP("App::Property", "Whether the part program may have no end, such as M2 or FINI"), False),
 )  # fmt: skip
@@ -83,9 +83,9 @@ class PartProgram(PropertyProxy):
     def execute(self, obj: Any) -> None:
         """Read the file: FreeCAD calls this when a property has changed. A faulty file gives no path but its faults."""
         obj.Path = Path.Path()
-        program, found = read_program(obj)
-        obj.Found = [str(each) for each in found]
-        _tell(found)
+        program, diagnostics = read_program(obj)
+        obj.Found = [str(each) for each in diagnostics]
+        print_diagnostics(diagnostics)
         if program is not None:
             obj.Path = Path.Path(commands_of(program))
 
@@ -126,8 +126,8 @@ def create_program(
 
 def reading_of(obj: Any) -> Reading:
     """The reading options in the properties of a program object."""
-    said = (obj.Unit, obj.ContourData, obj.ClDialect, obj.CycleValues)
-    unit, contour_data, dialect, values = (None if one == AS_THE_FILE_SAYS else one for one in said)
+    choices = (obj.Unit, obj.ContourData, obj.ClDialect, obj.CycleValues)
+    unit, contour_data, dialect, values = (None if choice == FROM_FILE else choice for choice in choices)
     return Reading(
         obj.AxisWords,
         dwell_unit=obj.DwellUnit,
@@ -144,10 +144,10 @@ def set_reading(obj: Any, reading: Reading) -> None:
     choices: dict[str, str | bool] = {
         "AxisWords": reading.axis_words,
         "DwellUnit": reading.dwell_unit,
-        "Unit": reading.unit or AS_THE_FILE_SAYS,
-        "ContourData": reading.contour_data or AS_THE_FILE_SAYS,
-        "ClDialect": reading.cl_dialect or AS_THE_FILE_SAYS,
-        "CycleValues": ",".join(reading.cycle_values) or AS_THE_FILE_SAYS,
+        "Unit": reading.unit or FROM_FILE,
+        "ContourData": reading.contour_data or FROM_FILE,
+        "ClDialect": reading.cl_dialect or FROM_FILE,
+        "CycleValues": ",".join(reading.cycle_values) or FROM_FILE,
         "OpenEnd": reading.allow_open_end,
     }
     for name, choice in choices.items():
@@ -160,11 +160,11 @@ def read_program(obj: Any) -> tuple[Program | None, Findings]:
     file = FilePath(obj.File)
     if not is_part_program(file):
         return None, (Diagnostic("F103", Place(str(file)), f"its name ends with none of {', '.join(SUFFIXES)}"),)
-    program, found = read_part_program(file, reading_of(obj))
+    program, diagnostics = read_part_program(file, reading_of(obj))
     if program is None:
-        return None, found
-    compensated, told = compensate(program, OffsetOptions(), {})
-    return compensated, (*found, *told)
+        return None, diagnostics
+    compensated, faults = compensate(program, OffsetOptions(), {})
+    return compensated, (*diagnostics, *faults)
 
 
 def decode(obj: Any, job: Any) -> Any:
@@ -180,16 +180,16 @@ def decode(obj: Any, job: Any) -> Any:
     Raises:
         Refused: the program is faulty, or the job lacks its tool; the job is unchanged.
     """
-    program, found = read_program(obj)
+    program, diagnostics = read_program(obj)
     if program is None:
-        raise Refused(found)
+        raise Refused(diagnostics)
     controller = _first_controller(program, job)
     commands = commands_of(program)
     first = next((index for index, each in enumerate(commands) if each.Name == "M6"), None)
     if first is not None:  # the job itself calls the tool of the controller
         del commands[first]
-    _tell(_left_out(program))
-    with answered(controller):
+    print_diagnostics(_left_out(program))
+    with preselected(controller):
         operation = Path.Op.Custom.Create("Decoded", parentJob=job)
     operation.Label = FilePath(obj.File).stem
     operation.ToolController = controller
@@ -222,10 +222,3 @@ def _left_out(program: Program) -> Findings:
     return tuple(
         Diagnostic("J120", Place(program.source), f"{name} of {count} moves") for name, count in counts.items() if count
     )
-
-
-def _tell(found: Findings) -> None:
-    """Show the diagnostics in the report view."""
-    for each in found:
-        show = App.Console.PrintError if each.severity is Severity.ERROR else App.Console.PrintWarning
-        show(f"{each}\n")

@@ -22,10 +22,10 @@ from pkm_post.freecad_app.document_object import (
     PropertyProxy,
     Row,
     add_missing,
-    briefly_refused,
+    without_traceback,
 )
-from pkm_post.freecad_app.frames import apply
-from pkm_post.freecad_app.job_setup import job_on_machine
+from pkm_post.freecad_app.frames import apply, vectors_of
+from pkm_post.freecad_app.job_setup import placed_job
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array
 from pkm_post.machine import DISPLAY_UNITS, ReachReport, check_reach
@@ -92,7 +92,7 @@ class ReachObject(PropertyProxy):
         add_missing(obj, RESULTS, READ_ONLY)
         add_missing(obj, WAY, HIDDEN)
 
-    @briefly_refused
+    @without_traceback
     def execute(self, obj: Any) -> None:
         """Check the job, if enabled."""
         if not obj.Active:
@@ -102,18 +102,18 @@ class ReachObject(PropertyProxy):
         if obj.Job is None:
             return
         with Progress(obj.Label, 2) as bar:
-            placed = job_on_machine(obj.Job, obj.Machine)
+            placed = placed_job(obj.Job, obj.Machine)
             bar.step()
             found = check_reach(placed.trajectory, placed.machine, placed.part)
             bar.step()
-        _tell(obj, found)
+        _set_results(obj, found)
         self._found = found, thinned(_least_by_row(found), _MOST_POINTS)
-        _store_way(obj, *self._found)
+        _store_path(obj, *self._found)
 
     def onChanged(self, obj: Any, name: str) -> None:
         """Colour by another check, without a new check run."""
         if name == "ColourBy" and self._found is not None and obj.ColourBy in obj.Checks:
-            _store_way(obj, *self._found)
+            _store_path(obj, *self._found)
         elif name == "ColourBy" and "Restore" not in obj.State and obj.ColourBy in getattr(obj, "Checks", ()):
             obj.touch()  # the result was lost with the session
 
@@ -162,7 +162,7 @@ def _least_by_row(found: ReachReport) -> Array:
     return np.min([np.where(column < 0.0, column, column - column.min()) for column in columns], axis=0)
 
 
-def _tell(obj: Any, found: ReachReport) -> None:
+def _set_results(obj: Any, found: ReachReport) -> None:
     """Fill in the findings."""
     checks = found.as_dict()["checks"]
     document_from_machine = np.linalg.inv(found.trajectory.machine_from_work)
@@ -176,7 +176,7 @@ def _tell(obj: Any, found: ReachReport) -> None:
     obj.WorstParts = [check["part"] for check in checks]
     obj.WorstOperations = [check["worst"]["operation"] for check in checks]
     obj.WorstLines = [check["worst"]["line"] for check in checks]
-    obj.WorstPoints = _vectors(apply(document_from_machine, worst))
+    obj.WorstPoints = vectors_of(apply(document_from_machine, worst))
     obj.Violations = [str(fault) for fault in faults]
     obj.Report = found.text().splitlines()
     obj.Reachable = not errors(faults)
@@ -186,15 +186,11 @@ def _tell(obj: Any, found: ReachReport) -> None:
         obj.ColourBy = chosen if chosen in obj.Checks else obj.Checks[0]
 
 
-def _store_way(obj: Any, found: ReachReport, rows: Array) -> None:
+def _store_path(obj: Any, found: ReachReport, rows: Array) -> None:
     """Store the path with the margins of the selected check, in the displayed unit."""
     chosen = list(obj.Checks).index(str(obj.ColourBy))
     finding = found.findings[chosen]
     points = apply(np.linalg.inv(found.trajectory.machine_from_work), found.tip[rows])
     obj.Margins = []  # keep points and margins consistent at all times
-    obj.Points = _vectors(points)
+    obj.Points = vectors_of(points)
     obj.Margins = (finding.margin[rows] * DISPLAY_UNITS[finding.subject.unit][1]).tolist()
-
-
-def _vectors(points: Array) -> list[Any]:
-    return [App.Vector(*point) for point in points.tolist()]

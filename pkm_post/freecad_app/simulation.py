@@ -14,14 +14,14 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
-from pkm_post.freecad_app.job_setup import JobOnMachine, job_on_machine
+from pkm_post.freecad_app.job_setup import PlacedJob, placed_job
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, norm, unit
 from pkm_post.machine import ReachFinding, ReachReport, ToolPoses, check_reach
 from pkm_post.model import RULES, EventKind, Machine, Motion, Place, Refused, Severity, StrutMotion, Tool, Trajectory
 from pkm_post.planning import interpolate, plan_feed
 
-_AT_ONCE = 16384
+_BATCH = 16384
 """Cubics per pass: the working arrays of one pass stay in the processor's cache."""
 
 
@@ -83,8 +83,8 @@ class Simulation:
         """The greatest absolute speed of each strut, (6,) in mm/s, between the knots as well."""
         greatest = np.abs(self.struts.speed).max(axis=0)
         last = len(self.struts) - 1
-        for begin in range(0, last, _AT_ONCE):
-            greatest = np.maximum(greatest, self._greatest_between(np.arange(begin, min(begin + _AT_ONCE, last))))
+        for begin in range(0, last, _BATCH):
+            greatest = np.maximum(greatest, self._greatest_between(np.arange(begin, min(begin + _BATCH, last))))
         return greatest
 
     def _greatest_between(self, rows: Array) -> Array:
@@ -183,9 +183,9 @@ def _extremes(knots: Array, first: Array, ends: Array) -> Array:
 
 translate = App.Qt.translate
 
-_LOOKED_AT = 200
+_SAMPLES = 200
 """Samples per block, to find the time of a tip position."""
-_BEGUN = 1e-3
+_FIRST_INSTANT = 1e-3
 """s: when the first block has begun; at 0 no motion has taken place that could be stopped."""
 
 
@@ -200,10 +200,10 @@ def simulate_job(job: Any, machine_object: Any = None) -> Simulation:
         Refused: the job cannot be read or placed. The simulation reports stretches that cannot be followed.
     """
     job.Document.recompute()
-    return simulation_of(job_on_machine(job, machine_object))
+    return simulation_of(placed_job(job, machine_object))
 
 
-def simulation_of(placed: JobOnMachine) -> Simulation:
+def simulation_of(placed: PlacedJob) -> Simulation:
     """Plan the motion of a job on its machine."""
     trajectory, machine, tolerances = placed.trajectory, placed.machine, placed.tolerances
     with Progress(translate("PKM_Simulate", "Simulation"), 3) as bar:
@@ -248,9 +248,9 @@ def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation)
 
 def _time_of(row: int, segment: int, checked: ReachReport, planned: Simulation) -> float:
     """Time at which the tip passes a row in its block; the block's start if it dwells or lacks the row."""
-    begins = float(planned.motion.joint_time[segment - 1]) if segment else _BEGUN
+    begins = float(planned.motion.joint_time[segment - 1]) if segment else _FIRST_INSTANT
     if row < 0 or checked.segment[row] != segment:
         return begins
-    seconds = np.linspace(begins, float(planned.motion.joint_time[segment]), _LOOKED_AT)
+    seconds = np.linspace(begins, float(planned.motion.joint_time[segment]), _SAMPLES)
     away = norm(planned.pose_at(seconds)[0] - checked.tip[row])
     return float(seconds[np.argmin(away)])

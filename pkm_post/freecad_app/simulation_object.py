@@ -15,9 +15,9 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
-from pkm_post.freecad_app.document_object import PropertyProxy, Row, briefly_refused
-from pkm_post.freecad_app.frames import apply
-from pkm_post.freecad_app.job_setup import job_on_machine
+from pkm_post.freecad_app.document_object import PropertyProxy, Row, without_traceback
+from pkm_post.freecad_app.frames import apply, vectors_of
+from pkm_post.freecad_app.job_setup import placed_job
 from pkm_post.freecad_app.simulation import Problem, Simulation, simulation_of
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -86,7 +86,7 @@ class SimulationObject(PropertyProxy):
     results = RESULTS
     plan: Simulation | None = None
 
-    @briefly_refused
+    @without_traceback
     def execute(self, obj: Any) -> None:
         """Plan the motion of the job, if enabled."""
         if not obj.Active:
@@ -94,8 +94,8 @@ class SimulationObject(PropertyProxy):
         self.clear_results(obj)
         self.plan = None
         if obj.Job is not None:
-            self.plan = simulation_of(job_on_machine(obj.Job, obj.Machine))
-            _tell(obj, self.plan)
+            self.plan = simulation_of(placed_job(obj.Job, obj.Machine))
+            _set_results(obj, self.plan)
 
 
 def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:
@@ -124,12 +124,12 @@ def plan_of(obj: Any) -> Simulation:
     if obj.Job is None:
         raise ValueError(f"{obj.Label}: expected a job, got none")
     if obj.Proxy.plan is None:
-        obj.Proxy.plan = simulation_of(job_on_machine(obj.Job, obj.Machine))
+        obj.Proxy.plan = simulation_of(placed_job(obj.Job, obj.Machine))
     plan: Simulation = obj.Proxy.plan
     return plan
 
 
-def _tell(obj: Any, plan: Simulation) -> None:
+def _set_results(obj: Any, plan: Simulation) -> None:
     """Fill in the figures; the texts of the problems come last, as a signal that all are complete."""
     moving, dwelling = plan.operation_times()
     speeds = plan.greatest_speeds
@@ -140,15 +140,15 @@ def _tell(obj: Any, plan: Simulation) -> None:
     obj.GreatestStrutSpeed, obj.FastestStrut = float(speeds.max()), int(speeds.argmax()) + 1
     obj.Operations, obj.OperationTimes = list(plan.trajectory.operations), (moving + dwelling).tolist()
     obj.Followable, obj.ProblemCount = not plan.problems, len(plan.problems)
-    _tell_problems(obj, plan, plan.problems[:_MOST_PROBLEMS])
+    _set_problems(obj, plan, plan.problems[:_MOST_PROBLEMS])
 
 
-def _tell_problems(obj: Any, plan: Simulation, problems: tuple[Problem, ...]) -> None:
+def _set_problems(obj: Any, plan: Simulation, problems: tuple[Problem, ...]) -> None:
     tips = np.array([problem.worst_tip for problem in problems]).reshape(-1, 3)
     in_document = apply(np.linalg.inv(plan.trajectory.machine_from_work), tips)
     obj.ProblemTimes = [problem.time for problem in problems]
     obj.WorstTimes = [problem.worst_time for problem in problems]
     obj.WorstOperations = [problem.worst_place.operation for problem in problems]
     obj.WorstLines = [problem.worst_place.line for problem in problems]
-    obj.WorstPoints = [App.Vector(*point) for point in in_document.tolist()]
+    obj.WorstPoints = vectors_of(in_document)
     obj.Problems = [problem.text for problem in problems]

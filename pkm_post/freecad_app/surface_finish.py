@@ -12,7 +12,6 @@ from __future__ import annotations
 import importlib
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import FreeCAD as App
@@ -21,13 +20,13 @@ import Path.Op.Base
 
 from pkm_post.freecad_app.commands import commands_of
 from pkm_post.freecad_app.document import document_name
-from pkm_post.freecad_app.document_object import briefly_refused
+from pkm_post.freecad_app.document_object import value_of, without_traceback
 from pkm_post.freecad_app.face_surface import face_surface
 from pkm_post.freecad_app.model_faces import NamedFace, model_faces
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.surface_check import check_faces
 from pkm_post.freecad_app.surface_finish_settings import add_missing_properties, read_inputs
-from pkm_post.freecad_app.tools import answered
+from pkm_post.freecad_app.tools import has_upright_side, preselected
 from pkm_post.model import Diagnostic, Place, Program, Refused
 from pkm_post.toolpath import Cutter, Poses, SurfaceOptions, program_from_poses, surface_poses
 
@@ -62,27 +61,23 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
 
     def isToolSupported(self, obj: Any, tool: Any) -> bool:
         """Whether the operation supports a tool bit; CAM's panel calls this."""
-        return str(getattr(tool, "ShapeType", None) or getattr(tool, "ShapeName", "")).lower() in (
-            "endmill",
-            "ballend",
-            "bullnose",
-        )
+        return has_upright_side(tool)
 
-    @briefly_refused
+    @without_traceback
     def execute(self, obj: Any) -> Any:
         """Recompute the path; after an error no outdated path remains to be posted."""
         obj.Path = Path.Path()
         if obj.Active and (obj.ToolController is None or obj.ToolController.Tool is None):
-            _value(None, [Diagnostic("J112", _place(obj), "none is set")])
+            raise Refused([Diagnostic("J112", _place(obj), "none is set")])
         return super().execute(obj)
 
     def opExecute(self, obj: Any) -> None:
         """Fill the list of commands: called by the base class once tool and job are known."""
         place = _place(obj)
-        faces, cutter, settings = _value(*read_inputs(obj, self.job, place))
+        faces, cutter, settings = value_of(read_inputs(obj, self.job, place))
         covered = _covered(faces, cutter, settings, bool(obj.FlipNormals), place)
-        program = _value(*program_from_poses(covered, settings, place))
-        _tell(obj, covered, settings)
+        program = value_of(program_from_poses(covered, settings, place))
+        _set_results(obj, covered, settings)
         _check(obj, program, cutter, faces, self.job)
         self.commandlist += commands_of(program)
 
@@ -102,7 +97,7 @@ def create_surface_finish(
         controller: the tool controller; if None, CAM chooses or asks, and takes the first without a window.
     """
     obj = job.Document.addObject("Path::FeaturePython", "SurfaceFinish")
-    with answered(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):
+    with preselected(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):
         obj.Proxy = SurfaceFinish(obj, "SurfaceFinish", job)
     obj.Label, obj.Base = label, [(thing, tuple(names)) for thing, names in faces]
     if controller is not None:
@@ -116,7 +111,7 @@ def _place(obj: Any) -> Place:
     return Place(document_name(obj.Document), obj.Label)
 
 
-def _tell(obj: Any, covered: Sequence[Poses], settings: SurfaceOptions) -> None:
+def _set_results(obj: Any, covered: Sequence[Poses], settings: SurfaceOptions) -> None:
     """Fill in the results that need no further computation."""
     obj.PassCount = sum(int(poses.course.number.max()) + 1 for poses in covered)
     obj.ClampedAxes = sum(int(poses.clamped.sum()) for poses in covered)
@@ -142,7 +137,7 @@ def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace
     obj.MaximumExcess, obj.ExcessPoint = checked.excess, App.Vector(*checked.excess_point)
     if checked.gouge > _GOUGED * obj.ChordTolerance.Value:
         x, y, z = checked.gouge_point.tolist()
-        _value(None, [Diagnostic("N311", _place(obj), f"{checked.gouge:.3f} mm at ({x:.3f}, {y:.3f}, {z:.3f})")])
+        raise Refused([Diagnostic("N311", _place(obj), f"{checked.gouge:.3f} mm at ({x:.3f}, {y:.3f}, {z:.3f})")])
 
 
 def _covered(
@@ -152,8 +147,8 @@ def _covered(
     covered: list[Poses] = []
     with Progress(place.operation, _STEPS * len(faces)) as bar:
         for named in faces:
-            found = surface_poses(face_surface(named.face, flipped), cutter, settings, place, _steps(bar))
-            covered.append(_value(*found, f"{named.name}: "))
+            result = surface_poses(face_surface(named.face, flipped), cutter, settings, place, _steps(bar))
+            covered.append(value_of(result, f"{named.name}: "))
     return covered
 
 
@@ -168,12 +163,3 @@ def _steps(bar: Progress) -> Callable[[float], None]:
             bar.step()
 
     return progress
-
-
-def _value(value: Any, diagnostics: Iterable[Diagnostic], about: str = "") -> Any:
-    """Return the value and show its warnings; or raise an exception that FreeCAD shows at the object."""
-    if value is None:
-        raise Refused([replace(fault, found=f"{about}{fault.found}") for fault in diagnostics])
-    for warning in diagnostics:
-        App.Console.PrintWarning(f"{about}{warning}\n")
-    return value

@@ -161,7 +161,7 @@ _TILTS = np.radians(np.arange(0.0, 80.5, 0.5))
 _DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
 
 
-def machine_tilt(
+def reachable_tilt(
     name: str, job: Any, controller: Any, box: tuple[Array, Array], place: Place
 ) -> tuple[float | None, tuple[Diagnostic, ...]]:
     """The largest tilt from upright that the machine reaches at the part in every direction.
@@ -211,7 +211,7 @@ def _largest(machine: Machine, machine_from_work: Array, length: float, low: Arr
     return float(_TILTS[beyond - 1]) if beyond else None
 
 
-def upright(cone_axis: Any) -> bool:
+def is_upright(cone_axis: Any) -> bool:
     """Whether the axis of a cone points straight up."""
     x, y, z = cone_axis
     return bool(z > 0.0 and math.hypot(x, y) <= 1e-9 * z)
@@ -250,11 +250,11 @@ def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple
     limit = math.radians(obj.ConeLimit.Value)
     if not obj.Machine or not faces:
         return limit, ()
-    if not upright(obj.ConeAxis):
+    if not is_upright(obj.ConeAxis):
         return limit, (Diagnostic("N309", place, "a machine limits the tilt from upright: ConeAxis is not (0, 0, 1)"),)
     boxes = [named.face.BoundBox for named in faces]
     low = np.array([min(getattr(box, side) for box in boxes) for side in ("XMin", "YMin", "ZMin")])
     high = np.array([max(getattr(box, side) for box in boxes) for side in ("XMax", "YMax", "ZMax")])
     high[2] = max(high[2], obj.ClearanceHeight.Value)
-    tilt, faults = machine_tilt(obj.Machine, job, obj.ToolController, (low, high), place)
+    tilt, faults = reachable_tilt(obj.Machine, job, obj.ToolController, (low, high), place)
     return (limit if tilt is None else min(limit, tilt)), faults

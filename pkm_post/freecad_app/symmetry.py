@@ -19,7 +19,7 @@ from PathScripts import PathUtils
 
 from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperation, Row
 from pkm_post.freecad_app.frames import axis_of, plane_of
-from pkm_post.freecad_app.symmetry_report import SIDES, report
+from pkm_post.freecad_app.symmetry_report import SIDES, write_report
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Place, Program
 from pkm_post.toolpath import concatenate, mirror, reversed_passes, rotation, transform
@@ -114,21 +114,21 @@ class _SymmetricOperation(DerivedOperation):
         """The (4, 4) matrices that map the base to its copies, in order."""
 
     @abc.abstractmethod
-    def hand(self, obj: Any) -> int:
+    def side_factor(self, obj: Any) -> int:
         """+1 if the copies have the material on the same side as the base, -1 on the other side."""
 
     @abc.abstractmethod
-    def follow(self, obj: Any) -> None:
+    def update_reference(self, obj: Any) -> None:
         """Take plane or axis from the picked element, if there is one."""
 
-    def sequence(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    def in_cutting_order(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
         """The copies in cutting order: unchanged by default."""
         return program, ()
 
     def derive(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
         """The copies in sequence, and their report."""
         try:
-            self.follow(obj)
+            self.update_reference(obj)
             matrices = self.matrices(obj)
         except ValueError as wrong:
             return None, (Diagnostic("J121", Place(program.source, obj.Label), str(wrong)),)
@@ -139,9 +139,9 @@ class _SymmetricOperation(DerivedOperation):
             if copy is None:
                 return None, tuple(told)
             copies.append(copy)
-        made, faults = self.sequence(obj, concatenate(copies))
+        made, faults = self.in_cutting_order(obj, concatenate(copies))
         if made is not None:
-            report(obj, program, copies, made)
+            write_report(obj, program, copies, made)
         return made, (*told, *faults)
 
 
@@ -159,16 +159,16 @@ class MirroredOperation(_SymmetricOperation):
         """The reflection in the plane."""
         return [mirror(obj.Point, obj.Normal)]
 
-    def hand(self, obj: Any) -> int:
+    def side_factor(self, obj: Any) -> int:
         """A reflection swaps sides; so does reversing the passes."""
         return 1 if obj.KeepClimb else -1
 
-    def follow(self, obj: Any) -> None:
+    def update_reference(self, obj: Any) -> None:
         """Take point and normal from the picked plane."""
         if obj.Plane:
             _set(obj, "Normal", *plane_of(obj.Plane))
 
-    def sequence(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    def in_cutting_order(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
         """Reverse each pass, if climb milling is to be kept."""
         return reversed_passes(program) if obj.KeepClimb else (program, ())
 
@@ -186,11 +186,11 @@ class RotatedOperation(_SymmetricOperation):
         angles = list(obj.Angles) or [number * obj.Angle.Value for number in range(1, obj.Copies + 1)]
         return [rotation(obj.Point, obj.Axis, math.radians(angle)) for angle in angles]
 
-    def hand(self, obj: Any) -> int:
+    def side_factor(self, obj: Any) -> int:
         """A rotation keeps the side."""
         return 1
 
-    def follow(self, obj: Any) -> None:
+    def update_reference(self, obj: Any) -> None:
         """Take point and direction from the picked line."""
         if obj.Line:
             _set(obj, "Axis", *axis_of(obj.Line))

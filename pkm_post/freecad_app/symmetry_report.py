@@ -57,7 +57,7 @@ def material_side_of(obj: Any) -> int:
         obj: an operation; a mirrored or rotated one takes the side of its base, and so does a dress-up.
     """
     if is_symmetric(obj):
-        return base_side(obj) * obj.Proxy.hand(obj)
+        return base_material_side(obj) * obj.Proxy.side_factor(obj)
     if hasattr(obj, "CutMode"):
         orders = [getattr(obj, name) for name in _ORDERS if hasattr(obj, name)]
         return _CUT_MODES.get(obj.CutMode, 0) if all(order in _ONE_WAY for order in orders) else 0
@@ -67,7 +67,7 @@ def material_side_of(obj: Any) -> int:
     return material_side_of(base) if hasattr(base, "Path") else 0
 
 
-def base_side(obj: Any) -> int:
+def base_material_side(obj: Any) -> int:
     """The side on which the base of a mirrored or rotated operation has the material."""
     stated = SIDES[obj.MaterialSide]
     return stated if stated or obj.Base is None else material_side_of(obj.Base)
@@ -99,7 +99,7 @@ class Family:
     joints: tuple[Seam, ...]
 
 
-def report(obj: Any, base: Program, copies: Sequence[Program], made: Program) -> None:
+def write_report(obj: Any, base: Program, copies: Sequence[Program], made: Program) -> None:
     """Write the read-only properties of a symmetric operation.
 
     Args:
@@ -108,16 +108,16 @@ def report(obj: Any, base: Program, copies: Sequence[Program], made: Program) ->
         copies: its copies, mirrored or rotated.
         made: the program of the operation.
     """
-    sense, side = spindle_sense_of(obj), base_side(obj)
+    sense, side = spindle_sense_of(obj), base_material_side(obj)
     obj.CutOfBase = cut_lengths(base, side, sense).direction.value
-    obj.CutOfCopies = cut_lengths(made, side * obj.Proxy.hand(obj), sense).direction.value
-    met = _beside(obj, base, copies[0]) if hasattr(obj, "Normal") else _around(obj, [base, *copies])
+    obj.CutOfCopies = cut_lengths(made, side * obj.Proxy.side_factor(obj), sense).direction.value
+    met = _report_mirror(obj, base, copies[0]) if hasattr(obj, "Normal") else _report_rotation(obj, [base, *copies])
     obj.Joints = len(met)
     obj.JointDistance = max((each.distance for each in met), default=0.0)
     obj.JointTurn = math.degrees(max((each.turn for each in met), default=0.0))
 
 
-def _beside(obj: Any, base: Program, copy: Program) -> tuple[Seam, ...]:
+def _report_mirror(obj: Any, base: Program, copy: Program) -> tuple[Seam, ...]:
     obj.GapToBase, obj.OverlapWithBase = mirror_gap(base, obj.Point, obj.Normal)
     obj.ReversedPasses = len(pass_rows(copy)) if obj.KeepClimb else 0
     obj.SwappedArcs = _swapped_arcs(base, copy, bool(obj.KeepClimb))
@@ -134,7 +134,7 @@ def _swapped_arcs(base: Program, copy: Program, run_back: bool) -> int:
     return int(np.sum((senses[0] != senses[1]) != run_back))
 
 
-def _around(obj: Any, programs: list[Program]) -> tuple[Seam, ...]:
+def _report_rotation(obj: Any, programs: list[Program]) -> tuple[Seam, ...]:
     found, met = _circle(programs, np.array(obj.Point), np.array(obj.Axis))
     angles = (found.covered, found.overlap, found.gap) if found else (0.0, 0.0, 2 * math.pi)
     obj.Covered, obj.Overlap, obj.Gap = (math.degrees(angle) for angle in angles)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tools: the data of a CAM job's tool controllers that compensation and kinematics need.
+"""Tools: the tools of a CAM job's tool controllers, and the controller of a new operation.
 
-Takes tool controllers; returns tools by number, in mm and rad. FreeCAD 1.0 and newer versions name the shape of a tool
-bit and the corner of a bull nose differently, and none of them stores the gauge length: that is a property of our own,
-``GaugeLength``.
+Takes tool controllers; returns tools by number, or the cutter of one for compensation, in mm and rad. FreeCAD 1.0 and
+newer versions name the shape of a tool bit and the corner of a bull nose differently, and none of them stores the gauge
+length: that is a property of our own, ``GaugeLength``.
 """
 
 from __future__ import annotations
@@ -21,6 +21,12 @@ from pkm_post.model import Diagnostic, Place, Tool, corner_reach
 from pkm_post.toolpath import Cutter
 
 GAUGE_LENGTH = "GaugeLength"
+_UPRIGHT_SHAPES = ("endmill", "ballend", "bullnose")
+"""Shapes with a flat bottom and an upright side. ``read_tools`` does not return the angle of a tapered one."""
+_ANY_LENGTH = 1.0
+"""mm: the gauge length does not matter for a cutter."""
+
+Sizes = dict[str, float]
 
 
 def set_gauge_length(tool_controller: Any, mm: float) -> None:
@@ -69,19 +75,30 @@ def read_tools(
             continue
         tool = _tool(controller, number, length)
         if tools.setdefault(number, tool) != tool:
-            faults.append(Diagnostic("J114", place, f"T{number} is {_told(tools[number])} and {_told(tool)}"))
+            faults.append(
+                Diagnostic("J114", place, f"T{number} is {_description(tools[number])} and {_description(tool)}")
+            )
     return tools, tuple(faults)
 
 
-def _told(tool: Tool) -> str:
+def _description(tool: Tool) -> str:
     return f"{tool.name!r} of diameter {tool.diameter:g} and gauge length {tool.length:g}"
 
 
 def _tool(controller: Any, number: int, length: float) -> Tool:
     bit = controller.Tool
-    shape = str(getattr(bit, "ShapeType", None) or getattr(bit, "ShapeName", ""))
-    known = _SHAPES.get(shape.lower().replace("_", ""), _flat)
-    return Tool(number, bit.Label, length=length, **known(bit))
+    sizes = _SHAPES.get(_shape(bit).lower().replace("_", ""), _flat)
+    return Tool(number, bit.Label, length=length, **sizes(bit))
+
+
+def _shape(bit: Any) -> str:
+    """The name of the shape of a tool bit, which FreeCAD 1.0 keeps in another property."""
+    return str(getattr(bit, "ShapeType", None) or getattr(bit, "ShapeName", ""))
+
+
+def has_upright_side(bit: Any) -> bool:
+    """Whether a tool bit is an end mill with an upright side: flat, ball or bull nose."""
+    return _shape(bit).lower() in _UPRIGHT_SHAPES
 
 
 def millimetres(thing: Any, name: str) -> float:
@@ -92,9 +109,6 @@ def millimetres(thing: Any, name: str) -> float:
 def _half_angle(bit: Any, name: str) -> float:
     """Half of an angle property, in rad: from the axis to one side."""
     return math.radians(millimetres(bit, name)) / 2
-
-
-Sizes = dict[str, float]
 
 
 def _flat(bit: Any) -> Sizes:
@@ -149,11 +163,6 @@ _SHAPES: dict[str, Callable[[Any], Sizes]] = {
 """Sizes by shape; all others, such as end mills and reamers, count as flat at the bottom and upright at the side."""
 
 
-_KNOWN_SHAPES = ("endmill", "ballend", "bullnose")
-"""Shapes with a flat bottom and an upright side. ``read_tools`` does not return the angle of a tapered one."""
-_ANY_LENGTH = 1.0
-
-
 def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
     """The cutter of a tool controller.
 
@@ -167,9 +176,8 @@ def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Dia
     if controller is None or controller.Tool is None:
         return None, (Diagnostic("J112", place, "none is set" if controller is None else "it has no tool"),)
     bit, number = controller.Tool, int(controller.ToolNumber)
-    shape = str(getattr(bit, "ShapeType", None) or getattr(bit, "ShapeName", ""))
-    if shape.lower() not in _KNOWN_SHAPES:
-        return None, (Diagnostic("N116", place, f"{bit.Label} is of the shape {shape}"),)
+    if not has_upright_side(bit):
+        return None, (Diagnostic("N116", place, f"{bit.Label} is of the shape {_shape(bit)}"),)
     tools, faults = read_tools([controller], {number: _ANY_LENGTH}, place.file)
     if faults:
         return None, faults
@@ -180,8 +188,8 @@ def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Dia
 
 
 @contextlib.contextmanager
-def answered(controller: Any) -> Iterator[None]:
-    """Answer for the user: with several controllers CAM asks, and without a window it fails.
+def preselected(controller: Any) -> Iterator[None]:
+    """Give new operations a tool controller: with several controllers CAM asks, and without a window it fails.
 
     Args:
         controller: the tool controller; None leaves the question to the user.

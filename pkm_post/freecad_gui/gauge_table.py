@@ -14,7 +14,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.gauge_lengths import ToolRow, length_text, tool_rows
+from pkm_post.freecad_app.gauge_lengths import ToolRow, format_length, tool_rows
 from pkm_post.freecad_gui.change_watch import ChangeWatch
 from pkm_post.freecad_gui.length_field import LengthField, decimal_point
 from pkm_post.model import Refused
@@ -99,7 +99,7 @@ class GaugeTable(QtWidgets.QGroupBox):
         return any((row.name, row.length) == (before.name, before.length) for before in self._rows)
 
     def _fill(self, number: int, row: ToolRow) -> None:
-        bit = length_text(row.bit_length, decimal_point()) if row.bit_length else ""
+        bit = format_length(row.bit_length, decimal_point()) if row.bit_length else ""
         for column, text in enumerate((str(row.number), row.label, bit)):
             item = QtWidgets.QTableWidgetItem(text)
             item.setToolTip(text if column < _LENGTH - 1 else translate("GaugeTable", _COLUMNS[column][1]))
@@ -138,16 +138,16 @@ class GaugeTable(QtWidgets.QGroupBox):
     def _fault(self, row: ToolRow) -> str:
         mm = self.fields[row.name].length()
         if mm is None:
-            return str(row.unknown(self._typed(row)))
+            return str(row.missing_length(self._typed(row)))
         if not mm and row.in_use and row.number not in self._by_argument:
-            return str(row.unknown())
+            return str(row.missing_length())
         return ""
 
     def _goes_before(self, row: ToolRow) -> str:
         if row.number not in self._by_argument:
             return ""
         told = translate("GaugeTable", "T{}: {} of --tool-length in More arguments goes before the field.")
-        return told.format(row.number, length_text(self._by_argument[row.number], decimal_point()))
+        return told.format(row.number, format_length(self._by_argument[row.number], decimal_point()))
 
     def _typed(self, row: ToolRow) -> str:
         return f"{self.fields[row.name].text()!r} is no length above zero"
@@ -159,7 +159,7 @@ class GaugeTable(QtWidgets.QGroupBox):
             Refused: the input is invalid, J113.
         """
         said = {row: self.fields[row.name].length() for row in self._rows}
-        faults = [row.unknown(self._typed(row)) for row, mm in said.items() if mm is None]
+        faults = [row.missing_length(self._typed(row)) for row, mm in said.items() if mm is None]
         if faults:
             raise Refused(faults)
         return {row.name: mm for row, mm in said.items() if mm is not None and mm != row.length}

@@ -14,9 +14,9 @@ from typing import Any
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.freecad_app.arguments import job_arguments, own_text, parsed, remember
+from pkm_post.freecad_app.arguments import job_arguments, own_text, parse_arguments, store_in_job
 from pkm_post.freecad_app.document import transaction
-from pkm_post.freecad_app.gauge_lengths import keep_gauge_lengths
+from pkm_post.freecad_app.gauge_lengths import store_gauge_lengths
 from pkm_post.freecad_app.post_job import file_name
 from pkm_post.freecad_app.post_processor import program_path
 from pkm_post.freecad_gui.gauge_table import GaugeTable
@@ -68,14 +68,14 @@ class JobChoices(QtWidgets.QWidget):
         text, job = self.arguments.text(), self._job
         chosen, lengths = job_arguments(job, text), self.gauges.lengths()
         with transaction(job.Document, translate("PostPanel", "Post to a hexapod")):
-            remember(job, text, str(self.program()))
-            keep_gauge_lengths(job, lengths)
+            store_in_job(job, text, str(self.program()))
+            store_gauge_lengths(job, lengths)
         return chosen
 
     def _show_given(self, *_changed: str) -> None:
         """Show which gauge lengths the arguments define; invalid arguments are reported when they are to be stored."""
         try:
-            given = tool_lengths_from(parsed(self.arguments.text(), Place("")))
+            given = tool_lengths_from(parse_arguments(self.arguments.text(), Place("")))
         except Refused:
             given = {}
         self.gauges.show_arguments(given)

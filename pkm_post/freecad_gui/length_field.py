@@ -12,7 +12,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.gauge_lengths import length_text, typed_length
+from pkm_post.freecad_app.gauge_lengths import format_length, parse_length
 
 translate = FreeCAD.Qt.translate
 
@@ -43,7 +43,7 @@ class LengthField(QtWidgets.QLineEdit):
         """The value, mm; 0 for no length, None if it is invalid. An unedited value is exact."""
         if self.text() == self._shown:
             return self._mm
-        return typed_length(self.text(), self._point) if self.text().strip() else 0.0
+        return parse_length(self.text(), self._point) if self.text().strip() else 0.0
 
     def show_fault(self, text: str) -> None:
         """Show a fault and its text; an empty text clears it."""
@@ -57,5 +57,5 @@ class LengthField(QtWidgets.QLineEdit):
             self._show(mm)
 
     def _show(self, mm: float) -> None:
-        self._mm, self._shown = mm, length_text(mm, self._point) if mm else ""
+        self._mm, self._shown = mm, format_length(mm, self._point) if mm else ""
         self.setText(self._shown)

@@ -13,7 +13,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.freecad_app.arguments import parsed, rewritten
+from pkm_post.freecad_app.arguments import parse_arguments, replace_arguments
 from pkm_post.freecad_gui.post_fields import (
     below_each_other,
     editable_box,
@@ -128,9 +128,9 @@ class PostChoices(QtWidgets.QWidget):
     def show_text(self, text: str) -> None:
         """Show arguments in the fields; invalid ones stay unchanged, in the line for all others."""
         try:
-            chosen, rest = parsed(text, Place("")), rewritten(text, dict.fromkeys(FLAGS))
+            chosen, rest = parse_arguments(text, Place("")), replace_arguments(text, dict.fromkeys(FLAGS))
         except Refused:
-            chosen, rest = parsed("", Place("")), text
+            chosen, rest = parse_arguments("", Place("")), text
         rule, heading, objective = chosen.spin
         self.machine.setEditText(chosen.machine)
         self._offer_work_offsets(chosen.machine)
@@ -156,7 +156,7 @@ class PostChoices(QtWidgets.QWidget):
             "--also": ",".join(name for name, box in self.also.items() if box.isChecked()) or None,
         }
         try:
-            return rewritten(self.more.text(), chosen)
+            return replace_arguments(self.more.text(), chosen)
         except ValueError:  # the parser reports the error
             return self.more.text()
 

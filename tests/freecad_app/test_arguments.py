@@ -5,7 +5,7 @@ import pytest
 from cam_jobs import add_operation
 from Path.Post.Processor import PostProcessorFactory
 
-from pkm_post.freecad_app.arguments import job_arguments, own_text, parsed, remember, rewritten
+from pkm_post.freecad_app.arguments import job_arguments, own_text, parse_arguments, replace_arguments, store_in_job
 from pkm_post.freecad_app.post_job import post_job
 from pkm_post.model import Place, Refused
 from pkm_post.options import options_from, tool_lengths_from
@@ -14,11 +14,11 @@ TEXT = "--machine 'my machine.toml' --work-offset=-10,0,150 --tool-length 1=120 
 
 
 def understood(text):
-    return {name: value for name, value in vars(parsed(text, Place("job"))).items() if name != "given"}
+    return {name: value for name, value in vars(parse_arguments(text, Place("job"))).items() if name != "given"}
 
 
 def test_nothing_chosen_leaves_the_meaning():
-    assert understood(rewritten(TEXT, {})) == understood(TEXT)
+    assert understood(replace_arguments(TEXT, {})) == understood(TEXT)
 
 
 @pytest.mark.parametrize(
@@ -33,9 +33,9 @@ def test_nothing_chosen_leaves_the_meaning():
     ],
 )
 def test_one_is_set_anew_and_the_others_stay(flag, value, meaning):
-    once = rewritten(TEXT, {flag: value})
+    once = replace_arguments(TEXT, {flag: value})
     assert understood(once) == understood(TEXT) | meaning
-    assert rewritten(once, {flag: value}) == once
+    assert replace_arguments(once, {flag: value}) == once
 
 
 def test_what_only_another_post_processor_understands_is_left_out(job):
@@ -52,7 +52,7 @@ def test_a_quote_that_does_not_close_is_left_to_who_reads_it(job):
 
 def test_cutters_of_part_programs_are_none_of_a_job(job):
     add_operation(job)
-    assert parsed("--tool 1=10,5", Place("part.ngc")).tools == [(1, (10.0, 5.0))]
+    assert parse_arguments("--tool 1=10,5", Place("part.ngc")).tools == [(1, (10.0, 5.0))]
     with pytest.raises(Refused) as refused:
         job_arguments(job, "--tool 1=10,5")
     assert [fault.code for fault in refused.value.diagnostics] == ["J117"]
@@ -61,10 +61,10 @@ def test_cutters_of_part_programs_are_none_of_a_job(job):
 def test_cam_posts_what_the_job_remembers(job, tmp_path):
     add_operation(job)
     job.PostProcessor, text = "linuxcnc", "--work-offset=0,0,250 --tip-tolerance=0.01"
-    chosen = parsed(text, Place("job"))
+    chosen = parse_arguments(text, Place("job"))
     posted = post_job(job, chosen.machine, tmp_path / "ours", options_from(chosen), tool_lengths_from(chosen))
     (tmp_path / "cams").mkdir()
-    remember(job, text, str(tmp_path / "cams" / posted.program.name))
+    store_in_job(job, text, str(tmp_path / "cams" / posted.program.name))
     ((_, program),) = PostProcessorFactory.get_post_processor(job, job.PostProcessor).export()
     assert program.encode() == posted.program.read_bytes()
     assert (tmp_path / "cams" / f"{posted.program.stem}.pkmt").is_file()

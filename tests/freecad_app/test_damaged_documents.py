@@ -30,7 +30,7 @@ def intact(tmp_path_factory):
     job = job_in_reach(document)
     for number in range(4):
         add_operation(job, [*CUT, f"G1 X{number} F25"], f"Cut {number}")
-    path = tmp_path_factory.mktemp("intact") / "part.FCStd"
+    path = tmp_path_factory.mktemp("read_content") / "part.FCStd"
     document.saveAs(str(path))
     App.closeDocument(document.Name)
     return path.read_bytes()
@@ -107,7 +107,7 @@ def test_a_bit_that_flips_is_refused_or_changes_nothing(part, intact):
         changed[bit // 8] ^= 1 << bit % 8
         part.write_bytes(changed)
         try:
-            document_damage.intact(part)
+            document_damage.read_content(part)
         except Refused as refused:
             assert {fault.code for fault in refused.diagnostics} <= REFUSED
             continue

@@ -21,9 +21,9 @@ import pkm_post
 from pkm_post.cli import main
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import settings_of
-from pkm_post.freecad_app.job_setup import job_on_machine, prepared_job, study_job
+from pkm_post.freecad_app.job_setup import placed_job, prepared_job, study_job
 from pkm_post.freecad_app.machine_object import create_machine
-from pkm_post.freecad_app.post_job import post_as_the_job_says
+from pkm_post.freecad_app.post_job import post_job
 from pkm_post.machine import find_machine, machine_named
 from pkm_post.model import Refused
 from pkm_post.options import explicit_values, options_from, parse_text, tool_lengths_from
@@ -102,7 +102,7 @@ def by_macro_with_the_file(job, parse_text, folder):
 
 
 def as_the_job_says(job, parse_text, folder):
-    post_as_the_job_says(job, folder)
+    post_job(job, out=folder)
 
 
 OF_THE_JOB = [by_cam, by_panel, as_the_job_says]
@@ -181,7 +181,7 @@ def test_a_batch_in_processes_gives_the_same_bytes(job, tmp_path):
 def test_reach_and_simulation_see_the_job_where_it_is_posted(job):
     says(job, "--work-offset=2,1,255,10 --tool-length 1=118 --machine slow.toml --spin x-in-plane=15")
     posted, _ = prepared_job(job, settings_of(job)).placed()
-    simulated = job_on_machine(job)
+    simulated = placed_job(job)
     assert simulated.machine.fingerprint == posted.machine_fingerprint
     for trajectory in (simulated.trajectory, study_job(job).reach.trajectory):
         for column in ("tip", "axis", "spin", "feed"):
@@ -202,15 +202,15 @@ def test_a_machine_object_of_another_machine_is_told(job, monkeypatch):
     says(job, "--work-offset=2,1,255,10 --machine slow.toml")
     machine = create_machine(job.Document, job=job)
     job.Document.recompute()
-    job_on_machine(job, machine)
+    placed_job(job, machine)
     assert told == []
     machine.MachineFile = "example_6tps"
     job.Document.recompute()
-    job_on_machine(job, machine)
+    placed_job(job, machine)
     assert ["--machine example_6tps instead of" in each for each in told] == [True]
     machine.Job, machine.WorkOffset = None, App.Placement(App.Vector(0, 0, 240), App.Rotation())
     job.Document.recompute()
-    job_on_machine(job, machine)
+    placed_job(job, machine)
     assert "--work-offset 0,0,240,0 instead of 2,1,255,10" in told[-1]
 
 

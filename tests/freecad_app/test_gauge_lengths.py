@@ -4,7 +4,7 @@
 import pytest
 from cam_jobs import add_operation, add_tool_controller, reopened
 
-from pkm_post.freecad_app.gauge_lengths import keep_gauge_lengths, tool_rows
+from pkm_post.freecad_app.gauge_lengths import store_gauge_lengths, tool_rows
 from pkm_post.freecad_app.job import read_job
 
 
@@ -38,16 +38,16 @@ def test_unknown_length_is_told_as_posting_tells_it(two):
     two.Operations.Group[0].ToolController = two.Tools.Group[1]
     two.Document.recompute()
     _, row = tool_rows(two)
-    assert (row.unknown(),) == read_job(two)[1]
-    assert "Gauge lengths" in str(row.unknown())
-    assert row.unknown("'abc' is no length").found == "T2, 'abc' is no length"
+    assert (row.missing_length(),) == read_job(two)[1]
+    assert "Gauge lengths" in str(row.missing_length())
+    assert row.missing_length("'abc' is no length").found == "T2, 'abc' is no length"
 
 
 def test_lengths_are_kept_in_one_step_and_saved(two, tmp_path):
     document, names = two.Document, [row.name for row in tool_rows(two)]
     document.UndoMode = 1
     document.openTransaction("Gauge lengths")
-    keep_gauge_lengths(two, {names[0]: 118.75, names[1]: 95.0})
+    store_gauge_lengths(two, {names[0]: 118.75, names[1]: 95.0})
     document.commitTransaction()
     assert [row.length for row in tool_rows(two)] == [118.75, 95]
     document.undo()
@@ -60,15 +60,15 @@ def test_lengths_are_kept_in_one_step_and_saved(two, tmp_path):
 def test_lengths_that_are_the_same_or_not_named_are_not_touched(two):
     two.Document.recompute()
     names = [row.name for row in tool_rows(two)]
-    keep_gauge_lengths(two, {names[0]: 120.0, names[1]: 0.0, "NoSuchController": 50.0})
+    store_gauge_lengths(two, {names[0]: 120.0, names[1]: 0.0, "NoSuchController": 50.0})
     assert "Touched" not in two.Tools.Group[0].State
     assert not hasattr(two.Tools.Group[1], "GaugeLength")
-    keep_gauge_lengths(two, {})
+    store_gauge_lengths(two, {})
     assert [row.length for row in tool_rows(two)] == [120, 0]
 
 
 def test_length_can_be_taken_back(two):
-    keep_gauge_lengths(two, {tool_rows(two)[0].name: 0.0})
+    store_gauge_lengths(two, {tool_rows(two)[0].name: 0.0})
     assert [fault.code for fault in read_job(two)[1]] == ["J113"]
 
 
@@ -76,7 +76,7 @@ def test_length_can_be_taken_back(two):
 def test_length_below_zero_is_the_callers_fault(two, mm):
     first, second = tool_rows(two)
     with pytest.raises(ValueError, match="expected gauge lengths of 0 or more"):
-        keep_gauge_lengths(two, {first.name: 50.0, second.name: mm})
+        store_gauge_lengths(two, {first.name: 50.0, second.name: mm})
     assert [row.length for row in tool_rows(two)] == [120, 0]
 
 

@@ -8,8 +8,8 @@ import Path.Main.Job
 import pytest
 from cam_jobs import add_operation, new_job
 
-from pkm_post.freecad_app.job_setup import job_setup, study_job
-from pkm_post.freecad_app.post_job import post_as_the_job_says
+from pkm_post.freecad_app.job_setup import setup_of, study_job
+from pkm_post.freecad_app.post_job import post_job
 from pkm_post.freecad_app.tools import set_gauge_length
 from pkm_post.geometry.polygons import is_closed, volume
 from pkm_post.model import Refused
@@ -37,7 +37,7 @@ def job_beside_a_wall(document, gap, stock_height=0.0):
 
 def test_the_setup_is_what_the_job_has(document):
     job = new_job(document)
-    setup = job_setup(job)
+    setup = setup_of(job)
     assert volume(setup.part.triangles) == pytest.approx(20.0**3)
     assert volume(setup.stock.triangles) > volume(setup.part.triangles)
     assert is_closed(setup.part.triangles) and is_closed(setup.stock.triangles)
@@ -52,13 +52,13 @@ def test_a_holder_that_goes_into_the_part_is_refused_and_one_that_clears_is_post
     add_operation(job, PASS)
     told = {fault.code for fault in study_job(job).reach.faults()}
     if gap > CLEARANCE:
-        posted = post_as_the_job_says(job, tmp_path)
+        posted = post_job(job, out=tmp_path)
         assert posted.files and told == set() and posted.diagnostics == ()
         rows = {row["what"]: row["extent"] for row in posted.report["certificate"]["coverage"]}
         assert rows["spindle and holder against the part"] == rows["shanks against the part"] == "proven"
     else:
         with pytest.raises(Refused) as refused:
-            post_as_the_job_says(job, tmp_path)
+            post_job(job, out=tmp_path)
         assert (
             {fault.code for fault in refused.value.diagnostics} - {"K134"} == {"K117"} == told
         )  # the wall is stock too
@@ -70,10 +70,10 @@ def test_a_rapid_move_into_the_stock_is_refused_unless_the_stock_is_said_to_be_a
     job = job_beside_a_wall(document, CLEARANCE + 5.0, stock_height=16.0)
     add_operation(job, PASS)
     with pytest.raises(Refused) as refused:
-        post_as_the_job_says(job, tmp_path)
+        post_job(job, out=tmp_path)
     assert {fault.code for fault in refused.value.diagnostics} == {"K136"}
     job.PostProcessorArgs += " --stock none"
-    assert post_as_the_job_says(job, tmp_path).files
+    assert post_job(job, out=tmp_path).files
 
 
 def test_a_shank_thicker_than_the_cutter_is_refused_where_it_goes_into_the_part(document, tmp_path):
@@ -82,6 +82,6 @@ def test_a_shank_thicker_than_the_cutter_is_refused_where_it_goes_into_the_part(
     bit.CuttingEdgeHeight, bit.ShankDiameter = 5.0, 80.0
     add_operation(job, PASS)
     with pytest.raises(Refused) as refused:
-        post_as_the_job_says(job, tmp_path)
+        post_job(job, out=tmp_path)
     assert "K130" in {fault.code for fault in refused.value.diagnostics}
     assert list(tmp_path.iterdir()) == []

@@ -6,7 +6,8 @@ import numpy as np
 import Part
 import pytest
 
-from pkm_post.freecad_app.face_projection import project, surface_grid, surface_points
+from pkm_post.freecad_app.face_projection import project
+from pkm_post.freecad_app.face_surface import surface_points
 
 ROUNDING = 1e-9
 NANOMETRE = 1e-6
@@ -18,8 +19,10 @@ def cylinder_wall(shape):
 
 
 def grid_over(face, rows=9, columns=5):
+    """Points and normals at every combination of u and v, (rows, columns, 3)."""
     first_u, last_u, first_v, last_v = face.ParameterRange
-    return surface_grid(face, np.linspace(first_u, last_u, rows), np.linspace(first_v, last_v, columns))
+    u, v = np.meshgrid(np.linspace(first_u, last_u, rows), np.linspace(first_v, last_v, columns), indexing="ij")
+    return [column.reshape(rows, columns, 3) for column in surface_points(face, u.ravel(), v.ravel())]
 
 
 def radial(points):
@@ -54,19 +57,10 @@ def test_every_face_of_a_solid_faces_out_of_it():
         assert solid.isInside(App.Vector(*(points - step * normals)[0]), 1e-7, True)
 
 
-def test_grid_runs_along_u_and_then_along_v():
+def test_points_are_at_the_pairs_of_parameters():
     face = cylinder_wall(Part.makeCylinder(RADIUS, HEIGHT))
-    points, _ = surface_grid(face, [0.0, np.pi / 2], [0.0, 10.0, 20.0])
-    assert points[1] == pytest.approx(np.array([[0, RADIUS, 0], [0, RADIUS, 10], [0, RADIUS, 20]]), abs=ROUNDING)
-
-
-def test_columns_are_the_diagonal_of_the_grid():
-    face = cylinder_wall(Part.makeCylinder(RADIUS, HEIGHT))
-    u, v = np.linspace(0.0, 3.0, 4), np.linspace(5.0, 40.0, 4)
-    grid_points, grid_normals = surface_grid(face, u, v)
-    points, normals = surface_points(face, u, v)
-    assert np.array_equal(points, grid_points[range(4), range(4)])
-    assert np.array_equal(normals, grid_normals[range(4), range(4)])
+    points, _ = surface_points(face, [0.0, np.pi / 2, np.pi / 2], [0.0, 10.0, 20.0])
+    assert points == pytest.approx(np.array([[RADIUS, 0, 0], [0, RADIUS, 10], [0, RADIUS, 20]]), abs=ROUNDING)
 
 
 def test_placement_of_the_shape_moves_points_and_turns_normals():
@@ -104,7 +98,7 @@ def test_projection_on_a_free_form_face_finds_the_points_it_came_from():
 def test_no_points_give_empty_arrays():
     face = loft_wall()
     assert [array.shape for array in project(face, np.zeros((0, 3)))] == [(0, 3), (0, 3), (0,)]
-    assert surface_grid(face, [], [0.5])[0].shape == (0, 1, 3)
+    assert [array.shape for array in surface_points(face, [], [])] == [(0, 3), (0, 3)]
 
 
 def test_wrong_shapes_are_the_callers_fault():

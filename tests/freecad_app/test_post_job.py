@@ -16,7 +16,7 @@ from Path.Post.Utils import FilenameGenerator
 import pkm_post
 from pkm_post.cli import main
 from pkm_post.freecad_app.arguments import job_arguments
-from pkm_post.freecad_app.post_job import find_job, post_as_the_job_says, post_document, post_job
+from pkm_post.freecad_app.post_job import find_job, post_document, post_job
 from pkm_post.freecad_app.progress import Progress, Stopped
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.machine import find_machine
@@ -146,7 +146,7 @@ def test_jobs_whose_results_would_have_one_name_are_refused_at_every_door(ready,
     add_operation(second)
     ready.Label, second.Label = label, other
     assert refusal(post_job, ready, MACHINE, tmp_path / "out", AT_FIXTURE) == ["F105"]
-    assert refusal(post_as_the_job_says, second, tmp_path / "out") == ["F105"]
+    assert refusal(post_job, second, out=tmp_path / "out") == ["F105"]
     path = saved(ready.Document, tmp_path)
     assert [(job.name, job.label) for job in read_document(path).jobs] == [("Job", label), ("Job001", other)]
     assert refusal(post_document, path, MACHINE, tmp_path / "out", AT_FIXTURE) == ["F105"]
@@ -263,9 +263,9 @@ def test_arguments_may_be_quoted(ready):
 def test_arguments_for_another_post_processor_are_left_alone(ready, tmp_path):
     ready.PostProcessor = "linuxcnc"
     ready.PostProcessorArgs = "--no-show-editor"
-    assert post_as_the_job_says(ready, tmp_path).files
+    assert post_job(ready, out=tmp_path).files
     ready.PostProcessor = "hexapod_pmac"
-    assert refusal(post_as_the_job_says, ready, tmp_path) == ["J117"]
+    assert refusal(post_job, ready, out=tmp_path) == ["J117"]
 
 
 def in_parts(folder):

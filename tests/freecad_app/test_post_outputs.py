@@ -9,7 +9,7 @@ from Path.Post.Processor import PostProcessorFactory
 
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_setup import study_job
-from pkm_post.freecad_app.post_job import post_as_the_job_says
+from pkm_post.freecad_app.post_job import post_job
 from pkm_post.model import Refused
 from pkm_post.reading import gcode
 from pkm_post.writing import trajectory_file
@@ -114,4 +114,4 @@ def test_arguments_of_every_post_processor_are_understood_elsewhere(job, tmp_pat
     job.PostProcessor = "hexapod_gcode"
     job.PostProcessorArgs = "--form AC --work-offset=0,0,250"
     assert study_job(job).machine_from_work[2, 3] == 250
-    assert post_as_the_job_says(job, tmp_path / "out").report["certificate"]["holds"]
+    assert post_job(job, out=tmp_path / "out").report["certificate"]["holds"]

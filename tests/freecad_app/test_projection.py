@@ -6,7 +6,8 @@ import numpy as np
 import Part
 import pytest
 
-from pkm_post.freecad_app.face_projection import nurbs_of, project, surface_points
+from pkm_post.freecad_app.face_projection import nurbs_of, project
+from pkm_post.freecad_app.face_surface import surface_points
 from pkm_post.freecad_app.progress import Stopped
 
 NANOMETRE = 1e-6

@@ -5,8 +5,8 @@ import pytest
 from cam_jobs import add_operation, new_job
 
 from pkm_post.freecad_app.arguments import job_arguments
-from pkm_post.freecad_app.job_setup import place_job, study_job
-from pkm_post.freecad_app.post_job import post_as_the_job_says
+from pkm_post.freecad_app.job_setup import set_best_work_offset, study_job
+from pkm_post.freecad_app.post_job import post_job
 from pkm_post.model import Refused
 from pkm_post.model.diagnostics import errors
 
@@ -26,29 +26,29 @@ def job(document):
 def test_a_job_out_of_reach_is_placed_and_posted(job, tmp_path):
     assert errors(study_job(job).reach.faults())
     with pytest.raises(Refused):
-        post_as_the_job_says(job, tmp_path)
-    found = place_job(job)
+        post_job(job, out=tmp_path)
+    found = set_best_work_offset(job)
     assert not errors(found.reach.faults())
     assert [name for name, _ in found.stages] == ["as it is, zero torsion", "moved in x, y, z, c"]
     chosen = job_arguments(job, job.PostProcessorArgs)
     assert (chosen.machine, chosen.tip_tolerance) == ("example_6tps", 0.01)
     assert chosen.work_offset[:3] == pytest.approx(found.machine_from_work[:3, 3], abs=1e-3)
-    assert post_as_the_job_says(job, tmp_path).report["certificate"]["holds"]
+    assert post_job(job, out=tmp_path).report["certificate"]["holds"]
 
 
 def test_an_offset_behind_a_blank_is_replaced(job):
     job.PostProcessorArgs = "--work-offset 100,0,200 --spin zero"
-    place_job(job, "xy")
+    set_best_work_offset(job, "xy")
     assert job.PostProcessorArgs.count("--work-offset") == 1
     assert job.PostProcessorArgs.startswith("--spin zero ")
 
 
 def test_what_cannot_be_said_is_a_fault_of_the_caller(job):
     with pytest.raises(ValueError, match="expected letters of 'xyzc'"):
-        place_job(job, "xa")
+        set_best_work_offset(job, "xa")
     job.PostProcessor = "linuxcnc"
     with pytest.raises(ValueError, match="expected a job for hexapod_pmac"):
-        place_job(job)
+        set_best_work_offset(job)
 
 
 def test_a_job_that_cannot_be_read_is_refused(job):

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from cam_jobs import add_operation
 
-from pkm_post.freecad_app.document_object import briefly_refused
+from pkm_post.freecad_app.document_object import without_traceback
 from pkm_post.freecad_app.reach_object import create_reach
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.model import Diagnostic, Place, Refused
@@ -19,7 +19,7 @@ def test_only_what_is_refused_is_told_briefly(fault, last):
     def deep():
         raise fault
 
-    @briefly_refused
+    @without_traceback
     def execute(proxy, obj):
         deep()
 

@@ -4,7 +4,7 @@
 import FreeCAD as App
 import pytest
 
-from pkm_post.freecad_app.gauge_lengths import length_text, typed_length
+from pkm_post.freecad_app.gauge_lengths import format_length, parse_length
 
 MILLIMETRES, INCHES = 6, 3
 """Unit schemes of FreeCAD: metric small parts and CNC, imperial decimal."""
@@ -29,13 +29,13 @@ def units():
 )  # fmt: skip
 def test_length_with_or_without_its_unit(units, text, mm):
     units(MILLIMETRES)
-    assert typed_length(text) == pytest.approx(mm, rel=ROUNDING)
+    assert parse_length(text) == pytest.approx(mm, rel=ROUNDING)
 
 
 def test_number_alone_is_in_the_unit_that_lengths_are_shown_in(units):
     units(INCHES)
-    assert typed_length("4.5") == pytest.approx(114.3, rel=ROUNDING)
-    assert typed_length("120 mm") == pytest.approx(120, rel=ROUNDING)
+    assert parse_length("4.5") == pytest.approx(114.3, rel=ROUNDING)
+    assert parse_length("120 mm") == pytest.approx(120, rel=ROUNDING)
 
 
 @pytest.mark.parametrize(
@@ -48,21 +48,21 @@ def test_number_alone_is_in_the_unit_that_lengths_are_shown_in(units):
 def test_what_is_no_length_above_zero_has_no_meaning(units, text):
     for scheme in (MILLIMETRES, INCHES):
         units(scheme)
-        assert typed_length(text) is None
+        assert parse_length(text) is None
 
 
 def test_decimal_point_of_the_language_and_the_full_stop():
-    assert typed_length("120,5 mm", ",") == pytest.approx(120.5, rel=ROUNDING)
-    assert typed_length("120.5 mm", ",") == pytest.approx(120.5, rel=ROUNDING)
-    assert typed_length("1.200,5 mm", ",") is None
+    assert parse_length("120,5 mm", ",") == pytest.approx(120.5, rel=ROUNDING)
+    assert parse_length("120.5 mm", ",") == pytest.approx(120.5, rel=ROUNDING)
+    assert parse_length("1.200,5 mm", ",") is None
 
 
 def test_length_is_shown_in_the_unit_that_is_set(units):
     units(MILLIMETRES)
-    assert (length_text(120.0), length_text(118.75125)) == ("120 mm", "118.75125 mm")
-    assert length_text(120.5, ",") == "120,5 mm"
+    assert (format_length(120.0), format_length(118.75125)) == ("120 mm", "118.75125 mm")
+    assert format_length(120.5, ",") == "120,5 mm"
     units(INCHES)
-    assert length_text(114.3) == "4.5 in"
+    assert format_length(114.3) == "4.5 in"
 
 
 @pytest.mark.parametrize("point", [".", ","])
@@ -70,4 +70,4 @@ def test_what_is_shown_is_read_back_in_every_scheme(units, point):
     for scheme in range(len(App.Units.listSchemas())):
         units(scheme)
         for mm in (0.001234, 7.0, 118.75125, 2540.0):
-            assert typed_length(length_text(mm, point), point) == pytest.approx(mm, rel=ROUNDING), scheme
+            assert parse_length(format_length(mm, point), point) == pytest.approx(mm, rel=ROUNDING), scheme

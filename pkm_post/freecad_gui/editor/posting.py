@@ -15,7 +15,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.arguments import parsed
+from pkm_post.freecad_app.arguments import parse_arguments
 from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.post_choices import PostChoices
 from pkm_post.freecad_gui.post_steps import step_text
@@ -62,7 +62,7 @@ class Posting(QtCore.QObject):
         if self._task is not None:
             return
         try:
-            chosen = parsed(arguments, Place(str(file)))
+            chosen = parse_arguments(arguments, Place(str(file)))
         except Refused as refused:
             QtWidgets.QMessageBox.warning(self._window, self._title, str(refused))
             self.ended.emit()

@@ -4,14 +4,14 @@
 import numpy as np
 import pytest
 
-from pkm_post.freecad_app.cutter_contact import guides
+from pkm_post.freecad_app.cutter_contact import guide_rows
 from pkm_post.model import Kind, Program
 
 NONE = -1
 
 
 def guided(rows, lead_length=0.0):
-    """The guides and the rows gone astray; a row is (R or L, x, z, touches)."""
+    """The guides and the rows gone off_face; a row is (R or L, x, z, touches)."""
     count = len(rows)
     letters, x, z, touches = zip(*rows, strict=True)
     program = Program(
@@ -28,8 +28,8 @@ def guided(rows, lead_length=0.0):
         tools={},
         source="part.FCStd",
     )
-    guide, astray = guides(program, np.array(touches), lead_length)
-    return guide.tolist(), np.flatnonzero(astray).tolist()
+    guide, off_face = guide_rows(program, np.array(touches), lead_length)
+    return guide.tolist(), np.flatnonzero(off_face).tolist()
 
 
 ON, OFF = True, False
