@@ -21,7 +21,7 @@ def python(code, *arguments):
 
 
 def test_a_job_is_posted_without_lark_pyserial_and_paramiko():
-    told = python("import pkm_post.posting, pkm_post.options, pkm_post.reading.gcode.chords; print('imported')")
+    told = python("import pkm_post.posting, pkm_post.options, pkm_post.reading.gcode; print('imported')")
     assert told.stdout == "imported\n", told.stderr
 
 

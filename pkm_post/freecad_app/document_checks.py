@@ -13,8 +13,7 @@ from functools import lru_cache
 from pathlib import Path as FilePath
 from typing import Any
 
-from pkm_post.freecad_app.commands.faults import not_text
-from pkm_post.freecad_app.commands.words import Words
+from pkm_post.freecad_app.commands.words import Words, undecodable_command
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
 
@@ -112,7 +111,7 @@ def state_faults(operation: Any, source: str) -> list[Diagnostic]:
     try:
         return [Diagnostic("J108", place, layer.Label) for layer in incompatible_dressups(operation)]
     except UnicodeDecodeError as fault:
-        return [not_text(fault, source, operation.Label)]
+        return [undecodable_command(fault, source, operation.Label)]
 
 
 def _has_no_path(operation: Any) -> str:

@@ -24,8 +24,7 @@ from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperati
 from pkm_post.freecad_app.model_faces import Contacts, NamedFace, find_contacts, model_faces, nearest_face
 from pkm_post.freecad_app.tools import read_cutter
 from pkm_post.model import Diagnostic, Kind, Place, Program
-from pkm_post.reading import with_chords
-from pkm_post.toolpath import AxisRule, Cutter
+from pkm_post.toolpath import AxisRule, Cutter, with_chords
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 

@@ -3,13 +3,12 @@
 
 from pkm_post.reading import check, gcode
 from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS, UNITS
-from pkm_post.reading.gcode.axes import axis_of
-from pkm_post.reading.gcode.chords import CHORD_ERROR, with_chords
-from pkm_post.reading.gcode.codes import IN_STEP_WITH_SPINDLE
-from pkm_post.reading.gcode.cycles import Series, Strokes, fault_of, strokes
-from pkm_post.reading.gcode.dwells import LONG
+from pkm_post.reading.gcode.codes import SPINDLE_SYNCHRONISED
+from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
+from pkm_post.reading.gcode.events import LONG_DWELL
+from pkm_post.reading.gcode.feeds import exact_codes
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
-from pkm_post.reading.gcode.path_modes import exact_codes
+from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.mesh_file import mesh_of_triangles, read_mesh
 from pkm_post.reading.program_text.checked import CheckedText, check_text
 from pkm_post.reading.program_text.colours import Colour, spans
@@ -23,12 +22,11 @@ from pkm_post.reading.sources import AS_WRITTEN, SUFFIXES, Reading, is_part_prog
 __all__ = [
     "AS_WRITTEN",
     "AXIS_WORDS",
-    "CHORD_ERROR",
     "CONTOUR_DATA",
     "DIALECTS",
     "DWELL_UNITS",
-    "IN_STEP_WITH_SPINDLE",
-    "LONG",
+    "SPINDLE_SYNCHRONISED",
+    "LONG_DWELL",
     "SUFFIXES",
     "UNITS",
     "CheckedText",
@@ -36,14 +34,14 @@ __all__ = [
     "Content",
     "Language",
     "Reading",
-    "Series",
+    "CycleSeries",
     "Strokes",
     "axis_of",
     "check",
     "check_text",
     "exact_codes",
     "extent",
-    "fault_of",
+    "cycle_fault",
     "gcode",
     "is_part_program",
     "language_of",
@@ -52,7 +50,6 @@ __all__ = [
     "read_part_program",
     "renumbered",
     "spans",
-    "strokes",
+    "cycle_strokes",
     "ways_of_line",
-    "with_chords",
 ]

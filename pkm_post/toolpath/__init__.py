@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool path: symmetry, work offset, compensation and surface passes, from a program to a trajectory."""
 
+from pkm_post.toolpath.chords import CHORD_ERROR, with_chords
 from pkm_post.toolpath.compensation.compensate import compensate
 from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
@@ -24,6 +25,8 @@ from pkm_post.toolpath.symmetry.transform import concatenate, mirror, rotation, 
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 __all__ = [
+    "CHORD_ERROR",
+    "with_chords",
     "AxisRule",
     "Coverage",
     "CutMode",

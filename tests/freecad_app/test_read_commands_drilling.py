@@ -97,7 +97,7 @@ def test_cycles_are_those_of_gcode(seed):
 
 
 @pytest.mark.parametrize(
-    ("lines", "code", "told"),
+    ("lines", "code", "found"),
     [
         (["G81 X1 Y1 Z-1 F1"], "J122", "G81 without R"),
         (["G81 X1 Y1 R1 F1"], "J122", "G81 without a depth"),
@@ -113,11 +113,11 @@ def test_cycles_are_those_of_gcode(seed):
         (["G81 Z-1 R1"], "J105", "no F"),
     ],
 )
-def test_faults_of_cycles(lines, code, told):
+def test_faults_of_cycles(lines, code, found):
     program, faults = read(FIRST, *lines)
     assert program is None
     assert [(fault.code, fault.place.line) for fault in faults] == [(code, len(lines) + 1)]
-    assert told in faults[0].found
+    assert found in faults[0].found
 
 
 def test_a_cycle_needs_to_know_where_it_begins():

@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words: the letters and numbers of CAM commands as columns.
+"""Words: the letters and numbers of CAM commands as columns, and their faults.
 
 Takes a list of ``Path.Command``; returns for each command a code, and for each letter its numbers, NaN where a command
-does not have it. Names and parameters are copied from FreeCAD once: each access makes a new dictionary.
-The table ``LETTERS`` defines which letters go with which code.
+does not have it; and diagnostics. Names and parameters are copied from FreeCAD once: each access makes a new
+dictionary. The table ``LETTERS`` defines which letters go with which code. An operation may have a hundred thousand
+commands with the same fault, so a diagnostic names the first of them and counts the others.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
 import numpy as np
+
+from pkm_post.model import Diagnostic, EventKind, Place, errors
+from pkm_post.reading import LONG_DWELL, SPINDLE_SYNCHRONISED
 
 Array = np.ndarray[Any, Any]
 
@@ -28,7 +32,7 @@ CYCLES: dict[str, str] = {
     "G85": "XYZRF",
     "G89": "XYZRPF",
 }
-"""The same for drilling cycles, except cycles that turn or stop the spindle."""
+"""The same for drilling cycles, except cycles that turn or has_errors the spindle."""
 _OTHERS: dict[str, str] = {
     "G4": "P",
     "M0": "",
@@ -46,6 +50,20 @@ _OTHERS: dict[str, str] = {
 } | dict.fromkeys(("G21", "G40", "G49", "G54", "G80", "G90", "G94", "G98", "G99"), "")
 LETTERS: dict[str, str] = MOVES | CYCLES | _OTHERS
 """Every supported code with its permitted letters; all others are refused."""
+
+EVENTS: dict[str, tuple[EventKind, str, float]] = {
+    "G4": (EventKind.DWELL, "P", 1.0),
+    "M0": (EventKind.STOP, "", 0.0),
+    "M1": (EventKind.STOP, "", 1.0),
+    "M3": (EventKind.SPINDLE, "S", 1.0),
+    "M4": (EventKind.SPINDLE, "S", -1.0),
+    "M5": (EventKind.SPINDLE, "", 0.0),
+    "M6": (EventKind.TOOL_CHANGE, "T", 1.0),
+    "M7": (EventKind.COOLANT, "", 2.0),
+    "M8": (EventKind.COOLANT, "", 1.0),
+    "M9": (EventKind.COOLANT, "", 0.0),
+}
+"""For each code its event, and its value: that of the letter times the factor, or the factor alone."""
 
 COMMENT = "()"
 """The code of comments and empty lines."""
@@ -112,16 +130,16 @@ class Words:
         return self.among("G0", "G1") & (self.count("IJK") > 0)
 
 
-def latest(chosen: Array) -> Array:
+def last_row_of(chosen: Array) -> Array:
     """Index of the last of the chosen rows so far, (n,); 0 before the first."""
     return np.maximum.accumulate(np.where(chosen, np.arange(len(chosen)), 0))
 
 
-def in_force(values: Array, before: float) -> Array:
+def forward_fill(values: Array, before: float) -> Array:
     """Each value, or else the preceding one, (n,)."""
-    said = ~np.isnan(values)
-    row = latest(said)
-    return np.where(said[row], values[row], before) if len(values) else values
+    given = ~np.isnan(values)
+    row = last_row_of(given)
+    return np.where(given[row], values[row], before) if len(values) else values
 
 
 def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict[str, Array]]:
@@ -149,3 +167,80 @@ def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict
 def _code(name: str) -> str:
     """G1 for g01; the code of comments for a comment."""
     return COMMENT if not name or name.startswith("(") else _LEADING_ZEROS.sub("", name.upper())
+
+
+_ROTARY = "ABC"
+_NEEDED = {"G4": "P", "M3": "S", "M4": "S", "M6": "T"}
+"""The word that each command requires."""
+
+
+@dataclass
+class CommandDiagnostics:
+    """The diagnostics of one operation, under construction."""
+
+    source: str
+    operation: str
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+    def add(self, code: str, wrong: Array, found: str | Callable[[int], str], line: Array | None = None) -> None:
+        """Add a diagnostic if any row is faulty.
+
+        Args:
+            code: of the diagnostic.
+            wrong: (n,) mask of the faulty rows.
+            found: text of the finding, or a function that returns it for a row.
+            line: (n,) command numbers of the rows; from 1 upwards if none are given.
+        """
+        rows = np.flatnonzero(wrong)
+        if not len(rows):
+            return
+        row = int(rows[0])
+        text = found if isinstance(found, str) else found(row)
+        more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
+        place = Place(self.source, self.operation, row + 1 if line is None else int(line[row]))
+        self.diagnostics.append(Diagnostic(code, place, text + more))
+
+    def has_errors(self) -> bool:
+        """Whether there are errors."""
+        return bool(errors(self.diagnostics))
+
+    def in_order(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics in the order of the commands."""
+        return tuple(sorted(self.diagnostics, key=lambda fault: (fault.place.line, fault.code, fault.found)))
+
+
+def undecodable_command(fault: UnicodeDecodeError, source: str, operation: str) -> Diagnostic:
+    """The fault of a command that FreeCAD stores as undecodable bytes."""
+    return Diagnostic("J135", Place(source, operation), repr(fault.object))
+
+
+def check_words(words: Words, diagnostics: CommandDiagnostics) -> None:
+    """Report unsupported commands and words."""
+    for code in words.codes:
+        if code not in LETTERS and code != COMMENT:
+            diagnostics.add("J123" if code in SPINDLE_SYNCHRONISED else "J104", words.among(code), code)
+    known = words.among(*LETTERS)
+    for letter, given in words.given.items():
+        owners = [code for code, letters in LETTERS.items() if letter in letters]
+        fault = "J115" if letter in _ROTARY else "J104"
+        diagnostics.add(fault, given & known & ~words.among(*owners), _shown(words, letter))
+        diagnostics.add("J119", given & ~np.isfinite(words.value(letter)), _shown(words, letter))
+    for code, letter in _NEEDED.items():
+        diagnostics.add("J104", words.among(code) & ~words.has(letter), f"{code} without {letter}")
+        diagnostics.add("J104", words.among(code) & (words.value(letter) < 0), _shown(words, letter))
+    diagnostics.add("J124", words.among("G4", *CYCLES) & (words.value("P") > LONG_DWELL), _shown(words, "P"))
+    number = words.value("T")
+    diagnostics.add("J104", words.among("M6") & np.isfinite(number) & (number != np.round(number)), _shown(words, "T"))
+    diagnostics.add("J106", words.among("G2", "G3") & ~_in_xy_plane(words), "an arc after G18 or G19")
+    diagnostics.add("J122", words.among(*CYCLES) & ~_in_xy_plane(words), "a cycle after G18 or G19")
+    diagnostics.add("J106", words.among("G2", "G3") & (np.nan_to_num(words.value("K")) != 0), _shown(words, "K"))
+
+
+def _in_xy_plane(words: Words) -> Array:
+    """Whether G17 is in force, (n,); an operation begins with it."""
+    return ~words.among("G18", "G19")[last_row_of(words.among("G17", "G18", "G19"))]
+
+
+def _shown(words: Words, letter: str) -> Callable[[int], str]:
+    """Format a command with one of its words, as in ``G1 A30``."""
+    return lambda row: f"{words.name(row)} {letter}{words.value(letter)[row]:g}"

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import Path
 
-from pkm_post.freecad_app.commands.words import Array
+from pkm_post.freecad_app.commands.words import EVENTS, Array
 from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind, Kind, Program
-from pkm_post.reading import with_chords
+from pkm_post.toolpath import with_chords
 
 _EXACT = 1e-12
 """Largest difference of two unit vectors that count as equal."""
@@ -26,14 +26,7 @@ _STRAIGHT = np.array(["G0", "G1", ""])
 """The code by ``Kind``; an arc has two codes."""
 _LETTERS = {"G0": "XYZIJK", "G1": "XYZIJKF", "G2": "XYZIJKF", "G3": "XYZIJKF"}
 _LETTERS_UPRIGHT = {"G0": "XYZ", "G1": "XYZF"}
-_CODES: dict[tuple[EventKind, float], str] = {
-    (EventKind.COOLANT, 0.0): "M9",
-    (EventKind.COOLANT, 1.0): "M8",
-    (EventKind.COOLANT, 2.0): "M7",
-    (EventKind.STOP, 0.0): "M0",
-    (EventKind.STOP, 1.0): "M1",
-    (EventKind.SPINDLE, 0.0): "M5",
-}
+_CODES = {(kind, value): code for code, (kind, letter, value) in EVENTS.items() if not letter}
 """Events that consist of their code alone."""
 
 
@@ -48,7 +41,7 @@ def commands_of(program: Program) -> list[Any]:
     """
     if len(program) and program.kind[0] == Kind.ARC:
         raise ValueError("commands_of: expected a first row that is no arc, got one")
-    program = with_chords(program, np.flatnonzero(_unspeakable(program)))
+    program = with_chords(program, np.flatnonzero(_needs_chords(program)))
     commands: list[Any] = []
     events = sorted(program.events, key=lambda event: event.row)
     done = 0
@@ -59,7 +52,7 @@ def commands_of(program: Program) -> list[Any]:
     return commands + _moves(program, done, len(program))
 
 
-def _unspeakable(program: Program) -> Array:
+def _needs_chords(program: Program) -> Array:
     """Which arcs G2 and G3 cannot express, (N,)."""
     axis_before = np.vstack([program.tool_axis[:1], program.tool_axis[:-1]])
     turns = norm(program.tool_axis - axis_before) > _EXACT

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arcs: compute the centre from centre words or a radius, and split multi-turn arcs.
+"""Arcs: centre and axis from centre words or a radius; arcs of several turns are split.
 
 Enters and leaves: columns in program coordinates, mm. An arc lies in one of the three planes; a change of the third
 coordinate makes it a helix. Tolerances are those of LinuxCNC, so programs that run there are accepted here: end points
@@ -9,13 +9,18 @@ may have been rounded to a hundredth of a millimetre or a thousandth of an inch 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import arc_points, arc_sweep
-from pkm_post.model import Array
+from pkm_post.geometry import arc_length, arc_points, arc_sweep, dot, norm
+from pkm_post.model import Array, uniform
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import Group, Word
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.frames import normal_coordinate, plane_axes
+from pkm_post.reading.gcode.modal import Modal, is_arc
+from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.options import UNITS
 
 ROUNDED_MM, ROUNDED_INCH = 0.01, 0.001 * UNITS["inch"]
@@ -61,7 +66,7 @@ def arc_axes(words: ArcWords) -> Array:
     return axis
 
 
-def centres(words: ArcWords) -> tuple[Array, list[tuple[int, str, str]]]:
+def centres(words: ArcWords) -> tuple[Array, list[tuple[int, str, Found]]]:
     """Centres of arcs, at the height of their start points.
 
     Returns:
@@ -89,7 +94,7 @@ def _by_radius(start: Array, end: Array, radius: Array, clockwise: Array) -> Arr
     return start + chord / 2 + (side * height)[:, None] * left
 
 
-def _faults(words: ArcWords, start: Array, end: Array, said: Array, flat: Array) -> list[tuple[int, str, str]]:
+def _faults(words: ArcWords, start: Array, end: Array, said: Array, flat: Array) -> list[tuple[int, str, Found]]:
     by_radius, given = ~np.isnan(words.radius), ~np.isnan(said)
     first, last = (_length(points[:, :2] - flat) for points in (start, end))
     off, larger = np.abs(first - last), np.maximum(first, last)
@@ -98,11 +103,11 @@ def _faults(words: ArcWords, start: Array, end: Array, said: Array, flat: Array)
     rounding = _rounding(words.unit)
     beyond = (off > RADIUS_MOST * rounding) | ((off > rounding) & (off > RADIUS_RELATIVE * larger))
     no_circle = (larger < _NO_RADIUS) | (first < _NO_RADIUS)
-    found: tuple[tuple[str, Array, Callable[[int], str]], ...] = (
-        ("G410", by_radius & given.any(axis=1), lambda i: f"R{words.radius[i]:g} and centre words"),
+    found: tuple[tuple[str, Array, Callable[[int], Found]], ...] = (
+        ("G410", by_radius & given.any(axis=1), lambda i: (Word("R", words.radius[i]), " and centre words")),
         ("G410", lacking, lambda i: "neither R nor the centre words of the plane"),
         ("G410", given[:, 2] & (np.nan_to_num(said[:, 2]) != 0), lambda i: "a centre word across the plane"),
-        ("G409", by_radius & (half == 0), lambda i: f"R{words.radius[i]:g}, and it ends where it starts"),
+        ("G409", by_radius & (half == 0), lambda i: (Word("R", words.radius[i]), ", and it ends where it starts")),
         (
             "G409",
             by_radius & (half - np.abs(words.radius) > HALF_CIRCLE),
@@ -124,15 +129,15 @@ def _length(flat: Array) -> Array:
     return length
 
 
-def _too_far(half: float, radius: float) -> str:
-    return f"R{radius:g}, and its ends are {2 * half:.4f} mm apart"
+def _too_far(half: float, radius: float) -> Found:
+    return Word("R", radius), f", and its ends are {2 * half:.4f} mm apart"
 
 
 def _radii(first: float, last: float) -> str:
     return f"radius {first:.4f} mm at its start, {last:.4f} mm at its end"
 
 
-def whole_turns(words: ArcWords, centre: Array, turns: Array) -> tuple[Array, Array, Array]:
+def full_turns(words: ArcWords, centre: Array, turns: Array) -> tuple[Array, Array, Array]:
     """Split arcs of more than one turn at full turns.
 
     Args:
@@ -158,3 +163,103 @@ def whole_turns(words: ArcWords, centre: Array, turns: Array) -> tuple[Array, Ar
     last = piece + 1 == count[index]
     start = np.where((piece == 0)[:, None], words.start[index], at(piece))
     return index, start, np.where(last[:, None], words.end[index], at(piece + 1))
+
+
+MOST_TURNS = 10_000
+"""An arc of more turns than this is taken for a programming error."""
+
+
+def arc_geometry(blocks: Blocks, modal: Modal, motions: Motions, faults: BlockDiagnostics) -> tuple[Array, Array]:
+    """Centres and axes of the arcs in program coordinates, (n, 3) each, NaN on other rows."""
+    rows = np.flatnonzero(is_arc(motions.motion))
+    if not len(rows):
+        return uniform(np.full(3, np.nan), len(motions)), uniform(np.full(3, np.nan), len(motions))
+    centre, axis = np.full_like(motions.end, np.nan), np.full_like(motions.end, np.nan)
+    words, start_known = _arc_words(blocks, modal, motions, rows)
+    unknown = ~start_known | ~motions.known[rows]
+    for row in rows[unknown].tolist():
+        faults.add("G416", int(motions.block[row]), "an arc starts there")
+    centre[rows], wrong = centres(words)
+    axis[rows] = arc_axes(words)
+    for index, code, found in wrong:
+        if not unknown[index]:
+            faults.add(code, int(motions.block[rows[index]]), found)
+    turns = blocks.word("P")[motions.block[rows]]
+    bad = (turns < 1) | (turns != np.round(turns)) & ~np.isnan(turns) | (turns > MOST_TURNS)
+    for block, turn in zip(motions.block[rows[bad]].tolist(), turns[bad].tolist(), strict=True):
+        faults.add("G406", block, (Word("P", turn), " turns"))
+    return centre, axis
+
+
+def _arc_words(blocks: Blocks, modal: Modal, motions: Motions, rows: Array) -> tuple[ArcWords, Array]:
+    """Programmed words of the arcs, and whether their start points are known."""
+    block = motions.block[rows]
+    scale = modal.scale[block]
+    start, known = motions.starts(rows)
+    words = ArcWords(
+        start=start,
+        end=motions.end[rows],
+        plane=modal.active[Group.PLANE][block],
+        clockwise=motions.motion[rows] == 20,
+        centre=np.column_stack([blocks.word(letter)[block] * scale for letter in "IJK"]),
+        absolute=modal.active[Group.ARC_DISTANCE][block] == 901,
+        radius=blocks.word("R")[block] * scale,
+        unit=scale,
+    )
+    return words, known
+
+
+def split_turns(
+    blocks: Blocks, modal: Modal, motions: Motions, centre: Array, axis: Array
+) -> tuple[Motions, Array, Array]:
+    """Split multi-turn arcs into arcs of at most one turn."""
+    arcs = np.flatnonzero(is_arc(motions.motion))
+    turns = blocks.word("P")[motions.block[arcs]]
+    rows, turns = arcs[turns > 1], turns[turns > 1]
+    if not len(rows):
+        return motions, centre, axis
+    words, _ = _arc_words(blocks, modal, motions, rows)
+    _, start, end = full_turns(words, centre[rows], turns)
+    pieces = np.ones(len(motions), dtype=np.int64)
+    pieces[rows] = turns.astype(np.int64)
+    source = np.repeat(np.arange(len(motions)), pieces)
+    cut = pieces[source] > 1
+    motions = _selected(motions, source, np.cumsum(pieces) - pieces)
+    motions.end[cut] = end
+    centre, axis = centre[source], axis[source]
+    centre[cut] += dot(start - centre[cut], axis[cut])[:, None] * axis[cut]
+    return motions, centre, axis
+
+
+def with_known_ends(motions: Motions, columns: list[Array]) -> tuple[Motions, list[Array]]:
+    """Drop motions with an unknown end point, and the same rows of the given columns."""
+    if motions.known.all():
+        return motions, columns
+    rows = np.flatnonzero(motions.known)
+    return _selected(motions, rows, np.cumsum(motions.known) - motions.known), [column[rows] for column in columns]
+
+
+def _selected(motions: Motions, rows: Array, place: Array) -> Motions:
+    """Select motions; a motion may be selected several times.
+
+    Args:
+        motions: to select from.
+        rows: (m,) selected rows.
+        place: (n,) index of the first copy of each motion in the selection.
+    """
+    place = np.append(place, len(rows))
+    return replace(
+        motions,
+        **{name: getattr(motions, name)[rows] for name in ("block", "motion", "end", "known", "frame")},
+        first=place[motions.first],
+        in_cycles=[(int(place[row]), block, kind, value) for row, block, kind, value in motions.in_cycles],
+    )
+
+
+def path_lengths(motions: Motions, centre: Array, axis: Array) -> Array:
+    """Distances travelled by the tool tip, (n,), mm; 0 where unknown."""
+    start, known = motions.starts(np.arange(len(motions)))
+    way = norm(motions.end - start)
+    arc = is_arc(motions.motion)
+    way[arc] = arc_length(start[arc], motions.end[arc], centre[arc], axis[arc])
+    return np.where(known, way, 0.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Blocks: a G-code program as columns, one row per block, before interpretation.
+"""Blocks: one block of G-code, and a program as columns of blocks, before interpretation.
 
 Enters: the result of the scan or of the execution. Leaves: the same, checked and read-only. Units: as programmed
 (inches or millimetres, degrees, F as written); the resolve step converts them.
@@ -10,7 +10,7 @@ Only the words that the program uses have a column: a program of X, Y, Z and F t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,28 @@ from pkm_post.model import Array, Place, uniform
 
 if TYPE_CHECKING:
     from lark import Token, Tree
+
+
+@dataclass
+class Block:
+    """Content of one block.
+
+    Attributes:
+        words: their values, by letter or name, in block order.
+        g: G codes in tenths.
+        m: M codes.
+        deleted: whether the block begins with the block delete character.
+        tree: the parse tree if the block holds more than plain words; it then has no words and codes.
+    """
+
+    words: dict[str, float] = field(default_factory=dict)
+    g: list[int] = field(default_factory=list)
+    m: list[int] = field(default_factory=list)
+    deleted: bool = False
+    tree: Tree[Token] | None = None
+
+    def __bool__(self) -> bool:
+        return bool(self.words or self.g or self.m or self.tree)
 
 
 @dataclass(frozen=True)
@@ -64,8 +86,8 @@ class Blocks:
             ("m", np.int32, len(self.m)),
             ("m_row", np.int32, len(self.m)),
         ):
-            object.__setattr__(self, name, _taken(name, getattr(self, name), dtype, count))
-        words = {letter: _taken(f"words {letter}", self.words[letter], np.float64, rows) for letter in self.words}
+            object.__setattr__(self, name, _column(name, getattr(self, name), dtype, count))
+        words = {letter: _column(f"words {letter}", self.words[letter], np.float64, rows) for letter in self.words}
         object.__setattr__(self, "words", {letter: words[letter] for letter in sorted(words)})
 
     def __len__(self) -> int:
@@ -114,7 +136,7 @@ class Blocks:
             deleted=self.deleted[:count],
         )
 
-    def chosen(self, rows: Array) -> Blocks:
+    def selected(self, rows: Array) -> Blocks:
         """Select rows, which must be plain, in any order and with repetition."""
         g, g_row = codes_of(self.g, self.g_row, rows)
         m, m_row = codes_of(self.m, self.m_row, rows)
@@ -130,7 +152,7 @@ class Blocks:
         )
 
 
-def _taken(name: str, values: Array, dtype: DTypeLike, count: int) -> Array:
+def _column(name: str, values: Array, dtype: DTypeLike, count: int) -> Array:
     """A read-only view of a column, not a copy: the columns dominate the memory use of a program."""
     column = np.ascontiguousarray(values, dtype=dtype).view()
     if column.shape != (count,):

@@ -7,22 +7,25 @@ code of the block uses, and missing or invalid words.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from pkm_post.model import Array, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import (
-    ANY_BLOCK,
     G_CODES,
-    IN_STEP_WITH_SPINDLE,
     M_CODES,
     NONE,
-    REFUSED,
+    SPINDLE_SYNCHRONISED,
+    UNSUPPORTED,
+    WORDS_OF_ANY_BLOCK,
     Code,
     Group,
-    name_of,
+    Word,
+    word_of,
 )
-from pkm_post.reading.gcode.findings import Findings
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.modal import Modal, is_cycle
 from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
 
@@ -35,7 +38,7 @@ _Codes = tuple[str, Array, Array, dict[int, Code]]
 """Letter, codes, their rows, and their definitions."""
 
 
-def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> None:
+def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
     """Report the faults of individual blocks.
 
     Args:
@@ -46,8 +49,8 @@ def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) 
     """
     _unknown_codes(blocks, faults)
     _codes_of_one_group(blocks, faults)
-    _words_without_use(blocks, modal, options, faults)
-    _words_missing(blocks, modal, faults)
+    _unused_words(blocks, modal, options, faults)
+    _missing_words(blocks, modal, faults)
     _values(blocks, modal, faults)
     _axis_words(blocks, modal, faults)
 
@@ -63,22 +66,22 @@ def _marked(blocks: Blocks, rows: Array) -> Array:
     return marked
 
 
-def _unknown_codes(blocks: Blocks, faults: Findings) -> None:
+def _unknown_codes(blocks: Blocks, faults: BlockDiagnostics) -> None:
     for letter, codes, rows, known in _codes(blocks):
         for code in np.unique(codes).tolist():
             if code in known:
                 continue
-            name = name_of(code, letter)
+            word = word_of(code, letter)
             wrong = _marked(blocks, rows[codes == code])
-            if name in IN_STEP_WITH_SPINDLE:
-                faults.tell_all("G425", wrong, lambda _, name=name: name)  # type: ignore[misc]
-            elif name in REFUSED:
-                faults.tell_all("G402", wrong, lambda _, name=name: f"{name}: {REFUSED[name]}")  # type: ignore[misc]
+            if str(word) in SPINDLE_SYNCHRONISED:
+                faults.add_where("G425", wrong, lambda _, word=word: word)  # type: ignore[misc]
+            elif str(word) in UNSUPPORTED:
+                faults.add_where("G402", wrong, lambda _, word=word: (word, f": {UNSUPPORTED[str(word)]}"))  # type: ignore[misc]
             else:
-                faults.tell_all("G401", wrong, lambda _, name=name: name)  # type: ignore[misc]
+                faults.add_where("G401", wrong, lambda _, word=word: word)  # type: ignore[misc]
 
 
-def _codes_of_one_group(blocks: Blocks, faults: Findings) -> None:
+def _codes_of_one_group(blocks: Blocks, faults: BlockDiagnostics) -> None:
     groups = list(Group)
     for letter, codes, rows, known in _codes(blocks):
         with_next = np.append(rows[1:] == rows[:-1], False)[: len(rows)]
@@ -91,21 +94,21 @@ def _codes_of_one_group(blocks: Blocks, faults: Findings) -> None:
         for pair in pairs[count > 1].tolist():
             row, of_group = divmod(pair, len(groups))
             here = (blocks.g_of(row) if letter == "G" else blocks.m_of(row)).tolist()
-            names = [name_of(code, letter) for code in here if code in known and known[code].group is groups[of_group]]
-            faults.tell("G403", row, f"{' '.join(names)} ({groups[of_group].value})")
+            words = [word_of(code, letter) for code in here if code in known and known[code].group is groups[of_group]]
+            faults.add("G403", row, (*_spaced(words), f" ({groups[of_group].value})"))
 
 
-def _words_without_use(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> None:
+def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
     rotary = set("ABC") - set(axis_names(options.axis_words))
     useless = {}
     for letter in blocks.words:
-        if letter not in ANY_BLOCK and letter not in rotary:
+        if letter not in WORDS_OF_ANY_BLOCK and letter not in rotary:
             unused = blocks.has(letter) & ~_used_by_motion(letter, modal, options)
             if unused.any():
                 unused[_rows_that_use(letter, blocks)] = False
                 useless[letter] = unused
-    _tell_words("G414", {letter: blocks.has(letter) for letter in blocks.words if letter in rotary}, blocks, faults)
-    _tell_words("G404", useless, blocks, faults)
+    _report_words("G414", {letter: blocks.has(letter) for letter in blocks.words if letter in rotary}, blocks, faults)
+    _report_words("G404", useless, blocks, faults)
 
 
 def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
@@ -117,7 +120,7 @@ def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
             takes[code] = code == 800 or letter in meaning.letters or turns or letter in NORMAL_WORDS
             if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # on an arc they are its centre, or meaningless
                 takes[code] = letter in meaning.letters
-    return modal.moves & map_rows(takes.__getitem__, modal.in_force[Group.MOTION])
+    return modal.moves & map_rows(takes.__getitem__, modal.active[Group.MOTION])
 
 
 def _rows_that_use(letter: str, blocks: Blocks) -> Array:
@@ -133,31 +136,34 @@ def _rows_that_use(letter: str, blocks: Blocks) -> Array:
     return np.concatenate(rows)
 
 
-def _tell_words(code: str, wrong: dict[str, Array], blocks: Blocks, faults: Findings) -> None:
+def _report_words(code: str, wrong: dict[str, Array], blocks: Blocks, faults: BlockDiagnostics) -> None:
     """Report invalid words, one fault per block."""
     if wrong:
-        faults.tell_all(
+        faults.add_where(
             code,
             np.any(list(wrong.values()), axis=0),
-            lambda row: " ".join(_word(letter, blocks.words[letter][row]) for letter in wrong if wrong[letter][row]),
+            lambda row: _spaced([Word(name, blocks.words[name][row]) for name in wrong if wrong[name][row]]),
         )
 
 
-def _word(name: str, value: float) -> str:
-    """A word as written: X1, A3=1."""
-    return f"{name}={value:g}" if name[-1].isdigit() else f"{name}{value:g}"
+def _spaced(words: Sequence[Word]) -> tuple[str | Word, ...]:
+    """Words with blanks between them."""
+    parts: list[str | Word] = []
+    for word in words:
+        parts += [" ", word]
+    return tuple(parts[1:])
 
 
-def _words_missing(blocks: Blocks, modal: Modal, faults: Findings) -> None:
+def _missing_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     for code in np.unique(blocks.g).tolist():
         for letter in G_CODES[code].needs if code in G_CODES else "":
             missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
-            faults.tell_all("G405", missing, lambda _, c=code, w=letter: f"{name_of(c)} without {w}")  # type: ignore[misc]
-    spindle = modal.explicit[Group.SPINDLE]
+            faults.add_where("G405", missing, lambda _, c=code, w=letter: (word_of(c), f" without {w}"))  # type: ignore[misc]
+    spindle = modal.programmed[Group.SPINDLE]
     turning = map_rows(lambda codes: np.isin(codes, (3, 4)), spindle)
-    faults.tell_all("G405", turning & _before_first(blocks, "S"), lambda row: f"M{spindle[row]} without S")
-    change = modal.explicit[Group.CHANGE] == 6
-    faults.tell_all("G405", change & _before_first(blocks, "T"), lambda _: "M6 without T")
+    faults.add_where("G405", turning & _before_first(blocks, "S"), lambda row: (Word("M", spindle[row]), " without S"))
+    change = modal.programmed[Group.CHANGE] == 6
+    faults.add_where("G405", change & _before_first(blocks, "T"), lambda _: (Word("M", 6), " without T"))
 
 
 def _before_first(blocks: Blocks, letter: str) -> Array:
@@ -166,7 +172,7 @@ def _before_first(blocks: Blocks, letter: str) -> Array:
     return np.arange(len(blocks)) < (rows[0] if len(rows) else len(blocks))
 
 
-def _values(blocks: Blocks, modal: Modal, faults: Findings) -> None:
+def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     for letter, value in blocks.words.items():
         # Comparisons with NaN are false.
         wrong = np.abs(value) > _LIMIT
@@ -174,29 +180,33 @@ def _values(blocks: Blocks, modal: Modal, faults: Findings) -> None:
             wrong |= np.abs(value - np.round(value)) > 0
         if letter in _NOT_NEGATIVE:
             wrong |= value < 0
-        faults.tell_all("G406", wrong, lambda row, name=letter, value=value: _word(name, value[row]))  # type: ignore[misc]
-    rows = np.flatnonzero(map_rows(lambda codes: np.isin(codes, (410, 420)), modal.explicit[Group.SIDE]))
+        faults.add_where("G406", wrong, lambda row, name=letter, value=value: Word(name, value[row]))  # type: ignore[misc]
+    rows = np.flatnonzero(map_rows(lambda codes: np.isin(codes, (410, 420)), modal.programmed[Group.SIDE]))
     diameter = blocks.word("D")[rows]
     for row in rows[np.abs(diameter - np.round(diameter)) > 0].tolist():
-        faults.tell("G406", row, f"D{blocks.word('D')[row]:g}")
+        faults.add("G406", row, Word("D", blocks.word("D")[row]))
     rows = blocks.g_row[blocks.g == 40]
     for row in np.unique(rows[blocks.word("P")[rows] < 0]).tolist():
-        faults.tell("G406", row, f"P{blocks.word('P')[row]:g}")
+        faults.add("G406", row, Word("P", blocks.word("P")[row]))
 
 
-def _axis_words(blocks: Blocks, modal: Modal, faults: Findings) -> None:
+def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     """Report axis words that belong to no motion, or to two codes."""
-    explicit, motion = modal.explicit[Group.MOTION], modal.in_force[Group.MOTION]
-    faults.tell_all("G407", modal.moves & (motion == 800), lambda _: "axis words while no motion is in force (G80)")
+    explicit, motion = modal.programmed[Group.MOTION], modal.active[Group.MOTION]
+    faults.add_where(
+        "G407", modal.moves & (motion == 800), lambda _: ("axis words while no motion is in force (", word_of(800), ")")
+    )
     both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)
-    faults.tell_all(
-        "G407", both, lambda row: f"{name_of(modal.takes_axes[row])} and {name_of(explicit[row])} in one block"
+    faults.add_where(
+        "G407", both, lambda row: (word_of(modal.takes_axes[row]), " and ", word_of(explicit[row]), " in one block")
     )
     takers = blocks.g_row[np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.takes_axes])]
     for row in np.unique(takers[1:][takers[1:] == takers[:-1]]).tolist():
-        faults.tell("G407", row, " ".join(name_of(code) for code in blocks.g_of(row).tolist()))
-    directly = modal.explicit[Group.ONCE] == 530
+        faults.add("G407", row, _spaced([word_of(code) for code in blocks.g_of(row).tolist()]))
+    directly = modal.programmed[Group.ONCE] == 530
     wrong = directly & (motion != 0) & (motion != 10)
-    faults.tell_all("G407", wrong, lambda row: f"G53 while {name_of(motion[row])} is in force")
-    inverse = modal.moves & is_cycle(motion) & (modal.in_force[Group.FEED_MODE] == 930)
-    faults.tell_all("G407", inverse, lambda row: f"{name_of(motion[row])} with inverse time feed (G93)")
+    faults.add_where("G407", wrong, lambda row: (word_of(530), " while ", word_of(motion[row]), " is in force"))
+    inverse = modal.moves & is_cycle(motion) & (modal.active[Group.FEED_MODE] == 930)
+    faults.add_where(
+        "G407", inverse, lambda row: (word_of(motion[row]), " with inverse time feed (", word_of(930), ")")
+    )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 NONE = -1
 """Marks a block without a code of a group."""
@@ -57,7 +58,8 @@ class Code:
 
 
 _DRILL = "XYZRLK"
-_SYSTEMS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
+WORK_OFFSETS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
+"""In order of the P word of G10."""
 
 G_CODES: dict[int, Code] = {
     0: Code(Group.MOTION, "XYZ"),
@@ -97,7 +99,7 @@ G_CODES: dict[int, Code] = {
     432: Code(Group.LENGTH, "H", "H"),
     490: Code(Group.LENGTH),
     **{code: Code(Group.RETRACT) for code in (980, 990)},
-    **{code: Code(Group.SYSTEM) for code in _SYSTEMS},
+    **{code: Code(Group.SYSTEM) for code in WORK_OFFSETS},
     **{code: Code(Group.PATH) for code in (610, 611)},
     640: Code(Group.PATH, "PQ"),
     970: Code(Group.SPINDLE_MODE),
@@ -115,7 +117,7 @@ M_CODES: dict[int, Code] = {
     **{code: Code(Group.OVERRIDE) for code in (48, 49)},
 }
 
-REFUSED: dict[str, str] = {
+UNSUPPORTED: dict[str, str] = {
     "G5": "splines",
     "G5.1": "splines",
     "G5.2": "NURBS",
@@ -146,15 +148,32 @@ REFUSED: dict[str, str] = {
 }
 """Purpose of well-known codes that this machine does not support."""
 
-IN_STEP_WITH_SPINDLE = ("G33", "G33.1", "G74", "G84")
+SPINDLE_SYNCHRONISED = ("G33", "G33.1", "G74", "G84")
 """Threading codes: thread cutting, rigid tapping, and left-hand and right-hand tapping."""
 
 CYCLES = (730, 810, 820, 830, 850, 860, 890)
-END_OF_CYCLES = 800
+CANCEL_CYCLE = 800
 ARCS = (20, 30)
-ANY_BLOCK = "FNSTO"
+WORDS_OF_ANY_BLOCK = "FNSTO"
+
+
+class Word(NamedTuple):
+    """A word of a block, printed as written: X1, G43.4, A3=1; without a value any word of its name."""
+
+    name: str
+    value: float | None = None
+
+    def __str__(self) -> str:
+        if self.value is None:
+            return self.name
+        return f"{self.name}{'=' if self.name[-1].isdigit() else ''}{self.value:g}"
+
+
+def word_of(code: int, letter: str = "G") -> Word:
+    """The word of a code: G43.4 for 434, M6 for 6."""
+    return Word(letter, code / 10 if letter == "G" else code)
 
 
 def name_of(code: int, letter: str = "G") -> str:
-    """A code as written: G43.4 for 434, M6 for 6."""
-    return f"{letter}{code / 10:g}" if letter == "G" else f"{letter}{code}"
+    """A code as written."""
+    return str(word_of(code, letter))

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cycles: expand a drilling cycle into moves and dwells.
+"""Drilling cycles: G73, G81, G82, G83, G85, G86 and G89, in any plane, as defined by RS274NGC.
 
-Enters: the tool position and the words of one block, in mm and program coordinates. Leaves: rapid and linear moves,
-with the events between them. G73, G81, G82, G83, G85, G86 and G89, in any plane, as defined by RS274NGC.
+Enters: cycle blocks and the tool position, in mm and program coordinates. Leaves: rapid and linear moves, with the
+events between them. R, Q, P and the depth are modal as long as the cycle is active, the initial level until another
+motion intervenes. L, or K on Fanuc, repeats the hole, with G91 at the same increment each time [LinuxCNC; Fanuc, canned
+cycles].
 """
 
 from __future__ import annotations
@@ -10,11 +12,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from pkm_post.model import Array, EventKind, Kind
-from pkm_post.reading.gcode.codes import name_of
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import Group, Word, word_of
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
+from pkm_post.reading.gcode.frames import PLANES, Frame
+from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle
 
 PECK_CLEARANCE = 0.254
 """Clearance above the depth reached at which a peck resumes feed, and retract distance of G73, mm."""
@@ -25,6 +32,9 @@ DWELLS = (820, 860, 890)
 """Cycles that dwell at the bottom."""
 _PECKS = (730, 830)
 _STOPS_SPINDLE = 860
+_REPEATS = "LK"
+_SAME_HEIGHT = 1e-9
+"""mm: round-off of a coordinate transformed to {C} and back."""
 
 
 Words = tuple[float, float, float, float]
@@ -65,7 +75,7 @@ class Cycle:
 
 
 @dataclass(frozen=True)
-class Series:
+class CycleSeries:
     """Consecutive cycles without another motion between them.
 
     The tool may be at R when the next cycle begins (G99). G98 still returns to the initial level, and with G91 R is
@@ -80,7 +90,7 @@ class Series:
     initial: float
 
     @classmethod
-    def after(cls, before: Series | None, code: int, height: float, words: Words) -> Series:
+    def after(cls, before: CycleSeries | None, code: int, height: float, words: Words) -> CycleSeries:
         """Extend the series by one cycle.
 
         Args:
@@ -115,7 +125,7 @@ class Strokes:
     ends: list[Array] = field(default_factory=list)
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)
 
-    def go(self, kind: Kind, axis: int | tuple[int, int], to: float | Array) -> None:
+    def move(self, kind: Kind, axis: int | tuple[int, int], to: float | Array) -> None:
         """Move some coordinates, unless the tool is already there."""
         end = self.here.copy()
         end[[axis] if isinstance(axis, int) else list(axis)] = to
@@ -124,37 +134,37 @@ class Strokes:
             self.ends.append(end)
             self.here = end
 
-    def happen(self, kind: EventKind, value: float) -> None:
+    def add_event(self, kind: EventKind, value: float) -> None:
         """Add an event at the current point."""
         self.events.append((len(self.ends), kind, value))
 
 
-def fault_of(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[str, str] | None:
+def cycle_fault(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[str, tuple[str | Word, ...]] | None:
     """The fault that prevents a cycle from being executed: code and what was found."""
-    name = name_of(cycle.code)
+    name = word_of(cycle.code)
     for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, DWELLS)):
         if cycle.code in codes and math.isnan(value):
-            return "G405", f"{name} without {letter}"
+            return "G405", (name, f" without {letter}")
     if math.isnan(hole.top):
-        return "G405", f"{name} without R"
+        return "G405", (name, " without R")
     if math.isnan(hole.bottom):
-        return "G405", f"{name} without a depth"
+        return "G405", (name, " without a depth")
     if hole.top < hole.bottom:
-        return "G418", f"{name}: R {hole.top:g} is below the bottom {hole.bottom:g}"
+        return "G418", (name, f": R {hole.top:g} is below the bottom {hole.bottom:g}")
     if cycle.code in _PECKS and not cycle.peck > 0:
-        return "G418", f"{name} Q{cycle.peck:g}"
+        return "G418", (name, " ", Word("Q", cycle.peck))
     if not 1 <= repeats <= MOST_STROKES or repeats != round(repeats):
-        return "G418", f"{name} repeated {repeats:g} times"
+        return "G418", (name, f" repeated {repeats:g} times")
     if cycle.code in _PECKS and repeats * (hole.top - hole.bottom) / cycle.peck > MOST_STROKES:
-        return "G418", f"{name}: more than {MOST_STROKES} pecks"
+        return "G418", (name, f": more than {MOST_STROKES} pecks")
     if cycle.code == _STOPS_SPINDLE and not spindle:
-        return "G418", f"{name} while the spindle stands still"
+        return "G418", (name, " while the spindle stands still")
     if not cycle.dwell >= 0 and not math.isnan(cycle.dwell):
-        return "G418", f"{name} P{cycle.dwell:g}"
+        return "G418", (name, " ", Word("P", cycle.dwell))
     return None
 
 
-def strokes(
+def cycle_strokes(
     cycle: Cycle, hole: Hole, centres: Array, axes: tuple[int, int, int], here: Array, spindle: float
 ) -> Strokes:
     """The moves of a cycle: retract if the tool is too low, traverse, descend to R, and drill the hole.
@@ -167,16 +177,16 @@ def strokes(
         here: (3,) tool position.
         spindle: signed spindle speed, 1/min.
     """
-    made = Strokes(here)
+    strokes = Strokes(here)
     normal = axes[2]
     if here[normal] <= hole.top:
-        made.go(Kind.RAPID, normal, hole.clear)
+        strokes.move(Kind.RAPID, normal, hole.clear)
     for centre in centres:
-        made.go(Kind.RAPID, axes[:2], centre)
-        made.go(Kind.RAPID, normal, hole.top)
-        _down(cycle, hole, normal, made)
-        _up(cycle, hole, normal, made, spindle)
-    return made
+        strokes.move(Kind.RAPID, axes[:2], centre)
+        strokes.move(Kind.RAPID, normal, hole.top)
+        _drill_down(cycle, hole, normal, strokes)
+        _retract(cycle, hole, normal, strokes, spindle)
+    return strokes
 
 
 def _pecks(cycle: Cycle, hole: Hole) -> Iterator[float]:
@@ -186,22 +196,122 @@ def _pecks(cycle: Cycle, hole: Hole) -> Iterator[float]:
         depth -= cycle.peck
 
 
-def _down(cycle: Cycle, hole: Hole, normal: int, made: Strokes) -> None:
+def _drill_down(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes) -> None:
     for depth in _pecks(cycle, hole) if cycle.code in _PECKS else ():
-        made.go(Kind.LINE, normal, depth)
+        strokes.move(Kind.LINE, normal, depth)
         if cycle.code == 830:
-            made.go(Kind.RAPID, normal, hole.top)
-        made.go(Kind.RAPID, normal, depth + PECK_CLEARANCE)
-    made.go(Kind.LINE, normal, hole.bottom)
+            strokes.move(Kind.RAPID, normal, hole.top)
+        strokes.move(Kind.RAPID, normal, depth + PECK_CLEARANCE)
+    strokes.move(Kind.LINE, normal, hole.bottom)
 
 
-def _up(cycle: Cycle, hole: Hole, normal: int, made: Strokes, spindle: float) -> None:
+def _retract(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes, spindle: float) -> None:
     if cycle.code in DWELLS and cycle.dwell > 0:
-        made.happen(EventKind.DWELL, cycle.dwell)
+        strokes.add_event(EventKind.DWELL, cycle.dwell)
     if cycle.code == _STOPS_SPINDLE:
-        made.happen(EventKind.SPINDLE, 0.0)
+        strokes.add_event(EventKind.SPINDLE, 0.0)
     if cycle.code in (850, 890):
-        made.go(Kind.LINE, normal, hole.top if cycle.code == 850 else hole.clear)
-    made.go(Kind.RAPID, normal, hole.clear)
+        strokes.move(Kind.LINE, normal, hole.top if cycle.code == 850 else hole.clear)
+    strokes.move(Kind.RAPID, normal, hole.clear)
     if cycle.code == _STOPS_SPINDLE:
-        made.happen(EventKind.SPINDLE, spindle)
+        strokes.add_event(EventKind.SPINDLE, spindle)
+
+
+class CycleTracker:
+    """Tracks the active series of cycles."""
+
+    def __init__(
+        self,
+        blocks: Blocks,
+        modal: Modal,
+        words: PositionWords,
+        spindle: Array,
+        dwells: Array,
+        faults: BlockDiagnostics,
+    ) -> None:
+        self._modal, self._words = modal, words
+        self._cycle_words = {letter: blocks.word(letter) for letter in "RQ" + _REPEATS}
+        self._spindle, self._dwells, self._faults = spindle, dwells, faults
+        self._series: CycleSeries | None = None
+        self._row, self._level = 0, np.zeros(3)
+        self._plane = self._distance = 0
+        self._scale = 1.0
+
+    @cached_property
+    def _series_number(self) -> Array:
+        """Number of the last non-cycle block up to each block, (N,): constant within a series."""
+        return np.cumsum(~is_cycle(self._modal.active[Group.MOTION]))
+
+    def strokes(self, row: int, position: Array, known: Array, frame: Frame) -> Strokes | None:
+        """The strokes of one block, None if it has a fault.
+
+        Args:
+            row: the block.
+            position: (3,) tool position.
+            known: (3,) which coordinates are known.
+            frame: of these coordinates.
+        """
+        code = int(self._modal.active[Group.MOTION][row])
+        axes = PLANES[int(self._modal.active[Group.PLANE][row])]
+        relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
+        given = ~np.isnan(self._words.at(row)) & (not relative)
+        given[axes[2]] = False
+        if not (known | given).all():
+            self._faults.add("G416", row, word_of(code))
+            return None
+        returns = bool(self._modal.active[Group.RETRACT][row] == 980)
+        series = self._extend_series(row, code, position, frame)
+        hole = series.hole(relative, returns)
+        repeats, spindle = self._repeats(row), float(self._spindle[row])
+        conflict = self._mode_conflict(row, series, relative or returns, frame)
+        fault = ("G426", conflict) if conflict else cycle_fault(series.cycle, hole, repeats, spindle)
+        if math.isnan(repeats):
+            fault = "G418", (word_of(code), " with L and K")
+        if fault:
+            self._faults.add(fault[0], row, fault[1])
+            return None
+        centres = self._centres(row, position, axes, relative, int(repeats))
+        return cycle_strokes(series.cycle, hole, centres, axes, position, spindle)
+
+    def _extend_series(self, row: int, code: int, position: Array, frame: Frame) -> CycleSeries:
+        """Extend the series by the cycle of this block."""
+        normal = PLANES[int(self._modal.active[Group.PLANE][row])][2]
+        scale = float(self._modal.scale[row])
+        retract, peck = (scale * float(self._cycle_words[letter][row]) for letter in "RQ")
+        words = (retract, float(self._words.columns[normal][row]), peck, float(self._dwells[row]))
+        before = self._series if self._series_number[row] == self._series_number[self._row] else None
+        self._series = CycleSeries.after(before, code, float(position[normal]), words)
+        self._row = row
+        if before is None:
+            self._level, self._plane = frame.to_work(position), int(self._modal.active[Group.PLANE][row])
+        if before is None or not (math.isnan(words[0]) or math.isnan(words[1])):
+            self._distance, self._scale = int(self._modal.active[Group.DISTANCE][row]), scale
+        return self._series
+
+    def _mode_conflict(self, row: int, series: CycleSeries, needs_level: bool, frame: Frame) -> Found:
+        """What has changed since the modal words were programmed and may alter their meaning."""
+        name, plane = word_of(series.cycle.code), int(self._modal.active[Group.PLANE][row])
+        distance, scale = int(self._modal.active[Group.DISTANCE][row]), float(self._modal.scale[row])
+        if plane != self._plane:
+            return name, " goes on in ", word_of(plane), ", begun in ", word_of(self._plane)
+        if distance != self._distance:
+            return name, " goes on in ", word_of(distance), ", its R and depth are those of ", word_of(self._distance)
+        if scale != self._scale:
+            return name, f" goes on in a unit of {scale:g} mm, its R and depth are in one of {self._scale:g} mm"
+        level = float(frame.to_program(self._level)[PLANES[plane][2]])
+        if needs_level and abs(level - series.initial) > _SAME_HEIGHT:
+            return name, f": the initial level {series.initial:g} is {level:g} where the origin lies now"
+        return ""
+
+    def _repeats(self, row: int) -> float:
+        """Repeat count of the hole; NaN where two words specify it."""
+        words = [float(self._cycle_words[letter][row]) for letter in _REPEATS]
+        given = [word for word in words if not math.isnan(word)]
+        return 1.0 if not given else given[0] if len(given) == 1 else math.nan
+
+    def _centres(self, row: int, position: Array, axes: tuple[int, int, int], relative: bool, repeats: int) -> Array:
+        """Hole positions, (n, 2)."""
+        words, here = self._words.at(row)[list(axes[:2])], position[list(axes[:2])]
+        if relative:
+            return here + np.arange(1, repeats + 1)[:, None] * np.nan_to_num(words)
+        return np.tile(np.where(np.isnan(words), here, words), (repeats, 1))

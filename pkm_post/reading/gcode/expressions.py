@@ -2,8 +2,8 @@
 """Expressions: the values in a block, compiled once and evaluated at each execution of the block.
 
 Enters: subtrees of the parse tree of a block. Leaves: their values, in the units as written; angles of functions are in
-degrees, as in the program. An expression compiles to a list of stack operations, so Python's recursion depth does not
-depend on the program.
+degrees, as in the program; true is 1 and false is 0. An expression compiles to a list of stack operations, so Python's
+recursion depth does not depend on the program.
 """
 
 from __future__ import annotations
@@ -14,13 +14,89 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
-from pkm_post.reading.gcode.arithmetic import FUNCTIONS, OPERATORS, arc_tangent
 from pkm_post.reading.gcode.parameters import ExecutionFault, Name, Parameters, in_range
 
 if TYPE_CHECKING:
     from lark import Token, Tree
 
     Node = Tree[Token] | Token
+
+_EQUAL = 1e-4
+"""Values that differ by less compare as EQ."""
+
+
+def _divided(left: float, right: float) -> float:
+    if right == 0:
+        raise ExecutionFault("G304", f"{left:.10g} / {right:.10g}")
+    return left / right
+
+
+def _modulo(left: float, right: float) -> float:
+    """The remainder, never negative."""
+    if right == 0:
+        raise ExecutionFault("G304", f"{left:.10g} mod {right:.10g}")
+    rest = math.fmod(left, right)
+    return rest + abs(right) if rest < 0 else rest
+
+
+def _power(left: float, right: float) -> float:
+    if left < 0 and right != math.floor(right):
+        raise ExecutionFault("G305", f"{left:.10g} ** {right:.10g}")
+    if left == 0 and right < 0:
+        raise ExecutionFault("G304", f"0 ** {right:.10g}")
+    return float(left**right)
+
+
+def _rounded(value: float) -> float:
+    """The nearest integer, halves rounded away from zero."""
+    return math.copysign(math.floor(abs(value) + 0.5), value)
+
+
+OPERATORS: dict[str, Callable[[float, float], float]] = {
+    "**": _power,
+    "*": operator.mul,
+    "/": _divided,
+    "mod": _modulo,
+    "+": operator.add,
+    "-": operator.sub,
+    "eq": lambda left, right: float(abs(left - right) < _EQUAL),
+    "ne": lambda left, right: float(abs(left - right) >= _EQUAL),
+    "gt": operator.gt,
+    "ge": operator.ge,
+    "lt": operator.lt,
+    "le": operator.le,
+    "and": lambda left, right: float(left != 0 and right != 0),
+    "or": lambda left, right: float(left != 0 or right != 0),
+    "xor": lambda left, right: float((left != 0) != (right != 0)),
+}
+"""Implementation of the operators; the grammar defines their precedence."""
+
+FUNCTIONS: dict[str, Callable[[float], float]] = {
+    "abs": abs,
+    "acos": lambda value: math.degrees(math.acos(value)),
+    "asin": lambda value: math.degrees(math.asin(value)),
+    "cos": lambda value: math.cos(math.radians(value)),
+    "exp": math.exp,
+    "fix": math.floor,
+    "fup": math.ceil,
+    "ln": math.log,
+    "round": _rounded,
+    "sin": lambda value: math.sin(math.radians(value)),
+    "sqrt": math.sqrt,
+    "tan": lambda value: math.tan(math.radians(value)),
+}
+"""Implementation of the functions of one argument; angles in degrees."""
+
+
+def arc_tangent(y: float, x: float) -> float:
+    """The angle of a vector, degrees.
+
+    Args:
+        y: its second component, the first argument of ``atan[y]/[x]``.
+        x: its first component.
+    """
+    return math.degrees(math.atan2(y, x))
+
 
 Step = Callable[[list[float], Parameters], None]
 _Result = TypeVar("_Result")
@@ -75,7 +151,7 @@ class Target:
         """
         if self.number is None:
             return self.name
-        return _told_at(self.column, in_range, self.number.value(parameters))
+        return _located(self.column, in_range, self.number.value(parameters))
 
 
 def expression_of(node: Node) -> Expression:
@@ -160,13 +236,13 @@ def _push(number: float) -> Step:
 
 
 def _named(name: str, column: int) -> Step:
-    return lambda stack, parameters: stack.append(_told_at(column, parameters.value, name))
+    return lambda stack, parameters: stack.append(_located(column, parameters.value, name))
 
 
 def _numbered(column: int) -> Step:
     def read(stack: list[float], parameters: Parameters) -> None:
         number = stack[-1]
-        stack[-1] = _told_at(column, lambda: parameters.value(in_range(number)))
+        stack[-1] = _located(column, lambda: parameters.value(in_range(number)))
 
     return read
 
@@ -205,7 +281,7 @@ def _finite(column: int, name: str, function: Callable[..., float], *operands: f
     return value
 
 
-def _told_at(column: int, function: Callable[..., _Result], *arguments: object) -> _Result:
+def _located(column: int, function: Callable[..., _Result], *arguments: object) -> _Result:
     """Call a function and add the column to its fault."""
     try:
         return function(*arguments)

@@ -1,26 +1,36 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Feeds: convert F in any feed mode to tool tip speed.
+"""Feeds and path modes: F in any feed mode, and G61, G61.1 and G64.
 
 Enters: F by block, in the unit of its mode: units per minute (G94), units per revolution (G95), or inverse time in
-1/min (G93). Leaves: speeds in mm/s, by motion. A change of mode cancels F: the next cutting move needs a new one.
+1/min (G93); and the path control codes. Leaves: speeds of the tool tip in mm/s, by motion; and by block whether the
+motion stops at its end (exact stop), whether corners are followed rather than rounded (exact path), and the permitted
+deviation of the tip from the path (G64 P), mm. A change of feed mode cancels F: the next cutting move needs a new one.
+LinuxCNC swaps G61 and G61.1; a program for its hexapod is read accordingly. Q of G64, which merges nearly collinear
+moves, is not needed: no moves are merged.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array
+from pkm_post.model import Array, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import Group
-from pkm_post.reading.gcode.findings import Findings
-from pkm_post.reading.gcode.modal import Modal, carried, changes
+from pkm_post.reading.gcode.codes import G_CODES, Group, Word, word_of
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
+from pkm_post.reading.gcode.modal import Modal, changed, forward_fill
 from pkm_post.reading.gcode.motions import Motions
 
 INVERSE_TIME, _BY_TURN = 930, 950
 
 
 def feeds(
-    blocks: Blocks, modal: Modal, spindle: Array, motions: Motions, way: Array, turns: Array, faults: Findings
+    blocks: Blocks,
+    modal: Modal,
+    spindle: Array,
+    motions: Motions,
+    path_length: Array,
+    rotates: Array,
+    faults: BlockDiagnostics,
 ) -> Array:
     """Speed of each motion, (n,), mm/s; NaN on rapids.
 
@@ -29,39 +39,90 @@ def feeds(
         modal: its modal codes.
         spindle: (N,) signed spindle speed, 1/min.
         motions: of the program.
-        way: (n,) distance travelled by the tip, mm; used with G93 only.
-        turns: (n,) whether the tool axis rotates; used with G93 only.
+        path_length: (n,) distance travelled by the tip, mm; used with G93 only.
+        rotates: (n,) whether the tool axis rotates; used with G93 only.
         faults: collects cutting moves without a feed.
     """
-    mode, word = modal.in_force[Group.FEED_MODE], blocks.word("F")
-    rows = np.flatnonzero(blocks.has("F") | changes(mode, mode[0]))
-    speed = motions.of_blocks(carried(rows, word[rows] * modal.scale[rows] / 60, np.nan, len(blocks)))
+    mode, word = modal.active[Group.FEED_MODE], blocks.word("F")
+    rows = np.flatnonzero(blocks.has("F") | changed(mode, mode[0]))
+    speed = motions.of_blocks(forward_fill(rows, word[rows] * modal.scale[rows] / 60, np.nan, len(blocks)))
     cuts = motions.motion != 0
     by_turn, by_time = (motions.of_blocks(mode == code) for code in (_BY_TURN, INVERSE_TIME))
     if by_turn.any():
         speed = np.where(by_turn, speed * np.abs(motions.of_blocks(spindle)), speed)
-    of_block = np.bincount(motions.block, weights=way, minlength=len(blocks)) if by_time.any() else np.zeros(0)
+    of_block = np.bincount(motions.block, weights=path_length, minlength=len(blocks)) if by_time.any() else np.zeros(0)
     if by_time.any():
         value = motions.of_blocks(word)
         speed = np.where(by_time, value * motions.of_blocks(of_block) / 60, speed)
         # A block without motion takes no time, even with G93; one that only rotates the tool has no tip speed.
-        still = by_time & (speed == 0) & (value > 0) & ~turns
+        still = by_time & (speed == 0) & (value > 0) & ~rotates
         moving = np.flatnonzero(cuts & (speed > 0))
-        speed = np.where(still, carried(moving, speed[moving], np.nan, len(speed)), speed)
+        speed = np.where(still, forward_fill(moving, speed[moving], np.nan, len(speed)), speed)
     missing = cuts & ~(speed > 0)
     if missing.any():
         wrong = np.zeros(len(blocks), dtype=np.bool_)
         wrong[motions.block[missing]] = True
-        value = np.where(mode == INVERSE_TIME, word, carried(rows, word[rows], np.nan, len(blocks)))
-        faults.tell_all("G408", wrong, lambda row: _found(row, mode, value, spindle, of_block))
+        value = np.where(mode == INVERSE_TIME, word, forward_fill(rows, word[rows], np.nan, len(blocks)))
+        faults.add_where("G408", wrong, lambda row: _feed_fault(row, mode, value, spindle, of_block))
     return np.where(cuts, speed, np.nan)
 
 
-def _found(row: int, mode: Array, value: Array, spindle: Array, way: Array) -> str:
+def _feed_fault(row: int, mode: Array, value: Array, spindle: Array, path_length: Array) -> Found:
     if np.isnan(value[row]):
-        return "no F in the block (G93)" if mode[row] == INVERSE_TIME else "no F"
+        return ("no F in the block (", word_of(INVERSE_TIME), ")") if mode[row] == INVERSE_TIME else "no F"
     if mode[row] == _BY_TURN and not spindle[row]:
-        return f"F{value[row]:g} a turn (G95), and the spindle stands still"
-    if mode[row] == INVERSE_TIME and not way[row]:
-        return "inverse time feed (G93) where the tip stays in its place"
-    return f"F{value[row]:g}"
+        return Word("F", value[row]), " a turn (", word_of(_BY_TURN), "), and the spindle stands still"
+    if mode[row] == INVERSE_TIME and not path_length[row]:
+        return "inverse time feed (", word_of(INVERSE_TIME), ") where the tip stays in its place"
+    return Word("F", value[row])
+
+
+_TOLERANCE = 640
+_TAKES_P = [code for code, meaning in G_CODES.items() if "P" in meaning.letters and code != _TOLERANCE]
+
+
+def exact_codes(axis_words: str) -> tuple[int, int]:
+    """The codes of exact stop and of exact path, in tenths.
+
+    Args:
+        axis_words: tool axis notation; "RPY" is specific to LinuxCNC.
+    """
+    return (611, 610) if axis_words == "RPY" else (610, 611)
+
+
+def path_modes(blocks: Blocks, modal: Modal, axis_words: str, faults: BlockDiagnostics) -> dict[str, Array]:
+    """The columns ``exact_stop``, ``exact_path`` and ``tip_tolerance`` of a program, by block, (N,) each.
+
+    Args:
+        blocks: the program.
+        modal: its modal codes.
+        axis_words: tool axis notation.
+        faults: collects rejected tolerances.
+    """
+    stop, path = exact_codes(axis_words)
+    in_force = modal.active[Group.PATH]
+    return {
+        "exact_stop": map_rows(lambda codes: codes == stop, in_force),
+        "exact_path": map_rows(lambda codes: codes == path, in_force),
+        "tip_tolerance": _tolerances(blocks, modal, faults),
+    }
+
+
+def _tolerances(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Array:
+    """Tolerance of each block, mm; 0 where the program gives none."""
+    programmed = modal.programmed[Group.PATH]
+    wanted = (programmed == _TOLERANCE) & blocks.has("P")
+    if not wanted.any():
+        return uniform(0.0, len(blocks))
+    word = blocks.word("P")
+    taken = wanted & (word > 0) & ~_belongs_elsewhere(blocks, modal)
+    faults.add_where("G417", wanted & ~taken, lambda row: (word_of(_TOLERANCE), " ", Word("P", word[row])))
+    rows = np.flatnonzero(np.isin(programmed, (610, 611, _TOLERANCE)))
+    return forward_fill(rows, np.where(taken, modal.in_mm(word), 0.0)[rows], 0.0, len(blocks))
+
+
+def _belongs_elsewhere(blocks: Blocks, modal: Modal) -> Array:
+    """Whether another code of each block uses its P: a dwell, a cycle, the rotates of an arc, (N,)."""
+    elsewhere: Array = modal.moves & np.isin(modal.active[Group.MOTION], _TAKES_P)
+    elsewhere[blocks.g_row[np.isin(blocks.g, _TAKES_P)]] = True
+    return elsewhere

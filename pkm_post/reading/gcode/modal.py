@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Modal: the active code of each group in each block.
+"""Modal state: the active code of each group, and the coordinates that absolute and incremental words add up to.
 
-Enters: blocks. Leaves: columns of codes, in tenths for G (434 is G43.4). A modal code stays active until another code
-of its group.
+Enters: blocks. Leaves: columns of codes, in tenths for G (434 is G43.4), and of coordinates in mm. A modal code stays
+active until another code of its group. A coordinate word sets the coordinate in absolute mode and adds to it in
+incremental mode; without a word it is unchanged.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ _DEFAULTS: dict[Group, int] = {
 """Active codes at program start."""
 
 
-def carried(rows: Array, values: Array, before: float, count: int) -> Array:
+def forward_fill(rows: Array, values: Array, before: float, count: int) -> Array:
     """Forward-fill a column: the last value given up to each row, (count,).
 
     Args:
@@ -50,7 +51,7 @@ def carried(rows: Array, values: Array, before: float, count: int) -> Array:
     return filled
 
 
-def changes(column: Array, before: float) -> Array:
+def changed(column: Array, before: float) -> Array:
     """Whether each row differs from the previous one, (n,); ``before`` precedes the first."""
     if is_uniform(column) and (column[:1] == before).all():
         return uniform(False, len(column))
@@ -63,15 +64,15 @@ class Modal:
     """Codes by block. A group that never changes from its initial code is a uniform column.
 
     Attributes:
-        explicit: by group, (N,) the code in the block, ``NONE`` where absent; the last one of COOLANT.
-        in_force: by modal group, (N,) the active code in the block, including its own.
+        programmed: by group, (N,) the code in the block, ``NONE`` where absent; the last one of COOLANT.
+        active: by modal group, (N,) the active code in the block, including its own.
         scale: (N,) mm per length unit.
         moves: (N,) whether the block moves the tool by the active motion code.
         takes_axes: (N,) the non-motion G code that consumes the axis words, ``NONE`` where absent.
     """
 
-    explicit: dict[Group, Array]
-    in_force: dict[Group, Array]
+    programmed: dict[Group, Array]
+    active: dict[Group, Array]
     scale: Array
     moves: Array
     takes_axes: Array
@@ -90,17 +91,17 @@ def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str]) -> Modal
         axis_words: words that move the tool axis.
     """
     count = len(blocks)
-    said = _by_group(blocks)
-    in_force = {
-        group: carried(*said.get(group, _NOTHING), default, count) for group, default in _DEFAULTS.items()
+    by_group = _by_group(blocks)
+    active = {
+        group: forward_fill(*by_group.get(group, _NOTHING), default, count) for group, default in _DEFAULTS.items()
     }  # fmt: skip
-    rows, units = said.get(Group.UNIT, _NOTHING)
-    scale = carried(rows, np.where(units == 200, 25.4, 1.0), unit, count)
-    explicit = {group: _scattered(*said.get(group, _NOTHING), count) for group in Group}
+    rows, units = by_group.get(Group.UNIT, _NOTHING)
+    scale = forward_fill(rows, np.where(units == 200, 25.4, 1.0), unit, count)
+    programmed = {group: _scattered(*by_group.get(group, _NOTHING), count) for group in Group}
     takes = np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.takes_axes])
     takes_axes = _scattered(blocks.g_row[takes], blocks.g[takes].astype(_CODE), count)
-    moves = _moves(blocks, explicit, in_force, axis_words) & (takes_axes == NONE)
-    return Modal(explicit, in_force, scale, moves, takes_axes)
+    moves = _moves(blocks, programmed, active, axis_words) & (takes_axes == NONE)
+    return Modal(programmed, active, scale, moves, takes_axes)
 
 
 _CODE = np.int16
@@ -110,13 +111,13 @@ _NOTHING = (np.empty(0, np.int32), np.empty(0, _CODE))
 
 def _by_group(blocks: Blocks) -> dict[Group, tuple[Array, Array]]:
     """Rows and codes by group."""
-    said: dict[Group, tuple[Array, Array]] = {}
+    by_group: dict[Group, tuple[Array, Array]] = {}
     for codes, rows, table in ((blocks.g, blocks.g_row, G_CODES), (blocks.m, blocks.m_row, M_CODES)):
         used = {table[code].group for code in np.unique(codes).tolist() if code in table}
         for group in used:
             of_group = np.isin(codes, [code for code, meaning in table.items() if meaning.group is group])
-            said[group] = rows[of_group], codes[of_group].astype(_CODE)
-    return said
+            by_group[group] = rows[of_group], codes[of_group].astype(_CODE)
+    return by_group
 
 
 def _scattered(rows: Array, codes: Array, count: int) -> Array:
@@ -139,12 +140,12 @@ def is_cycle(motion: Array) -> Array:
 
 
 def _moves(
-    blocks: Blocks, explicit: dict[Group, Array], in_force: dict[Group, Array], axis_words: Iterable[str]
+    blocks: Blocks, programmed: dict[Group, Array], active: dict[Group, Array], axis_words: Iterable[str]
 ) -> Array:
     """Whether each block has words that cause motion, (N,)."""
     # On an arc the centre or the radius suffices; G1 I J K rotates the tool axis, but on an arc I J K are the centre.
-    moves = _has(blocks, ("X", "Y", "Z", *axis_words)) | (is_arc(in_force[Group.MOTION]) & _has(blocks, "IJKR"))
-    return moves | is_cycle(explicit[Group.MOTION])
+    moves = _has(blocks, ("X", "Y", "Z", *axis_words)) | (is_arc(active[Group.MOTION]) & _has(blocks, "IJKR"))
+    return moves | is_cycle(programmed[Group.MOTION])
 
 
 def _has(blocks: Blocks, letters: Iterable[str]) -> Array:
@@ -153,3 +154,45 @@ def _has(blocks: Blocks, letters: Iterable[str]) -> Array:
     for letter in letters:
         given |= blocks.has(letter)
     return given
+
+
+@dataclass(frozen=True)
+class PositionWords:
+    """Words X Y Z of N blocks in mm, NaN where absent: three (N,) columns."""
+
+    columns: tuple[Array, Array, Array]
+
+    @classmethod
+    def of(cls, blocks: Blocks, modal: Modal) -> PositionWords:
+        """Extract the coordinates of plain blocks."""
+        x, y, z = (modal.in_mm(blocks.word(letter)) for letter in "XYZ")
+        return cls((x, y, z))
+
+    def at(self, row: int) -> Array:
+        """The coordinates of one block, (3,)."""
+        return np.array([column[row] for column in self.columns])
+
+
+def track_coordinate(words: Array, relative: Array, start: float) -> tuple[Array, int]:
+    """A coordinate after each block, and the first row where it is known.
+
+    Args:
+        words: (n,) values of its letter.
+        relative: (n,) whether they are incremental (G91).
+        start: the initial coordinate.
+
+    Returns:
+        (n,) coordinates, and the first row with an absolute word, n if there is none.
+    """
+    given = ~np.isnan(words)
+    if not relative.any():
+        rows = np.flatnonzero(given)
+        return forward_fill(rows, words[rows], start, len(words)), _first(rows, len(words))
+    rows = np.flatnonzero(given & ~relative)
+    travelled = np.cumsum(np.where(relative & given, words, 0.0))
+    base = forward_fill(rows, words[rows] - travelled[rows], start, len(words))
+    return base + travelled, _first(rows, len(words))
+
+
+def _first(rows: Array, none: int) -> int:
+    return int(rows[0]) if len(rows) else none

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motions: the motions of a program as columns in execution order.
+"""Motions: track the tool position from block to block.
 
-Enters: stretches of motions, each in one frame and starting at the tool position. Leaves: their concatenated columns,
-in program coordinates and mm. A motion starts at the end point of the previous one, so start points are stored per
-stretch only.
+Enters: blocks with their modal codes. Leaves: the motions of the program as columns in execution order, in program
+coordinates and mm, each with its frame. Motions between two blocks that change the frame or move in a special manner
+form a section and are processed as columns; only those blocks are looped over. A motion starts at the end point of the
+previous one, so start points are stored per section only.
 """
 
 from __future__ import annotations
@@ -14,14 +15,20 @@ from functools import cached_property
 
 import numpy as np
 
-from pkm_post.model import Array, is_uniform, uniform
+from pkm_post.model import Array, is_uniform, map_rows, uniform
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import CYCLES, NONE, Group, word_of
+from pkm_post.reading.gcode.cycles import CycleTracker
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
+from pkm_post.reading.gcode.events import CycleEvent
 from pkm_post.reading.gcode.frames import Frame
-from pkm_post.reading.gcode.happenings import InCycle
-from pkm_post.reading.gcode.modal import carried
+from pkm_post.reading.gcode.modal import Modal, PositionWords, forward_fill, is_cycle, track_coordinate
+from pkm_post.reading.gcode.options import ReadOptions
+from pkm_post.reading.gcode.work_offsets import IN_ORDER, SETS_OFFSETS, TIP_CONTROL, OffsetCodes
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Section:
     """Consecutive motions in one frame.
 
     Attributes:
@@ -29,8 +36,8 @@ class Stretch:
         motion: (n,) G code: 0, 10, 20 or 30.
         end: (n, 3) end point.
         unknown: number of leading motions with an unknown end point.
-        begin: (3,) start point of the first motion.
-        begin_known: whether it is known.
+        start: (3,) start point of the first motion.
+        start_known: whether it is known.
         frame: index of the frame.
     """
 
@@ -38,8 +45,8 @@ class Stretch:
     motion: Array
     end: Array
     unknown: int
-    begin: Array
-    begin_known: bool
+    start: Array
+    start_known: bool
     frame: int
 
     def known(self) -> Array:
@@ -50,7 +57,7 @@ class Stretch:
 
 @dataclass(frozen=True)
 class Motions:
-    """Columns of n motions in p stretches.
+    """Columns of n motions in p sections.
 
     Attributes:
         block: (n,) source block of each motion, non-decreasing.
@@ -58,9 +65,9 @@ class Motions:
         end: (n, 3) end point in program coordinates, mm.
         known: (n,) whether the end point is known.
         frame: (n,) index into ``frames``.
-        first: (p,) first motion of each stretch.
-        begin: (p, 3) start point of each stretch.
-        begin_known: (p,) whether it is known.
+        first: (p,) first motion of each section.
+        start: (p, 3) start point of each section.
+        start_known: (p,) whether it is known.
         frames: frames of the motions.
         in_cycles: events between the motions of cycles.
     """
@@ -71,10 +78,10 @@ class Motions:
     known: Array
     frame: Array
     first: Array
-    begin: Array
-    begin_known: Array
+    start: Array
+    start_known: Array
     frames: tuple[Frame, ...]
-    in_cycles: list[InCycle]
+    in_cycles: list[CycleEvent]
 
     def __len__(self) -> int:
         return len(self.block)
@@ -82,45 +89,45 @@ class Motions:
     def starts(self, rows: Array) -> tuple[Array, Array]:
         """Start points of some motions, (m, 3), and whether they are known, (m,)."""
         start, known = self.end[rows - 1], self.known[rows - 1]
-        stretch = np.searchsorted(self.first, rows)
-        at = np.flatnonzero(np.append(self.first, -1)[stretch] == rows)
-        start[at], known[at] = self.begin[stretch[at]], self.begin_known[stretch[at]]
+        section = np.searchsorted(self.first, rows)
+        at = np.flatnonzero(np.append(self.first, -1)[section] == rows)
+        start[at], known[at] = self.start[section[at]], self.start_known[section[at]]
         return start, known
 
     def of_blocks(self, column: Array) -> Array:
         """Expand a column of blocks to motions; a view if every block is a motion."""
         if is_uniform(column) and len(column):
             return uniform(column[0], len(self))
-        return column[self._choice]
+        return column[self._block_index]
 
     @cached_property
-    def _choice(self) -> Array | slice:
-        return span(self.block) if (np.diff(self.block) == 1).all() else self.block
+    def _block_index(self) -> Array | slice:
+        return as_slice(self.block) if (np.diff(self.block) == 1).all() else self.block
 
 
-def span(rows: Array) -> Array | slice:
+def as_slice(rows: Array) -> Array | slice:
     """Convert increasing rows to a slice if they have no gap: slicing a column makes no copy."""
     if len(rows) and rows[-1] - rows[0] + 1 == len(rows):
         return slice(int(rows[0]), int(rows[-1]) + 1)
     return rows
 
 
-def together(stretches: Sequence[Stretch], frames: Sequence[Frame], in_cycles: list[InCycle]) -> Motions:
-    """Concatenate consecutive stretches."""
-    if not stretches:
+def concatenated(sections: Sequence[Section], frames: Sequence[Frame], in_cycles: list[CycleEvent]) -> Motions:
+    """Concatenate consecutive sections."""
+    if not sections:
         none, nowhere, never = np.zeros(0, np.int32), np.zeros((0, 3)), np.zeros(0, np.bool_)
         return Motions(none, none, nowhere, never, none, none, nowhere, never, tuple(frames), in_cycles)
-    lengths = np.array([len(stretch.block) for stretch in stretches])
+    lengths = np.array([len(section.block) for section in sections])
     first = np.cumsum(lengths) - lengths
     return Motions(
-        block=_joined([stretch.block for stretch in stretches]),
-        motion=_joined([stretch.motion for stretch in stretches]),
-        end=_joined([stretch.end for stretch in stretches]),
-        known=_joined([stretch.known() for stretch in stretches]),
-        frame=carried(first, np.array([stretch.frame for stretch in stretches]), 0, int(lengths.sum())),
+        block=_joined([section.block for section in sections]),
+        motion=_joined([section.motion for section in sections]),
+        end=_joined([section.end for section in sections]),
+        known=_joined([section.known() for section in sections]),
+        frame=forward_fill(first, np.array([section.frame for section in sections]), 0, int(lengths.sum())),
         first=first,
-        begin=np.array([stretch.begin for stretch in stretches]),
-        begin_known=np.array([stretch.begin_known for stretch in stretches]),
+        start=np.array([section.start for section in sections]),
+        start_known=np.array([section.start_known for section in sections]),
         frames=tuple(frames),
         in_cycles=in_cycles,
     )
@@ -128,3 +135,179 @@ def together(stretches: Sequence[Stretch], frames: Sequence[Frame], in_cycles: l
 
 def _joined(columns: list[Array]) -> Array:
     return columns[0] if len(columns) == 1 else np.concatenate(columns)
+
+
+_SPECIAL_CODES = (280, 281, 300, 301, 530, *SETS_OFFSETS)
+
+
+class PositionTracker:
+    """Tracks the tool through the blocks."""
+
+    def __init__(
+        self,
+        blocks: Blocks,
+        modal: Modal,
+        tools: Array,
+        spindle: Array,
+        dwells: Array,
+        options: ReadOptions,
+        faults: BlockDiagnostics,
+    ):
+        self.blocks, self.modal, self.options, self.faults = blocks, modal, options, faults
+        self.tools, self.spindle = tools, spindle
+        self.words = PositionWords.of(blocks, modal)
+        self.relative = modal.active[Group.DISTANCE] == 910
+        self.offset_codes = OffsetCodes(blocks, modal, self.words, tools, options, faults)
+        self.drilling = CycleTracker(blocks, modal, self.words, spindle, dwells, faults)
+        self.home = {280: options.home, 300: options.second_home}
+        self.in_cycles: list[CycleEvent] = []
+        self._sections: list[Section] = []
+        self._rows = 0
+        self.frame = self.offset_codes.offsets.frame()
+        self.frames = [self.frame]
+        start = options.start
+        self.position = np.zeros(3) if start is None else self.frame.to_program(np.array(start))
+        self.known = np.full(3, start is not None)
+
+    def motions(self) -> Motions:
+        """Process all blocks."""
+        moves = np.flatnonzero(self.modal.moves).astype(np.int32)
+        section_ends, done = np.flatnonzero(self._section_ends()), 0
+        for row, until in zip(section_ends.tolist(), np.searchsorted(moves, section_ends).tolist(), strict=True):
+            self._add_ordinary(moves[done:until])
+            done = until
+            self._change_frame(row)
+            if self._special_motion(row):
+                done += int(self.modal.moves[row])
+        self._add_ordinary(moves[done:])
+        return concatenated(self._sections, self.frames, self.in_cycles)
+
+    def _section_ends(self) -> Array:
+        """Mask of blocks that change the frame or move in a special manner, (N,)."""
+        programmed = self.modal.programmed
+        section_ends = self.modal.moves & is_cycle(self.modal.active[Group.MOTION])
+        special = map_rows(lambda codes: np.isin(codes, _SPECIAL_CODES), programmed[Group.ONCE])
+        for group in (Group.CHANGE, *IN_ORDER[1:]):
+            special = special | (programmed[group] != NONE)
+        if not is_uniform(programmed[Group.LENGTH]):
+            special = special | ((programmed[Group.LENGTH] != NONE) & ~self._repeats_length_code())
+        return section_ends | special
+
+    def _repeats_length_code(self) -> Array:
+        """Mask of blocks that repeat the active tip control, (N,): every LN block does."""
+        programmed, length = self.modal.programmed[Group.LENGTH], self.modal.active[Group.LENGTH]
+        same = np.append(False, length[1:] == length[:-1])[: len(length)]
+        return same & np.isin(programmed, TIP_CONTROL) & ~self.blocks.has("H")
+
+    def _add_ordinary(self, rows: Array) -> None:
+        """Add the motions of ordinary blocks, all in one frame."""
+        if not len(rows):
+            return
+        chosen = as_slice(rows)
+        ends, since = np.empty((len(rows), 3)), np.zeros(3, np.int64)
+        for axis, column in enumerate(self.words.columns):
+            ends[:, axis], since[axis] = track_coordinate(column[chosen], self.relative[chosen], self.position[axis])
+        since[self.known] = 0
+        motion = self.modal.active[Group.MOTION][chosen]
+        self._add(rows, motion, ends, int(since.max()), since < len(rows))
+
+    def _add(self, block: Array, motion: Array, ends: Array, unknown: int, known: Array) -> None:
+        """Add motions in the active frame; ``known``, (3,), marks the known coordinates of the last one."""
+        frame = len(self.frames) - 1
+        self._sections.append(Section(block, motion, ends, unknown, self.position, bool(self.known.all()), frame))
+        self.position, self.known = ends[-1], known
+        self._rows += len(block)
+
+    def _change_frame(self, row: int) -> None:
+        if self.modal.programmed[Group.CHANGE][row] == 6:
+            self.offset_codes.change_tool(row)
+            # The coordinates are unchanged; with a length offset the tip of the new tool is elsewhere.
+            self._set_frame()
+        # Only for a block with such a code: the transformation to {C} and back costs the last digit.
+        if self.offset_codes.changes_frame(row):
+            point = self.frame.to_work(self.position)
+            for groups in (IN_ORDER, (Group.ONCE,)):
+                for group in groups:
+                    self.offset_codes.execute(row, group, self.position, self.known, bool(self._rows))
+                self._rebase(point)
+
+    def _rebase(self, point: Array) -> None:
+        """Switch to the active frame; the tool keeps its position in {C}, and its coordinates change."""
+        mixed = self.frame.oblique()
+        self._set_frame()
+        mixed |= self.frame.oblique()
+        self.position = self.frame.to_program(point)
+        if mixed.any():
+            self.known = np.where(mixed, self.known[mixed].all(), self.known)
+
+    def _set_frame(self) -> None:
+        frame = self.offset_codes.offsets.frame()
+        if not (np.array_equal(frame.turn, self.frame.turn) and np.array_equal(frame.shift, self.frame.shift)):
+            self.frame = frame
+            self.frames.append(frame)
+
+    # special motions
+
+    def _special_motion(self, row: int) -> bool:
+        """Execute a block with a special motion; return whether it was one."""
+        once = int(self.modal.programmed[Group.ONCE][row])
+        if once == 530 and self.modal.moves[row]:
+            self._machine_move(row)
+        elif once in (280, 300):
+            self._home(row, once)
+        elif once in (281, 301):
+            self.offset_codes.require_position(row, self.known, word_of(once))
+            self.home[once - 1] = tuple(self.frame.to_work(self.position).tolist())
+        elif self.modal.moves[row] and self.modal.active[Group.MOTION][row] in CYCLES:
+            self._drill(row)
+        else:
+            return False
+        return True
+
+    def _add_moves(self, row: int, motions: list[int], points: list[Array], known: Array) -> None:
+        """Linear moves of one block to (3,) positions in program coordinates."""
+        if points:
+            rows, unknown = np.full(len(points), row, np.int32), 0 if known.all() else len(points)
+            self._add(rows, np.array(motions, np.int16), np.array(points), unknown, known)
+
+    def _machine_move(self, row: int) -> None:
+        """G53: words in machine coordinates, those of the spindle nose while a length offset is in force."""
+        if not self.options.work_offsets:
+            self.faults.add("G412", row, ("machine coordinates (", word_of(530), ")"))
+        offsets = self.offset_codes.offsets
+        if self.options.axis_words != "none" and offsets.length is not None:
+            self.faults.add("G412", row, ("machine coordinates (", word_of(530), ") while the tool axis can tilt"))
+        own = 0.0 if offsets.length is None else offsets.own_length
+        words = self.words.at(row) - np.array([0.0, 0.0, own])
+        self._move_to(row, int(self.modal.active[Group.MOTION][row]), words)
+
+    def _move_to(self, row: int, motion: int, words: Array) -> None:
+        """Move to coordinates in {C}; NaN leaves a coordinate unchanged."""
+        given = ~np.isnan(words)
+        mixed = self.frame.oblique()
+        known = self.known | given
+        if mixed.any() and not known[mixed].all():
+            self.faults.add("G416", row, "a turned coordinate system")
+        point = np.where(given, words, self.frame.to_work(self.position))
+        self._add_moves(row, [motion], [self.frame.to_program(point)], known)
+
+    def _home(self, row: int, code: int) -> None:
+        """G28, G30: move via the programmed point, if any, to the reference point, in the programmed axes."""
+        home = self.home[code]
+        if home is None:
+            self.faults.add("G413", row, word_of(code))
+            return
+        words = self.words.at(row)
+        given = ~np.isnan(words)
+        if given.any():
+            from_here = words + self.position if self.relative[row] else words
+            known = self.known if self.relative[row] else self.known | given
+            self._add_moves(row, [0], [np.where(given, from_here, self.position)], known)
+        self._move_to(row, 0, np.where(given if given.any() else True, np.array(home), np.nan))
+
+    def _drill(self, row: int) -> None:
+        strokes = self.drilling.strokes(row, self.position, self.known, self.frame)
+        if strokes is None:
+            return
+        self.in_cycles += [(self._rows + index, row, kind, value) for index, kind, value in strokes.events]
+        self._add_moves(row, [int(kind) * 10 for kind in strokes.kinds], strokes.ends, np.ones(3, dtype=np.bool_))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Options: settings that a G-code program does not contain and the user must supply.
+"""Options: settings that a G-code program does not contain and the user must supply, and limits of its execution.
 
-Enters: choices of the user, lengths in mm, angles in degrees. Leaves: one frozen value passed to every reading step.
-Nothing is guessed: a required but missing option is a fault of the program.
+Enters: choices of the user, lengths in mm, angles in degrees. Leaves: frozen values. Nothing is guessed: a required but
+missing option is a fault of the program. The limits let every execution end in bounded time and memory.
 """
 
 from __future__ import annotations
@@ -79,3 +79,27 @@ class ReadOptions:
     def tool(self, number: int) -> Tool | None:
         """The tool with that number, or the default tool."""
         return self.tools.get(number, self.default_tool)
+
+
+@dataclass(frozen=True)
+class ExecutionLimits:
+    """Bounds of an execution.
+
+    Attributes:
+        blocks: executed blocks, including those that yield no plain block.
+        operations: values and operators evaluated in expressions, and G and M codes output.
+        depth: call depth, including the main program.
+    """
+
+    blocks: int = 10_000_000
+    operations: int = 100_000_000
+    depth: int = 10
+
+    def __post_init__(self) -> None:
+        for name in ("blocks", "operations", "depth"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name}: expected at least 1, got {getattr(self, name)}")
+
+
+DEFAULT_OPTIONS = ReadOptions()
+DEFAULT_LIMITS = ExecutionLimits()

@@ -8,13 +8,10 @@ step that fails: a block that cannot be parsed cannot be processed further.
 from __future__ import annotations
 
 from pkm_post.model import Diagnostic, Program
-from pkm_post.reading.gcode.execute import DEFAULT_LIMITS, ExecutionLimits, execute
-from pkm_post.reading.gcode.located import located
-from pkm_post.reading.gcode.options import ReadOptions
+from pkm_post.reading.gcode.execute import execute
+from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan
-
-DEFAULT_OPTIONS = ReadOptions()
 
 
 def read(
@@ -37,11 +34,11 @@ def read(
     Raises:
         ImportError: lark is not installed.
     """
-    scanned, told = scan(text, file)
+    scanned, syntax = scan(text, file)
     if scanned is None:
-        return None, told
-    executed, told_of_execution = execute(scanned, limits, options.block_delete)
+        return None, syntax
+    executed, execution = execute(scanned, limits, options.block_delete)
     if executed is None:
-        return None, told + told_of_execution
-    program, told_of_meaning = resolve(executed, options, text)
-    return program, told + told_of_execution + (located(told_of_meaning, text) if told_of_meaning else ())
+        return None, syntax + execution
+    program, meaning = resolve(executed, options, text)
+    return program, syntax + execution + meaning

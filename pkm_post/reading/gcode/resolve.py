@@ -14,22 +14,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Kind, Program, Tool, is_uniform, map_rows, read_only, uniform
-from pkm_post.reading.gcode.arc_motions import arcs_of, known_ones, lengths, single_turns
-from pkm_post.reading.gcode.axes import check_cycles, spins, surface_normals, tool_axes
+from pkm_post.reading.gcode.arcs import arc_geometry, path_lengths, split_turns, with_known_ends
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.checks import check
-from pkm_post.reading.gcode.codes import ARCS, END_OF_CYCLES, NONE, Group
-from pkm_post.reading.gcode.dwells import check_dwells, dwell_words
-from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds
-from pkm_post.reading.gcode.findings import Findings
+from pkm_post.reading.gcode.codes import ARCS, CANCEL_CYCLE, NONE, Group
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
+from pkm_post.reading.gcode.events import ENDS, check_dwells, dwell_words, events_of_blocks, ordered_events
+from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds, path_modes
 from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
-from pkm_post.reading.gcode.happenings import ENDS, events, happenings
-from pkm_post.reading.gcode.magazine import side_offsets, spindle_speeds, tools_in_spindle
 from pkm_post.reading.gcode.modal import Modal, modal_state
-from pkm_post.reading.gcode.motions import Motions
+from pkm_post.reading.gcode.motions import Motions, PositionTracker
 from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
-from pkm_post.reading.gcode.path_modes import path_modes
-from pkm_post.reading.gcode.walk import Walk
+from pkm_post.reading.gcode.tool_axes import check_cycles, spins, surface_normals, tool_axes
+from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
 
 _ALONG_AN_AXIS = 1 - 1e-9
 _KIND = np.zeros(31, np.uint8)
@@ -45,7 +42,7 @@ def resolve(
     Args:
         blocks: blocks without parameters, expressions and O words, in execution order.
         options: read options.
-        text: the source text, if available, for details that the columns do not contain.
+        text: the source text, if available: for the columns of diagnostics, and for the points of integers.
 
     Returns:
         The program, or None if there are errors; and the diagnostics in line order.
@@ -55,19 +52,19 @@ def resolve(
     """
     if blocks.special:
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
-    blocks, ended = _read(blocks, options)
-    blocks = _without_spent_ends(blocks)
-    faults = Findings(blocks)
+    blocks, ended = _up_to_end(blocks, options)
+    blocks = _without_redundant_g80(blocks)
+    faults = BlockDiagnostics(blocks, text)
     modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words))
     check(blocks, modal, options, faults)
-    check_dwells(blocks, modal, options, text, faults)
-    program = None if faults.stop() else _program(blocks, modal, options, faults)
+    check_dwells(blocks, modal, options, faults)
+    program = None if faults.has_errors() else _program(blocks, modal, options, faults)
     if options.needs_end and not ended:
-        faults.tell("G430", len(blocks) - 1, "no M2, M30 or % behind it")
-    return None if faults.stop() else program, faults.in_order()
+        faults.add("G430", len(blocks) - 1, "no M2, M30 or % after it")
+    return None if faults.has_errors() else program, faults.in_order()
 
 
-def _read(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
+def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
     """The blocks to execute, without deleted ones, up to the program end; and whether there is a program end."""
     ends = blocks.m_row[np.isin(blocks.m, ENDS)]
     if options.block_delete:
@@ -75,22 +72,22 @@ def _read(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
     if len(ends):
         blocks = blocks.first(int(ends[0]) + 1)
     if options.block_delete and blocks.deleted.any():
-        blocks = blocks.chosen(np.flatnonzero(~blocks.deleted))
+        blocks = blocks.selected(np.flatnonzero(~blocks.deleted))
     return blocks, blocks.closed or bool(len(ends))
 
 
-def _without_spent_ends(blocks: Blocks) -> Blocks:
-    """Drop G80 beside G0, G1, G2 or G3, which cancel a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
-    ends = np.flatnonzero(blocks.g == END_OF_CYCLES)
+def _without_redundant_g80(blocks: Blocks) -> Blocks:
+    """Drop G80 next to G0, G1, G2 or G3, which cancel a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
+    ends = np.flatnonzero(blocks.g == CANCEL_CYCLE)
     if not len(ends):
         return blocks
-    spent = ends[np.isin(blocks.g_row[ends], blocks.g_row[np.isin(blocks.g, (0, 10, *ARCS))])]
-    return replace(blocks, g=np.delete(blocks.g, spent), g_row=np.delete(blocks.g_row, spent))
+    redundant = ends[np.isin(blocks.g_row[ends], blocks.g_row[np.isin(blocks.g, (0, 10, *ARCS))])]
+    return replace(blocks, g=np.delete(blocks.g, redundant), g_row=np.delete(blocks.g_row, redundant))
 
 
 @dataclass(frozen=True)
-class _Settings:
-    """State of each block beside positions and modes.
+class _BlockStates:
+    """State of each block, apart from positions and modal codes.
 
     Attributes:
         tools: (N,) number of the tool in the spindle.
@@ -109,11 +106,11 @@ class _Settings:
     spins: Array
 
 
-def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> _Settings:
+def _block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> _BlockStates:
     tools = tools_in_spindle(blocks, modal, options, faults)
     axes = tool_axes(blocks, modal, options, faults)
     check_cycles(modal, axes, faults)
-    return _Settings(
+    return _BlockStates(
         tools=tools,
         spindle=spindle_speeds(blocks, modal),
         sides=side_offsets(blocks, modal, tools, options, faults),
@@ -123,27 +120,27 @@ def _settings(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findin
     )
 
 
-def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Program | None:
-    settings = _settings(blocks, modal, options, faults)
+def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Program | None:
+    states = _block_states(blocks, modal, options, faults)
     modes = path_modes(blocks, modal, options.axis_words, faults)
     dwells = dwell_words(blocks, options)
-    walk = Walk(blocks, modal, settings.tools, settings.spindle, dwells, options, faults)
-    motions = walk.motions()
-    centre, axis = arcs_of(blocks, modal, motions, faults)
-    if faults.stop():
+    tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, options, faults)
+    motions = tracker.motions()
+    centre, axis = arc_geometry(blocks, modal, motions, faults)
+    if faults.has_errors():
         return None
-    motions, centre, axis = single_turns(blocks, modal, motions, centre, axis)
-    way = _ways(modal, motions, centre, axis)
-    motions, (centre, axis, way) = known_ones(motions, [centre, axis, way])
+    motions, centre, axis = split_turns(blocks, modal, motions, centre, axis)
+    path_length = _path_lengths(modal, motions, centre, axis)
+    motions, (centre, axis, path_length) = with_known_ends(motions, [centre, axis, path_length])
     if not len(motions):
-        faults.tell("G420", 0, f"{len(blocks)} blocks")
+        faults.add("G420", 0, f"{len(blocks)} blocks")
         return None
-    columns = _directions(blocks, modal, settings, motions, axis, faults)
-    turns = _turns(modal, columns["tool_axis"])
+    columns = _directions(blocks, modal, states, motions, axis, faults)
+    rotates = _axis_rotates(modal, columns["tool_axis"])
     columns |= {
         "kind": _KIND[motions.motion],
         "position": _frames(motions).points(motions.end),
-        "feed": feeds(blocks, modal, settings.spindle, motions, way, turns, faults),
+        "feed": feeds(blocks, modal, states.spindle, motions, path_length, rotates, faults),
         "arc_centre": _frames(motions).points(centre),
         "operation": uniform(0, len(motions), np.int32),
         "line": motions.of_blocks(blocks.line),
@@ -151,15 +148,15 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Finding
     }
     return Program(
         **{name: read_only(column) for name, column in columns.items()},
-        events=events(
-            happenings(blocks, modal, settings.tools, settings.spindle, dwells), motions.in_cycles, motions.block
+        events=ordered_events(
+            events_of_blocks(blocks, modal, states.tools, states.spindle, dwells), motions.in_cycles, motions.block
         ),
         operations=("",),
-        tools=_tools(settings.tools, options),
+        tools=_tools(states.tools, options),
         source=blocks.source,
         source_fingerprint="",
         reading=(),
-        length_offsets=frozenset(walk.codes.length_offsets),
+        length_offsets=frozenset(tracker.offset_codes.length_offsets),
     )
 
 
@@ -168,62 +165,59 @@ def _frames(motions: Motions) -> RowFrames:
 
 
 def _directions(
-    blocks: Blocks, modal: Modal, settings: _Settings, motions: Motions, axis: Array, faults: Findings
+    blocks: Blocks, modal: Modal, states: _BlockStates, motions: Motions, axis: Array, faults: BlockDiagnostics
 ) -> dict[str, Array]:
     """Program columns that frames rotate and mirror but do not translate."""
     frames = _frames(motions)
-    side, plane = _compensation(blocks, modal, motions, frames, settings.sides, faults)
+    side, plane = _compensation(blocks, modal, motions, frames, states.sides, faults)
     return {
-        "tool_axis": frames.directions(motions.of_blocks(settings.axes)),
-        "arc_axis": _turned(frames.hand(), frames.directions(axis)),
+        "tool_axis": frames.directions(motions.of_blocks(states.axes)),
+        "arc_axis": _mirrored(frames.hand(), frames.directions(axis)),
         "side_offset": side,
         "plane": plane,
-        "normal": frames.directions(motions.of_blocks(settings.normals)),
-        "spin": _handed(frames.hand(), motions.of_blocks(settings.spins)),
+        "normal": frames.directions(motions.of_blocks(states.normals)),
+        "spin": _mirrored(frames.hand(), motions.of_blocks(states.spins)),
     }
 
 
-def _ways(modal: Modal, motions: Motions, centre: Array, axis: Array) -> Array:
+def _path_lengths(modal: Modal, motions: Motions, centre: Array, axis: Array) -> Array:
     """Distances travelled by the tool tip, (n,), mm; zeros in a program without G93, where they are unused."""
-    if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
-        return lengths(motions, centre, axis)
+    if (modal.active[Group.FEED_MODE] == INVERSE_TIME).any():
+        return path_lengths(motions, centre, axis)
     return uniform(0.0, len(motions))
 
 
-def _turns(modal: Modal, axis: Array) -> Array:
+def _axis_rotates(modal: Modal, axis: Array) -> Array:
     """Whether the tool axis rotates, (n,); all true in a program without G93, where it is unused."""
-    if (modal.in_force[Group.FEED_MODE] == INVERSE_TIME).any():
+    if (modal.active[Group.FEED_MODE] == INVERSE_TIME).any():
         return np.append(True, np.any(axis[1:] != axis[:-1], axis=1))
     return uniform(True, len(axis))
 
 
-def _handed(hand: Array, spin: Array) -> Array:
-    """Spins in {C}: a mirrored frame inverts their sign."""
-    return spin if is_uniform(spin) else hand * spin
-
-
-def _turned(hand: Array, axis: Array) -> Array:
-    """Arc axes in {C}, made right-handed again where the frame is mirrored."""
-    return axis if is_uniform(axis) or (hand > 0).all() else hand[:, None] * axis
+def _mirrored(hand: Array, column: Array) -> Array:
+    """Spins, (n,), or arc axes, (n, 3), in {C}: a mirrored frame inverts their sense."""
+    if is_uniform(column) or (hand > 0).all():
+        return column
+    return (hand if column.ndim == 1 else hand[:, None]) * column
 
 
 def _compensation(
-    blocks: Blocks, modal: Modal, motions: Motions, frames: RowFrames, sides: Array, faults: Findings
+    blocks: Blocks, modal: Modal, motions: Motions, frames: RowFrames, sides: Array, faults: BlockDiagnostics
 ) -> tuple[Array, Array]:
     """Side offset and plane of each motion in {C}, (n,) each: a mirror changes the side."""
-    plane, along = frames.planes(map_rows(normal_coordinate, motions.of_blocks(modal.in_force[Group.PLANE])))
+    plane, along = frames.planes(map_rows(normal_coordinate, motions.of_blocks(modal.active[Group.PLANE])))
     side = motions.of_blocks(sides)
     if not side.any():
         return side, plane
     oblique = np.zeros(len(blocks), dtype=np.bool_)
     oblique[motions.block[(side != 0) & (np.abs(along) < _ALONG_AN_AXIS)]] = True
-    faults.tell_all("G419", oblique, lambda _: "the plane is turned out of X, Y and Z")
+    faults.add_where("G419", oblique, lambda _: "the plane is turned out of X, Y and Z")
     return side * np.sign(along) * frames.hand(), plane
 
 
 def _tools(numbers: Array, options: ReadOptions) -> dict[int, Tool]:
     """The tools in use, by number."""
     called = [number for number in np.unique(numbers).tolist() if number != NONE]
-    found = {number: replace(tool, number=number) for number in called if (tool := options.tool(number))}
-    standing = options.tool(0)
-    return {standing.number: standing} if standing and not found else found
+    tools = {number: replace(tool, number=number) for number in called if (tool := options.tool(number))}
+    initial = options.tool(0)
+    return {initial.number: initial} if initial and not tools else tools

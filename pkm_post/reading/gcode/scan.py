@@ -1,30 +1,48 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Scan: convert the text of a G-code program to columns of blocks; the first step of reading.
+"""Scan: the text of a G-code program to columns of blocks, the first step of reading.
 
-Enters: the content of a file, any bytes. Leaves: ``Blocks``, or all lexical and syntax faults. Two implementations give
-the same result. ``scan_by_block`` parses every line with lark: the reference. ``scan`` parses one block of each shape
-with lark and reads the numbers of all lines of that shape at once; lines that lark rejects, and blocks with more than
-plain words, use the reference.
+Enters: the content of a file, any bytes, with any line endings. Leaves: ``Blocks``, or all lexical and syntax faults.
+Two implementations give the same result. ``scan_by_block`` parses every line with lark: the reference. ``scan`` parses
+one block of each line pattern with lark and reads the numbers of all lines of that pattern at once; lines that lark
+rejects, and blocks with more than plain words, use the reference.
+
+A file may be enclosed by two lines with only a percent sign, and text after the second one is ignored [NGC]. Here the
+opening one may be missing: the first percent sign after a block closes the file.
 """
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Place
-from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.faults import Faults, readable
-from pkm_post.reading.gcode.lexer import Lexed, lex
-from pkm_post.reading.gcode.lines import clean, pieces, without_comments, without_lines
-from pkm_post.reading.gcode.percent import Demarcated, demarcated
-from pkm_post.reading.gcode.row import LONGEST_LINE, Row, read_row
-from pkm_post.reading.gcode.shapes import BY_ITSELF, NOTHING, Shapes
-from pkm_post.reading.gcode.table import Table
+from pkm_post.reading.gcode.block_builders import BlocksBuilder
+from pkm_post.reading.gcode.blocks import Block, Blocks
+from pkm_post.reading.gcode.lexer import EMPTY, PARSED_ALONE, Lexed, Patterns, lex
+from pkm_post.reading.gcode.parse import LONGEST_LINE, parse_line
+from pkm_post.reading.gcode.syntax_faults import SyntaxFaults, readable
 from pkm_post.system import DecimalReader
 
-Scanned = tuple[Blocks | None, tuple[Diagnostic, ...]]
+PIECE = 128 * 1024
+"""Bytes. The columns of a piece fit in the CPU cache: larger and smaller _pieces are both slower."""
+
 _SHOWN = 40
 """Characters of a line shown in a message."""
+
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
+_MESSAGE = re.compile(rb"[(;]\s*(?:(?:MSG|PRINT|DEBUG)\s*,|TOOL\b|T\s*\d)", re.IGNORECASE)
+"""The start of a comment that is kept: a message to the operator, or the description of a tool."""
+_NOTHING = rb"(?:[ \t\f\v]|\([^()\n]*\))*+"
+_PERCENT = re.compile(_NOTHING + b"%" + _NOTHING + rb"(?:;[^\n]*)?")
+_BLOCK = re.compile(b"^" + _NOTHING + rb"[^\s;%]", re.MULTILINE)
+"""The start of a line that is not a comment, not a percent sign and not empty."""
+
+Scanned = tuple[Blocks | None, tuple[Diagnostic, ...]]
+"""The blocks, None if there are faults; and the diagnostics."""
 
 
 def scan(text: bytes | str, file: str) -> Scanned:
@@ -37,12 +55,12 @@ def scan(text: bytes | str, file: str) -> Scanned:
     Raises:
         ImportError: lark is not installed.
     """
-    whole = clean(text)
-    part = demarcated(whole)
-    faults, shapes, table = Faults(file), Shapes(), Table(part.text.count(b"\n"))
-    for piece in pieces(part.text):
-        _scan_piece(piece, shapes, table, faults)
-    return _scanned(whole, part, table, faults, file)
+    whole = _normalized(text)
+    part = _up_to_percent(whole)
+    faults, patterns, builder = SyntaxFaults(file), Patterns(), BlocksBuilder(part.text.count(b"\n"))
+    for piece in _pieces(part.text):
+        _scan_piece(piece, patterns, builder, faults)
+    return _scanned(whole, part, builder, faults, file)
 
 
 def scan_by_block(text: bytes | str, file: str) -> Scanned:
@@ -55,30 +73,80 @@ def scan_by_block(text: bytes | str, file: str) -> Scanned:
     Raises:
         ImportError: lark is not installed.
     """
-    whole = clean(text)
-    part = demarcated(whole)
-    faults, table = Faults(file), Table(part.text.count(b"\n"))
+    whole = _normalized(text)
+    part = _up_to_percent(whole)
+    faults, builder = SyntaxFaults(file), BlocksBuilder(part.text.count(b"\n"))
     for line in part.text.split(b"\n")[:-1]:
-        row = read_row(line)
-        spoken: list[tuple[int, str]] = []
-        if isinstance(row, Row):
-            without_comments(line, spoken)
-            table.comments.extend((table.next_line, comment) for _, comment in spoken)
-            table.add_row(row)
+        block = parse_line(line)
+        messages: list[tuple[int, str]] = []
+        if isinstance(block, Block):
+            _without_comments(line, messages)
+            builder.comments.extend((builder.next_line, message) for _, message in messages)
+            builder.add(block)
         else:
-            faults.add(table.next_line, line, row)
-            table.add_row(Row())
-    return _scanned(whole, part, table, faults, file)
+            faults.add(builder.next_line, line, block)
+            builder.add(Block())
+    return _scanned(whole, part, builder, faults, file)
 
 
-def _scanned(whole: bytes, part: Demarcated, table: Table, faults: Faults, file: str) -> Scanned:
-    """The blocks of the table if there are no faults; report any block after the end of the file."""
-    told = faults.diagnostics()
-    blocks = None if told else table.blocks(file, part.closed)
-    if part.behind >= 0:
-        line = whole.count(b"\n", 0, part.behind) + 1
-        told += (Diagnostic("G212", Place(file, line=line, column=1), _beginning(whole, part.behind)),)
-    return blocks, told
+def _scan_piece(piece: bytes, patterns: Patterns, builder: BlocksBuilder, faults: SyntaxFaults) -> None:
+    """Add the blocks of a piece to the builder, and its faults to ``faults``."""
+    line_start = np.concatenate([[0], np.flatnonzero(np.frombuffer(piece, np.uint8) == ord("\n")) + 1])
+    too_long = np.flatnonzero(np.diff(line_start) - 1 > LONGEST_LINE)
+    messages: list[tuple[int, str]] = []
+    text = _without_comments(_without_lines(piece, line_start, too_long) if len(too_long) else piece, messages)
+    lexed = lex(text)
+    pattern = np.fromiter(map(patterns.__getitem__, lexed.patterns), np.intp, len(lexed.patterns))
+    pattern[too_long] = PARSED_ALONE
+    values = _values(text, lexed, line_start, pattern)
+    parsed, faulty = _parse_alone(piece, line_start, pattern, builder.next_line, faults)
+    pattern[sorted(faulty)] = EMPTY
+    lines = _lines_at(np.array([offset for offset, _ in messages], np.int64), line_start)
+    by_line = zip(lines.tolist(), (message for _, message in messages), strict=True)
+    builder.comments.extend((builder.next_line + index, message) for index, message in by_line if index not in faulty)
+    builder.add_lines(pattern, patterns.table(), values, parsed)
+
+
+def _parse_alone(
+    piece: bytes, line_start: Array, pattern: Array, first: int, faults: SyntaxFaults
+) -> tuple[dict[int, Block], set[int]]:
+    """Parse the lines without a plain pattern one by one; return their blocks, and which lines are faulty."""
+    blocks: dict[int, Block] = {}
+    faulty: set[int] = set()
+    for index in np.flatnonzero(pattern == PARSED_ALONE).tolist():
+        line = piece[line_start[index] : line_start[index + 1] - 1]
+        block = parse_line(line)
+        if isinstance(block, Block):
+            blocks[index] = block
+        else:
+            faulty.add(index)
+            faults.add(first + index, line, block)
+    return blocks, faulty
+
+
+def _values(text: bytes, lexed: Lexed, line_start: Array, pattern: Array) -> Array:
+    """The numbers of all lines with a pattern; lines with a malformed number lose their pattern."""
+    values = DecimalReader(text).numbers(lexed.starts, lexed.ends)
+    wrong = np.concatenate([lexed.suspicious, lexed.starts[~np.isfinite(values)]])
+    pattern[_lines_at(wrong, line_start)] = PARSED_ALONE
+    if (pattern == PARSED_ALONE).any():
+        values = values[pattern[_lines_at(lexed.starts, line_start)] != PARSED_ALONE]
+    return values
+
+
+def _lines_at(offsets: Array, line_start: Array) -> Array:
+    """The lines, from 0, that contain the given offsets."""
+    return np.searchsorted(line_start, offsets, side="right") - 1
+
+
+def _scanned(whole: bytes, part: _Extent, builder: BlocksBuilder, faults: SyntaxFaults, file: str) -> Scanned:
+    """The blocks if there are no faults; report any block after the end of the file."""
+    diagnostics = faults.diagnostics()
+    blocks = None if diagnostics else builder.blocks(file, part.closed)
+    if part.after >= 0:
+        line = whole.count(b"\n", 0, part.after) + 1
+        diagnostics += (Diagnostic("G212", Place(file, line=line, column=1), _beginning(whole, part.after)),)
+    return blocks, diagnostics
 
 
 def _beginning(text: bytes, offset: int) -> str:
@@ -87,51 +155,76 @@ def _beginning(text: bytes, offset: int) -> str:
     return "".join(character if character.isprintable() else "?" for character in readable(line).strip())
 
 
-def _scan_piece(piece: bytes, shapes: Shapes, table: Table, faults: Faults) -> None:
-    """Append the blocks of a piece to the table, and its faults to ``faults``."""
-    line_start = np.concatenate([[0], np.flatnonzero(np.frombuffer(piece, np.uint8) == ord("\n")) + 1])
-    too_long = np.flatnonzero(np.diff(line_start) - 1 > LONGEST_LINE)
-    spoken: list[tuple[int, str]] = []
-    text = without_comments(without_lines(piece, line_start, too_long) if len(too_long) else piece, spoken)
-    lexed = lex(text)
-    shape = np.fromiter(map(shapes.__getitem__, lexed.shapes), np.intp, len(lexed.shapes))
-    shape[too_long] = BY_ITSELF
-    values = _values(text, lexed, line_start, shape)
-    alone, faulty = _read_alone(piece, line_start, shape, table.next_line, faults)
-    shape[sorted(faulty)] = NOTHING
-    lines = _lines_at(np.array([offset for offset, _ in spoken], np.int64), line_start)
-    said = zip(lines.tolist(), (comment for _, comment in spoken), strict=True)
-    table.comments.extend((table.next_line + index, comment) for index, comment in said if index not in faulty)
-    table.add_lines(shape, shapes.layouts(), values, alone)
+@dataclass(frozen=True)
+class _Extent:
+    """A file delimited by percent signs.
+
+    Attributes:
+        text: whole lines, including the closing percent sign.
+        closed: whether there is one.
+        after: offset of the first block after it, -1 if there is none.
+    """
+
+    text: bytes
+    closed: bool = False
+    after: int = -1
 
 
-def _read_alone(
-    piece: bytes, line_start: Array, shape: Array, first: int, faults: Faults
-) -> tuple[dict[int, Row], set[int]]:
-    """Read the lines without a plain shape one by one; return their rows, and which lines are faulty."""
-    rows: dict[int, Row] = {}
-    faulty: set[int] = set()
-    for index in np.flatnonzero(shape == BY_ITSELF).tolist():
-        line = piece[line_start[index] : line_start[index + 1] - 1]
-        row = read_row(line)
-        if isinstance(row, Row):
-            rows[index] = row
-        else:
-            faulty.add(index)
-            faults.add(first + index, line, row)
-    return rows, faulty
+def _up_to_percent(text: bytes) -> _Extent:
+    """Cut a file, of lines with their line feeds, at its closing percent sign."""
+    block = _BLOCK.search(text) if b"%" in text else None
+    if block is None:
+        return _Extent(text)
+    at = text.find(b"%", block.end())
+    while at >= 0:
+        start, stop = text.rfind(b"\n", 0, at) + 1, text.find(b"\n", at)
+        if _PERCENT.fullmatch(text, start, stop):
+            after = _BLOCK.search(text, stop)
+            return _Extent(text[: stop + 1], True, after.start() if after else -1)
+        at = text.find(b"%", stop)
+    return _Extent(text)
 
 
-def _values(text: bytes, lexed: Lexed, line_start: Array, shape: Array) -> Array:
-    """The numbers of all lines with a shape; lines with a malformed number lose their shape."""
-    values = DecimalReader(text).numbers(lexed.starts, lexed.ends)
-    wrong = np.concatenate([lexed.suspicious, lexed.starts[~np.isfinite(values)]])
-    shape[_lines_at(wrong, line_start)] = BY_ITSELF
-    if (shape == BY_ITSELF).any():
-        values = values[shape[_lines_at(lexed.starts, line_start)] != BY_ITSELF]
-    return values
+def _normalized(text: bytes | str) -> bytes:
+    """Strip the byte order mark and end every line with a line feed."""
+    raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
+    raw = raw.removeprefix(_BYTE_ORDER_MARK)
+    if b"\r" in raw:
+        raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return raw if raw.endswith(b"\n") or not raw else raw + b"\n"
 
 
-def _lines_at(offsets: Array, line_start: Array) -> Array:
-    """The lines, from 0, that contain the given offsets."""
-    return np.searchsorted(line_start, offsets, side="right") - 1
+def _pieces(text: bytes) -> Iterator[bytes]:
+    """Split a file into _pieces of whole lines of at most ``PIECE`` bytes, or of one longer line.
+
+    Args:
+        text: the cleaned bytes of a file.
+    """
+    start = 0
+    while start < len(text):
+        end = text.rfind(b"\n", start, start + PIECE) + 1 or text.find(b"\n", start) + 1
+        yield text[start:end]
+        start = end
+
+
+def _without_comments(piece: bytes, messages: list[tuple[int, str]]) -> bytes:
+    """Replace the comments of whole lines by blanks; collect offset and text of the messages among them."""
+    if b"(" not in piece and b";" not in piece:
+        return piece
+
+    def blank(comment: re.Match[bytes]) -> bytes:
+        content = comment[0]
+        if _MESSAGE.match(content):
+            inside = content[1:-1] if content.startswith(b"(") else content[1:]
+            messages.append((comment.start(), readable(inside.strip())))
+        return b" " * len(content)
+
+    return _COMMENT.sub(blank, piece)
+
+
+def _without_lines(piece: bytes, line_start: Array, lines: Array) -> bytes:
+    """Replace some lines of a piece, counted from 0, by blanks."""
+    blanked = bytearray(piece)
+    for start, end in zip(line_start[lines].tolist(), (line_start[lines + 1] - 1).tolist(), strict=True):
+        blanked[start:end] = b" " * (end - start)
+    return bytes(blanked)

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from pkm_post.reading.gcode.blocks import Block
 from pkm_post.reading.gcode.expressions import (
     Expression,
     Target,
@@ -20,7 +21,7 @@ from pkm_post.reading.gcode.expressions import (
     target_of,
 )
 from pkm_post.reading.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole
-from pkm_post.reading.gcode.row import LARGEST_CODE, dialect_codes
+from pkm_post.reading.gcode.parse import LARGEST_CODE, dialect_codes
 
 if TYPE_CHECKING:
     from lark import Token, Tree
@@ -29,21 +30,6 @@ if TYPE_CHECKING:
 
 _NEAR_A_CODE = 1e-3
 """Tolerance for accepting a value as a code, in units of its smallest step."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """The plain words of a block as executed.
-
-    Attributes:
-        values: by letter.
-        g: G codes in tenths.
-        m: M codes.
-    """
-
-    values: dict[str, float] = field(default_factory=dict)
-    g: tuple[int, ...] = ()
-    m: tuple[int, ...] = ()
 
 
 @dataclass
@@ -71,7 +57,7 @@ class Words:
         targets = [target.number for target, _ in self.assignments if target.number is not None]
         return sum(len(value.steps) for value in (*values, *targets))
 
-    def executed(self, parameters: Parameters) -> Row:
+    def executed(self, parameters: Parameters) -> Block:
         """Compute the block, then assign.
 
         Args:
@@ -81,15 +67,15 @@ class Words:
             ExecutionFault: a value cannot be computed or is invalid for its word.
         """
         values = {letter: value.value(parameters) for letter, value in self.values}
-        g = tuple([*self.codes, *[_code("G", code, 10, parameters) for code in self.g]])
-        m = tuple([_code("M", code, 1, parameters) for code in self.m])
+        g = [*self.codes, *(_code("G", code, 10, parameters) for code in self.g)]
+        m = [_code("M", code, 1, parameters) for code in self.m]
         computed = [(target.resolved(parameters), value.value(parameters)) for target, value in self.assignments]
         for (name, value), (target, _) in zip(computed, self.assignments, strict=True):
             try:
                 parameters.assign(name, value)
             except ExecutionFault as fault:
                 raise ExecutionFault(fault.code, fault.found, target.column) from None
-        return Row(values, g, m)
+        return Block(values, g, m)
 
 
 @dataclass(frozen=True)

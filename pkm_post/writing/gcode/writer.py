@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.model import Diagnostic, Place, Program
-from pkm_post.reading import CHORD_ERROR, exact_codes, with_chords
+from pkm_post.reading import exact_codes
+from pkm_post.toolpath import CHORD_ERROR, with_chords
 from pkm_post.writing.gcode.writer_arcs import WrittenArcs, written_arcs
 from pkm_post.writing.gcode.writer_axes import FORMS, SWING, Form, impossible_axis, swings
 from pkm_post.writing.gcode.writer_blocks import block_texts

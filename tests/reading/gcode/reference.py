@@ -2,7 +2,7 @@
 """Reading G-code block by block, as plainly as it can be written: what the columns of the reader are compared with.
 
 Knows G0 to G3, G4, G10 L2, G17 to G21, G40 to G42.1, G43, G43.5, G49, G52, G54 to G56, G61, G61.1, G64, G68, G69,
-G51.1, G50.1, G81, G90 to G95, G98, G99, T, M6, M3 to M9, S, F. Its programs are right; it tells no faults.
+G51.1, G50.1, G81, G90 to G95, G98, G99, T, M6, M3 to M9, S, F. Its programs are right; it reports no faults.
 """
 
 import numpy as np

@@ -168,8 +168,8 @@ def of_leaning_tool(vector, hole):
     ],
 )
 def test_holes_are_drilled_along_the_tool(vector, hole):
-    program, told = of_leaning_tool(vector, hole)
-    assert program is not None and told == []
+    program, diagnostics = of_leaning_tool(vector, hole)
+    assert program is not None and diagnostics == []
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ HEAD = "G21 F100\nG0 X0 Y0 Z5\n"
 
 def dwells(text, unit):
     program, faults = read(HEAD + text + "\nM2\n", "part.ngc", ReadOptions(dwell_unit=unit))
-    told = [(fault.code, fault.place.line) for fault in faults]
-    return program and [event.value for event in program.events if event.kind is EventKind.DWELL], told
+    diagnostics = [(fault.code, fault.place.line) for fault in faults]
+    return program and [event.value for event in program.events if event.kind is EventKind.DWELL], diagnostics
 
 
 @pytest.mark.parametrize(
@@ -27,11 +27,11 @@ def dwells(text, unit):
 )
 def test_p_is_in_seconds_unless_the_user_says_milliseconds(text, seconds):
     """The numbers are what rs274 prints for DWELL."""
-    found, told = dwells(text, "s")
-    assert set(found) == {seconds} and told == []
+    found, diagnostics = dwells(text, "s")
+    assert set(found) == {seconds} and diagnostics == []
     whole = text.replace("P0.25", "P250").replace("P1.5", "P1500")
-    found, told = dwells(whole, "ms")
-    assert set(found) == {seconds / 1000 if whole == text else seconds} and told == []
+    found, diagnostics = dwells(whole, "ms")
+    assert set(found) == {seconds / 1000 if whole == text else seconds} and diagnostics == []
 
 
 def test_the_same_time_in_both_units_is_the_same_program():
@@ -43,8 +43,8 @@ def test_the_same_time_in_both_units_is_the_same_program():
 @pytest.mark.parametrize("block", ["G4 P{}", "G82 X1 Z-1 R1 P{}"])
 def test_more_than_a_minute_is_told_with_both_readings(unit, just, more, block):
     assert dwells(block.format(just), unit)[1] == []
-    found, told = dwells(block.format(more), unit)
-    assert len(found) == 1 and told == [("G428", 3)]
+    found, diagnostics = dwells(block.format(more), unit)
+    assert len(found) == 1 and diagnostics == [("G428", 3)]
 
 
 def test_both_readings_are_in_the_message():
@@ -66,8 +66,8 @@ def test_other_words_may_have_a_point():
 
 
 def test_a_loop_tells_its_dwell_once():
-    _, told = dwells("o1 repeat [5]\nG4 P100\no1 endrepeat", "s")
-    assert told == [("G428", 4)]
+    _, diagnostics = dwells("o1 repeat [5]\nG4 P100\no1 endrepeat", "s")
+    assert diagnostics == [("G428", 4)]
 
 
 def test_another_unit_is_refused():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pkm_post.reading.gcode.execute import execute
-from pkm_post.reading.gcode.limits import ExecutionLimits
+from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.gcode.scan import scan_by_block
 
 LONG_LOOP = 100_000
@@ -92,7 +92,7 @@ def test_a_block_with_m98_moves_before_the_call():
     assert shown(executed("G0 X1 M98 P7\nX2\nM2\nO7\nX5 M99\n")) == ["1: G0 X1", "5: X5", "2: X2", "3: M2"]
 
 
-def test_nothing_is_executed_behind_the_end():
+def test_nothing_is_executed_after_the_end():
     assert shown(executed("#1=1\nX#1\nM2\nX2\n")) == ["2: X1", "3: M2"]
     assert shown(executed("#1=30\nX1 M#1\nX2\n")) == ["2: M30 X1"]
 

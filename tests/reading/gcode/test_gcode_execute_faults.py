@@ -8,8 +8,8 @@ import pytest
 
 from pkm_post.model.diagnostics import RULES
 from pkm_post.reading.gcode.execute import execute
-from pkm_post.reading.gcode.flow import link
-from pkm_post.reading.gcode.limits import ExecutionLimits
+from pkm_post.reading.gcode.o_words import link_o_words
+from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.gcode.scan import scan_by_block
 from pkm_post.reading.gcode.statements import OWord
 
@@ -62,7 +62,7 @@ FAULTS = [
     ("o1 endrepeat", "G307", 1, 0, "O1 endrepeat without repeat"),
     ("o1 endsub", "G307", 1, 0, "O1 endsub without sub"),
     ("o1 if [1]\no2 endif\no1 endif", "G307", 2, 0, "O2 endif without if"),
-    ("o1 if [1]\no1 else\no1 else\no1 endif", "G307", 3, 0, "O1 else behind else"),
+    ("o1 if [1]\no1 else\no1 else\no1 endif", "G307", 3, 0, "O1 else after else"),
     ("o1 break", "G307", 1, 0, "O1 break, outside of a loop of this label"),
     ("o1 if [1]\no1 continue\no1 endif", "G307", 2, 0, "O1 continue, outside of a loop of this label"),
     ("o1 if [1]", "G308", 1, 0, "O1 if"),
@@ -222,7 +222,7 @@ def test_o_words_within_each_other_are_linked_in_linear_work(close):
     jumps = [OWord("break", Label(number), ()) for number in range(count)]
     words = opens + {"closed": ends, "outer closed": ends[-1:], "open": [], "with jumps": jumps + ends}[close]
     Label.looked_up = 0
-    flow, faults = link(dict(enumerate(words)))
+    flow, faults = link_o_words(dict(enumerate(words)))
     assert Label.looked_up < 50 * len(words)
     assert len(flow.last_row) == (count if close == "with jumps" else 0)
     told = {"closed": 0, "outer closed": 1, "open": count, "with jumps": 0}

@@ -8,7 +8,7 @@ import pytest
 from programs import BALL, square_with_arc
 
 from pkm_post.reading.gcode import ReadOptions, read
-from pkm_post.reading.gcode.chords import with_chords
+from pkm_post.toolpath import with_chords
 from pkm_post.writing.gcode import Form, write
 
 START = "T1 M6\nG0 X0 Y0 Z0\n"

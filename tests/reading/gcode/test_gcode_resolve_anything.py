@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from pkm_post.model import Kind, Tool
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import G_CODES, M_CODES, REFUSED
+from pkm_post.reading.gcode.codes import G_CODES, M_CODES, UNSUPPORTED
 from pkm_post.reading.gcode.options import AXIS_WORDS, ReadOptions
 from pkm_post.reading.gcode.resolve import resolve
 
@@ -66,4 +66,4 @@ def test_a_program_or_faults(axis_words, rows, started, known):
 
 def test_no_code_is_supported_and_refused():
     names = {f"G{code / 10:g}" for code in G_CODES} | {f"M{code}" for code in M_CODES}
-    assert not names & set(REFUSED)
+    assert not names & set(UNSUPPORTED)

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from pkm_post.model import RULES, Severity, Tool
-from pkm_post.reading.gcode.located import located
+from pkm_post.reading.gcode.codes import Word
+from pkm_post.reading.gcode.diagnostics import column_of
 from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan
@@ -31,18 +32,18 @@ def test_there_are_programs_for_every_code():
 
 
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
-def test_tells_what_its_first_line_says(path):
+def test_reports_what_its_first_line_says(path):
     text = path.read_text(encoding="utf-8")
     code, line, column, words = EXPECTS.match(text).groups()
     blocks, faults = scan(text, path.name)
     assert not faults
-    program, faults = resolve(blocks, options(words))
-    told = [(fault.code, fault.place.line, fault.place.column) for fault in located(faults, text)]
-    assert told == [(code, int(line), int(column))]
+    program, faults = resolve(blocks, options(words), text)
+    diagnostics = [(fault.code, fault.place.line, fault.place.column) for fault in faults]
+    assert diagnostics == [(code, int(line), int(column))]
     assert (program is None) == (RULES[code].severity is Severity.ERROR)
 
 
-def test_every_fault_of_a_program_is_told():
+def test_every_fault_of_a_program_is_reported():
     blocks, _ = scan("G0 X0 Y0 Z5 Q1\nG12\nG1 X1 A1\nG4\n", "part.ngc")
     _, faults = resolve(blocks, ReadOptions())
     assert [(fault.code, fault.place.line) for fault in faults] == [("G404", 1), ("G401", 2), ("G414", 3), ("G405", 4)]
@@ -53,3 +54,37 @@ def test_many_faults_of_a_kind_are_counted():
     _, faults = resolve(blocks, ReadOptions())
     assert len(faults) == 50
     assert str(faults[-1]).startswith("part.ngc: line 51: error G408") and "and 950 more like it" in str(faults[-1])
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "column"),
+    [
+        ([Word("G", 12)], "N10 X1 G12", 8),
+        ([Word("G", 12)], "g 012.0", 1),
+        ([], "  N3 G1 X1", 3),
+        ([Word("G", 3)], "G30 G3", 5),
+        ([Word("X", -1.5)], "Y2 X-01.50", 4),
+        ([Word("X", 1e12)], "Y0 X1000000000000", 4),
+        ([Word("X", 1.23456789)], "Y0 X1.23456789", 4),
+        ([Word("A3", 0.5)], "A3=1 a 3 = .5", 6),
+        ([Word("NX", 0)], "N0 X0 nx0", 7),
+        ([Word("TX")], "X0 TX0.5", 4),
+        ([Word("G", 92), Word("G", 10)], "X5 G10 L2 P1", 4),
+    ],
+)
+def test_the_column_is_that_of_the_first_word_in_the_line(words, line, column):
+    assert column_of(words, line) == column
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("encoded", [str, str.encode])
+def test_columns_with_any_line_ends_and_after_comments(end, encoded):
+    text = encoded(f"G0 X0 Y0 Z0{end}(G12) G12 ; G12{end}")
+    blocks, _ = scan(text, "part.ngc")
+    (fault,) = resolve(blocks, ReadOptions(), text)[1]
+    assert (fault.code, fault.place.line, fault.place.column) == ("G401", 2, 7)
+
+
+def test_without_the_text_diagnostics_have_lines_only():
+    (fault,) = resolve(scan("G0 X0 Y0 Z0\nG12\n", "part.ngc")[0], ReadOptions())[1]
+    assert (fault.place.line, fault.place.column) == (2, 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The scan: what blocks hold, and that the fast way and the way through lark alone are one."""
+"""The scan: what blocks hold, and that the fast way and the way through lark alone are one; where a file ends."""
 
 import random
 
@@ -8,10 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pkm_post.reading.gcode import lines
+from pkm_post.reading.gcode import ReadOptions, read
+from pkm_post.reading.gcode import scan as scan_module
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.row import LONGEST_LINE
+from pkm_post.reading.gcode.parse import LONGEST_LINE
 from pkm_post.reading.gcode.scan import scan, scan_by_block
+
+PROGRAM = "G0 X0 Y0 Z5\nG1 Z-1 F100\n"
+WAYS = pytest.mark.parametrize("way", [scan, scan_by_block])
 
 
 def scanned(text):
@@ -239,7 +243,7 @@ def test_pieces_do_not_show(monkeypatch):
         f"N{row} G{row % 4} X{chance.uniform(-9, 9):.4f} (c) #1={row}"[: chance.randint(0, 40)] for row in range(400)
     )
     whole = scan(program, "part.ngc")
-    monkeypatch.setattr(lines, "PIECE", 100)
+    monkeypatch.setattr(scan_module, "PIECE", 100)
     assert_same(scan(program, "part.ngc"), whole)
 
 
@@ -261,3 +265,69 @@ def test_any_bytes_give_blocks_or_diagnostics(seed):
         blocks, diagnostics = scan(text, "noise.ngc")
         assert (blocks is None) == bool(diagnostics)
         assert_same((blocks, diagnostics), scan_by_block(text, "noise.ngc"))
+
+
+@WAYS
+@pytest.mark.parametrize(
+    ("text", "closed"),
+    [
+        (PROGRAM, False),
+        (f"%\n{PROGRAM}", False),
+        (f"%\n{PROGRAM}%", True),
+        (f"%\n{PROGRAM}%\n", True),
+        (f"{PROGRAM}%\n", True),
+        (f"\n(of 50 % aluminium)\n  % (leader)\n{PROGRAM}\t%; done\n", True),
+        (f"%\n%\n(two leaders)\n{PROGRAM}", False),
+        (f"%\n{PROGRAM}(100 %)\n; 100%\n", False),
+    ],
+)
+def test_a_percent_sign_after_a_block_closes_a_file(way, text, closed):
+    for content in (text, text.replace("\n", "\r\n"), text.encode()):
+        blocks, diagnostics = way(content, "part.ngc")
+        assert (blocks.closed, diagnostics) == (closed, ())
+
+
+@WAYS
+@pytest.mark.parametrize("after", ["G0 X500\n", "(lost)\n\nwhatever [ is here\n", "%\nG0 X500\n%\n"])
+def test_blocks_after_the_end_are_reported_and_not_read(way, after):
+    blocks, (diagnostics,) = way(f"%\n{PROGRAM}%\n{after}", "part.ngc")
+    lines = f"%\n{PROGRAM}%\n{after}".splitlines()
+    first = next(number for number, line in enumerate(lines, 1) if number > 4 and line[:1] not in ("", "(", "%"))
+    assert (diagnostics.code, diagnostics.place.line, diagnostics.found) == ("G212", first, lines[first - 1])
+    assert blocks.line.tolist() == [2, 3]
+
+
+@WAYS
+def test_nothing_is_told_of_an_empty_trailer(way):
+    assert way(f"{PROGRAM}M2\n%\n\n(end of tape)\n%\n", "part.ngc")[1] == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "ends"),
+    [
+        ("M2\n", True),
+        ("M30\n", True),
+        ("%\n", True),
+        ("", False),
+        ("M0\n", False),
+        ("(M2)\n", False),
+        ("o1 if [1]\nM2\no1 endif\n", True),
+        ("o1 if [0]\nM2\no1 endif\n", False),
+        ("#1=2\nM#1\n", True),
+        ("M98 P7\nO7\nG0 Z5\nM99\n", False),
+        ("M98 P7\nM30\nO7\nG0 Z5\nM99\n", True),
+        ("#1=1\nG0 Z[#1]\n%\n", True),
+    ],
+)
+def test_a_whole_program_has_an_end_that_is_come_to(text, ends):
+    program, diagnostics = read(PROGRAM + text, "part.ngc", ReadOptions(needs_end=True))
+    codes = [each.code for each in diagnostics]
+    if "M99" in text and not ends:  # the subprogram after the program is run into
+        assert codes == ["G312"]
+    else:
+        assert codes == ([] if ends else ["G430"])
+    assert (program is not None) == ends
+
+
+def test_a_line_by_hand_needs_no_end():
+    assert read(PROGRAM, "MDI")[1] == ()

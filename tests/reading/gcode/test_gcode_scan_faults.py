@@ -2,12 +2,13 @@
 """Faults of G-code text: bad programs state in their first line what they must give."""
 
 import re
+import sys
 from pathlib import Path
 
 import pytest
 
-from pkm_post.reading.gcode.faults import EXPECTED
 from pkm_post.reading.gcode.scan import scan, scan_by_block
+from pkm_post.reading.gcode.syntax_faults import EXPECTED
 from pkm_post.reading.grammar import BLOCK, parser_of
 
 BAD_PROGRAMS = sorted((Path(__file__).parents[2] / "data" / "bad_gcode").glob("*.ngc"))
@@ -80,6 +81,14 @@ def test_characters_are_shown_as_people_see_them():
 
 
 def test_every_terminal_of_the_grammar_has_words():
-    told = {name for names in EXPECTED.values() for name in names}
+    diagnostics = {name for names in EXPECTED.values() for name in names}
     terminals = {terminal.name for terminal in parser_of(BLOCK).terminals} - {"COMMENT", "BLANKS"}
-    assert terminals | {"$END", "<END-OF-FILE>"} == told
+    assert terminals | {"$END", "<END-OF-FILE>"} == diagnostics
+
+
+@pytest.mark.parametrize("way", [scan, scan_by_block])
+def test_a_missing_lark_is_named(monkeypatch, way):
+    parser_of.cache_clear()
+    monkeypatch.setitem(sys.modules, "lark", None)
+    with pytest.raises(ImportError, match="needs lark: install python3-lark, or type: pip install lark"):
+        way("G1 X1", "part.ngc")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Flow: match O words before execution.
+"""O words: match the O words of a program before it is executed.
 
-Enters: the O words of a program by row. Leaves: the jump targets of each O word, and the rows of the subprograms; or
-every unmatched O word, with its row.
+Enters: the O words by row. Leaves: the jump targets of each O word, and the rows of the subprograms; or every unmatched
+O word, with its row.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ LOOPS = ("while", "do", "repeat")
 
 
 @dataclass
-class Flow:
+class JumpTargets:
     """Jump targets of O words.
 
     Attributes:
@@ -68,14 +68,14 @@ class _Linker:
     """
 
     def __init__(self) -> None:
-        self.flow = Flow()
+        self.flow = JumpTargets()
         self.open: list[_Open] = []
         self._subs: list[int] = []
         """Indices of the subprograms in ``open``."""
         self._depths: dict[tuple[str, str], list[int]] = {}
         """Indices in ``open`` by keyword and label."""
 
-    def take(self, row: int, word: OWord) -> None:
+    def link(self, row: int, word: OWord) -> None:
         """Link one O word.
 
         Raises:
@@ -165,7 +165,7 @@ class _Linker:
 
     def _divide(self, row: int, keyword: str, opened: _Open) -> None:
         if opened.has_else:
-            raise ExecutionFault("G307", f"O{_shown(opened.label)} {keyword} behind else")
+            raise ExecutionFault("G307", f"O{_shown(opened.label)} {keyword} after else")
         opened.has_else = keyword == "else"
         opened.branches.append(row)
 
@@ -187,7 +187,7 @@ _BEGIN: dict[str, Callable[[_Linker, int, str, str], None]] = {
 }
 
 
-def link(words: Mapping[int, OWord]) -> tuple[Flow, tuple[tuple[int, ExecutionFault], ...]]:
+def link_o_words(words: Mapping[int, OWord]) -> tuple[JumpTargets, tuple[tuple[int, ExecutionFault], ...]]:
     """Match the O words of a program.
 
     Args:
@@ -200,7 +200,7 @@ def link(words: Mapping[int, OWord]) -> tuple[Flow, tuple[tuple[int, ExecutionFa
     faults: list[tuple[int, ExecutionFault]] = []
     for row, word in words.items():
         try:
-            linker.take(row, word)
+            linker.link(row, word)
         except ExecutionFault as fault:
             faults.append((row, fault))
     for opened in linker.open:

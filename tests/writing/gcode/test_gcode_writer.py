@@ -12,7 +12,7 @@ from pkm_post.geometry import angle_between, norm
 from pkm_post.machine import platform_rotation
 from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.reading.gcode import ReadOptions, read
-from pkm_post.reading.gcode.chords import CHORD_ERROR
+from pkm_post.toolpath import CHORD_ERROR
 from pkm_post.writing.gcode import Form, write
 from pkm_post.writing.gcode.writer_axes import FORMS, POLE, SWING, swings
 

@@ -14,13 +14,12 @@ import numpy as np
 from pkm_post.geometry import torsion
 from pkm_post.model import Array, read_only, uniform
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import Group
-from pkm_post.reading.gcode.findings import Findings
+from pkm_post.reading.gcode.codes import Group, Word, word_of
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.frames import normal_coordinate
-from pkm_post.reading.gcode.modal import Modal, carried, is_arc, is_cycle
-from pkm_post.reading.gcode.motions import span
+from pkm_post.reading.gcode.modal import Modal, forward_fill, is_arc, is_cycle, track_coordinate
+from pkm_post.reading.gcode.motions import as_slice
 from pkm_post.reading.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
-from pkm_post.reading.gcode.positions import follow
 
 _BY_ANGLES, _BY_VECTOR = 434, 435
 _UPRIGHT = (0.0, 0.0, 1.0)
@@ -32,21 +31,21 @@ _LENGTH_ERROR = 1e-3
 """A normal whose length differs more from 1 is reported; less is rounding."""
 
 
-def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> Array:
+def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Array:
     """Unit tool axis at the end of each block, (N, 3)."""
     if options.axis_words == "none":
         return uniform(_UPRIGHT, len(blocks))
     find, code = (_vectors, _BY_VECTOR) if options.axis_words == "vector" else (_angles, _BY_ANGLES)
-    axes, said = find(blocks, modal, options, faults)
+    axes, given = find(blocks, modal, options, faults)
     if options.axis_words != "RPY":
         # Without tip control, X Y Z are slide positions, and the tip position depends on the machine.
-        idle = modal.moves & (modal.in_force[Group.LENGTH] != code) & ~said
+        idle = modal.moves & (modal.active[Group.LENGTH] != code) & ~given
         idle &= (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
-        faults.tell_all("G424", idle, lambda row: f"({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
+        faults.add_where("G424", idle, lambda row: f"({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
     return read_only(axes)
 
 
-def check_cycles(modal: Modal, axes: Array, faults: Findings) -> None:
+def check_cycles(modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
     """Report holes not drilled along the tool axis: a cycle always moves along the normal of its plane.
 
     Args:
@@ -54,44 +53,44 @@ def check_cycles(modal: Modal, axes: Array, faults: Findings) -> None:
         axes: (N, 3) unit tool axis in program coordinates.
         faults: collects the faults.
     """
-    rows = np.flatnonzero(modal.moves & is_cycle(modal.in_force[Group.MOTION]))
-    axis, across = axes[rows], normal_coordinate(modal.in_force[Group.PLANE][rows])
+    rows = np.flatnonzero(modal.moves & is_cycle(modal.active[Group.MOTION]))
+    axis, across = axes[rows], normal_coordinate(modal.active[Group.PLANE][rows])
     along = np.abs(np.take_along_axis(axis, across[:, None].astype(np.int64), axis=1)[:, 0])
     for row in rows[(along < _ALONG) & (axis[:, 2] < _ALONG)].tolist():
-        faults.tell("G429", row, f"tool axis ({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
+        faults.add("G429", row, f"tool axis ({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
 
 
-def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> tuple[Array, Array]:
+def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> tuple[Array, Array]:
     """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
-    on_arc, in_cycle = is_arc(modal.in_force[Group.MOTION]), is_cycle(modal.in_force[Group.MOTION])
+    on_arc, in_cycle = is_arc(modal.active[Group.MOTION]), is_cycle(modal.active[Group.MOTION])
     words = [_component(blocks, letter, modal.moves & on_arc, in_cycle, faults) for letter in "IJK"]
     count = np.where(modal.moves & ~on_arc, np.sum([~np.isnan(word) for word in words], axis=0, dtype=np.uint8), 0)
-    inactive = (count > 0) & (modal.in_force[Group.LENGTH] != _BY_VECTOR)
-    faults.tell_all("G415", inactive, lambda _: "I J K without G43.5")
-    faults.tell_all("G415", ~inactive & (count > 0) & (count < 3), lambda row: f"{count[row]} of the words I J K")
+    inactive = (count > 0) & (modal.active[Group.LENGTH] != _BY_VECTOR)
+    faults.add_where("G415", inactive, lambda _: "I J K without G43.5")
+    faults.add_where("G415", ~inactive & (count > 0) & (count < 3), lambda row: f"{count[row]} of the words I J K")
     whole = np.flatnonzero(count == 3)
-    unit, length = _unit([word[span(whole)] for word in words])
+    unit, length = _unit([word[as_slice(whole)] for word in words])
     for row in whole[length == 0].tolist():
         if not inactive[row]:
-            faults.tell("G415", row, "I0 J0 K0")
+            faults.add("G415", row, (Word("I", 0), " ", Word("J", 0), " ", Word("K", 0)))
     if not len(whole):
         return uniform(_UPRIGHT, len(blocks)), count > 0
     axes = np.empty((len(blocks), 3))
     for column, before in enumerate(_UPRIGHT):
-        axes[:, column] = carried(whole, unit[column], before, len(blocks))
+        axes[:, column] = forward_fill(whole, unit[column], before, len(blocks))
     return axes, count > 0
 
 
-def _component(blocks: Blocks, letter: str, on_arc: Array, in_cycle: Array, faults: Findings) -> Array:
+def _component(blocks: Blocks, letter: str, on_arc: Array, in_cycle: Array, faults: BlockDiagnostics) -> Array:
     """Values of a tool axis component, from the words of any dialect, (N,); K of a cycle is a repeat count."""
     value = np.where(in_cycle, np.nan, blocks.word(letter)) if in_cycle.any() else blocks.word(letter)
     for name in VECTOR_WORDS[letter]:
         if name != letter and name in blocks.words:
-            said = blocks.has(name)
-            faults.tell_all("G317", said & on_arc, lambda row, name=name: f"{name} on an arc")  # type: ignore[misc]
-            twice = said & ~on_arc & ~np.isnan(value)
-            faults.tell_all("G317", twice, lambda row, name=name: f"{name} and another word for {letter}")  # type: ignore[misc]
-            value = np.where(said, blocks.words[name], value)
+            given = blocks.has(name)
+            faults.add_where("G317", given & on_arc, lambda row, name=name: (Word(name), " on an arc"))  # type: ignore[misc]
+            twice = given & ~on_arc & ~np.isnan(value)
+            faults.add_where("G317", twice, lambda row, name=name: (Word(name), f" and another word for {letter}"))  # type: ignore[misc]
+            value = np.where(given, blocks.words[name], value)
     return value
 
 
@@ -101,29 +100,29 @@ def _unit(vectors: list[Array]) -> tuple[list[Array], Array]:
     return [component / np.where(length > 0, length, 1.0) for component in vectors], length
 
 
-def surface_normals(blocks: Blocks, faults: Findings) -> Array:
+def surface_normals(blocks: Blocks, faults: BlockDiagnostics) -> Array:
     """Unit surface normals, (N, 3), NaN where a block gives none: they are not modal."""
-    said = [blocks.has(name) for name in NORMAL_WORDS if name in blocks.words]
-    if not said:
+    given = [blocks.has(name) for name in NORMAL_WORDS if name in blocks.words]
+    if not given:
         return uniform((np.nan, np.nan, np.nan), len(blocks))
-    count = np.asarray(np.sum(said, axis=0, dtype=np.uint8))
-    faults.tell_all("G422", (count > 0) & (count < 3), lambda row: f"{count[row]} of the words NX NY NZ")
+    count = np.asarray(np.sum(given, axis=0, dtype=np.uint8))
+    faults.add_where("G422", (count > 0) & (count < 3), lambda row: f"{count[row]} of the words NX NY NZ")
     unit, length = _unit([blocks.word(name) for name in NORMAL_WORDS])
-    faults.tell_all("G422", length == 0, lambda _: "NX0 NY0 NZ0")
-    faults.tell_all(
+    faults.add_where("G422", length == 0, lambda _: (Word("NX", 0), " ", Word("NY", 0), " ", Word("NZ", 0)))
+    faults.add_where(
         "G423", (np.abs(length - 1) > _LENGTH_ERROR) & (length > 0), lambda row: f"length {length[row]:.6f}"
     )
     return read_only(np.column_stack(unit))
 
 
-def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Findings) -> tuple[Array, Array]:
+def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> tuple[Array, Array]:
     """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
     words = _rotary_words(blocks, modal, options)
     given: Array = np.any([~np.isnan(word) for word in words.values()], axis=0)
     if options.axis_words != "RPY":
         # Without G43.4 a machine with such a head takes X Y Z as slide positions, not as the tip position.
-        inactive = given & (modal.in_force[Group.LENGTH] != _BY_ANGLES)
-        faults.tell_all("G414", inactive, lambda row: f"{_first(words, row)} without G43.4")
+        inactive = given & (modal.active[Group.LENGTH] != _BY_ANGLES)
+        faults.add_where("G414", inactive, lambda row: (_first(words, row), " without ", word_of(_BY_ANGLES)))
     return axis_of(_in_rad(modal, words)), given
 
 
@@ -141,16 +140,16 @@ def _rotary_words(blocks: Blocks, modal: Modal, options: ReadOptions) -> dict[st
 
 def _in_rad(modal: Modal, words: dict[str, Array]) -> Array:
     """Angles A, B, C in each block, (N, 3)."""
-    relative = modal.in_force[Group.DISTANCE] == 910
+    relative = modal.active[Group.DISTANCE] == 910
     degrees = np.zeros((len(relative), 3))
     for letter, word in words.items():
-        degrees[:, "ABC".index(letter)], _ = follow(word, relative, 0.0)
+        degrees[:, "ABC".index(letter)], _ = track_coordinate(word, relative, 0.0)
     return np.radians(degrees)
 
 
-def _first(words: dict[str, Array], row: int) -> str:
-    """The first rotary word of a block, as written."""
-    return next(f"{letter}{word[row]:g}" for letter, word in words.items() if not np.isnan(word[row]))
+def _first(words: dict[str, Array], row: int) -> Word:
+    """The first rotary word of a block."""
+    return next(Word(letter, word[row]) for letter, word in words.items() if not np.isnan(word[row]))
 
 
 def x_of(angles: Array) -> Array:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults of blocks: turn lark errors into readable diagnostics.
+"""Syntax faults: turn lark errors into readable diagnostics.
 
 Enters: the bytes of a line and lark's report of unexpected input. Leaves: a lexical fault (G1xx: an invalid character
 or number) or a syntax fault (G2xx), with its location, what was found and what was expected, in words.
@@ -16,7 +16,7 @@ from pkm_post.reading.grammar import Fault, in_words
 if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
 
-MOST_TOLD = 100
+MOST_REPORTED = 100
 """Faults reported individually; the rest are only counted."""
 
 LONGEST_TO_TRY = 200
@@ -47,12 +47,12 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
 _NUMERIC = "+-.0123456789"
 
 
-class Faults:
+class SyntaxFaults:
     """The faults of a file, collected in line order."""
 
     def __init__(self, file: str) -> None:
         self._file = file
-        self._told: list[Diagnostic] = []
+        self._diagnostics: list[Diagnostic] = []
         self._count = 0
 
     def add(self, number: int, line: bytes, unexpected: UnexpectedInput | Fault) -> None:
@@ -64,18 +64,18 @@ class Faults:
             unexpected: its fault.
         """
         self._count += 1
-        if self._count > MOST_TOLD:
+        if self._count > MOST_REPORTED:
             return
-        fault = unexpected if isinstance(unexpected, Fault) else fault_of(line.decode("latin-1"), unexpected)
-        self._told.append(
+        fault = unexpected if isinstance(unexpected, Fault) else fault_of_unexpected(line.decode("latin-1"), unexpected)
+        self._diagnostics.append(
             Diagnostic(fault.code, Place(self._file, line=number, column=_column(line, fault)), fault.found)
         )
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of the file."""
-        untold = self._count - len(self._told)
-        more = [Diagnostic("G199", Place(self._file), f"and {untold} more")] if untold else []
-        return (*self._told, *more)
+        unreported = self._count - len(self._diagnostics)
+        more = [Diagnostic("G199", Place(self._file), f"and {unreported} more")] if unreported else []
+        return (*self._diagnostics, *more)
 
 
 def readable(text: bytes) -> str:
@@ -95,7 +95,7 @@ def _column(line: bytes, fault: Fault) -> int:
     return len(line[: fault.offset].decode("utf-8", "ignore")) + 1
 
 
-def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
+def fault_of_unexpected(text: str, unexpected: UnexpectedInput) -> Fault:
     """The fault that stopped lark.
 
     Args:

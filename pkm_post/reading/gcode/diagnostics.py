@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Diagnostics of blocks: collected by row while a program is resolved, and located in its text.
+
+Enters: rows of blocks, and what was found there. Leaves: diagnostics in line order, with the columns of the words they
+name. Every faulty block counts, but only the first ones of each code are reported individually: a program of a million
+blocks may have the same fault in each.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from pkm_post.model import Array, Diagnostic, Place, errors
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import Word
+
+_MOST_REPORTED = 50
+"""Faults per code that are reported with their own place."""
+
+_WORD = re.compile(
+    r"([ABC][ \t]*3(?=[ \t]*=)|[NT][ \t]*[XYZ]|[A-Z])[ \t]*=?[ \t]*([+-]?(?:\d+\.?\d*|\.\d+))", re.IGNORECASE
+)
+_COMMENT = re.compile(r"\([^)]*\)?|;.*")
+
+
+Found = str | Word | tuple[str | Word, ...]
+"""What was found in a block: text, and the words that are at fault, the most important first."""
+
+
+@dataclass
+class BlockDiagnostics:
+    """Collects the diagnostics of a program.
+
+    Attributes:
+        blocks: the program.
+        text: its source text, empty if unknown: without it diagnostics have no columns.
+        diagnostics: what is collected.
+    """
+
+    blocks: Blocks
+    text: bytes | str = ""
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    _count: Counter[str] = field(default_factory=Counter)
+
+    def add(self, code: str, row: int, found: Found) -> None:
+        """Add a diagnostic of one block, or of the whole file if there are no blocks."""
+        self._count[code] += 1
+        if self._count[code] <= _MOST_REPORTED:
+            parts = found if isinstance(found, tuple) and not isinstance(found, Word) else (found,)
+            words = [part for part in parts if isinstance(part, Word)]
+            self.diagnostics.append(Diagnostic(code, self._place(row, words), "".join(map(str, parts))))
+
+    def add_where(self, code: str, wrong: Array, found: Callable[[int], Found]) -> None:
+        """Add a diagnostic for every faulty block.
+
+        Args:
+            code: diagnostic code.
+            wrong: (N,) mask of faulty blocks.
+            found: returns what was found in a row.
+        """
+        rows = np.flatnonzero(wrong)
+        for row in rows[:_MOST_REPORTED].tolist():
+            self.add(code, row, found(row))
+        self._count[code] += max(len(rows) - _MOST_REPORTED, 0)
+
+    def source_line(self, row: int) -> str | None:
+        """The line of a block, without comments; None if it is unknown."""
+        number = int(self.blocks.line[row])
+        if not 0 < number <= len(self._lines):
+            return None
+        return _COMMENT.sub(lambda comment: " " * len(comment.group()), self._lines[number - 1])
+
+    @cached_property
+    def _lines(self) -> list[str]:
+        text = self.text.decode("latin-1") if isinstance(self.text, bytes) else self.text
+        return re.split(r"\r\n|\n|\r", text) if text else []
+
+    def _place(self, row: int, words: list[Word]) -> Place:
+        if not len(self.blocks):
+            return Place(self.blocks.source)
+        line = self.source_line(row)
+        place = self.blocks.place(row)
+        return place if line is None else replace(place, column=column_of(words, line))
+
+    def has_errors(self) -> bool:
+        """Whether there are errors."""
+        return bool(errors(self.diagnostics))
+
+    def in_order(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics in line order; the last one of a code states how many more there are."""
+        diagnostics = sorted(self.diagnostics, key=lambda fault: (fault.place.line, fault.code))
+        last = {fault.code: index for index, fault in enumerate(diagnostics)}
+        for code, index in last.items():
+            more = self._count[code] - sum(fault.code == code for fault in diagnostics)
+            if more:
+                fault = diagnostics[index]
+                diagnostics[index] = Diagnostic(code, fault.place, f"{fault.found}, and {more} more like it")
+        return tuple(diagnostics)
+
+
+def column_of(words: Iterable[Word], line: str) -> int:
+    """Column, from 1, of the first of some words that a line has, or else of its first character.
+
+    Blanks, case and leading zeros do not matter: G1 is found in ``g 01``.
+
+    Args:
+        words: in the order of preference.
+        line: without comments.
+    """
+    columns: dict[Word, int] = {}
+    for match in _WORD.finditer(line):
+        name = "".join(match.group(1).split()).upper()
+        for word in (Word(name), Word(name, float(match.group(2)))):
+            columns.setdefault(word, match.start() + 1)
+    start = len(line) - len(line.lstrip()) + 1
+    return next((columns[word] for word in words if word in columns), start)

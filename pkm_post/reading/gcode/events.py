@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Events: M codes, S and dwells between motions.
+
+Enters: columns of codes, and P of G4 and of the cycles that dwell at the bottom. Leaves: events, and warnings about
+doubtful dwells. Order within a block: tool change, spindle and coolant, dwell, motion, program stop [LinuxCNC, order of
+execution]. P is in seconds on LinuxCNC and in milliseconds, without a decimal point, on Fanuc-style controls [LinuxCNC;
+Weihong]. With a point some of these read seconds [Haas], so it is refused there.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from pkm_post.model import Array, Event, EventKind, map_rows
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import NONE, Group, Word
+from pkm_post.reading.gcode.cycles import DWELLS
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
+from pkm_post.reading.gcode.modal import Modal, changed
+from pkm_post.reading.gcode.options import DWELL_UNITS, ReadOptions
+
+_COOLANT = {7: 2.0, 8: 1.0, 9: 0.0}
+_STOPS = {0: 0.0, 1: 1.0, 60: 0.0}
+ENDS = (2, 30)
+
+BlockEvent = tuple[int, int, EventKind, float]
+"""Block, rank in it (negative before its motion, positive after), kind and value."""
+
+CycleEvent = tuple[int, int, EventKind, float]
+"""Row of the following motion, block, kind and value."""
+
+
+def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array, dwells: Array) -> list[BlockEvent]:
+    """Events outside cycles, by block and rank; ``dwells`` are in s."""
+    events: list[BlockEvent] = []
+    tool_changes, stops = modal.programmed[Group.CHANGE], modal.programmed[Group.STOP]
+    for row in np.flatnonzero(tool_changes == 6).tolist():
+        events.append((row, -4, EventKind.TOOL_CHANGE, float(tools[row])))
+    switched = (modal.programmed[Group.SPINDLE] != NONE) | changed(spindle, 0.0)
+    for row in np.flatnonzero(switched).tolist():
+        events.append((row, -3, EventKind.SPINDLE, float(spindle[row])))
+    on_coolant = np.isin(blocks.m, list(_COOLANT))
+    for row, code in zip(blocks.m_row[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
+        events.append((row, -2, EventKind.COOLANT, _COOLANT[code]))
+    for row in blocks.g_row[blocks.g == 40].tolist():
+        events.append((row, -1, EventKind.DWELL, float(dwells[row])))
+    for row in np.flatnonzero(stops != NONE).tolist():
+        if stops[row] in ENDS:
+            events.extend(_at_program_end(row, spindle, events))
+        else:
+            events.append((row, 1, EventKind.STOP, _STOPS[int(stops[row])]))
+    return sorted(events, key=lambda event: event[:2])
+
+
+def _at_program_end(row: int, spindle: Array, before: list[BlockEvent]) -> list[BlockEvent]:
+    """Events that M2 and M30 imply: spindle and coolant off."""
+    coolant = [value for _, _, kind, value in sorted(before, key=lambda event: event[:2]) if kind is EventKind.COOLANT]
+    off: list[BlockEvent] = []
+    if spindle[row]:
+        off.append((row, 2, EventKind.SPINDLE, 0.0))
+    if coolant and coolant[-1]:
+        off.append((row, 2, EventKind.COOLANT, 0.0))
+    return off
+
+
+def ordered_events(of_blocks: list[BlockEvent], of_cycles: list[CycleEvent], block: Array) -> tuple[Event, ...]:
+    """Merge all events in order.
+
+    Args:
+        of_blocks: events outside cycles.
+        of_cycles: events between the motions of cycles.
+        block: (n,) the block of each motion, non-decreasing.
+    """
+    blocks = np.array([event[0] for event in of_blocks], dtype=np.int64)
+    after = np.array([event[1] > 0 for event in of_blocks], dtype=np.bool_)
+    rows = np.where(after, np.searchsorted(block, blocks, "right"), np.searchsorted(block, blocks, "left"))
+    between = [(row, *event) for row, event in zip(rows.tolist(), of_blocks, strict=True)]
+    inside = [(row, here, 0, kind, value) for row, here, kind, value in of_cycles]
+    ordered = sorted(between + inside, key=lambda event: event[:3])
+    return tuple(Event(row, kind, value) for row, _, _, kind, value in ordered)
+
+
+LONG_DWELL = 60.0
+"""s: a longer dwell may be in milliseconds."""
+_POINTED = re.compile(r"P[ \t]*\d*\.", re.IGNORECASE)
+
+
+def dwell_words(blocks: Blocks, options: ReadOptions) -> Array:
+    """P of each block in s, (N,), NaN where absent; meaningful only for dwells."""
+    return blocks.word("P") * DWELL_UNITS[options.dwell_unit]
+
+
+def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
+    """Report dwells that may be meant in the other unit.
+
+    Args:
+        blocks: plain blocks.
+        modal: their modal codes.
+        options: read options.
+        faults: collects the faults; only in its source text is the point after an integer visible.
+    """
+    rows = _dwells(blocks, modal)
+    words = blocks.word("P")[rows]
+    for row, word in zip(rows[words * DWELL_UNITS[options.dwell_unit] > LONG_DWELL].tolist(), words, strict=False):
+        faults.add("G428", row, _both_ways(float(word), options.dwell_unit))
+    if options.dwell_unit == "ms" and len(rows):
+        for row, word in zip(rows.tolist(), words.tolist(), strict=True):
+            if _POINTED.search(faults.source_line(row) or "") or word != round(word):
+                faults.add("G427", row, Word("P", word))
+
+
+def _dwells(blocks: Blocks, modal: Modal) -> Array:
+    """Blocks whose P is a time; only the first execution of each."""
+    waits = modal.moves & map_rows(lambda codes: np.isin(codes, DWELLS), modal.active[Group.MOTION])
+    waits[blocks.g_row[blocks.g == 40]] = True
+    rows = np.flatnonzero(waits & blocks.has("P"))
+    return np.sort(rows[np.unique(blocks.line[rows], return_index=True)[1]])
+
+
+def _both_ways(word: float, unit: str) -> Found:
+    """A long dwell in the assumed unit and in the alternatives."""
+    units = sorted(DWELL_UNITS, key=lambda each: each != unit)
+    return Word("P", word), " in " + ", or in ".join(f"{each}: {word * DWELL_UNITS[each]:g} s" for each in units)

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Work offsets: the offsets of a program, and the codes that change them: G10, G43, G51.1, G52, G54 to G59.3, G68, G92.
+
+Enters: a block with the tool position, in program coordinates and mm. Leaves: the active frame. From the program
+outwards: mirror (G51.1), rotation (G68), local offset (G52, G92), angle and origin of the work offset (G54 to G59.3),
+and along Z the excess of the active length offset over the tool's own gauge length: program positions are tool tips.
+The order within a block is that of RS274NGC: length offset, work offset, then non-modal codes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pkm_post.model import Array, Tool
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import NONE, WORK_OFFSETS, Group, Word, word_of
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
+from pkm_post.reading.gcode.frames import PLANES, Frame, rotation
+from pkm_post.reading.gcode.modal import Modal, PositionWords
+from pkm_post.reading.gcode.options import ReadOptions
+from pkm_post.reading.gcode.tools import tool_in_use
+
+SETS_OFFSETS = (100, 520, 920, 921, 922, 923)
+"""Codes of ``Group.ONCE`` that change the frame."""
+
+TIP_CONTROL = (434, 435)
+"""Codes that make X Y Z tool tip coordinates while the tool axis tilts."""
+
+IN_ORDER = (Group.LENGTH, Group.SYSTEM, Group.ROTATION, Group.MIRROR)
+"""Groups whose codes all change the frame, in execution order."""
+
+
+@dataclass
+class _Offsets:
+    """All offsets that determine the frame; mutable.
+
+    Attributes:
+        system: code of the active work offset.
+        origins: (3,) origin of each known work offset, by code.
+        angles: its angle about Z, by code.
+        local: (3,) offset of G52 and G92.
+        kept: (3,) offset that G92.3 restores after G92.2.
+        mirrored: (3,) mirrored coordinates; ``mirror_at`` holds the mirror positions.
+        rotation: plane, (3,) centre and angle of G68.
+        length: (3,) active length offset; None while the machine handles tool lengths (G49).
+        own_length: gauge length of the active tool.
+    """
+
+    system: int = WORK_OFFSETS[0]
+    origins: dict[int, Array] = field(default_factory=dict)
+    angles: dict[int, float] = field(default_factory=dict)
+    local: Array = field(default_factory=lambda: np.zeros(3))
+    kept: Array = field(default_factory=lambda: np.zeros(3))
+    mirrored: Array = field(default_factory=lambda: np.zeros(3, dtype=np.bool_))
+    mirror_at: Array = field(default_factory=lambda: np.zeros(3))
+    rotation: tuple[int, Array, float] | None = None
+    length: Array | None = None
+    own_length: float = 0.0
+
+    @classmethod
+    def of(cls, options: ReadOptions) -> _Offsets:
+        """Create the offsets from the options."""
+        offsets = cls()
+        for name, (x, y, z, degrees) in options.work_offsets.items():
+            code = round(10 * float(name.removeprefix("G")))
+            offsets.origins[code] = np.array([x, y, z])
+            offsets.angles[code] = float(np.radians(degrees))
+        return offsets
+
+    def inner(self, point: Array) -> Array:
+        """Apply mirror and rotation to a (3,) point of the program."""
+        turn, shift = self._inner()
+        return turn @ point + shift
+
+    def _inner(self) -> tuple[Array, Array]:
+        turn = np.diag(np.where(self.mirrored, -1.0, 1.0))
+        shift = np.where(self.mirrored, 2 * self.mirror_at, 0.0)
+        if self.rotation is not None:
+            plane, centre, angle = self.rotation
+            about = rotation(plane, angle)
+            turn, shift = about @ turn, about @ (shift - centre) + centre
+        return turn, shift
+
+    def work_offset_turn(self, system: int) -> Array:
+        """Rotation matrix of a work offset, (3, 3)."""
+        return rotation(170, self.angles.get(system, 0.0))
+
+    def frame(self, system: int | None = None) -> Frame:
+        """The active frame, or the frame with another work offset."""
+        system = self.system if system is None else system
+        turn, shift = self._inner()
+        about = self.work_offset_turn(system)
+        longer = np.zeros(3) if self.length is None else self.length - np.array([0.0, 0.0, self.own_length])
+        origin = self.origins.get(system, np.zeros(3))
+        return Frame(about @ turn, about @ (shift + self.local) + origin + longer)
+
+    def set_local_here(self, words: Array, position: Array) -> None:
+        """G92: set the coordinates of the current (3,) position to the (3,) words, NaN where absent."""
+        wanted = np.where(np.isnan(words), position, words)
+        self.local = self.kept = self.local + self.inner(position) - self.inner(wanted)
+
+    def set_origin_here(self, system: int, words: Array, place: Array) -> None:
+        """G10 L20: set a work offset so that the (3,) ``place`` in {C} has the coordinates of the words."""
+        position = self.frame(system).to_program(place)
+        wanted = np.where(np.isnan(words), position, words)
+        moved = self.work_offset_turn(system) @ (self.inner(position) - self.inner(wanted))
+        self.origins[system] = self.origins.get(system, np.zeros(3)) + moved
+
+
+def _length_of(tool: Tool | None) -> float:
+    """The gauge length of a tool, mm; 0 if there is no tool or its length is unknown."""
+    return 0.0 if tool is None or math.isnan(tool.length) else tool.length
+
+
+class OffsetCodes:
+    """Applies the blocks that change the offsets of a program."""
+
+    def __init__(
+        self,
+        blocks: Blocks,
+        modal: Modal,
+        words: PositionWords,
+        tools: Array,
+        options: ReadOptions,
+        faults: BlockDiagnostics,
+    ) -> None:
+        self._blocks, self._modal, self._words = blocks, modal, words
+        self._tools, self._options, self._faults = tools, options, faults
+        self.offsets = _Offsets.of(options)
+        self.offsets.own_length = _length_of(tool_in_use(NONE, options))
+        self.length_offsets: set[int] = set()
+
+    def changes_frame(self, row: int) -> bool:
+        """Whether a block changes the frame other than by a tool change."""
+        explicit = self._modal.programmed
+        return explicit[Group.ONCE][row] in SETS_OFFSETS or any(explicit[group][row] != NONE for group in IN_ORDER)
+
+    def change_tool(self, row: int) -> None:
+        """M6: switch to the gauge length of the new tool."""
+        tool = tool_in_use(int(self._tools[row]), self._options)
+        self.offsets.own_length = _length_of(tool)
+
+    def execute(self, row: int, group: Group, position: Array, known: Array, moved: bool) -> None:
+        """Execute the code of a group in a block, if present.
+
+        Args:
+            row: the block.
+            group: one of ``IN_ORDER``, or ``Group.ONCE``.
+            position: (3,) tool position.
+            known: (3,) which coordinates are known.
+            moved: whether a motion has occurred.
+        """
+        code = int(self._modal.programmed[group][row])
+        if group is Group.ONCE and code in SETS_OFFSETS:
+            self._local_offset(row, code, position, known)
+        elif group in _ACTIONS and code != NONE:
+            _ACTIONS[group](self, row, code, position, known, moved)
+
+    def require_position(self, row: int, known: Array, what: Found) -> None:
+        """Report a block that needs coordinates, (m,), that are not all known."""
+        if not known.all():
+            self._faults.add("G416", row, what)
+
+    def _length(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
+        offsets, word = self.offsets, self._blocks.word("H")[row]
+        if code == 490 or word == 0:
+            offsets.length = None
+        elif code == 431:
+            here = np.zeros(3) if offsets.length is None else offsets.length
+            words = self._words.at(row)
+            offsets.length = np.where(np.isnan(words), here, words)
+        else:
+            self._length_of_tool(row, code, float(word))
+        own = np.array([0.0, 0.0, offsets.own_length])
+        tilts = self._options.axis_words != "none"
+        if tilts and offsets.length is not None and not np.array_equal(offsets.length, own):
+            self._faults.add("G421", row, (word_of(code), f", the tool is {own[2]:g} mm long"))
+
+    def _length_of_tool(self, row: int, code: int, word: float) -> None:
+        offsets, number = self.offsets, int(self._tools[row])
+        tool = tool_in_use(number, self._options) if math.isnan(word) else self._options.tool(int(word))
+        if tool is None:
+            if code in TIP_CONTROL and math.isnan(word):
+                # X Y Z are tip coordinates regardless of the length: nothing to add.
+                return
+            self._faults.add("G411", row, "no tool in the spindle" if math.isnan(word) else Word("H", word))
+            return
+        if number == NONE and self._options.default_tool is None:
+            offsets.own_length = tool.length
+        before = offsets.length if code == 432 and offsets.length is not None else np.zeros(3)
+        offsets.length = before + np.array([0.0, 0.0, self._value_of_offset(row, tool, word)])
+
+    def _value_of_offset(self, row: int, tool: Tool, word: float) -> float:
+        """The value of H, mm; the length of the tool in the spindle if either length is unknown."""
+        in_spindle = tool_in_use(int(self._tools[row]), self._options)
+        if not math.isnan(word):
+            self.length_offsets.add(int(word))
+        if in_spindle is None or not math.isnan(in_spindle.length + tool.length):
+            return tool.length
+        if not math.isnan(in_spindle.length):
+            self._faults.add("J128", row, (Word("H", word), " with ", Word("T", self._tools[row])))
+        return self.offsets.own_length
+
+    def _work_offset(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
+        offsets = self.offsets
+        if not offsets.origins and (code == offsets.system or not moved):
+            # The only work offset of a program is {C} itself.
+            offsets.origins[code] = np.zeros(3)
+        elif code not in offsets.origins:
+            self._faults.add("G412", row, word_of(code))
+        elif moved and offsets.system not in offsets.origins:
+            self._faults.add("G412", row, (word_of(offsets.system), ", in force before ", word_of(code)))
+        offsets.system = code
+
+    def _rotation(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
+        if code == 690:
+            self.offsets.rotation = None
+            return
+        plane = int(self._modal.active[Group.PLANE][row])
+        axes = list(PLANES[plane][:2])
+        words = self._words.at(row)
+        self.require_position(row, known[axes] | ~np.isnan(words[axes]), (word_of(code), " without a centre"))
+        centre = np.where(np.isnan(words), self.offsets.inner(position), words)
+        self.offsets.rotation = plane, centre, math.radians(self._blocks.word("R")[row])
+
+    def _mirror(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
+        offsets, words = self.offsets, self._words.at(row)
+        given = ~np.isnan(words)
+        if code == 501:
+            offsets.mirrored = offsets.mirrored & ~given & given.any()
+            return
+        if not given.any():
+            self._faults.add("G405", row, (word_of(code), " without X, Y or Z"))
+        offsets.mirrored = offsets.mirrored | given
+        offsets.mirror_at = np.where(given, words, offsets.mirror_at)
+
+    def _local_offset(self, row: int, code: int, position: Array, known: Array) -> None:
+        offsets, words = self.offsets, self._words.at(row)
+        given = ~np.isnan(words)
+        if code in (520, 920) and not given.any():
+            self._faults.add("G405", row, (word_of(code), " without X, Y or Z"))
+        if code == 520:
+            offsets.local = offsets.kept = np.where(given, words, offsets.local)
+        elif code == 920:
+            self.require_position(row, known[given], word_of(code))
+            offsets.set_local_here(words, position)
+        elif code == 921:
+            offsets.local = offsets.kept = np.zeros(3)
+        elif code == 922:
+            offsets.local = np.zeros(3)
+        elif code == 923:
+            offsets.local = offsets.kept
+        else:
+            self._set_system(row, words, position, known)
+
+    def _set_system(self, row: int, words: Array, position: Array, known: Array) -> None:
+        """G10 L2 and L20."""
+        offsets = self.offsets
+        kind, number, degrees = (float(self._blocks.word(letter)[row]) for letter in "LPR")
+        angle = () if math.isnan(degrees) else (" ", Word("R", degrees))
+        if kind not in (2, 20) or number not in range(len(WORK_OFFSETS) + 1) or (kind == 20 and angle):
+            self._faults.add("G406", row, (word_of(100), " ", Word("L", kind), " ", Word("P", number), *angle))
+            return
+        system = WORK_OFFSETS[int(number) - 1] if number else offsets.system
+        if kind == 20:
+            self.require_position(row, known[~np.isnan(words)], (word_of(100), " ", Word("L", 20)))
+            offsets.set_origin_here(system, words, offsets.frame().to_work(position))
+            return
+        origin = offsets.origins.get(system, np.zeros(3))
+        offsets.origins[system] = np.where(np.isnan(words), origin, words)
+        if angle:
+            offsets.angles[system] = math.radians(degrees)
+
+
+_ACTIONS: dict[Group, Callable[[OffsetCodes, int, int, Array, Array, bool], None]] = {
+    Group.LENGTH: OffsetCodes._length,
+    Group.SYSTEM: OffsetCodes._work_offset,
+    Group.ROTATION: OffsetCodes._rotation,
+    Group.MIRROR: OffsetCodes._mirror,
+}
