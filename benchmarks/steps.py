@@ -23,8 +23,8 @@ from pkm_post.machine import (  # noqa: E402
 )
 from pkm_post.machine.kinematics.strut_cubics import tool_deviation  # noqa: E402
 from pkm_post.planning import interpolate, plan_feed  # noqa: E402 - the path comes first
-from pkm_post.planning.cubics import poses_at  # noqa: E402
-from pkm_post.planning.glimpse import glimpse  # noqa: E402
+from pkm_post.planning.interpolation import poses_at  # noqa: E402
+from pkm_post.planning.fast_poses import fast_poses  # noqa: E402
 from pkm_post.writing import trajectory_file  # noqa: E402 - the path comes first
 
 FIXED_MS = (1, 2, 5, 10)
@@ -39,7 +39,7 @@ def told(name, time_ms, path, schedule, machine):
         start, end = time_ms[first : first + CHUNK], time_ms[first + 1 : first + CHUNK + 1]
         start = start[: len(end)]
         s, _, _ = schedule.at((start[:, None] + (end - start)[:, None] * SHARES).ravel() / 1000)
-        seen = glimpse(path, s)
+        seen = fast_poses(path, s)
         inside = ToolPoses(seen.tip, seen.axis, seen.spin, seen.tool_length)
         ends = (KnotState.of(machine, poses_at(path, schedule, ms)) for ms in (start, end))
         found = tool_deviation(machine, *ends, inside, (end - start) / 1000, SHARES)

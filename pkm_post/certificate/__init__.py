@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Certificate: a program read back, played as the controller plays it, and compared with the programmed path."""
 
-from pkm_post.certificate.beyond_machine import beyond_machine
 from pkm_post.certificate.certify import certify
-from pkm_post.certificate.recovered import recovered
-from pkm_post.certificate.structure import machine_fault
+from pkm_post.certificate.consistency import machine_fault, values_beyond_machine
+from pkm_post.certificate.reconstruction import reconstruct
 
 __all__ = [
-    "beyond_machine",
+    "values_beyond_machine",
     "certify",
     "machine_fault",
-    "recovered",
+    "reconstruct",
 ]

@@ -8,20 +8,144 @@ finding that does not hold.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
+from pkm_post.certificate.consistency import structure_faults
 from pkm_post.certificate.coverage import coverage
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.fault_causes import fault_causes
-from pkm_post.certificate.findings import figures, findings
-from pkm_post.certificate.joints import pass_joints
-from pkm_post.certificate.playback import play
-from pkm_post.certificate.structure import structure_faults
-from pkm_post.certificate.tool_at import Task
-from pkm_post.certificate.tool_course import ToolCourse
+from pkm_post.certificate.diagnosis import diagnose
+from pkm_post.certificate.dynamics import contour_error, count_at_tip, tip_jerk, tool_limits
+from pkm_post.certificate.joints import JointDeviations, measure_joints
+from pkm_post.certificate.playback import PlaybackBounds, Quantity, play, when_worst
+from pkm_post.certificate.struts import acceleration_steps, blocks_in_a_second, off_plan, strut_jerk
+from pkm_post.certificate.tool_spline import ToolSpline
+from pkm_post.certificate.tool_states import Task
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import NO_SETUP
-from pkm_post.model import Certificate, Coverage, Diagnostic, Machine, Motion, StrutMotion, Tolerances, Trajectory
+from pkm_post.model import (
+    Certificate,
+    Coverage,
+    Diagnostic,
+    Figure,
+    Finding,
+    Kind,
+    Machine,
+    Motion,
+    StrutMotion,
+    Tolerances,
+    Trajectory,
+)
+
+
+def findings(
+    task: Task, played: PlaybackBounds, passed: JointDeviations, trajectory: Trajectory, tolerances: Tolerances
+) -> tuple[Finding, ...]:
+    """One row for each quantity: code, name, unit, values, limit, and the time and place of each value."""
+    struts, machine, motion = task.struts, task.machine, task.motion
+    starts = partial(_start, motion)
+    knots = _at_knots(task)
+    joints = partial(_of_columns, motion.joint_time, np.arange(len(trajectory)))
+    at_ends = trajectory.tip_tolerances(tolerances.tip)
+    axis_limit = math.degrees(tolerances.axis)
+    told = partial(_where_most_was_found, task, passed, played)
+    axis_speed, tip_acceleration = tool_limits(task)
+    turning = math.degrees(machine.axis_speed)
+    rows: tuple[_Row, ...] = (
+        ("V107", "interval without a pose", "", 1.0 - played.found, 0.0, starts),
+        ("V101", "deviation of the tool tip", "mm", *told(Quantity.TIP, played.tip, played.tip_tolerance)),
+        ("V102", "deviation of the tool axis", "degrees", *told(Quantity.AXIS, np.degrees(played.axis), axis_limit)),
+        ("V110", "tool tip off a programmed point", "mm", passed.tip, at_ends, joints),
+        ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed.axis), axis_limit, joints),
+        ("V111", "strut off its plan", "mm", off_plan(struts, task.knots) + task.spin_deviation, tolerances.tip, knots),
+        ("V108", "tip speed", "mm/s", *told(Quantity.SPEED, played.tip_speed, task.ceiling)),
+        ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, starts),
+        ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
+        ("V113", "turning rate of the tool axis", "degrees/s", np.degrees(axis_speed), turning, starts),
+        ("V114", "tip acceleration", "mm/s^2", tip_acceleration, machine.tip_acceleration, starts),
+        ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, starts),
+        ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, starts),
+    )
+    too_short = machine.shortest_interval - np.diff(struts.time_ms)
+    rows = (*rows, ("V116", "interval shorter than the controller takes", "ms", too_short, 0.0, starts))
+    if math.isfinite(machine.block_rate):
+        blocks = blocks_in_a_second(struts.time_ms)
+        rows = (*rows, ("V117", "blocks in one second", "1/s", blocks, machine.block_rate, knots))
+    if math.isfinite(machine.strut_jerk):
+        rows = (*rows, ("V112", "strut jerk", "mm/s^3", strut_jerk(struts), machine.strut_jerk, knots))
+    if math.isfinite(machine.tip_jerk):
+        rows = (*rows, ("V115", "tip jerk", "mm/s^3", tip_jerk(task), machine.tip_jerk, knots))
+    return tuple(_worst(trajectory, *row) for row in rows)
+
+
+def figures(task: Task, trajectory: Trajectory) -> tuple[Figure, ...]:
+    """Measured quantities without a limit."""
+    machine, struts, knots = task.machine, task.struts, _at_knots(task)
+    rows = [
+        ("step of strut acceleration at a knot", "mm/s^2", acceleration_steps(struts), knots),
+    ]
+    if not math.isfinite(machine.block_rate):
+        rows.append(("blocks in one second", "1/s", blocks_in_a_second(struts.time_ms), knots))
+    counts = machine.controller.get("counts_per_mm")
+    if counts is not None:
+        rows.append(("tip moved by one count of each strut", "um", count_at_tip(task, counts), knots))
+    if machine.velocity_gain is not None:
+        cuts = trajectory.kind[task.motion.segment[1:]] != Kind.RAPID
+        error = np.where(cuts, contour_error(task, machine.velocity_gain), 0.0)
+        rows.append(("contour error by following errors", "um", error, partial(_start, task.motion)))
+    return tuple(_figure(trajectory, *row) for row in rows)
+
+
+def _figure(trajectory: Trajectory, name: str, unit: str, values: Array, when: _When) -> Figure:
+    row = int(np.argmax(values))
+    time, segment = when(row)
+    return Figure(name, unit, float(values[row]), time, trajectory.place(segment))
+
+
+_When = Callable[[int], tuple[float, int]]
+"""Time of a row of a quantity, s, and the trajectory segment executed then. Evaluated for the worst row only."""
+_Row = tuple[str, str, str, Array, Array | float, _When]
+
+
+def _where_most_was_found(
+    task: Task, passed: JointDeviations, played: PlaybackBounds, looked: Quantity, values: Array, limit: Array | float
+) -> tuple[Array, float, _When]:
+    """The largest figure by its limit, assigned to the interval with the largest measured value; its limit and time.
+
+    The figure may belong to another interval, due to its undetected part, whose time is unknown.
+    """
+    interval = int(played.most_found[looked])
+    there = float(np.broadcast_to(limit, values.shape)[interval])
+    figure = np.max(values / limit, keepdims=True) * there
+    return figure, there, lambda _: when_worst(task, passed, looked, interval)
+
+
+def _start(motion: Motion, interval: int) -> tuple[float, int]:
+    """The start of an interval, s, and the segment executed just after it."""
+    time = float(motion.time_ms[interval]) / 1000
+    return time, int(np.searchsorted(motion.joint_time, time, side="right"))
+
+
+def _at_knots(task: Task) -> _When:
+    return partial(_of_columns, task.struts.time_ms / 1000, task.motion.segment)
+
+
+def _of_columns(time: Array, segment: Array, row: int) -> tuple[float, int]:
+    return float(time[row]), int(segment[row])
+
+
+def _worst(
+    trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: Array | float, when: _When
+) -> Finding:
+    """The finding at the largest value, by its limit if limits differ; NaN counts as a violation."""
+    values, limits = np.where(np.isnan(values), np.inf, values), np.broadcast_to(limit, values.shape)
+    row = int(np.argmax(values if np.ndim(limit) == 0 else values / limits))
+    value, most, (time, segment) = float(values[row]), float(limits[row]), when(row)
+    return Finding(code, name, unit, value, most, value <= most, time, trajectory.place(segment))
+
 
 _FEED_SHARE = 1.01
 """Factor by which the cubic may exceed the planned speed where the acceleration changes."""
@@ -40,7 +164,7 @@ def certify(
     motion: Motion,
     tolerances: Tolerances,
     collisions: tuple[Coverage, ...] = NO_SETUP,
-    spin_off: Array | float = 0.0,
+    spin_deviation: Array | float = 0.0,
 ) -> tuple[Certificate | None, tuple[Diagnostic, ...]]:
     """Play a program and compare it with the trajectory it was made from.
 
@@ -52,8 +176,8 @@ def certify(
         motion: the plan, or the recovered motion; program and plan must have the same knots.
         tolerances: the requested tolerances.
         collisions: coverage of the checks against part, stock and fixtures.
-        spin_off: (K + 1,) mm, strut deviation due to spin error, if the motion was recovered and so has the spin of
-            the program itself.
+        spin_deviation: (K + 1,) mm of a strut due to spin error, if the motion was reconstructed and so has the spin
+            of the program itself.
     """
     faults = structure_faults(struts, program_name, trajectory, machine, motion)
     if faults:
@@ -61,12 +185,12 @@ def certify(
     ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
 
     def measured(struts: StrutMotion) -> Certificate:
-        course, knots = ToolCourse.of(machine, struts, motion)
-        task = Task(struts, machine, ruler, motion, knots, course, ceiling, spin_off)
+        course, knots = ToolSpline.of(machine, struts, motion)
+        task = Task(struts, machine, ruler, motion, knots, course, ceiling, spin_deviation)
         return _certificate(task, trajectory, tolerances, collisions)
 
     certificate = measured(struts)
-    return certificate, fault_causes(certificate, struts, machine, motion, measured)
+    return certificate, diagnose(certificate, struts, machine, motion, measured)
 
 
 def _certificate(
@@ -74,7 +198,7 @@ def _certificate(
 ) -> Certificate:
     """Play a program and measure it."""
     struts = task.struts
-    passed = pass_joints(task, trajectory)
+    passed = measure_joints(task, trajectory)
     played = play(task, passed)
     return Certificate(
         findings=findings(task, played, passed, trajectory, tolerances),

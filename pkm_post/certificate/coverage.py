@@ -9,9 +9,69 @@ from __future__ import annotations
 
 import math
 
-from pkm_post.certificate.beside_the_path import beside_the_path
+import numpy as np
+
+from pkm_post.geometry import norm
 from pkm_post.machine import NO_SETUP, has_strut_bodies
-from pkm_post.model import Coverage, Extent, Machine, Topic, Trajectory
+from pkm_post.model import Coverage, EventKind, Extent, Kind, Machine, Topic, Trajectory
+
+_SAME = 1e-6
+"""mm, and of unit axes: a tool change within this distance of the pose in the machine file counts as there."""
+_UNPLANNED = "each strut moves by itself, on a way that is not planned"
+_PLANNED_BY_HAND = f"{_UNPLANNED}; pmac approach and the panel plan one, loading the program by other means does not"
+_Answer = tuple[str, str]
+"""How a hazard is covered, or nothing; and the reason if it is not."""
+
+
+def approach_and_tool_change_coverage(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
+    """Coverage of the approach to the first point, of moves to and from tool changes, and of spindle acceleration."""
+    rows: tuple[tuple[str, _Answer], ...] = (
+        ("way to the start of the program", ("", _to_the_start(machine))),
+        ("approach from the start to the first point", (_from_the_start(trajectory), "")),
+        ("tool change", _tool_change_answer(machine, trajectory)),
+        ("spindle speed at the first cut", _spindle(machine, trajectory)),
+    )
+    return tuple(
+        Coverage(Topic.AUXILIARY, subject, Extent.PROVEN if how else Extent.NOT_COVERED, how or why_not)
+        for subject, (how, why_not) in rows
+    )
+
+
+def _to_the_start(machine: Machine) -> str:
+    return _UNPLANNED if machine.controller.get("kind") == "power_pmac" else _PLANNED_BY_HAND
+
+
+def _from_the_start(trajectory: Trajectory) -> str:
+    start = ", ".join(f"{value:g}" for value in trajectory.start_tip)
+    tool = trajectory.tools[int(trajectory.tool[0])]
+    return f"a move of the program, from the tip of T{tool.number} of {tool.length:g} mm at ({start}) mm"
+
+
+def _tool_change_answer(machine: Machine, trajectory: Trajectory) -> _Answer:
+    pose = machine.tool_change
+    if pose is None:
+        return "", "the machine file states no tool-change pose: tools change where the tip stands"
+    rows = _event_rows(trajectory, EventKind.TOOL_CHANGE)
+    off = np.hypot(norm(trajectory.nose_before(rows) - pose.nose), norm(trajectory.axis_at(rows) - pose.axis))
+    if (off > _SAME).any():
+        return "", "the trajectory changes tools elsewhere than at the tool-change pose of the machine file"
+    nose = ", ".join(f"{value:g}" for value in pose.nose)
+    return f"there and back by moves of the program, to the spindle nose at ({nose}) mm", ""
+
+
+def _spindle(machine: Machine, trajectory: Trajectory) -> _Answer:
+    if machine.spin_up_time is None:
+        return "", "the machine file states no spindle.spin_up_time: the motion does not wait for the spindle"
+    starts = [event.row for event in trajectory.events if event.kind is EventKind.SPINDLE and event.value]
+    cuts = np.flatnonzero(trajectory.kind != Kind.RAPID)
+    if len(cuts) and (not starts or min(starts) > cuts[0]):
+        return "", "the program cuts before it starts the spindle"
+    return f"dwells for a spindle that takes {machine.spin_up_time:g} s to its highest speed", ""
+
+
+def _event_rows(trajectory: Trajectory, kind: EventKind) -> list[int]:
+    return [event.row for event in trajectory.events if event.kind is kind]
+
 
 _PATH = (
     ("tool tip and axis", "the program as written, played at every moment against the trajectory"),
@@ -54,7 +114,7 @@ def coverage(
         _block_rate(machine),
         *_collisions(machine),
         *collisions,
-        *beside_the_path(machine, trajectory),
+        *approach_and_tool_change_coverage(machine, trajectory),
         *_rows(Topic.SETUP, Extent.NOT_COVERED, _SETUP),
         _following(machine),
     )
@@ -107,3 +167,43 @@ def _collisions(machine: Machine) -> tuple[Coverage, ...]:
         else Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, f"the machine file does not state {needed}")
         for subject, stated, needed in pairs
     )
+
+
+CERTIFIED = {
+    "struts.stroke": ("strut shorter than its stroke", "strut longer than its stroke"),
+    "struts.speed": ("strut speed",),
+    "struts.acceleration": ("strut acceleration",),
+    "struts.jerk": ("strut jerk",),
+    "controller.shortest_interval": ("interval shorter than the controller takes",),
+    "controller.block_rate": ("blocks in one second",),
+    "tool_path.rapid_speed": ("tip speed",),
+    "tool_path.feed_speed": ("tip speed",),
+    "tool_path.tip_acceleration": ("tip acceleration",),
+    "tool_path.tip_jerk": ("tip jerk",),
+    "tool_path.axis_speed": ("turning rate of the tool axis",),
+}
+"""Findings of the certificate, by name: figures of the written program."""
+
+_ON_THE_PLAN = "proven on the planned path, between its points as well, before the program is written"
+_BEFORE_PLANNING = "a job that asks for what is outside is refused, or warned of, before anything is planned"
+_WAITS = "dwells that wait for it are events of the job, which the program is compared with"
+_READ_BACK = "the reader of the program refuses what does not keep it"
+_NOT_PLANNED = "the way to the first point is not planned; no strut can be faster than all six together"
+
+CHECKED_ELSEWHERE = {
+    "joints.base_cone": _ON_THE_PLAN,
+    "joints.platform_cone": _ON_THE_PLAN,
+    "interference.clearance": _ON_THE_PLAN,
+    "singularity.least_singular_value": _ON_THE_PLAN,
+    "spindle.speed": _BEFORE_PLANNING,
+    "spindle.least_speed": _BEFORE_PLANNING,
+    "spindle.largest_tool_diameter": _BEFORE_PLANNING,
+    "spindle.longest_tool": _BEFORE_PLANNING,
+    "spindle.spin_up_time": _WAITS,
+    "spindle.spin_down_time": _WAITS,
+    "tool_change.safe_height": "the way to the pose of the tool change is placed to keep it",
+    "controller.line_limit": _READ_BACK,
+    "controller.memory_words": "a program that is too long is cut into parts, or refused, before it is written",
+    "controller.approach_speed": _NOT_PLANNED,
+}
+"""Limits without a finding, and what enforces them."""

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.certificate.struts import cubics
-from pkm_post.certificate.tool_at import Task
+from pkm_post.certificate.tool_states import Task
 from pkm_post.geometry import Array, angle_between, hermite_lengths, norm
 from pkm_post.machine import forward
 from pkm_post.model import Trajectory
@@ -26,7 +25,7 @@ _AT_ONCE = 8192
 
 
 @dataclass(frozen=True)
-class Passed:
+class JointDeviations:
     """Columns of N joints, each at the end of a segment.
 
     Attributes:
@@ -44,14 +43,14 @@ class Passed:
     intervals: Array
 
 
-def pass_joints(task: Task, trajectory: Trajectory) -> Passed:
+def measure_joints(task: Task, trajectory: Trajectory) -> JointDeviations:
     """Measure the tool at the joints of a trajectory."""
 
     def part(first: int) -> tuple[Array, ...]:
         return _passed(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
 
     found = list(workers().map(part, range(0, len(trajectory), _AT_ONCE)))
-    return Passed(*(np.concatenate(columns, axis=-1) for columns in zip(*found, strict=True)))
+    return JointDeviations(*(np.concatenate(columns, axis=-1) for columns in zip(*found, strict=True)))
 
 
 def _passed(task: Task, trajectory: Trajectory, rows: Array) -> tuple[Array, ...]:
@@ -91,7 +90,7 @@ def _tool_at(task: Task, trajectory: Trajectory, rows: Array, knot: Array, share
     told = (missed < _SETTLED * limit).all(axis=0) & (tool_length == task.motion.tool_length[knot + 1])
     odd = np.flatnonzero(~told)
     if len(odd):
-        length = hermite_lengths(*cubics(task.struts, knot[odd]), share[odd, None])[:, 0]
+        length = hermite_lengths(*task.struts.cubics(knot[odd]), share[odd, None])[:, 0]
         guess = trajectory.tip[rows[odd]], trajectory.axis[rows[odd]], trajectory.spin[rows[odd]]
         exact = forward(task.machine, length, tool_length[odd], *guess)
         tip[odd], axis[odd], found[odd], missed[:, odd] = exact.tip, exact.axis, exact.converged, 0.0

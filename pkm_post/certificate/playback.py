@@ -10,15 +10,135 @@ more instants until the undetected part is small.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 
-from pkm_post.certificate.instants import Seen, look
-from pkm_post.certificate.joints import Passed
-from pkm_post.certificate.struts import cubics, extremes
-from pkm_post.certificate.tool_at import Task
-from pkm_post.geometry import Array
+from pkm_post.certificate.joints import JointDeviations
+from pkm_post.certificate.struts import extremes
+from pkm_post.certificate.tool_states import Task, ToolStates, states_by_kinematics, states_on_spline
+from pkm_post.geometry import Array, length_of
 from pkm_post.system import workers
+
+_ROOM = 1.1
+"""Margin for the error of second differences, as a cubic motion of the struts is not exactly cubic for the tool."""
+
+
+def chordal_deviation(columns: Array) -> Array:
+    """Largest deviation of (3, M, N) columns from the chords between neighbours of M >= 4 even instants, (N,)."""
+    second = np.diff(columns, 2, axis=1)
+    # f'' of a cubic is linear: extrapolate it to both ends, which have no second difference
+    onward = length_of(*(second[:, -1] - second[:, 0])) / (second.shape[1] - 1)
+    return np.asarray(_ROOM / 8 * (length_of(*second).max(axis=0) + onward))
+
+
+def sagitta(columns: Array, bend: Array | float) -> Array:
+    """Largest deviation of a curve of curvature ``bend`` from chords as long as the steps of the columns, (N,)."""
+    step = np.square(np.diff(columns, axis=1)).sum(axis=0).max(axis=0)
+    return np.asarray(_ROOM / 8 * step * bend)
+
+
+_TO_FIND_THE_WORST = 257
+"""Instants of the single interval searched for the time of the worst."""
+
+
+class Quantity(IntEnum):
+    """Quantities evaluated at instants; the numbers are rows of ``Samples``."""
+
+    TIP = 0
+    AXIS = 1
+    SPEED = 2
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Results at instants of N intervals: deviations of tip and axis and tip speed, each by its limit.
+
+    Attributes:
+        found: (N,) whether every instant has a pose.
+        worst: (3, N) the largest value at an instant.
+        hidden: (3, N) bound on the undetected excess, at and between instants.
+        tip_tolerance: (N,) tolerance of the tip where it is worst, mm.
+    """
+
+    found: Array
+    worst: Array
+    hidden: Array
+    tip_tolerance: Array
+
+    @classmethod
+    def nothing(cls, count: int) -> Samples:
+        """Intervals that were not sampled: their values are unbounded."""
+        return cls(np.ones(count, dtype=bool), np.zeros((3, count)), np.full((3, count), np.inf), np.ones(count))
+
+
+@dataclass(frozen=True)
+class _Measured:
+    """Measured values at M instants of N intervals.
+
+    Attributes:
+        tool: pose and velocity of the tool.
+        time: (M, N) s since the start.
+        segment: (M, N) the trajectory segment executed then, the reference of the deviation.
+        tip_tolerance: (M, N) tolerance of the tip there, mm.
+        looked: deviation of the tip by tolerance, of the axis, rad, and speed of the tip, mm/s; (M, N) each.
+    """
+
+    tool: ToolStates
+    time: Array
+    segment: Array
+    tip_tolerance: Array
+    looked: tuple[Array, Array, Array]
+
+
+def sample(task: Task, rows: Array, instants: int, closely: bool) -> Samples:
+    """Play the intervals that begin at some knots, (N,), and measure each at a number of even instants."""
+    measured = _measured(task, rows, instants, closely)
+    tool, tip_tolerance, (by_tolerance, off_axis, speed) = measured.tool, measured.tip_tolerance, measured.looked
+    worst = np.argmax(by_tolerance, axis=0), np.arange(len(rows))
+    axis_tolerance, ceiling = task.ruler.axis_tolerance, task.ceiling[rows]
+    missed_tip, missed_axis, missed_speed = tool.missed
+    hidden_tip = (
+        chordal_deviation(tool.tip) + sagitta(tool.tip, task.ruler.bend(measured.segment).max(axis=0)) + missed_tip
+    )
+    return Samples(
+        found=np.asarray(tool.found.all(axis=0)),
+        worst=np.stack([by_tolerance[worst], off_axis.max(axis=0) / axis_tolerance, speed.max(axis=0) / ceiling]),
+        hidden=np.stack([
+            hidden_tip / tip_tolerance.min(axis=0),
+            (chordal_deviation(tool.axis) + sagitta(tool.axis, 1.0) + missed_axis) / axis_tolerance,
+            (chordal_deviation(tool.velocity) + missed_speed) / ceiling,
+        ]),
+        tip_tolerance=tip_tolerance[worst],
+    )  # fmt: skip
+
+
+def when_worst(task: Task, passed: JointDeviations, looked: Quantity, row: int) -> tuple[float, int]:
+    """Time of the worst value in the interval that begins at a knot, s since the start, and its segment."""
+    measured = _measured(task, np.array([row]), _TO_FIND_THE_WORST, closely=True)
+    allowed = 1.0, task.ruler.axis_tolerance, task.ceiling[row]
+    joints = np.flatnonzero((passed.intervals == row).any(axis=0))
+    at_joints = passed.off[looked, joints] if looked is not Quantity.SPEED else np.zeros(len(joints))
+    values = np.append(measured.looked[looked] / allowed[looked], at_joints)
+    worst = np.argmax(np.where(np.isnan(values), np.inf, values))
+    time = np.append(measured.time, task.motion.joint_time[joints])
+    return float(time[worst]), int(np.append(measured.segment, joints)[worst])
+
+
+def _measured(task: Task, rows: Array, instants: int, closely: bool) -> _Measured:
+    """Tool poses at even instants of the intervals that begin at some knots, (N,), and their deviations."""
+    motion, shares = task.motion, np.linspace(0, 1, instants)
+    tool = (states_by_kinematics if closely else states_on_spline)(task, rows, shares)
+    begin, end = (task.struts.time_ms[knot] / 1000 for knot in (rows, rows + 1))
+    time = begin + (end - begin) * shares[:, None]
+    # an interval that begins at a joint belongs to the next segment: the tool may have been changed there
+    last = motion.segment[rows + 1]
+    first = np.minimum(np.searchsorted(motion.joint_time, begin, side="right"), last)
+    segment = np.clip(np.searchsorted(motion.joint_time, time), first, last)
+    tip, axis = tool.tip.reshape(3, -1).T, tool.axis.reshape(3, -1).T
+    off = task.ruler.deviation_from(tip, axis, segment.ravel()).reshape(3, *segment.shape)
+    return _Measured(tool, time, segment, off[2], (off[0] / off[2], off[1], length_of(*tool.velocity)))
+
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
 """Sampled instants of each interval, including its two knots; then of intervals that may have the worst undetected:
@@ -30,7 +150,7 @@ _AT_ONCE = 8192
 
 
 @dataclass(frozen=True)
-class Played:
+class PlaybackBounds:
     """Upper bounds for each of K intervals, (K,) unless stated otherwise.
 
     Attributes:
@@ -61,7 +181,7 @@ class Played:
     most_found: Array
 
 
-def play(task: Task, passed: Passed) -> Played:
+def play(task: Task, passed: JointDeviations) -> PlaybackBounds:
     """Play a strut motion and measure it.
 
     Args:
@@ -69,16 +189,16 @@ def play(task: Task, passed: Passed) -> Played:
         passed: its measurements at the joints of the trajectory.
     """
     rows = np.arange(len(task.struts) - 1)
-    seen, peaks = Seen.nothing(len(rows)), _Peaks.of(passed, len(rows))
+    seen, peaks = Samples.nothing(len(rows)), _JointPeaks.of(passed, len(rows))
     unsettled, closely, instants = np.flatnonzero(np.isfinite(task.course.missed[0])), False, 0
     for closer in _INSTANTS:
-        _look_again(task, seen, peaks, unsettled, closer, closely)
+        _resample(task, seen, peaks, unsettled, closer, closely)
         instants += closer * len(unsettled)
         enough = seen.worst.max(axis=1, keepdims=True) * (1 + _REMAINDER)
         unsettled, closely = np.flatnonzero((seen.worst + seen.hidden > enough).any(axis=0)), True
     tip, axis, speed = seen.worst + seen.hidden
     strut_speed, strut_acceleration, shortest, longest = _extremes(task, rows)
-    return Played(
+    return PlaybackBounds(
         found=seen.found,
         tip=tip * seen.tip_tolerance,
         tip_tolerance=seen.tip_tolerance,
@@ -93,17 +213,17 @@ def play(task: Task, passed: Passed) -> Played:
     )
 
 
-def _look_again(task: Task, seen: Seen, peaks: _Peaks, rows: Array, instants: int, closely: bool) -> None:
+def _resample(task: Task, seen: Samples, peaks: _JointPeaks, rows: Array, instants: int, closely: bool) -> None:
     """Replace the results of some intervals by those of more instants."""
     if not len(rows):
         return
     blocks = _blocks(rows, _AT_ONCE // instants)
-    played = workers().map(lambda some: look(task, some, instants, closely), blocks)
+    played = workers().map(lambda some: sample(task, some, instants, closely), blocks)
     for some, again in zip(blocks, played, strict=True):
         _keep(seen, peaks, some, again)
 
 
-def _keep(seen: Seen, peaks: _Peaks, rows: Array, again: Seen) -> None:
+def _keep(seen: Samples, peaks: _JointPeaks, rows: Array, again: Samples) -> None:
     """Replace the results of some intervals, combined with those of their joints."""
     at_joint = np.flatnonzero(peaks.off[0, rows] > again.worst[0])
     again.tip_tolerance[at_joint] = peaks.tip_tolerance[rows[at_joint]]
@@ -113,9 +233,9 @@ def _keep(seen: Seen, peaks: _Peaks, rows: Array, again: Seen) -> None:
 
 
 def _extremes(task: Task, rows: Array) -> Array:
-    """For each interval as in ``Played``: strut speed, acceleration, shortest and longest length, (4, K)."""
+    """For each interval as in ``PlaybackBounds``: strut speed, acceleration, shortest and longest length, (4, K)."""
     blocks = _blocks(rows, _AT_ONCE // _INSTANTS[0])
-    return np.concatenate([np.stack(extremes(*cubics(task.struts, some))) for some in blocks], axis=1)
+    return np.concatenate([np.stack(extremes(*task.struts.cubics(some))) for some in blocks], axis=1)
 
 
 def _blocks(rows: Array, at_once: int) -> list[Array]:
@@ -123,14 +243,14 @@ def _blocks(rows: Array, at_once: int) -> list[Array]:
 
 
 @dataclass(frozen=True)
-class _Peaks:
+class _JointPeaks:
     """Deviations of tip and axis at the joints of K intervals, (2, K) by tolerance; and the tip tolerance."""
 
     off: Array
     tip_tolerance: Array
 
     @classmethod
-    def of(cls, passed: Passed, count: int) -> _Peaks:
+    def of(cls, passed: JointDeviations, count: int) -> _JointPeaks:
         off, tolerance = np.zeros((2, count)), np.ones(count)
         for touched in passed.intervals:
             for row in (0, 1):

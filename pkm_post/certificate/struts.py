@@ -9,19 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.certificate.knots import Knots
+from pkm_post.certificate.tool_spline import KnotKinematics
 from pkm_post.geometry import Array, hermite_accelerations
 from pkm_post.model import StrutMotion, in_pieces, pieces
 
 _AT_ONCE = 4096
 """Knots in one pass: the working arrays of one pass stay in the processor's cache."""
-
-
-def cubics(struts: StrutMotion, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Lengths and speeds at both ends of the intervals that begin at some knots, and their durations in s."""
-    after = rows + 1
-    duration = (struts.time_ms[after] - struts.time_ms[rows]) / 1000
-    return struts.length[rows], struts.speed[rows], struts.length[after], struts.speed[after], duration
 
 
 def extremes(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array, Array, Array]:
@@ -59,7 +52,7 @@ def _roots(square: Array, linear: Array, constant: Array) -> tuple[Array, Array]
     return one, other
 
 
-def off_plan(struts: StrutMotion, knots: Knots) -> Array:
+def off_plan(struts: StrutMotion, knots: KnotKinematics) -> Array:
     """Largest deviation of a strut from its plan on either side of each knot, (K + 1,) mm.
 
     A length error dp and a speed error dv move the adjacent cubics by no more than dp + 4/27 h dv. Tip and axis need
@@ -110,7 +103,7 @@ def acceleration_steps(struts: StrutMotion) -> Array:
     """
     steps, before = np.empty(len(struts)), np.zeros((1, 6))
     for piece in pieces(len(struts) - 1, _AT_ONCE):
-        begin, end = hermite_accelerations(*cubics(struts, np.arange(piece.start, piece.stop)))
+        begin, end = hermite_accelerations(*struts.cubics(np.arange(piece.start, piece.stop)))
         ends = np.concatenate([before, end])
         steps[piece], before = np.abs(begin - ends[:-1]).max(axis=1), ends[-1:]
     steps[-1] = np.abs(before).max()

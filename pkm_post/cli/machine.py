@@ -37,7 +37,7 @@ def _list(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.machine import machine_named
     from pkm_post.model import errors
-    from pkm_post.posting import as_text, machine_faults, summary
+    from pkm_post.posting import format_table, machine_faults, machine_summary
 
     machine, diagnostics = machine_named(namespace.file)
     if machine is not None:
@@ -46,7 +46,7 @@ def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if machine is None or errors(diagnostics):
         return 1
     print(f"{machine.name}: complete")
-    print(as_text(summary(machine)))
+    print(format_table(machine_summary(machine)))
     return 0
 
 

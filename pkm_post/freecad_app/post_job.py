@@ -22,7 +22,7 @@ from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import READING_STEP, ArgumentValues, Options, PostItem, job_stem, result_conflicts
-from pkm_post.posting import SUFFIX, Log, Posted, Prepared, Progress, quiet, unwatched
+from pkm_post.posting import SUFFIX, Log, Posted, Prepared, Progress, no_log, no_progress
 
 
 def post_job(
@@ -31,8 +31,8 @@ def post_job(
     out: str | FilePath = ".",
     options: Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
-    log: Log = quiet,
-    progress: Progress = unwatched,
+    log: Log = no_log,
+    progress: Progress = no_progress,
     arguments: str | ArgumentValues = "",
     other_jobs: Sequence[Any] = (),
 ) -> Posted:
@@ -73,8 +73,8 @@ def post_document(
     options: Options | None = None,
     tool_lengths: Mapping[int, float] = NO_LENGTHS,
     job_name: str | None = None,
-    log: Log = quiet,
-    progress: Progress = unwatched,
+    log: Log = no_log,
+    progress: Progress = no_progress,
     arguments: str | ArgumentValues = "",
 ) -> tuple[Posted, ...]:
     """Post one job of a saved document, or all of them.
@@ -150,8 +150,8 @@ def post_to(
     program_path: FilePath,
     job: Any,
     settings: JobSettings,
-    log: Log = quiet,
-    progress: Progress = unwatched,
+    log: Log = no_log,
+    progress: Progress = no_progress,
 ) -> Posted:
     """Post a CAM job to a motion program with this path; the other files take its stem.
 

@@ -27,25 +27,14 @@ from pkm_post.model import (
     in_pieces,
     read_only,
 )
-from pkm_post.planning.cubics import Cubics, poses_at
-from pkm_post.planning.glimpse import glimpse_within
-from pkm_post.planning.jerk import Ceilings, for_jerk
-from pkm_post.planning.knots import even_marks, knots
-from pkm_post.planning.limits import limits, rough_limits
-from pkm_post.planning.pace import SLOWER, factors_of_crowds, slower_feed
-from pkm_post.planning.path_bounds import PathBounds
-from pkm_post.planning.profile import cell_times, speed_profile
+from pkm_post.planning.fast_poses import fast_poses_within
+from pkm_post.planning.interpolation import InterpolationCheck, poses_at
+from pkm_post.planning.jerk_limits import Ceilings, lowered_for_jerk
+from pkm_post.planning.knots import SLOWDOWN, block_rate_factors, even_marks, knots, slower_feed
+from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.speed_limits import (
-    below_feed,
-    bent,
-    bounded_by,
-    feed_at,
-    limits_at,
-    rough_feed,
-    roughly_bounded,
-)
-from pkm_post.planning.stations import Stations, stations
+from pkm_post.planning.speed_limits import feed_at, limited_quantities, limits, limits_at
+from pkm_post.planning.speed_profile import Stations, cell_times, speed_profile, stations
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import workers
 
@@ -140,8 +129,8 @@ def plan_feed(
         tolerances: the requested tolerances.
     """
     path = tool_path(trajectory, tolerances)
-    most = PathBounds.of(path)
-    faults = reach_faults(machine, trajectory, *_way(path, stations(path, bent(path, most))))
+    most = DerivativeBounds.of(path)
+    faults = reach_faults(machine, trajectory, *_way(path, stations(path, deviates_in_blends(path, most))))
     try:
         return FeedPlan(path, _schedule(path, machine, most), trajectory.events, machine, tolerances), faults
     except _TooLongError as fault:
@@ -157,7 +146,7 @@ class _TooLongError(Exception):
         super().__init__(f"{seconds} s")
 
 
-def _schedule(path: ToolPath, machine: Machine, most: PathBounds) -> Schedule:
+def _schedule(path: ToolPath, machine: Machine, most: DerivativeBounds) -> Schedule:
     """The schedule of a path with these bounds.
 
     Raises:
@@ -165,7 +154,7 @@ def _schedule(path: ToolPath, machine: Machine, most: PathBounds) -> Schedule:
     """
     if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
         return _without_jumps(path, machine)
-    rough = rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
+    rough = rough_limits(path, machine, most)
     close = below_feed(path, *rough)
     marks = stations(path, close)
     profile = speed_profile(marks.s, *limits_at(path, marks, close, rough, machine))
@@ -188,7 +177,7 @@ def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
     """The pose path through stations, straight from one to the next; and their segments."""
 
     def seen(rows: slice) -> tuple[Array, ...]:
-        found = glimpse_within(path, marks.segment[rows], marks.u[rows])
+        found = fast_poses_within(path, marks.segment[rows], marks.u[rows])
         return found.tip, found.axis, found.spin, found.tool_length
 
     return PosePath.straight(*in_pieces(len(marks.s), _STATIONS_AT_ONCE, seen)), marks.segment
@@ -198,12 +187,13 @@ def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
     """The schedule for a machine with jerk limits."""
     marks = stations(path)
     poses = path.within(marks.segment, marks.u)
-    bounded = bounded_by(machine, poses)
+    bounded = limited_quantities(machine, poses)
     square, along = limits(feed_at(path, poses, marks.u), bounded)
     square[marks.rest] = 0.0
     ceilings = Ceilings(marks.s, marks.rest, square, along)
     _, window_ms, course = min(
-        (_averaged(for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS), key=lambda tried: tried[0]
+        (_averaged(lowered_for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS),
+        key=lambda tried: tried[0],
     )
     s, _, slowest = course
     _check_duration(s, slowest, marks)
@@ -230,7 +220,7 @@ def interpolate(feed_plan: FeedPlan) -> Plan:
         path, joint_time = feed_plan.path, feed_plan.schedule.joint_time
         path = replace(path, feed=slower_feed(path.feed, path.segments.extent, joint_time, factor))
         try:
-            schedule = _schedule(path, feed_plan.machine, PathBounds.of(path))
+            schedule = _schedule(path, feed_plan.machine, DerivativeBounds.of(path))
         except _TooLongError:
             break
         feed_plan = replace(feed_plan, path=path, schedule=schedule)
@@ -245,7 +235,7 @@ def _interpolated(feed_plan: FeedPlan) -> tuple[Motion, Array]:
     stretches = [marks[first : first + _MARKS_AT_ONCE + 1] for first in range(0, len(marks) - 1, _MARKS_AT_ONCE)]
 
     def knots_of(stretch: Array) -> tuple[Array, Array]:
-        cubics = Cubics(path, schedule, machine, feed_plan.tolerances, stretch)
+        cubics = InterpolationCheck(path, schedule, machine, feed_plan.tolerances, stretch)
         times = knots(stretch, schedule.edges_ms, cubics.error, shortest)
         return times[:-1], _too_coarse(times, cubics, shortest)
 
@@ -282,7 +272,7 @@ def _motion(feed_plan: FeedPlan, time_ms: Array) -> Motion:
     )
 
 
-def _too_coarse(found: Array, cubics: Cubics, shortest: int) -> Array:
+def _too_coarse(found: Array, cubics: InterpolationCheck, shortest: int) -> Array:
     """Starts and ends of intervals that cannot be cut for the controller but are out of tolerance, (2, R) ms.
 
     Intervals of one millisecond are exempt, as nothing is shorter.
@@ -295,10 +285,10 @@ def _too_coarse(found: Array, cubics: Cubics, shortest: int) -> Array:
 
 def _slower(motion: Motion, coarse: Array, block_rate: float) -> Array:
     """Speed factors of segments for the controller, (N,)."""
-    factor = factors_of_crowds(motion.time_ms, motion.segment, block_rate, len(motion.joint_time))
+    factor = block_rate_factors(motion.time_ms, motion.segment, block_rate, len(motion.joint_time))
     begin, end = (np.searchsorted(motion.joint_time, ms / 1000) for ms in coarse)
     for first, last in zip(begin, np.minimum(end, len(factor) - 1), strict=True):
-        factor[first : last + 1] = np.minimum(factor[first : last + 1], SLOWER)
+        factor[first : last + 1] = np.minimum(factor[first : last + 1], SLOWDOWN)
     return factor
 
 

@@ -1,59 +1,99 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Speed limits: limits of a machine along a path at its stations, computed only where they may matter.
+"""Speed limits: what a machine and the programmed feed allow at the stations of a path.
 
-The parameters of a segment bound its derivatives, and these bound the demand on the machine. A plan under such rough
-limits is also valid under the exact ones, so the exact plan is nowhere slower: where the rough plan runs at the feed,
-so does the exact one, and finer limits are not computed. Enters: a path and a machine. Leaves: the segments that need
-exact limits, and at stations the highest speed squared and acceleration along the path, mm and s.
+For a quantity y(s) of the path with derivatives y', y'' by path length and the speed v = s', its rate is y' v and its
+acceleration y' v' + y'' v^2. Struts, tip and tool axis are such quantities. Enters: a path, its stations and a machine.
+Leaves: at each station the highest v^2 and the highest |v'|, in mm and s. On segments where ``rough_limits`` shows that
+the plan runs at the feed, rough limits replace the exact ones.
 """
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.machine import strut_rate_bounds, strut_rates
+from pkm_post.machine import strut_rates
 from pkm_post.model import Machine, Poses
-from pkm_post.planning.limits import Bounded, limits
-from pkm_post.planning.path_bounds import PathBounds
-from pkm_post.planning.profile import speed_profile
-from pkm_post.planning.stations import Stations
+from pkm_post.planning.speed_profile import Stations
 from pkm_post.planning.tool_path import ToolPath
 
+PLANNED_SHARE = 0.6
+"""Share of each acceleration limit that is planned: the cubic that a controller runs across a switch from full
+acceleration to full braking reaches 5/3 of it at its end (shown in docs/planning.md and in the tests)."""
+FOR_CURVATURE = 0.5
+"""Share of the planned acceleration that the curvature of the path may use; the rest accelerates and brakes."""
+_NEGLIGIBLE = 1e-12
+"""Derivatives below this impose no limit; keeps the quotients finite."""
+NO_LIMIT = 1e6
+"""mm/s^2: stands for no limit where no limited quantity moves; keeps the sums of the profile finite."""
 _SPEED_SHARE = 0.95
 """Share of the speeds of struts and tool axis that is planned: the controller's cubics oscillate slightly about it."""
 _TIP_SHARE = 0.98
 """Share of the tip acceleration that is planned: the cubics take slightly more, up to ``ROUNDED_SHARE``."""
-_AT_FEED = 1e-6
-"""Share of the speed squared by which rounding may put a plan at the feed below it."""
 _LONGER = 1.002
 """Factor by which the tip may travel farther than the path length without a lower feed; the certificate allows 1.01."""
-_STRAIGHT = 0.01, 1e-4
-"""mm and rad: deviation from the segments in blends up to which a path counts as straight between its joints."""
 _STATIONS_AT_ONCE = 4096
 """Stations in one pass: their working arrays stay in the processor's cache."""
-
 Pair = tuple[Array, Array]
 
 
-def bent(path: ToolPath, most: PathBounds) -> Array:
-    """Segments whose blends deviate too far for the path to count as straight between its joints, (N,).
+@dataclass(frozen=True)
+class LimitedQuantity:
+    """A vector along the path with limits on the magnitude of its rate, acceleration and jerk.
 
-    A blend of half width d and curvature c at its joint leaves the segments by c d^2 / 4.
+    Attributes:
+        first: (M, C) derivatives by path length.
+        second: (M, C) second derivatives.
+        speed: limit of the rate, infinite where there is none.
+        acceleration: limit of the acceleration, infinite where there is none.
+        each: whether the limits apply to every column (struts), or to the norm of the vector (tip).
+        jerk: limit of the jerk, infinite where there is none.
     """
-    square = np.maximum(path.blend[1:], path.blend[:-1]) ** 2 / 4
-    tip, axis = _STRAIGHT
-    return np.asarray((most.tip_2 * square > tip) | (most.axis_2 * square > axis))
+
+    first: Array
+    second: Array
+    speed: float
+    acceleration: float
+    each: bool
+    jerk: float = np.inf
+
+    def sizes(self) -> tuple[Array, Array]:
+        """Magnitudes of first and second derivative, by column (M, C) or of the vector (M, 1).
+
+        The second derivative is the maximum over a station and its two neighbours: between two stations both it and v^2
+        change, and their product may exceed that at either.
+        """
+        if self.each:
+            return np.abs(self.first), _of_neighbours(np.abs(self.second))
+        return norm(self.first)[:, None], _of_neighbours(norm(self.second)[:, None])
 
 
-def below_feed(path: ToolPath, square: Array, along: Array) -> Array:
-    """Segments on which the plan may be below the feed, (N,), from rough limits of each segment, (N,)."""
-    joint_square, joint_along = (
-        np.concatenate([one[:1], np.minimum(one[1:], one[:-1]), one[-1:]]) for one in (square, along)
+def limited_quantities(machine: Machine, poses: Poses) -> tuple[LimitedQuantity, ...]:
+    """The quantities that a machine limits, at poses with derivatives by path length."""
+    _, first, second = strut_rates(machine, poses)
+    return machine_quantities(machine, (first, second), (poses.tip_1, poses.tip_2), (poses.axis_1, poses.axis_2))
+
+
+def machine_quantities(machine: Machine, struts: Pair, tip: Pair, axis: Pair) -> tuple[LimitedQuantity, ...]:
+    """The quantities that a machine limits, from first and second derivatives by path length."""
+    return (
+        LimitedQuantity(
+            first=struts[0],
+            second=struts[1],
+            speed=_SPEED_SHARE * machine.strut_speed,
+            acceleration=machine.strut_acceleration,
+            each=True,
+            jerk=machine.strut_jerk,
+        ),
+        LimitedQuantity(
+            tip[0], tip[1], np.inf, _TIP_SHARE * machine.tip_acceleration, each=False, jerk=machine.tip_jerk
+        ),
+        LimitedQuantity(axis[0], axis[1], _SPEED_SHARE * machine.axis_speed, np.inf, each=False),
     )
-    joint_square[path.rests] = 0.0
-    planned = speed_profile(path.starts, joint_square, joint_along)
-    return np.asarray(np.minimum(planned[1:], planned[:-1]) < (1 - _AT_FEED) * path.feed**2)
 
 
 def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machine: Machine) -> Pair:
@@ -78,7 +118,7 @@ def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machin
         block = rows[begin : first + _STATIONS_AT_ONCE + 1]
         segment, u = marks.segment[block], marks.u[block]
         poses = path.within(segment, u)
-        found = limits(feed_at(path, poses, u), bounded_by(machine, poses))
+        found = limits(feed_at(path, poses, u), limited_quantities(machine, poses))
         own = np.flatnonzero(inner[block])
         own = own[(own >= first - begin) & (own < first - begin + _STATIONS_AT_ONCE)]
         square[block[own]], along[block[own]] = found[0][own], found[1][own]
@@ -95,15 +135,10 @@ def feed_at(path: ToolPath, poses: Poses, u: Array) -> Array:
         u: (M,) path lengths of the stations on their segments.
     """
     lower = np.minimum(path.feed[poses.segment], path.feed[_following(path, poses.segment, u)])
-    return _of_tip(lower, norm(poses.tip_1))
+    return feed_of_path_length(lower, norm(poses.tip_1))
 
 
-def rough_feed(path: ToolPath, most: PathBounds) -> Array:
-    """Feed by path length that is allowed on the whole of each segment, (N,)."""
-    return _of_tip(path.feed, most.tip_1)
-
-
-def _of_tip(feed: Array, way: Array) -> Array:
+def feed_of_path_length(feed: Array, way: Array) -> Array:
     """Feed by path length, lowered where the tip travels farther than the path length: in blends with arcs."""
     return feed / np.maximum(1.0, way / _LONGER)
 
@@ -113,35 +148,45 @@ def _following(path: ToolPath, segment: Array, u: Array) -> Array:
     return np.minimum(segment + (u == path.segments.extent[segment]), len(path.feed) - 1)
 
 
-def bounded_by(machine: Machine, poses: Poses) -> tuple[Bounded, ...]:
-    """The quantities that a machine limits, at poses with derivatives by path length."""
-    _, first, second = strut_rates(machine, poses)
-    return _limited(machine, (first, second), (poses.tip_1, poses.tip_2), (poses.axis_1, poses.axis_2))
+def limits(feed: Array, bounded: Iterable[LimitedQuantity]) -> tuple[Array, Array]:
+    """Highest speed squared and highest acceleration along the path at each station, (M,) each.
+
+    The rate y' v is limited by the largest y' of a station and its two neighbours: between two stations neither v^2 nor
+    y' exceeds the larger of its end values, so the limit holds throughout, even if both maxima coincide.
+
+    Args:
+        feed: (M,) programmed speed by path length.
+        bounded: the quantities with limits of their own.
+    """
+    bounded = tuple(bounded)
+    square = feed**2
+    for item in bounded:
+        first, second = item.sizes()
+        square = lowered(square, item.speed, _of_neighbours(first), 2)
+        square = lowered(square, FOR_CURVATURE * PLANNED_SHARE * item.acceleration, second, 1)
+    along = np.full(len(feed), NO_LIMIT)
+    for item in bounded:
+        if np.isfinite(item.acceleration):
+            first, second = item.sizes()
+            left = PLANNED_SHARE * item.acceleration - second * square[:, None]
+            along = np.minimum(along, reduce_columns(np.minimum, left / np.maximum(first, _NEGLIGIBLE)))
+    return square, along
 
 
-def roughly_bounded(machine: Machine, path: ToolPath, most: PathBounds) -> tuple[Bounded, ...]:
-    """The quantities that a machine limits, as bounds on each segment."""
-    tip, axis = (most.tip_1, most.tip_2), (most.axis_1, most.axis_2)
-    spin = most.spin_1, most.spin_2
-    struts = strut_rate_bounds(machine, tip, axis, spin, most.half_tilt, path.tool_length)
-    return _limited(machine, _column(struts), _column(tip), _column(axis))
+def lowered(square: Array, limit: float, size: Array, power: int) -> Array:
+    """The lower one of values, (M,), and the power of a limit by the largest size of each row, (M, C)."""
+    if not np.isfinite(limit):
+        return square
+    worst = np.maximum(reduce_columns(np.maximum, size), _NEGLIGIBLE)
+    return np.minimum(square, (limit / worst) ** power)
 
 
-def _column(sizes: Pair) -> Pair:
-    return sizes[0][:, None], sizes[1][:, None]
+def reduce_columns(function: Callable[[Array, Array], Array], columns: Array) -> Array:
+    """The minimum or maximum of each row, (M,), for few columns; many times faster than numpy's reduction of rows."""
+    return functools.reduce(function, columns.T)
 
 
-def _limited(machine: Machine, struts: Pair, tip: Pair, axis: Pair) -> tuple[Bounded, ...]:
-    """The quantities that a machine limits, from first and second derivatives by path length."""
-    return (
-        Bounded(
-            first=struts[0],
-            second=struts[1],
-            speed=_SPEED_SHARE * machine.strut_speed,
-            acceleration=machine.strut_acceleration,
-            each=True,
-            jerk=machine.strut_jerk,
-        ),
-        Bounded(tip[0], tip[1], np.inf, _TIP_SHARE * machine.tip_acceleration, each=False, jerk=machine.tip_jerk),
-        Bounded(axis[0], axis[1], _SPEED_SHARE * machine.axis_speed, np.inf, each=False),
-    )
+def _of_neighbours(size: Array) -> Array:
+    """The maximum of each row and the rows before and after it."""
+    padded = np.concatenate([size[:1], size, size[-1:]])
+    return np.maximum(np.maximum(padded[:-2], padded[2:]), size)

@@ -4,14 +4,11 @@
 Only ``steps`` defines the order of the steps. Either all files are written and certified, or none.
 """
 
-from pkm_post.posting.frame import Posted
-from pkm_post.posting.known_setup import known_setup
-from pkm_post.posting.machine_check import as_text, machine_faults, summary
-from pkm_post.posting.placed import trajectory_of, work_offset
-from pkm_post.posting.post_file import post_file, prepared_file
-from pkm_post.posting.prepared import Prepared
-from pkm_post.posting.reach_study import Study, study, told_offset
-from pkm_post.posting.run import Log, Progress, quiet, unwatched
+from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
+from pkm_post.posting.placement import setup_of, trajectory_of, work_offset
+from pkm_post.posting.post_file import Prepared, post_file, prepared_file
+from pkm_post.posting.reach_study import Study, study, work_offset_text
+from pkm_post.posting.run import Log, Posted, Progress, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post, step_names
 from pkm_post.posting.verify import verify, verify_texts
 
@@ -22,19 +19,19 @@ __all__ = [
     "Prepared",
     "Progress",
     "Study",
-    "as_text",
-    "known_setup",
+    "format_table",
+    "setup_of",
     "machine_faults",
     "post",
     "post_file",
     "prepared_file",
-    "quiet",
+    "no_log",
     "step_names",
     "study",
-    "summary",
-    "told_offset",
+    "machine_summary",
+    "work_offset_text",
     "trajectory_of",
-    "unwatched",
+    "no_progress",
     "verify",
     "verify_texts",
     "work_offset",

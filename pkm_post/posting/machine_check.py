@@ -127,7 +127,7 @@ def _broken_limits(code: str, standing: Home, file: str) -> tuple[Diagnostic, ..
     )
 
 
-def summary(machine: Machine) -> Rows:
+def machine_summary(machine: Machine) -> Rows:
     """Rows of the file's contents and derived figures."""
     home = at_home(machine)
     return [
@@ -139,7 +139,7 @@ def summary(machine: Machine) -> Rows:
     ]
 
 
-def as_text(rows: Rows) -> str:
+def format_table(rows: Rows) -> str:
     """Format the rows as a table."""
     width = max(len(label) for label, _ in rows)
     return "\n".join(f"  {label.ljust(width)}  {figure}" for label, figure in rows)

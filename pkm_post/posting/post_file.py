@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pkm_post.machine import machine_named
-from pkm_post.model import Diagnostic, Place, Program, Refused
+from pkm_post.model import Diagnostic, Machine, Place, Program, Refused, Trajectory, errors
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     READING_STEP,
@@ -31,11 +31,58 @@ from pkm_post.options import (
     part_program_from,
     tool_lengths_from,
 )
-from pkm_post.posting.frame import Posted
-from pkm_post.posting.prepared import Prepared
-from pkm_post.posting.run import Log, Progress, quiet, unwatched
-from pkm_post.posting.steps import SUFFIX
+from pkm_post.posting.placement import trajectory_of
+from pkm_post.posting.run import Findings, Log, Posted, Progress, no_log, no_progress
+from pkm_post.posting.steps import SUFFIX, post
 from pkm_post.reading import AS_WRITTEN, Reading, read_part_program
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A program on its machine, before it is placed.
+
+    Attributes:
+        program: cutter locations in {C}; None if it has errors.
+        machine: the machine it runs on; None if its file has errors.
+        options: the user's choices.
+        found: diagnostics from reading them.
+    """
+
+    program: Program | None
+    machine: Machine | None
+    options: Options
+    found: Findings
+
+    @property
+    def sound(self) -> tuple[Program, Machine]:
+        """Program and machine.
+
+        Raises:
+            Refused: one of them or the options have an error.
+        """
+        if self.program is None or self.machine is None or errors(self.found):
+            raise Refused(self.found)
+        return self.program, self.machine
+
+    def placed(self) -> tuple[Trajectory, Findings]:
+        """The trajectory in {M}, and all diagnostics.
+
+        Raises:
+            Refused: it cannot be read or placed.
+        """
+        trajectory, told = trajectory_of(*self.sound, self.options)
+        if trajectory is None:
+            raise Refused((*self.found, *told))
+        return trajectory, (*self.found, *told)
+
+    def post(self, program_path: Path, log: Log = no_log, progress: Progress = no_progress) -> Posted:
+        """Post it to a motion program of this name; the other files take its stem.
+
+        Raises:
+            Refused: an input has an error; nothing was written.
+        """
+        return post(self.program, self.machine, program_path, self.options, log, self.found, progress)
+
 
 _ASKED_FOR = "L411"
 """The warning that a gauge length defaulted to 0: posting requires one for each tool, and J113 requests it."""
@@ -49,8 +96,8 @@ def post_file(
     options: Options | None = None,
     tool_lengths: Mapping[int, float] = _NO_LENGTHS,
     reading: Reading = AS_WRITTEN,
-    log: Log = quiet,
-    progress: Progress = unwatched,
+    log: Log = no_log,
+    progress: Progress = no_progress,
     arguments: str | ArgumentValues = "",
 ) -> Posted:
     """Post a part program.

@@ -25,8 +25,7 @@ from pkm_post.machine import (
 )
 from pkm_post.model import Diagnostic, Machine, Program, errors
 from pkm_post.options import Options
-from pkm_post.posting.known_setup import known_setup
-from pkm_post.posting.placed import trajectory_of
+from pkm_post.posting.placement import setup_of, trajectory_of
 
 _LABELS = ("stroke", "joints", "from singular")
 
@@ -54,7 +53,9 @@ class Study:
         """The study as text."""
         head = f"{'what is left (1 best, 0 at the limit)':<40}" + "".join(f"{label:>15}" for label in _LABELS)
         rows = [f"{name:<40}" + "".join(f"{share:>15.3f}" for share in left) for name, left in self.stages]
-        return "\n".join([self.reach.text(), head, *rows, "", f"work offset: {told_offset(self.machine_from_work)}"])
+        return "\n".join(
+            [self.reach.text(), head, *rows, "", f"work offset: {work_offset_text(self.machine_from_work)}"]
+        )
 
 
 def study(
@@ -89,7 +90,7 @@ def study(
         if placed is None:
             return None, told
         stages.append((f"spin {options.spin.rule.value}", least_normalised_margins(placed, machine)))
-    setup, faults = known_setup(options, program)
+    setup, faults = setup_of(options, program)
     if errors(faults):
         return None, (*told, *faults)
     checked = check_reach(placed, machine, placed_workpiece(setup, placed))
@@ -102,7 +103,7 @@ _IN_REACH = ("K117", "K121")
 """Diagnostics that reach also covers, by the margins of each pose."""
 
 
-def told_offset(machine_from_work: Array) -> str:
+def work_offset_text(machine_from_work: Array) -> str:
     """A work offset as accepted by ``--work-offset``, or as a matrix if it rotates about other axes than z."""
     x, y, z = machine_from_work[:3, 3]
     if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):

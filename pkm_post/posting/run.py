@@ -12,9 +12,12 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TypeVar
+from pathlib import Path
+from typing import Any, TypeVar
 
-from pkm_post.model import Diagnostic, Refused, errors
+from pkm_post.model import Diagnostic, Machine, Refused, Tolerances, errors
+from pkm_post.options import Options
+from pkm_post.writing import Controller
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
@@ -25,11 +28,11 @@ Progress = Callable[[str, float], None]
 1. An exception from it stops the run, and no files remain."""
 
 
-def quiet(line: str) -> None:
+def no_log(line: str) -> None:
     """Log nothing."""
 
 
-def unwatched(step: str, share: float) -> None:
+def no_progress(step: str, share: float) -> None:
     """Ignore progress, and never stop the run."""
 
 
@@ -107,3 +110,50 @@ def give_back_memory() -> None:
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # other C libraries have none
         if trim is not None:
             trim(0)
+
+
+@dataclass(frozen=True)
+class Posted:
+    """The result of posting.
+
+    Attributes:
+        program: the motion program, or the first of its parts.
+        files: all files written, including the program.
+        report: the content of the report file.
+        diagnostics: warnings.
+        parts: the files of the motion program, in order of execution.
+    """
+
+    program: Path
+    files: tuple[Path, ...]
+    report: dict[str, Any]
+    diagnostics: Findings
+    parts: tuple[Path, ...]
+
+
+@dataclass(frozen=True)
+class PostContext:
+    """What all steps share.
+
+    Attributes:
+        path: path of the motion program; the other files take its folder and its stem.
+        machine: the machine of the program.
+        controller: the controller of the machine.
+        settings: settings of the controller, of its own class.
+        options: the user's choices.
+    """
+
+    path: Path
+    machine: Machine
+    controller: Controller
+    settings: Any
+    options: Options
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """The requested tolerances."""
+        return self.options.tolerances
+
+    def beside(self, ending: str) -> Path:
+        """The path of an accompanying file."""
+        return self.path.with_name(self.path.stem + ending)

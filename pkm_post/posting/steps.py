@@ -30,11 +30,9 @@ from pkm_post.model import (
 )
 from pkm_post.options import LINUXCNC, Options
 from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
-from pkm_post.posting.frame import Frame, Posted
-from pkm_post.posting.known_setup import known_setup
 from pkm_post.posting.machine_check import home_faults
-from pkm_post.posting.placed import trajectory_of
-from pkm_post.posting.run import Findings, Log, Progress, Run, quiet, unwatched
+from pkm_post.posting.placement import setup_of, trajectory_of
+from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import plots, summary
 from pkm_post.system import memory_guard, result_files, staged, write_fault
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_seal, read_texts, trajectory_file
@@ -58,9 +56,9 @@ def post(
     machine: Machine | None,
     program_path: Path,
     options: Options | None = None,
-    log: Log = quiet,
+    log: Log = no_log,
     found: Findings = (),
-    progress: Progress = unwatched,
+    progress: Progress = no_progress,
 ) -> Posted:
     """Make a certified motion program, with its trajectory, set-up file and report beside it.
 
@@ -77,7 +75,7 @@ def post(
         Refused: the input has an error, or the folder cannot be written; nothing was written.
     """
     options = options or Options()
-    setup, faults = known_setup(options, program)
+    setup, faults = setup_of(options, program)
     found = (*found, *faults)
     if program is None or machine is None or errors(found):
         raise Refused(found)
@@ -123,7 +121,7 @@ def _all_steps(
     run: Run, program: Program, machine: Machine, path: Path, options: Options, setup: Setup
 ) -> tuple[list[str], dict[str, Any]]:
     """Run the steps in order; return the names of the parts of the program, and the content of the report."""
-    frame = Frame(path, machine, *run.value(controller_settings(machine)), options)
+    frame = PostContext(path, machine, *run.value(controller_settings(machine)), options)
     trajectory = _stored_trajectory(run, frame, program)
     motion, names, covered = _written_program(run, frame, trajectory, setup)
     played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
@@ -133,11 +131,11 @@ def _all_steps(
     return names, report
 
 
-def _trajectory_hash(frame: Frame) -> str:
+def _trajectory_hash(frame: PostContext) -> str:
     return manifest.fingerprint_of_file(frame.beside(result_files.TRAJECTORY))
 
 
-def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
+def _stored_trajectory(run: Run, frame: PostContext, program: Program) -> Trajectory:
     """The trajectory as read back from its file: the plan is made from the stored data."""
     with run.step(_TRAJECTORY) as told:
         trajectory = run.value(trajectory_file.read(_store(run, frame, program)))
@@ -145,7 +143,7 @@ def _stored_trajectory(run: Run, frame: Frame, program: Program) -> Trajectory:
     return trajectory
 
 
-def _store(run: Run, frame: Frame, program: Program) -> Path:
+def _store(run: Run, frame: PostContext, program: Program) -> Path:
     """Place a program and write its trajectory; return the path of the file."""
     placed = run.value(trajectory_of(program, frame.machine, frame.options))
     stored = frame.beside(result_files.TRAJECTORY)
@@ -154,7 +152,7 @@ def _store(run: Run, frame: Frame, program: Program) -> Path:
 
 
 def _written_program(
-    run: Run, frame: Frame, trajectory: Trajectory, setup: Setup
+    run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup
 ) -> tuple[Motion, list[str], tuple[Coverage, ...]]:
     """The plan, the names of the parts of the program, and the coverage.
 
@@ -164,14 +162,14 @@ def _written_program(
     return plan.motion, _motion_program(run, frame, trajectory, plan.struts), covered
 
 
-def _planned(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
+def _planned(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
     """Tool poses and strut lengths by time, and the coverage."""
     feed_plan = _feed_plan(run, frame, trajectory)
     covered = _collisions(run, frame, trajectory, setup)
     return _interpolation(run, frame, feed_plan), covered
 
 
-def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> FeedPlan:
+def _feed_plan(run: Run, frame: PostContext, trajectory: Trajectory) -> FeedPlan:
     """The path with rounded corners, and its schedule."""
     with run.step(_FEED_PLAN) as notes:
         feed_plan, faults = plan_feed(trajectory, frame.machine, frame.tolerances)
@@ -182,7 +180,7 @@ def _feed_plan(run: Run, frame: Frame, trajectory: Trajectory) -> FeedPlan:
     return feed_plan
 
 
-def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) -> tuple[Coverage, ...]:
+def _collisions(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Coverage, ...]:
     """Check collisions with part, stock and fixtures; return the coverage for the certificate."""
     with run.step(_COLLISIONS) as told:
         collisions = find_collisions(trajectory, frame.machine, setup, frame.tolerances)
@@ -191,7 +189,7 @@ def _collisions(run: Run, frame: Frame, trajectory: Trajectory, setup: Setup) ->
     return collisions.coverage
 
 
-def _interpolation(run: Run, frame: Frame, feed_plan: FeedPlan) -> Plan:
+def _interpolation(run: Run, frame: PostContext, feed_plan: FeedPlan) -> Plan:
     """Tool poses and strut lengths by time, valid for the controller."""
     with run.step(_INTERPOLATION) as notes:
         plan = interpolate(feed_plan)
@@ -200,7 +198,7 @@ def _interpolation(run: Run, frame: Frame, feed_plan: FeedPlan) -> Plan:
     return plan
 
 
-def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
+def _motion_program(run: Run, frame: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
     """Write the program and the set-up it relies on; return the names of its parts."""
     with run.step(_PROGRAM) as told:
         controller, settings, machine = frame.controller, frame.settings, frame.machine
@@ -216,7 +214,7 @@ def _motion_program(run: Run, frame: Frame, trajectory: Trajectory, struts: Stru
 
 
 def _certificate(
-    run: Run, frame: Frame, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
+    run: Run, frame: PostContext, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
 ) -> tuple[StrutMotion, Certificate, dict[str, Any]]:
     """The program read back from its text, its certificate, and the hashes of both files for the report."""
     with run.step(_CERTIFICATE) as told:
@@ -228,7 +226,7 @@ def _certificate(
     return played, certificate, files
 
 
-def _read_back(run: Run, frame: Frame) -> tuple[StrutMotion, list[str]]:
+def _read_back(run: Run, frame: PostContext) -> tuple[StrutMotion, list[str]]:
     """The motion of the program and the hashes of its parts; the texts are freed before it is measured."""
     texts = run.value(read_texts(frame.path, frame.controller))
     played = run.value(frame.controller.read_parts(texts, frame.settings))
@@ -237,7 +235,7 @@ def _read_back(run: Run, frame: Frame) -> tuple[StrutMotion, list[str]]:
 
 def _report(
     run: Run,
-    frame: Frame,
+    frame: PostContext,
     trajectory: Trajectory,
     motion: Motion,
     played: StrutMotion,
@@ -257,7 +255,7 @@ def _report(
     return report
 
 
-def _write_another(run: Run, frame: Frame, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
+def _write_another(run: Run, frame: PostContext, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
     """Write an additional output."""
     with run.step(_another(name)) as told:
         if name == LINUXCNC:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pkm_post.certificate import beyond_machine, certify, machine_fault, recovered
+from pkm_post.certificate import certify, machine_fault, reconstruct, values_beyond_machine
 from pkm_post.machine import reach_faults
 from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
 from pkm_post.report import summary
@@ -74,11 +74,11 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
     if tolerances is None:
         raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
     _refuse_for_machine(planned, machine, program.name)
-    found, faults = recovered(struts, program.name, planned, machine, tolerances)
+    found, faults = reconstruct(struts, program.name, planned, machine, tolerances)
     if found is None:
         raise Refused(faults)
     certificate, faults = certify(
-        struts, program.name, planned, machine, found.motion, tolerances, spin_off=found.spin_off
+        struts, program.name, planned, machine, found.motion, tolerances, spin_deviation=found.spin_deviation
     )
     faults = (*faults, *reach_faults(machine, planned, *found.way()))
     if certificate is None or errors(faults):
@@ -92,7 +92,7 @@ def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> Non
     another = machine_fault(planned, machine, name)
     if another:
         raise Refused([another])
-    beyond = [Diagnostic("T107", place, found) for place, found in beyond_machine(planned, machine)]
+    beyond = [Diagnostic("T107", place, found) for place, found in values_beyond_machine(planned, machine)]
     if beyond:
         raise Refused(beyond)
 

@@ -3,7 +3,7 @@
 
 from pkm_post.report import plots, summary
 from pkm_post.report.animated_png import animate
-from pkm_post.report.reach_plot import draw_reach
+from pkm_post.report.plots import draw_reach
 from pkm_post.report.summary import heading
 
 __all__ = [

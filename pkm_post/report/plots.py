@@ -117,7 +117,7 @@ def _only(points: Array, chosen: Array) -> Array:
 
 def _lengths(axes: Any, struts: StrutMotion, machine: Machine) -> None:
     for strut, line in enumerate(struts.length.T, 1):
-        axes.plot(*shown(struts.time_ms / 1000, line), linewidth=0.8, label=f"strut {strut}")
+        axes.plot(*decimated(struts.time_ms / 1000, line), linewidth=0.8, label=f"strut {strut}")
     for limit in machine.strut_stroke:
         axes.axhline(limit, **_LIMIT)
     axes.set(ylabel="strut length mm", title="as read back from the motion program; dashed: limits")
@@ -126,7 +126,7 @@ def _lengths(axes: Any, struts: StrutMotion, machine: Machine) -> None:
 
 def _speeds(axes: Any, struts: StrutMotion, machine: Machine) -> None:
     for line in struts.speed.T:
-        axes.plot(*shown(struts.time_ms / 1000, line), linewidth=0.6)
+        axes.plot(*decimated(struts.time_ms / 1000, line), linewidth=0.6)
     for limit in (-machine.strut_speed, machine.strut_speed):
         axes.axhline(limit, **_LIMIT)
     axes.set(ylabel="strut speed mm/s")
@@ -138,14 +138,14 @@ def _deviations(axes: Any, certificate: Certificate, tolerances: Tolerances) -> 
         "axis": certificate.axis_deviation / tolerances.axis,
     }
     for name, line in by_tolerance.items():
-        axes.plot(*shown(certificate.time, line), linewidth=0.5, label=name)
+        axes.plot(*decimated(certificate.time, line), linewidth=0.5, label=name)
     axes.axhline(1.0, **_LIMIT)
     told = f"tip {1000 * tolerances.tip:g} um, axis {np.degrees(tolerances.axis):g} degrees"
     axes.set(xlabel="time s", ylabel="deviation by tolerance", title=f"tolerances: {told}", ylim=(0, 1.1))
     axes.legend(fontsize="small", loc="center right")
 
 
-def shown(time: Array, values: Array) -> tuple[Array, Array]:
+def decimated(time: Array, values: Array) -> tuple[Array, Array]:
     """A line over increasing times, or the minimum and maximum of each column of pixels if it has more points."""
     if len(time) <= 2 * _COLUMNS:
         return time, values
@@ -153,3 +153,49 @@ def shown(time: Array, values: Array) -> tuple[Array, Array]:
     both = np.stack([np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)], axis=1)
     both[1::2] = both[1::2, ::-1].copy()  # alternate up and down: half the ink of going up in every column
     return np.repeat(time[first], 2), both.ravel()
+
+
+_MOST_LEVELS = 6
+
+
+def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> tuple[Diagnostic, ...]:
+    """Draw a reach map on a grid to a PNG file.
+
+    Args:
+        path: path of the file.
+        machine: name of the machine.
+        tip: (N, 3) grid points in {M}, mm.
+        cone: (N,) half angles, rad; negative for unreachable points.
+    """
+    missing = missing_matplotlib(path)
+    if missing:
+        return missing
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    heights = np.unique(tip[:, 2])
+    shown = heights[np.unique(np.linspace(0, len(heights) - 1, _MOST_LEVELS).astype(np.int64))]
+    figure = Figure(figsize=(4.2 * min(3, len(shown)), 4.0 * -(-len(shown) // 3)), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(-(-len(shown) // 3), min(3, len(shown)), squeeze=False, sharex=True, sharey=True)
+    degrees = np.where(cone < 0, np.nan, np.degrees(cone))
+    for panel in panels.ravel()[len(shown) :]:
+        panel.remove()
+    for panel, height in zip(panels.ravel(), shown, strict=False):
+        level = tip[:, 2] == height
+        image = _level(panel, tip[level], degrees[level], float(np.nanmax(degrees, initial=1.0)))
+        panel.set_title(f"z = {height:g} mm")
+    figure.colorbar(image, ax=panels.ravel().tolist()[: len(shown)], label="widest cone of the tool axis, degrees")
+    figure.suptitle(f"Reach of {machine}", parse_math=False)
+    save(figure, path, dpi=90)
+    return ()
+
+
+def _level(panel: Any, tip: Array, degrees: Array, highest: float) -> Any:
+    x, y = np.unique(tip[:, 0]), np.unique(tip[:, 1])
+    order = np.lexsort([tip[:, 0], tip[:, 1]])
+    field = degrees[order].reshape(len(y), len(x))
+    panel.set_aspect("equal")
+    panel.set_xlabel("x, mm")
+    panel.set_ylabel("y, mm")
+    return panel.pcolormesh(x, y, field, vmin=0.0, vmax=highest, shading="nearest")

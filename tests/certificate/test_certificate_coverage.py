@@ -1,18 +1,42 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
+"""Every entry of a machine file is certified, checked elsewhere, or no limit: a new one has to be put somewhere."""
+
+import dataclasses
 from dataclasses import replace
 
 import machines
+import numpy as np
 import pytest
-from programs import ON_PALLET, TOOLS, cone, program
+from posted_jobs import NARROW, of, preset
+from programs import ON_PALLET, TOOLS, cone, program, random_job
 
-from pkm_post.certificate.coverage import coverage
+from pkm_post.certificate.coverage import CERTIFIED, CHECKED_ELSEWHERE, coverage
 from pkm_post.machine import find_machine
+from pkm_post.machine.description.fields import FIELDS
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Extent, Topic, coverage_summary
 from pkm_post.toolpath.place import place
 
 TRAJECTORY = place(cone(9), machines.example(), ON_PALLET)[0]
+CHANGES = (Event(0, EventKind.TOOL_CHANGE, 1), Event(1, EventKind.TOOL_CHANGE, 2), Event(1, EventKind.SPINDLE, 500.0))
+NO_LIMITS = {
+    "name", "description", "units.length", "units.angle", "units.time", "base.joints", "platform.joints",
+    "platform.spindle_nose", "struts.length_offset", "struts.screw_lead", "struts.tube_radius", "struts.tube_length",
+    "struts.rod_radius", "struts.rod_length", "struts.stiffness", "struts.rigidity", "joints.base_kind",
+    "joints.platform_kind", "joints.rest_pose", "joints.rest_tool_length", "joints.base_rest", "joints.platform_rest",
+    "joints.base_axes", "joints.platform_axes", "interference.base_joint_radius",
+    "interference.platform_joint_radius", "interference.bodies", "interference.fixtures",
+    "singularity.characteristic_length", "tool_path.home_tip", "tool_path.home_axis", "tool_path.home_spin",
+    "struts.velocity_gain", "tool_change.nose", "tool_change.axis", "tool_change.spin",
+    "work_offsets.*.origin", "work_offsets.*.rotation_z", "work_offsets.*.matrix", "controller.kind",
+    "controller.letters", "controller.coordinate_system", "controller.program", "controller.length_decimals",
+    "controller.speed_decimals", "controller.counts_per_mm", "controller.zero_length", "controller.codes.tool_change",
+    "controller.codes.spindle_clockwise", "controller.codes.spindle_counterclockwise",
+    "controller.codes.spindle_stop", "controller.codes.coolant_flood", "controller.codes.coolant_mist",
+    "controller.codes.coolant_off", "controller.codes.stop", "controller.codes.optional_stop",
+}  # fmt: skip
+"""Entries that say what the machine is, where things are and what its controller is told."""
 
 
 def example():
@@ -64,9 +88,6 @@ def beside_the_path(machine, trajectory):
     }
 
 
-CHANGES = (Event(0, EventKind.TOOL_CHANGE, 1), Event(1, EventKind.TOOL_CHANGE, 2), Event(1, EventKind.SPINDLE, 500.0))
-
-
 def test_a_tool_change_counts_as_covered_where_the_trajectory_has_it_at_the_pose():
     job = program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], events=CHANGES, tools=TOOLS)
     machine = machines.with_tool_change(machines.example())
@@ -110,3 +131,28 @@ def test_jerk_is_covered_where_a_limit_is_stated():
     changed = {subject for subject in before if before[subject] is not after[subject]}
     assert changed == {"strut jerk", "tip jerk"}
     assert all(before[subject] is Extent.NOT_COVERED and after[subject] is Extent.SAMPLED for subject in changed)
+
+
+def all_stated():
+    """The example machine with every limit that a file can state."""
+    return dataclasses.replace(preset("example_6tps"), strut_jerk=1e6, tip_jerk=1e6)
+
+
+def test_every_entry_stands_in_one_place():
+    placed = [*CERTIFIED, *CHECKED_ELSEWHERE, *NO_LIMITS]
+    assert sorted(placed) == sorted(field.entry for field in FIELDS)
+
+
+def test_certified_limits_are_findings_of_a_certificate():
+    *_, certificate, faults = of(all_stated(), random_job(np.random.default_rng(3)), NARROW)
+    assert faults == ()
+    names = {row.name for row in certificate.findings}
+    assert {name for rows in CERTIFIED.values() for name in rows} <= names
+
+
+def test_rows_without_an_entry_are_about_the_job():
+    *_, certificate, _ = of(all_stated(), random_job(np.random.default_rng(3)), NARROW)
+    of_machine = {name for rows in CERTIFIED.values() for name in rows}
+    assert {row.code for row in certificate.findings if row.name not in of_machine} == {
+        "V101", "V102", "V107", "V110", "V111",
+    }  # fmt: skip

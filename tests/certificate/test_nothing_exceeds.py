@@ -9,8 +9,7 @@ import pytest
 from machines import example
 from programs import ON_PALLET, cone, random_job, square_with_arc
 
-from pkm_post.certificate import certify, joints
-from pkm_post.certificate import instants as instants_module
+from pkm_post.certificate import certify, joints, playback
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
 from pkm_post.machine import forward, linearise
@@ -139,7 +138,7 @@ def test_figures_say_little_more_than_there_is():
 
 def test_even_instants_alone_would_say_too_little(monkeypatch):
     # What the dense instants are there for: without what hides and without the joints, they find more than the figure.
-    monkeypatch.setattr(instants_module, "bow", lambda columns: np.zeros(columns.shape[2]))
+    monkeypatch.setattr(playback, "chordal_deviation", lambda columns: np.zeros(columns.shape[2]))
     blind = lambda task, tip, axis, rows, last: (np.zeros((2, 2, len(rows))), np.ones((2, len(rows))))  # noqa: E731
     monkeypatch.setattr(joints, "_off_both", blind)
     certified.cache_clear()

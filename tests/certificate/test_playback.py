@@ -7,15 +7,14 @@ import pytest
 from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
-from pkm_post.certificate import joints, playback, tool_course
+from pkm_post.certificate import joints, playback, tool_spline
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.certificate.instants import look
-from pkm_post.certificate.joints import pass_joints
-from pkm_post.certificate.knots import inverses_at
-from pkm_post.certificate.playback import play
+from pkm_post.certificate.joints import measure_joints
+from pkm_post.certificate.playback import chordal_deviation, play, sagitta, sample
 from pkm_post.certificate.struts import off_plan
-from pkm_post.certificate.tool_at import Task
-from pkm_post.certificate.tool_course import ToolCourse
+from pkm_post.certificate.tool_spline import ToolSpline, inverses_at
+from pkm_post.certificate.tool_states import Task
+from pkm_post.geometry import norm
 from pkm_post.machine import strut_rates
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
@@ -53,7 +52,7 @@ def planned(job):
 
 def knots_of(job):
     machine, _, motion, printed = planned(job)
-    return ToolCourse.of(machine, printed, motion)[1]
+    return ToolSpline.of(machine, printed, motion)[1]
 
 
 def by_newton(task):
@@ -64,16 +63,16 @@ def by_newton(task):
 def task_of(job, struts=None):
     machine, trajectory, motion, printed = planned(job)
     struts, ceiling = struts or printed, np.full(len(printed) - 1, FEED)
-    course, knots = ToolCourse.of(machine, struts, motion)
+    course, knots = ToolSpline.of(machine, struts, motion)
     return Task(struts, machine, TrajectoryRuler(trajectory, TOLERANCES), motion, knots, course, ceiling)
 
 
 def passed(task, job):
-    return pass_joints(task, planned(job)[1])
+    return measure_joints(task, planned(job)[1])
 
 
 def seen(task, instants=9):
-    return look(task, np.arange(len(task.struts) - 1), instants, closely=True)
+    return sample(task, np.arange(len(task.struts) - 1), instants, closely=True)
 
 
 def assert_alike(one, other):
@@ -132,9 +131,9 @@ def test_passes_of_other_sizes_find_the_same(monkeypatch, at_once):
 @pytest.mark.parametrize("at_once", [1, 7, 1000])
 def test_knots_of_other_sizes_of_passes_are_the_same(monkeypatch, at_once):
     machine, _, motion, struts = planned("another tool")
-    course, knots = ToolCourse.of(machine, struts, motion)
-    monkeypatch.setattr(tool_course, "_AT_ONCE", at_once)
-    course_in_pieces, knots_in_pieces = ToolCourse.of(machine, struts, motion)
+    course, knots = ToolSpline.of(machine, struts, motion)
+    monkeypatch.setattr(tool_spline, "_AT_ONCE", at_once)
+    course_in_pieces, knots_in_pieces = ToolSpline.of(machine, struts, motion)
     for one, other in ((course_in_pieces, course), (knots_in_pieces, knots)):
         for field in dataclasses.fields(one):
             found, expected = getattr(one, field.name), getattr(other, field.name)
@@ -175,3 +174,38 @@ def test_a_joint_tells_how_far_the_tool_is_from_the_point_and_from_its_segments(
     time = task.motion.joint_time * 1000
     assert np.all(task.struts.time_ms[found.intervals[0]] <= time)
     assert np.all(time <= task.struts.time_ms[found.intervals[1] + 1])
+
+
+def leaving(curve, instants):
+    """Most by which curves (3, N, dense), sampled at even shares, leave the chords between some of them, (N,)."""
+    dense = curve.shape[2]
+    at, few = np.linspace(0, 1, dense), np.linspace(0, 1, instants)
+    chosen = curve[..., :: (dense - 1) // (instants - 1)]
+    chords = np.array([[np.interp(at, few, row) for row in rows] for rows in chosen])
+    return norm(np.moveaxis(curve - chords, 0, -1)).max(axis=1)
+
+
+@pytest.mark.parametrize("instants", [5, 9, 33])
+def test_cubics_leave_their_chords_by_no_more_than_is_said_and_not_much_less(instants):
+    rng = np.random.default_rng(instants)
+    share = np.linspace(0, 1, 3201)
+    curve = np.einsum("cnk,kd->cnd", rng.normal(size=(3, 200, 4)), share ** np.arange(4)[:, None])
+    told = chordal_deviation(curve[..., :: 3200 // (instants - 1)].swapaxes(1, 2))
+    found = leaving(curve, instants)
+    assert np.all(found <= told)
+    assert np.all(told <= 1.5 * found)
+
+
+def test_a_straight_way_hides_nothing():
+    way = np.arange(9.0)[:, None] * np.array([1.0, -2.0, 3.0])[:, None, None]
+    assert chordal_deviation(way) == pytest.approx([0.0], abs=1e-12)
+    assert sagitta(way, 0.0) == pytest.approx([0.0], abs=0)
+
+
+def test_a_circle_leaves_its_chords_by_what_its_bend_says():
+    turn, radius = np.linspace(0, 0.8, 801), 5.0
+    circle = radius * np.stack([np.cos(turn), np.sin(turn), 0 * turn])[:, None]
+    few = circle[..., ::100].swapaxes(1, 2)
+    told, found = sagitta(few, 1 / radius), leaving(circle, 9)
+    assert found[0] <= told[0] <= 1.2 * found[0]
+    assert found[0] <= chordal_deviation(few)[0] <= 1.3 * found[0]

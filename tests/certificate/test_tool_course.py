@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from test_nothing_exceeds import certified
 
-from pkm_post.certificate import tool_course as course_module
-from pkm_post.certificate.struts import cubics
-from pkm_post.certificate.tool_course import ToolCourse
+from pkm_post.certificate import tool_spline
+from pkm_post.certificate.tool_spline import ToolSpline
 from pkm_post.geometry import hermite_lengths, hermite_speeds
 from pkm_post.geometry.vectors import length_of
 from pkm_post.machine import forward, linearise
@@ -27,12 +26,12 @@ def course_of(job, struts=None):
         pytest.skip("beyond the reach of the machine")
     machine, _, motion, printed, _ = certified(job)
     struts = struts or printed
-    return machine, motion, struts, ToolCourse.of(machine, struts, motion)[0]
+    return machine, motion, struts, ToolSpline.of(machine, struts, motion)[0]
 
 
 def by_newton(machine, motion, struts, rows, tip, axis, spin):
     """Tip, axis and velocity of the tip at the shares of some intervals, (3, M, N) each, from guesses like theirs."""
-    played = (of(*cubics(struts, rows), SHARES) for of in (hermite_lengths, hermite_speeds))
+    played = (of(*struts.cubics(rows), SHARES) for of in (hermite_lengths, hermite_speeds))
     lengths, speeds = (columns.swapaxes(0, 1).reshape(-1, 6) for columns in played)
     tool = np.tile(motion.tool_length[rows + 1], len(SHARES))
     pose = forward(machine, lengths, tool, tip.reshape(3, -1).T, axis.reshape(3, -1).T, spin.ravel())
@@ -68,7 +67,7 @@ def test_what_is_said_is_not_far_from_what_there_is():
 
 def test_what_leaves_a_cubic_does_so_by_no_more_than_the_looks_and_the_factors_say():
     # The factors: quadratics times x^2 (1 - x)^2 are 1 at each look in turn; signs that add up are the worst case.
-    share, looks = np.linspace(0, 1, 20001), course_module._LOOKS.ravel()
+    share, looks = np.linspace(0, 1, 20001), tool_spline._LOOKS.ravel()
     bases = []
     for look in looks:
         others = looks[looks != look]
@@ -78,8 +77,8 @@ def test_what_leaves_a_cubic_does_so_by_no_more_than_the_looks_and_the_factors_s
     rates = np.gradient(np.array(bases), share, axis=1)
     assert np.abs(rates).sum(axis=0).max() == pytest.approx(11.153, abs=1e-2)
     with_room = 1.1  # for the change of the Jacobian
-    assert with_room * np.abs(bases).sum(axis=0).max() <= course_module._MOST
-    assert with_room * np.abs(rates).sum(axis=0).max() <= course_module._FASTEST
+    assert with_room * np.abs(bases).sum(axis=0).max() <= tool_spline._MOST
+    assert with_room * np.abs(rates).sum(axis=0).max() <= tool_spline._FASTEST
 
 
 def test_a_program_that_is_off_its_plan_has_no_course_there():
@@ -97,5 +96,5 @@ def test_a_program_that_is_off_its_plan_has_no_course_there():
 @pytest.mark.parametrize("at_once", [1, 7])
 def test_intervals_in_other_passes_have_the_same_course(monkeypatch, at_once):
     whole = course_of(5)[-1]
-    monkeypatch.setattr(course_module, "_AT_ONCE", at_once)
+    monkeypatch.setattr(tool_spline, "_AT_ONCE", at_once)
     np.testing.assert_allclose(course_of(5)[-1].missed, whole.missed, rtol=1e-6, atol=1e-12)

@@ -10,7 +10,7 @@ from pkm_post.freecad_app.reach_object import create_reach
 from pkm_post.model import Refused
 
 WHAT = "Unable to allocate 7 GiB"
-PLACED = "pkm_post.posting.placed.place"
+PLACED = "pkm_post.posting.placement.place"
 CALLS = (
     "pkm_post.freecad_app.post_processor.program_path",
     "pkm_post.freecad_app.job_setup.machine_named",

@@ -8,7 +8,7 @@ import pytest
 from posted_jobs import NARROW, finding, of, preset
 from programs import random_job
 
-from pkm_post.planning.pace import factors_of_crowds, slower_feed
+from pkm_post.planning.knots import block_rate_factors, slower_feed
 
 ROUGH = (0.05, 0.05)
 SEEDS = (2, 4, 7)
@@ -64,7 +64,7 @@ def test_a_path_that_needs_closer_points_is_refused_for_that():
 def test_only_segments_of_a_crowded_second_are_slower():
     time_ms = np.concatenate([np.arange(0, 1000, 10), np.arange(1000, 3001, 100)])
     segment = (time_ms - 1) // 500
-    factor = factors_of_crowds(time_ms, segment, 50.0, 6)
+    factor = block_rate_factors(time_ms, segment, 50.0, 6)
     assert np.all(factor[:2] <= 0.5 * 0.95 + 1e-12) and np.all(factor[4:] == 1)
     feed = slower_feed(np.full(6, 20.0), np.full(6, 5.0), np.arange(1, 7) * 0.5, factor)
     np.testing.assert_allclose(feed[:2], 10 * factor[:2])

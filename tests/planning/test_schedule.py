@@ -7,8 +7,8 @@ from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan_feed
 from pkm_post.planning.knots import LONGEST_MS, knots
-from pkm_post.planning.stations import stations
-from pkm_post.toolpath.place import place
+from pkm_post.planning.speed_profile import stations
+from pkm_post.toolpath.placement.place import place
 
 NO_EDGES = np.array([], dtype=np.int64)
 
@@ -29,7 +29,7 @@ def stop_and_go():
 
 def test_speed_is_the_derivative_of_the_way():
     _, _, schedule = schedule_of(cone())
-    time = np.linspace(0.01, schedule.course.time[-1] - 0.01, 2000)
+    time = np.linspace(0.01, schedule.law.time[-1] - 0.01, 2000)
     step = 1e-6
     s, speed, _ = schedule.at(time)
     np.testing.assert_allclose((schedule.at(time + step)[0] - schedule.at(time - step)[0]) / (2 * step), speed,
@@ -50,8 +50,8 @@ def test_feed_is_kept_and_reached():
     _, path, schedule = schedule_of(program([[0, 0, 60], [0, 0, 50], [100, 0, 50]], feed=30.0))
     marks = stations(path)
     cutting = marks.segment[1:] > 0
-    assert schedule.course.speed[1:][cutting].max() <= 30.0
-    assert schedule.course.speed[1:][cutting].max() > 29.9
+    assert schedule.law.speed[1:][cutting].max() <= 30.0
+    assert schedule.law.speed[1:][cutting].max() > 29.9
 
 
 def test_knots_halve_until_the_error_holds():
@@ -82,11 +82,11 @@ def test_cuts_are_made_at_edges():
     np.testing.assert_array_equal(found, [0, *edges, 120])
 
 
-def test_when_a_place_is_passed_is_when_the_course_is_there():
+def test_when_a_place_is_passed_is_when_the_motion_law_is_there():
     _, _, schedule = schedule_of(stop_and_go())
-    course = schedule.course
-    s = np.sort(np.random.default_rng(4).uniform(0, course.s[-1], 2000))
-    time = course.when(s)
-    np.testing.assert_allclose(course.at(time)[0], s, atol=1e-9)
+    law = schedule.law
+    s = np.sort(np.random.default_rng(4).uniform(0, law.s[-1], 2000))
+    time = law.when(s)
+    np.testing.assert_allclose(law.at(time)[0], s, atol=1e-9)
     assert np.all(np.diff(time) > 0)
-    np.testing.assert_allclose(course.when(course.s[1:]), course.time[1:], atol=1e-9)
+    np.testing.assert_allclose(law.when(law.s[1:]), law.time[1:], atol=1e-9)

@@ -8,23 +8,21 @@ import pytest
 from machines import example
 from programs import ON_PALLET, cone, program, random_job
 
+from pkm_post.geometry import hermite_accelerations
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import motion, plan_feed, speed_limits
-from pkm_post.planning.limits import limits, rough_limits
 from pkm_post.planning.motion import tool_path
-from pkm_post.planning.path_bounds import PathBounds
-from pkm_post.planning.profile import cell_times, speed_profile
+from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.speed_limits import (
+    PLANNED_SHARE,
+    LimitedQuantity,
     _following,
-    below_feed,
-    bent,
-    bounded_by,
     feed_at,
-    rough_feed,
-    roughly_bounded,
+    limited_quantities,
+    limits,
 )
-from pkm_post.planning.stations import stations
-from pkm_post.toolpath.place import place
+from pkm_post.planning.speed_profile import cell_times, speed_profile, stations
+from pkm_post.toolpath.placement.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 LONGER = 1e-3
@@ -42,6 +40,10 @@ def slow(machine):
     return dataclasses.replace(machine, strut_speed=60.0, strut_acceleration=400.0, tip_acceleration=300.0)
 
 
+SCREENED = {"at the feed": 0.7, "slow machine": 0.1, "five axes": 0.9}
+"""Least part of the segments that need no limits."""
+
+
 JOBS = {
     "at the feed": (wavy(30.0), example()),
     "at the limits": (wavy(200.0), example()),
@@ -50,8 +52,6 @@ JOBS = {
     "five axes on a slow machine": (cone(300), slow(example())),
     **{f"random {seed}": (random_job(np.random.default_rng(seed)), example()) for seed in range(8)},
 }
-SCREENED = {"at the feed": 0.7, "slow machine": 0.1, "five axes": 0.9}
-"""Least part of the segments that need no limits."""
 
 
 def path_of(job):
@@ -61,15 +61,14 @@ def path_of(job):
 
 
 def rough_limits_of(path, machine):
-    most = PathBounds.of(path)
-    return rough_limits(rough_feed(path, most), roughly_bounded(machine, path, most))
+    return rough_limits(path, machine, DerivativeBounds.of(path))
 
 
 def everywhere(path, machine):
     """Stations, the ceiling of the speed squared at them, and the plan, with nothing left out."""
     marks = stations(path)
     poses = path.within(marks.segment, marks.u)
-    square, along = limits(feed_at(path, poses, marks.u), bounded_by(machine, poses))
+    square, along = limits(feed_at(path, poses, marks.u), limited_quantities(machine, poses))
     square[marks.rest] = 0.0
     return marks, square, speed_profile(marks.s, square, along)
 
@@ -83,8 +82,8 @@ def test_the_screened_plan_is_the_whole_plan(name):
     stretched = 1e-3 * (len(schedule.rests_ms) - 1)
     assert schedule.rests_ms[-1] / 1000 == pytest.approx(whole, abs=stretched + LONGER * whole)
     # Nowhere is it above the ceilings of the whole plan, at any of its stations.
-    passed = schedule.course.when(marks.s[1:])
-    assert np.all(schedule.course.at(passed)[1] <= np.sqrt(square[1:]) * (1 + 1e-6) + 1e-6)
+    passed = schedule.law.when(marks.s[1:])
+    assert np.all(schedule.law.at(passed)[1] <= np.sqrt(square[1:]) * (1 + 1e-6) + 1e-6)
 
 
 @pytest.mark.parametrize("name", SCREENED)
@@ -100,7 +99,7 @@ def test_rough_limits_are_below_the_true_ones(name):
     rough = rough_limits_of(path, machine)
     marks = stations(path)
     poses = path.within(marks.segment, marks.u)
-    true = limits(feed_at(path, poses, marks.u), bounded_by(machine, poses))
+    true = limits(feed_at(path, poses, marks.u), limited_quantities(machine, poses))
     following = _following(path, marks.segment, marks.u)
     for below, above in zip(rough, true, strict=True):
         assert np.all(np.minimum(below[marks.segment], below[following]) <= above * (1 + 1e-9))
@@ -113,8 +112,8 @@ def test_blocks_do_not_show(block, monkeypatch):
     monkeypatch.setattr(motion, "_STATIONS_AT_ONCE", block)
     monkeypatch.setattr(speed_limits, "_STATIONS_AT_ONCE", block)
     cut = plan_feed(trajectory, machine, TOLERANCES)[0].schedule
-    np.testing.assert_array_equal(cut.course.s, whole.course.s)
-    np.testing.assert_allclose(cut.course.speed, whole.course.speed, rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(cut.law.s, whole.law.s)
+    np.testing.assert_allclose(cut.law.speed, whole.law.speed, rtol=1e-9, atol=1e-9)
     np.testing.assert_array_equal(cut.rests_ms, whole.rests_ms)
 
 
@@ -124,7 +123,7 @@ def test_between_the_joints_of_a_segment_that_is_not_bent_the_path_is_straight(t
     for _ in range(6):
         trajectory, _ = place(random_job(rng), example(), ON_PALLET)
         path = tool_path(trajectory, Tolerances(tolerance, tolerance / 50))
-        straight = np.flatnonzero(~bent(path, PathBounds.of(path)))
+        straight = np.flatnonzero(~deviates_in_blends(path, DerivativeBounds.of(path)))
         found.append(len(straight) / len(path.feed))
         share = np.linspace(0, 1, 101)
         poses = path.within(np.repeat(straight, 101), np.outer(path.segments.extent[straight], share).ravel())
@@ -132,3 +131,47 @@ def test_between_the_joints_of_a_segment_that_is_not_bent_the_path_is_straight(t
         chord = tip[:, :1] + share[:, None] * (tip[:, -1:] - tip[:, :1])
         assert np.linalg.norm(tip - chord, axis=2).max(initial=0.0) <= 2 * 0.01
     assert (min(found) > 0.8) == (tolerance == 1e-3)  # bounds of both ends of a segment are taken together
+
+
+def test_limits_hold_for_every_speed_and_acceleration_they_allow():
+    rng = np.random.default_rng(61)
+    first, second = rng.normal(size=(500, 6)), rng.normal(size=(500, 6)) / 10
+    item = LimitedQuantity(first, second, speed=20.0, acceleration=300.0, each=True)
+    square, along = limits(np.full(500, 50.0), [item])
+    assert (np.sqrt(square)[:, None] * np.abs(first)).max() <= 20 + 1e-9
+    for share in (0.0, 0.3, 1.0):
+        for sign in (-1, 1):
+            total = first * sign * along[:, None] + second * share * square[:, None]
+            assert np.abs(total).max() <= PLANNED_SHARE * 300 + 1e-9
+
+
+def test_a_vector_is_limited_as_a_whole():
+    item = LimitedQuantity(np.array([[3.0, 4.0, 0.0]]), np.zeros((1, 3)), speed=10.0, acceleration=np.inf, each=False)
+    square, _ = limits(np.array([100.0]), [item])
+    np.testing.assert_allclose(square, 4.0)
+
+
+def test_a_rate_that_drops_to_nothing_keeps_its_limit_between_stations():
+    # From one station to the next v^2 is linear and, in a blend, y' at most linear: their product bulges in between.
+    size = np.array([2.0, 2.0, 1.0, 0.01, 0.01, 0.5, 3.0])[:, None]
+    square, _ = limits(np.full(7, 1e4), [LimitedQuantity(size, 0 * size, speed=5.0, acceleration=np.inf, each=False)])
+    share = np.linspace(0, 1, 101)[:, None]
+    squares = square[:-1] + share * np.diff(square)
+    sizes = size[:-1, 0] + share * np.diff(size[:, 0])
+    assert (sizes * np.sqrt(squares)).max() <= 5.0 * (1 + 1e-12)
+    at_station = (5.0 / size[:, 0]) ** 2
+    assert (sizes * np.sqrt(at_station[:-1] + share * np.diff(at_station))).max() > 3 * 5.0  # with none of that
+
+
+def test_planned_share_leaves_room_for_the_overshoot_of_a_cubic():
+    # Full acceleration that switches to full braking inside one interval; every switching time is tried. The integral
+    # of |4 - 6x| over the interval, 5/3, is the bound for any such plan.
+    worst = 0.0
+    for x in np.linspace(0, 1, 1001):
+        v1 = x - (1 - x)
+        p1 = x**2 / 2 + x * (1 - x) - (1 - x) ** 2 / 2
+        row = [np.full((1, 6), value) for value in (0.0, 0.0, p1, v1)]
+        first, last = hermite_accelerations(*row, np.ones(1))
+        worst = max(worst, np.abs(first).max(), np.abs(last).max())
+    np.testing.assert_allclose(worst, 5 / 3, atol=1e-5)
+    assert worst * PLANNED_SHARE <= 1 + 1e-9

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 from time_optimal_paths import LIMITS, PATHS, stations_of
 
-from pkm_post.planning.limits import limits
-from pkm_post.planning.profile import cell_times, speed_profile
-from pkm_post.planning.speed_limits import bounded_by, feed_at
+from pkm_post.planning.speed_limits import feed_at, limited_quantities, limits
+from pkm_post.planning.speed_profile import cell_times, speed_profile
 
 SHORTEST = json.loads((Path(__file__).parents[1] / "data" / "time_optimal.json").read_text(encoding="ascii"))
 FACTOR = 1.7
@@ -24,7 +23,7 @@ def test_the_plan_is_no_faster_and_not_much_slower_than_the_optimum(name, limits
     machine, path, marks = stations_of(name, limits_name)
     poses = path.within(marks.segment, marks.u)
     feed = feed_at(path, poses, marks.u)
-    square, along = limits(feed, bounded_by(machine, poses))
+    square, along = limits(feed, limited_quantities(machine, poses))
     square[marks.rest] = 0.0
     time = float(cell_times(marks.s, speed_profile(marks.s, square, along)).sum())
     shortest = SHORTEST[f"{name}, {limits_name}"]

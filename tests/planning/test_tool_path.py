@@ -8,13 +8,12 @@ from programs import cone, program, square_with_arc
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import dot, norm
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning.stations import stations
-from pkm_post.planning.tool_path import ToolPath
-from pkm_post.toolpath.place import place
+from pkm_post.planning.speed_profile import stations
+from pkm_post.planning.tool_path import OFFSET, ToolPath, half_widths, smooth_step, step
+from pkm_post.toolpath.placement.place import place
 
 MICRON = 1e-3
 AXIS = np.radians(0.001)
-PATHS = {"cone": cone, "corners, arcs and a helix": square_with_arc}
 
 
 def turning_in_place():
@@ -23,7 +22,7 @@ def turning_in_place():
     return program([[0, 0, 60], [10, 0, 60], [10, 0, 60], [10, 20, 60]], axis)
 
 
-PATHS["turn in place"] = turning_in_place
+PATHS = {"cone": cone, "corners, arcs and a helix": square_with_arc, "turn in place": turning_in_place}
 
 
 def path_of(make, tip=MICRON, axis=AXIS):
@@ -105,3 +104,40 @@ def test_stations_cover_every_joint_and_blend_edge():
     assert nearest.max() < 1e-8
     assert marks.rest.sum() == 2
     assert len(trajectory) + 1 == len(np.unique(marks.segment)) + 1
+
+
+def test_step_is_the_chain_of_its_derivatives():
+    d, h = 0.7, 1e-5
+    x = np.linspace(-0.69, 0.69, 50)
+    width = np.full(50, d)
+    for steps in (step, smooth_step):
+        below, above, here = steps(x - h, width), steps(x + h, width), steps(x, width)
+        for lower, higher in ((0, 1), (1, 2)):
+            np.testing.assert_allclose((above[lower] - below[lower]) / (2 * h), here[higher], atol=1e-8)
+
+
+def test_step_goes_from_nothing_to_the_next_segment_and_is_off_by_three_sixteenths():
+    d = np.array([0.7])
+    first, last, middle = step(-d, d), step(d, d), step(0 * d, d)
+    np.testing.assert_allclose(first[:3], 0, atol=1e-15)
+    np.testing.assert_allclose([last[0], last[1], last[2]], [d, [1.0], [0.0]], atol=1e-15)
+    np.testing.assert_allclose(middle[0], OFFSET * d)
+
+
+def test_smooth_step_has_no_second_derivative_at_its_ends():
+    d = np.array([0.7])
+    np.testing.assert_allclose(smooth_step(-d, d), [[0], [0], [0]], atol=1e-15)
+    np.testing.assert_allclose(smooth_step(d, d), [[1], [0], [0]], atol=1e-15)
+
+
+def test_half_width_obeys_the_tightest_of_its_bounds():
+    zero, one = np.zeros(1), np.ones(1)
+    corner = half_widths(one, zero, zero, zero, 100 * one, tip=1e-3, axis=1.0)
+    np.testing.assert_allclose(OFFSET * corner, 1e-3)
+    both = half_widths(one, one, one, zero, 100 * one, tip=1e-3, axis=1.0)
+    np.testing.assert_allclose(OFFSET * both + 0.0134 * both**2, 1e-3)
+    axis = half_widths(zero, zero, zero, one, 100 * one, tip=1.0, axis=1e-5)
+    np.testing.assert_allclose(OFFSET * axis, 1e-5)
+    assert half_widths(zero, zero, zero, zero, one, tip=1.0, axis=1.0)[0] < 0.5
+    assert half_widths(one, one, one, one, zero, tip=1.0, axis=1.0)[0] == 0
+    assert half_widths(one, one, 4 * one, one, 100 * one, tip=1.0, axis=1.0)[0] == 0.5 / 4

@@ -10,8 +10,8 @@ from programs import ON_PALLET, cone, program
 from pkm_post.model import Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning.motion import tool_path
-from pkm_post.planning.stations import stations
-from pkm_post.toolpath.place import place
+from pkm_post.planning.speed_profile import stations
+from pkm_post.toolpath.placement.place import place
 
 
 def _corners():

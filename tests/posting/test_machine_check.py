@@ -12,7 +12,7 @@ from pkm_post.geometry.vectors import unit
 from pkm_post.machine import find_machine, jacobian_of_tip, presets, templates
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Refused
-from pkm_post.posting.machine_check import at_home, home_faults, summary
+from pkm_post.posting.machine_check import at_home, home_faults, machine_summary
 from pkm_post.posting.steps import post
 
 PRINTED = 5.1e-2  # one decimal
@@ -48,7 +48,7 @@ def test_turning_rate_is_what_the_struts_allow():
 @pytest.mark.parametrize("name", presets())
 def test_presets_can_stand_at_home(name):
     assert home_faults(machine(name), name) == ()
-    assert all(label and figure for label, figure in summary(machine(name)))
+    assert all(label and figure for label, figure in machine_summary(machine(name)))
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_a_home_out_of_reach_is_told(changes, found):
 
 def test_a_singular_home_has_no_condition():
     # With a spin of 90 degrees a hexapod of this kind is singular (Fichter 1986).
-    rows = dict(summary(machine(home_spin=np.pi / 2)))
+    rows = dict(machine_summary(machine(home_spin=np.pi / 2)))
     assert rows["  condition"].startswith("none")
     assert "  stiffness" not in rows
 
@@ -131,7 +131,7 @@ def test_a_file_is_complete_only_where_a_program_can_be_written_for_it(capsys, t
 
 
 def test_figures_of_the_drives_are_those_of_the_home_pose():
-    rows = dict(summary(machine()))
+    rows = dict(machine_summary(machine()))
     assert rows["velocity gains"] == "50.0000 1/s"
     assert rows["points"] == "1 ms apart or more, at most 500 in a second"
     # No count moves the tip by more than the sum of the columns of J^-1.
@@ -140,7 +140,7 @@ def test_figures_of_the_drives_are_those_of_the_home_pose():
     columns = np.linalg.norm(np.linalg.inv(jacobian_of_tip(one, *pose)[0])[:3], axis=0)
     most = at_home(one).count_at_tip * one.controller["counts_per_mm"]
     assert columns.max() < most <= columns.sum()
-    silent = dict(summary(machine(velocity_gain=None, block_rate=np.inf)))
+    silent = dict(machine_summary(machine(velocity_gain=None, block_rate=np.inf)))
     assert silent["velocity gains"].startswith("none stated") and silent["points"].endswith("no rate stated")
 
 

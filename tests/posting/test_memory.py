@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pkm_post.certificate import drives, fault_causes, joints, struts, tool_course
+from pkm_post.certificate import diagnosis, dynamics, joints, struts, tool_spline
 from pkm_post.options.choices import Options
-from pkm_post.planning import motion, profile, schedule, speed_limits
+from pkm_post.planning import motion, schedule, speed_limits, speed_profile
 from pkm_post.posting.post_file import post_file
 from pkm_post.posting.run import give_back_memory
 from pkm_post.reading.sources import Reading
@@ -27,13 +27,13 @@ PIECES = (
     (motion, "_STATIONS_AT_ONCE"),
     (motion, "_MARKS_AT_ONCE"),
     (speed_limits, "_STATIONS_AT_ONCE"),
-    (profile, "_AT_ONCE"),
-    (schedule, "_AT_ONCE"),
-    (struts, "_AT_ONCE"),
-    (tool_course, "_AT_ONCE"),
-    (joints, "_AT_ONCE"),
-    (drives, "_AT_ONCE"),
-    (fault_causes, "_AT_ONCE"),
+    (speed_profile, "_KNOTS_AT_ONCE"),
+    (schedule, "_KNOTS_AT_ONCE"),
+    (struts, "_KNOTS_AT_ONCE"),
+    (tool_spline, "_KNOTS_AT_ONCE"),
+    (joints, "_KNOTS_AT_ONCE"),
+    (dynamics, "_KNOTS_AT_ONCE"),
+    (diagnosis, "_KNOTS_AT_ONCE"),
     (writer, "_ROWS_PER_CHUNK"),
     (program_reader, "_CHUNK"),
     (outputs, "_CHARACTERS_AT_ONCE"),

@@ -13,8 +13,8 @@ from pkm_post.cli import main
 from pkm_post.machine import SpinPolicy, SpinRule, check_reach, machine_named
 from pkm_post.model import Event, EventKind
 from pkm_post.options.choices import Options
-from pkm_post.posting.placed import trajectory_of
-from pkm_post.posting.reach_study import study, told_offset
+from pkm_post.posting.placement import trajectory_of
+from pkm_post.posting.reach_study import study, work_offset_text
 
 G_CODE = """\
 T1 M6 G43 H1
@@ -71,9 +71,9 @@ def test_a_work_offset_is_told_as_the_option_takes_it():
     offset = np.array(
         [[np.cos(turn), -np.sin(turn), 0, 1.5], [np.sin(turn), np.cos(turn), 0, -2], [0, 0, 1, 3], [0, 0, 0, 1]]
     )
-    assert told_offset(offset) == "--work-offset=1.500,-2.000,3.000,30.0000"
+    assert work_offset_text(offset) == "--work-offset=1.500,-2.000,3.000,30.0000"
     offset[:3, :3] = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
-    assert told_offset(offset).startswith("[[")
+    assert work_offset_text(offset).startswith("[[")
 
 
 def test_the_command(tmp_path, capsys):

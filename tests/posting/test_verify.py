@@ -9,7 +9,7 @@ import pytest
 from programs import ON_PALLET, cone
 from verified_reports import agree
 
-from pkm_post.certificate import certify, recovered
+from pkm_post.certificate import certify, reconstruct
 from pkm_post.cli import main
 from pkm_post.machine import machine_named
 from pkm_post.model import Refused
@@ -49,10 +49,12 @@ def judge(machine, posted):
         struts, faults = pmac.read_program(text, settings, "cone.pmc")
         if struts is None or errors(faults):
             return False
-        found, _ = recovered(struts, "cone.pmc", trajectory, machine, TOLERANCES)
+        found, _ = reconstruct(struts, "cone.pmc", trajectory, machine, TOLERANCES)
         if found is None:
             return False
-        measured = certify(struts, "cone.pmc", trajectory, machine, found.motion, TOLERANCES, spin_off=found.spin_off)
+        measured = certify(
+            struts, "cone.pmc", trajectory, machine, found.motion, TOLERANCES, spin_deviation=found.spin_deviation
+        )
         return not errors(measured[1])
 
     return accepted

@@ -10,13 +10,12 @@ from programs import cone
 from pkm_post.machine import machine_named
 from pkm_post.posting.steps import post
 from pkm_post.report import plots
-from pkm_post.report.plots import _only, shown
-from pkm_post.report.reach_plot import draw_reach
+from pkm_post.report.plots import _only, decimated, draw_reach
 
 
 def test_a_short_line_is_drawn_as_it_is():
     time, values = np.arange(5.0), np.array([1.0, 3.0, 2.0, 0.0, 1.0])
-    found = shown(time, values)
+    found = decimated(time, values)
     np.testing.assert_array_equal(found, (time, values))
 
 
@@ -25,7 +24,7 @@ def test_a_long_line_keeps_its_ends_in_time_and_every_peak_of_one_point():
     time, values = np.cumsum(rng.uniform(0.001, 0.1, 100_000)), rng.normal(size=100_000)
     peaks = rng.choice(100_000, 300, replace=False)
     values[peaks] = np.where(np.arange(300) % 2, 1, -1) * np.linspace(10, 20, 300)
-    when, drawn = shown(time, values)
+    when, drawn = decimated(time, values)
     assert len(when) == len(drawn) < 2500
     assert np.all(np.diff(when) >= 0)
     assert when[0] == time[0] and when[-1] == time[-1]

@@ -12,7 +12,7 @@ from pkm_post.machine.description.faults import DEEPEST, MOST_BYTES, MOST_SHOWN
 from pkm_post.machine.description.presets import FOLDER, presets
 from pkm_post.machine.description.reader import machine_of, read_machine
 from pkm_post.machine.description.value_types import MOST_SOLIDS
-from pkm_post.posting.machine_check import machine_faults, summary
+from pkm_post.posting.machine_check import machine_faults, machine_summary
 
 PRESET = (FOLDER / "example_6tps.toml").read_text(encoding="utf-8")
 LINES = PRESET.count("\n") + 1
@@ -155,7 +155,7 @@ def test_any_number_of_any_machine_may_be_anything(name):
             assert {item.code for item in found} <= {"M103", "M104", "M106"}
         else:
             machine_faults(machine, "m.toml")
-            summary(machine)
+            machine_summary(machine)
     assert outcomes == {True, False}
 
 

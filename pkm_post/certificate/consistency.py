@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Structure: what a program and its plan must have in common before they can be compared.
+
+Enters: a strut motion as read back, and the plan it was made from. Leaves: diagnostics, each with the first difference,
+as found and as planned. Times: whole ms, as in the program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import zip_longest
+from typing import TypeVar
+
+import numpy as np
+
+from pkm_post.geometry import norm
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Motion, Place, StrutMotion, Trajectory
+
+_Thing = TypeVar("_Thing")
+
+
+def structure_faults(
+    struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, motion: Motion
+) -> tuple[Diagnostic, ...]:
+    """Diagnostics that prevent a comparison: another machine, other knots, other events, or motion at the ends.
+
+    Args:
+        struts: the program, read back.
+        program_name: names the program in diagnostics.
+        trajectory: the programmed trajectory.
+        machine: the machine to check the program on.
+        motion: the plan.
+    """
+    another, found = machine_fault(trajectory, machine, program_name), []
+    if not np.array_equal(struts.time_ms, motion.time_ms):
+        times = struts.time_ms.tolist(), motion.time_ms.tolist()
+        found.append(("V110", _first_difference("knot", *times, "{} ms".format)))
+    if struts.events != motion.events:
+        found.append(("V109", event_fault(struts.events, motion.events)))
+    for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):
+        if speed.any():
+            found.append(("V105", f"{which} speeds {speed.tolist()} mm/s"))
+    told = (Diagnostic(code, Place(program_name), text) for code, text in found)
+    return (another, *told) if another else tuple(told)
+
+
+def machine_fault(trajectory: Trajectory, machine: Machine, name: str) -> Diagnostic | None:
+    """T104 for a trajectory of another machine.
+
+    Args:
+        trajectory: the programmed trajectory.
+        machine: the machine to run it on.
+        name: names the program in the diagnostic.
+    """
+    if trajectory.machine_fingerprint == machine.fingerprint:
+        return None
+    return Diagnostic("T104", Place(name), f"made for {trajectory.machine}, checked on {machine.name}")
+
+
+def event_fault(found: Sequence[Event], planned: Sequence[Event]) -> str:
+    """The first event that differs, in words."""
+    return _first_difference("event", found, planned, _event)
+
+
+def _first_difference(
+    what: str, found: Sequence[_Thing], planned: Sequence[_Thing], told: Callable[[_Thing], str]
+) -> str:
+    """The first difference of two sequences, with its index from 0, and their lengths."""
+    pairs = enumerate(zip_longest(found, planned))
+    number, pair = next((number, pair) for number, pair in pairs if pair[0] != pair[1])
+    here, there = ("none" if thing is None else told(thing) for thing in pair)
+    return f"{what} {number}: {here}, planned {there}; {len(found)} found, {len(planned)} planned"
+
+
+def _event(event: Event) -> str:
+    return f"{event.kind.name.lower().replace('_', ' ')} {event.value} at knot {event.row}"
+
+
+_FARTHEST = 10
+"""Distance from the middle of the base in longest struts, as in placement."""
+_ROUNDING = 1e-9
+"""Relative rounding error of limits converted from other units."""
+_SAME = 1e-9
+"""mm, rad, and of unit axes."""
+
+
+def values_beyond_machine(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:
+    """Each quantity beyond the machine, with its first place.
+
+    Args:
+        trajectory: at least one segment with any values that a trajectory file may have.
+        machine: the machine it was made for.
+    """
+    yield from _of_segments(trajectory, machine)
+    yield from _of_start(trajectory, machine)
+    yield from _of_spindle(trajectory, machine)
+
+
+def _of_segments(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:
+    most = np.where(trajectory.kind == Kind.RAPID, machine.rapid_speed, machine.feed_speed)
+    away = norm(trajectory.tip - machine.base_joints.mean(axis=0))
+    for wrong, values, words in (
+        (away > _FARTHEST * machine.strut_stroke[1], away, "the tip is {:.6g} mm from the middle of the base"),
+        (trajectory.feed > most * (1 + _ROUNDING), trajectory.feed, "the feed is {:.6g} mm/s, the machine allows less"),
+    ):
+        rows = np.flatnonzero(wrong)
+        if len(rows):
+            yield trajectory.place(int(rows[0])), words.format(values[rows[0]])
+
+
+def _of_start(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:
+    pairs = (
+        (trajectory.start_tip, machine.home_tip),
+        (trajectory.start_axis, machine.home_axis),
+        (np.array([trajectory.start_spin]), np.array([machine.home_spin])),
+    )
+    if any(np.abs(start - home).max() > _SAME for start, home in pairs):
+        yield Place(trajectory.source), "the start pose is not the home of the machine"
+
+
+def _of_spindle(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:
+    for event in trajectory.events:
+        speed = abs(event.value)
+        allowed = machine.spindle_least_speed <= speed <= machine.spindle_speed
+        if event.kind is EventKind.SPINDLE and speed and not allowed:
+            yield trajectory.place(min(event.row, len(trajectory) - 1)), f"the spindle turns at {speed:g} rpm"
+            return

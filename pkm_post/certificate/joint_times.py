@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Matching: times at which a played program passes the ends of the programmed segments, found without a plan.
+
+Enters: the path of a program, a trajectory, and the knots at which both rest. Leaves: a time for each joint. Between
+two rests the played path is as long as the programmed one, except for rounded corners: this gives an estimate for each
+joint, near which the best-fitting time is searched for. Joints already found refine the estimates of their neighbours.
+Times are no guarantee: the certificate measures the program with them, and wrong times can only increase a deviation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.certificate.played_path import PlayedPath
+from pkm_post.geometry import Array, hermite_lengths, norm
+from pkm_post.machine import forward
+from pkm_post.model import Machine, Tolerances, Trajectory
+
+_LOOKS = 4
+"""Sampled instants of each interval."""
+_REACHES = (12, 4, 48, 8, 192, 16, 768, 24)
+"""Numbers of instants to search on either side of the estimate, tried in turn for joints not found yet."""
+_NEAR = 24
+"""Beyond this reach, only joints without any match are searched for."""
+_FITS = 1.5
+"""Deviation by tolerance within which a joint counts as found; the certificate allows 1."""
+_WELL = 0.6
+"""Deviation by tolerance within which no better time is searched for."""
+_NEWTON_STEPS = 8
+_SPIN_COUNTS = 1e-3
+"""Weight of the spin relative to the tool axis: in a pure turn about the tool axis, only the spin gives the time."""
+_AT_ONCE = 1 << 18
+"""Pairs of joints and instants in one pass."""
+
+
+@dataclass(frozen=True)
+class _SampledPath:
+    """Even instants of all intervals, (S,), with the quantities to compare joints with.
+
+    Attributes:
+        place: (7, S).
+        length: (S,) distance travelled from the start, including turns, mm.
+    """
+
+    place: Array
+    length: Array
+
+
+def joint_times(
+    course: PlayedPath,
+    trajectory: Trajectory,
+    machine: Machine,
+    tolerances: Tolerances,
+    joints: Array,
+    knots: Array,
+) -> Array:
+    """Times at which the end of each of the N segments is passed, (N,) s, never decreasing.
+
+    Args:
+        course: path of the program.
+        trajectory: the programmed trajectory.
+        machine: determines the weight of turns relative to distance.
+        tolerances: the requested tolerances.
+        joints: (R,) segments at the ends of which both rest, ascending; the last is the last segment.
+        knots: (R,) the knots of these rests.
+    """
+    search = _Search(course, trajectory, machine, tolerances)
+    time, fit = np.full((2, len(trajectory)), np.nan)
+    time[joints], fit[joints] = course.time[knots], 0.0
+    for reach in _REACHES:
+        rows = np.flatnonzero(~(fit <= (_WELL if reach <= _NEAR else _FITS)))
+        if not len(rows):
+            continue
+        found, by = search.look(rows, search.guess(rows, time), reach)
+        better = (by <= _FITS) & ~(fit[rows] <= by)
+        time[rows[better]], fit[rows[better]] = found[better], by[better]
+        disorder = _disorder(time, joints)
+        time[disorder] = fit[disorder] = np.nan
+    missing = np.flatnonzero(np.isnan(time))
+    time[missing] = search.time_of(search.guess(missing, time))
+    moving = np.setdiff1d(np.arange(len(trajectory)), joints)
+    time[moving] = search.settled(moving, np.maximum.accumulate(time)[moving])
+    return np.asarray(np.maximum.accumulate(np.clip(time, 0.0, course.time[-1])))
+
+
+def _disorder(time: Array, joints: Array) -> Array:
+    """Rows of times that are out of order, rests excluded."""
+    known = np.flatnonzero(~np.isnan(time))
+    there = time[known]
+    wrong = (there < np.maximum.accumulate(there)) | (there > np.minimum.accumulate(there[::-1])[::-1])
+    wrong[np.searchsorted(known, joints)] = False
+    return known[wrong]
+
+
+class _Search:
+    """Search for joints on the path of a program."""
+
+    def __init__(self, course: PlayedPath, trajectory: Trajectory, machine: Machine, tolerances: Tolerances) -> None:
+        self._course, self._count, self._machine = course, len(course.time) - 1, machine
+        turn = machine.characteristic_length
+        self._way = _way(course, turn)
+        spun = np.abs(np.diff(trajectory.spin, prepend=trajectory.start_spin))
+        self._programmed = np.cumsum(trajectory.length + turn * (trajectory.angle + spun))
+        self._joint = np.vstack([trajectory.tip.T, trajectory.axis.T, trajectory.spin])
+        by_tip = 1 / trajectory.tip_tolerances(tolerances.tip)
+        by_axis = np.full(len(trajectory), 1 / tolerances.axis)
+        self._weight = np.vstack([by_tip, by_axis, _SPIN_COUNTS * by_axis])[[0, 0, 0, 1, 1, 1, 2]]
+
+    def guess(self, rows: Array, time: Array) -> Array:
+        """Estimated distances of joints from the start, (M,), interpolated between joints with known times."""
+        known = np.flatnonzero(~np.isnan(time))
+        instant = time[known] * 1.0
+        at_known = np.interp(self._instant_of(instant), np.arange(len(self._way.length)), self._way.length)
+        programmed = np.append(0.0, self._programmed[known])
+        return np.asarray(np.interp(self._programmed[rows], programmed, np.append(0.0, at_known)))
+
+    def time_of(self, length: Array) -> Array:
+        """Time at which a distance from the start is reached, s."""
+        instant = np.interp(length, self._way.length, np.arange(len(self._way.length)))
+        interval = np.minimum(instant.astype(np.int64) // _LOOKS, self._count - 1)
+        return self._time_at(interval, instant / _LOOKS - interval)
+
+    def look(self, rows: Array, guess: Array, reach: int) -> Array:
+        """Times at which joints are passed, s, searched near a guess; and the deviation then by tolerance, (2, M)."""
+        middle = np.searchsorted(self._way.length, guess)
+        at_once = max(1, _AT_ONCE // (2 * reach + 1))
+        parts = [slice(first, first + at_once) for first in range(0, len(rows), at_once)]
+        return np.hstack([self._look(rows[part], middle[part], reach) for part in parts])
+
+    def _look(self, rows: Array, middle: Array, reach: int) -> Array:
+        shift = np.arange(-reach, reach + 1)[:, None]
+        instants = np.clip(middle + shift, 0, len(self._way.length) - 1)
+        off = (self._way.place[:, instants] - self._joint[:, None, rows]) * self._weight[:, None, rows]
+        nearest = np.argmin(np.square(off).sum(axis=0), axis=0)
+        return self._closely(rows, instants[nearest, np.arange(len(rows))])
+
+    def _closely(self, rows: Array, instant: Array) -> Array:
+        """The same, refined from the nearest instants by Newton's method, with steps no longer than one instant."""
+        interval, share = self._place(instant / _LOOKS)
+        time = self._time_at(interval, share)
+        for _ in range(_NEWTON_STEPS):
+            late = self._late(rows, interval, share, self._course.at(interval, share[None])[:, 0])
+            longest = (self._course.time[interval + 1] - self._course.time[interval]) / _LOOKS
+            time = np.clip(time - np.clip(late, -longest, longest), 0.0, self._course.time[-1])
+            interval, share = self._place(self._instant_of(time) / _LOOKS)
+        off = (self._course.at(interval, share[None])[:, 0] - self._joint[:, rows]) * self._weight[:, rows]
+        return np.stack([time, np.maximum(norm(off[:3].T), norm(off[3:6].T))])
+
+    def settled(self, rows: Array, time: Array) -> Array:
+        """Times of joints, refined by one step to the best fit of the tool's exact poses."""
+        if not len(rows):
+            return time
+        interval, share = self._place(self._instant_of(time) / _LOOKS)
+        place = self._course.at(interval, share[None])[:, 0]
+        length = hermite_lengths(*self._course.struts.cubics(interval), share[:, None])[:, 0]
+        tool_length = self._course.tool_length[interval + 1]
+        pose = forward(self._machine, length, tool_length, place[:3].T, place[3:6].T, place[6])
+        place[:3], place[3:6] = pose.tip.T, pose.axis.T
+        late = self._late(rows, interval, share, place)
+        step = (self._course.time[interval + 1] - self._course.time[interval]) / _LOOKS
+        return np.where(pose.converged & (np.abs(late) < step), time - late, time)
+
+    def _late(self, rows: Array, interval: Array, share: Array, place: Array) -> Array:
+        """Delay, s, of a pose of an interval after the best fit to a joint, by Newton's method.
+
+        In a sharp corner the tool turns away from the joint within a short distance, so its acceleration matters; it is
+        omitted where it would lead to the farthest pose instead.
+        """
+        weight = self._weight[:, rows]
+        off = (place - self._joint[:, rows]) * weight
+        rate, bend = (one * weight for one in self._course.rates_at(interval, share))
+        square = np.square(rate).sum(axis=0) + np.maximum((off * bend).sum(axis=0), 0.0)
+        return np.divide((off * rate).sum(axis=0), square, out=np.zeros(len(rows)), where=square > 0)
+
+    def _time_at(self, interval: Array, share: Array) -> Array:
+        begin, end = self._course.time[interval], self._course.time[interval + 1]
+        return np.asarray(begin + (end - begin) * share)
+
+    def _place(self, at: Array) -> tuple[Array, Array]:
+        interval = np.clip(np.floor(at).astype(np.int64), 0, self._count - 1)
+        return interval, np.clip(at - interval, 0.0, 1.0)
+
+    def _instant_of(self, time: Array) -> Array:
+        interval = np.clip(np.searchsorted(self._course.time, time) - 1, 0, self._count - 1)
+        begin, end = self._course.time[interval], self._course.time[interval + 1]
+        return np.asarray(_LOOKS * (interval + (time - begin) / (end - begin)))
+
+
+def _way(course: PlayedPath, turn: float) -> _SampledPath:
+    """Sample the path at even instants; a turn of one radian counts as ``turn`` mm."""
+    count = len(course.time) - 1
+    inside = course.at(np.arange(count), np.linspace(0.0, 1.0, _LOOKS + 1)[:, None])
+    step = np.diff(inside, axis=1)  # within intervals: the tip's jump at a tool change is not distance travelled
+    way = np.sqrt(np.square(step[:3]).sum(axis=0)) + turn * (
+        np.sqrt(np.square(step[3:6]).sum(axis=0)) + np.abs(step[6])
+    )
+    place = np.hstack([inside[:, :-1].transpose(0, 2, 1).reshape(7, -1), course.place[:, -1:]])
+    return _SampledPath(place, np.append(0.0, np.cumsum(way.T)))

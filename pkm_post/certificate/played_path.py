@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Played course: the tool path of a played program, from its strut lengths and speeds alone.
+
+Enters: a strut motion as read back, the gauge length in use at each knot, and the start pose of the program. Leaves:
+tool poses at the knots by forward kinematics, each starting from the previous one, with their rates; between two knots
+tip, axis and spin are approximated by cubics. The certificate is not measured on these cubics (``tool_at``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.geometry import (
+    Array,
+    dot,
+    hermite_accelerations,
+    hermite_column_speeds,
+    hermite_columns,
+    norm,
+    torsion_free_axes,
+)
+from pkm_post.machine import attitude_rates, forward_along_path, jacobian_of_tip, platform_rotation, solve_regular
+from pkm_post.model import Machine, StrutMotion, Trajectory
+
+
+@dataclass(frozen=True)
+class PlayedPath:
+    """Columns of K + 1 knots: tip in mm, tool axis, spin in rad, one after the other.
+
+    Attributes:
+        place: (7, K + 1) with the tool of the interval before the knot.
+        rate: (7, K + 1) by time.
+        start: (7, K) at the start of each interval, with the tool of that interval.
+        time: (K + 1,) s.
+        tool_length: (K + 1,) of the tool of the interval before the knot, mm.
+        struts: the program, read back.
+    """
+
+    place: Array
+    rate: Array
+    start: Array
+    time: Array
+    tool_length: Array
+    struts: StrutMotion
+
+    @classmethod
+    def of(
+        cls, struts: StrutMotion, tool_length: Array, trajectory: Trajectory, machine: Machine
+    ) -> tuple[PlayedPath | None, int]:
+        """The tool path of a program; or None, and the first knot that small steps from the start cannot reach."""
+        begin = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
+        found = forward_along_path(machine, struts.length, tool_length, trajectory.start_tip, begin)
+        if not found.converged.all():
+            return None, int(np.argmin(found.converged))
+        spin = _spin(found.rotation, trajectory.start_spin)
+        jacobian = jacobian_of_tip(machine, found.tip, found.axis, spin, tool_length)
+        twist, regular = solve_regular(jacobian, struts.speed)
+        if not regular.all():
+            return None, int(np.argmin(regular))
+        swing, spun = attitude_rates(found.axis, twist[:, 3:])
+        place = np.vstack([found.tip.T, found.axis.T, spin])
+        start = place[:, :-1].copy()
+        start[:3] -= np.diff(tool_length) * start[3:6]
+        rate = np.vstack([twist[:, :3].T, swing.T, spun])
+        return cls(place, rate, start, struts.time_ms / 1000, tool_length, struts), 0
+
+    def at(self, interval: Array, share: Array) -> Array:
+        """Tip, axis and spin at shares, (M, 1) or (M, N), of N intervals, (7, M, N)."""
+        return hermite_columns(*self._ends(interval), share)
+
+    def rates_at(self, interval: Array, share: Array) -> tuple[Array, Array]:
+        """First and second derivatives by time at a share of each of N intervals, (7, N) each."""
+        p0, v0, p1, v1, duration = self._ends(interval)
+        begin, end = (one.T for one in hermite_accelerations(p0.T, v0.T, p1.T, v1.T, duration))
+        return hermite_column_speeds(p0, v0, p1, v1, duration, share[None])[:, 0], begin + (end - begin) * share
+
+    def _ends(self, interval: Array) -> tuple[Array, Array, Array, Array, Array]:
+        after = interval + 1
+        duration = self.time[after] - self.time[interval]
+        return self.start[:, interval], self.rate[:, interval], self.place[:, after], self.rate[:, after], duration
+
+
+def _spin(rotation: Array, start: float) -> Array:
+    """The continuous spin of platforms along their path, (N,), starting near ``start``."""
+    x, y = torsion_free_axes(np.ascontiguousarray(rotation[:, :, 2]))
+    spin = np.unwrap(np.arctan2(dot(rotation[:, :, 0], y), dot(rotation[:, :, 0], x)))
+    return np.asarray(spin + 2 * np.pi * np.round((start - spin[0]) / (2 * np.pi)))
+
+
+_ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
+"""Shares of each interval at which it is evaluated."""
+_INTERVALS_AT_ONCE = 8192
+
+
+def largest_backward_motion(course: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> tuple[float, float]:
+    """Largest backward motion of the tool, where 1 is the tolerance; and its time, s."""
+    count = len(course.time) - 1
+    parts = [
+        _along(course, np.arange(first, min(first + _INTERVALS_AT_ONCE, count)), ruler, passed)
+        for first in range(0, count, _INTERVALS_AT_ONCE)
+    ]
+    time, along, slack = np.concatenate(parts, axis=1)
+    back = (np.maximum.accumulate(along) - along) / slack
+    worst = int(np.argmax(back))
+    return float(back[worst]), float(time[worst])
+
+
+def _along(course: PlayedPath, rows: Array, ruler: TrajectoryRuler, passed: Array) -> Array:
+    """Times in intervals; progress of the tool, in segments; and the tolerance of that progress, (3, M)."""
+    place = course.at(rows, _ADVANCE_SHARES).transpose(0, 2, 1).reshape(7, -1)
+    begin, end = course.time[rows, None], course.time[rows + 1, None]
+    time = (begin + (end - begin) * _ADVANCE_SHARES[:, 0]).ravel()
+    segment = np.minimum(np.searchsorted(passed, time), len(passed) - 1)
+    share, slack = ruler.share_of(place[:3].T, (place[3:6] / norm(place[3:6].T)).T, segment)
+    return np.stack([time, segment + share, slack])
+
+
+_SPIN_SHARES = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
+"""Shares of each interval at which the spin is compared."""
+_ROUNDED = 0.45
+"""Share of the shorter segment at a joint over which it may be rounded."""
+_AT_ONCE = 8192
+
+
+def spin_deviation(
+    course: PlayedPath, trajectory: Trajectory, machine: Machine, ruler: TrajectoryRuler, passed: Array
+) -> Array:
+    """Deviation of the spin about each knot from the programmed one, (K + 1,) mm of a strut.
+
+    Args:
+        course: path of the program.
+        trajectory: the programmed trajectory.
+        machine: the geometry.
+        ruler: ruler of the trajectory.
+        passed: (N,) s, when the end of each segment is passed.
+    """
+    allowed = _Allowed(trajectory, ruler)
+    count = len(course.time) - 1
+    off = np.empty(count)
+    for first in range(0, count, _AT_ONCE):
+        rows = np.arange(first, min(first + _AT_ONCE, count))
+        off[rows] = _off(course, rows, allowed, passed)
+    lever = _lever(course, machine)
+    by_interval = off * np.maximum(lever[:-1], lever[1:])
+    return np.maximum(np.append(by_interval, 0.0), np.append(0.0, by_interval))
+
+
+def _off(course: PlayedPath, rows: Array, allowed: _Allowed, passed: Array) -> Array:
+    """Largest excess of the spin in intervals over its allowed range, (M,) rad."""
+    place = course.at(rows, _SPIN_SHARES).reshape(7, -1)
+    begin, end = course.time[rows], course.time[rows + 1]
+    time = (begin + (end - begin) * _SPIN_SHARES).ravel()
+    # an interval that begins at a joint belongs to the next segment
+    first = np.tile(np.searchsorted(passed, begin, side="right"), len(_SPIN_SHARES))
+    segment = np.clip(np.maximum(np.searchsorted(passed, time), first), 0, len(passed) - 1)
+    axis = (place[3:6] / norm(place[3:6].T)).T
+    outside = allowed.outside(place[:3].T, axis, place[6], segment)
+    return np.asarray(outside.reshape(len(_SPIN_SHARES), -1).max(axis=0))
+
+
+class _Allowed:
+    """The spins that a trajectory allows."""
+
+    def __init__(self, trajectory: Trajectory, ruler: TrajectoryRuler) -> None:
+        self._ruler = ruler
+        self._before = np.append(trajectory.start_spin, trajectory.spin[:-1])
+        self._turn = trajectory.spin - self._before
+        self._extent = np.where(
+            trajectory.length > 0, trajectory.length, np.maximum(trajectory.angle, np.abs(self._turn))
+        )
+        rate = self._turn / self._extent
+        rests = trajectory.exact_stop[:-1]
+        self._change = np.concatenate([[0.0], np.where(rests, 0.0, np.abs(np.diff(rate))), [0.0]])
+        width = _ROUNDED * np.minimum(self._extent[:-1], self._extent[1:])
+        self._width = np.concatenate([[1.0], width, [1.0]])
+
+    def outside(self, tip: Array, axis: Array, spin: Array, segment: Array) -> Array:
+        """Excess of spins over the allowed range at their poses, (M,) rad."""
+        share, slack = self._ruler.share_of(tip, axis, segment)
+        turn = self._turn[segment]
+        still = np.isinf(slack)  # a pure turn about the tool axis: any spin in between fits
+        ahead = np.clip((spin - self._before[segment]) / np.where(turn == 0, 1.0, turn), 0.0, 1.0)
+        expected = self._before[segment] + turn * np.where(still, ahead, share)
+        distance = share * self._extent[segment], (1 - share) * self._extent[segment]
+        rounding = sum(self._rounding(segment + side, distance[side]) for side in (0, 1))
+        most = np.abs(turn) * np.where(still, 0.0, slack) + rounding
+        return np.maximum(np.abs(spin - expected) - most, 0.0)
+
+    def _rounding(self, joint: Array, distance: Array) -> Array:
+        """Change of the spin by the rounding of a joint, at a distance from it."""
+        width = self._width[joint]
+        v = np.clip((width - distance) / (2 * width), 0.0, 0.5)
+        return np.asarray(self._change[joint] * 2 * width * v**3 * (1 - v / 2))
+
+
+def _lever(course: PlayedPath, machine: Machine) -> Array:
+    """Largest change of a strut length with the spin at each knot, (K + 1,) mm per rad."""
+    tip, axis = course.place[:3].T, course.place[3:6].T
+    jacobian = jacobian_of_tip(machine, tip, axis, course.place[6], course.tool_length)
+    return np.asarray(np.abs((jacobian[:, :, 3:] @ axis[..., None])[..., 0]).max(axis=1))

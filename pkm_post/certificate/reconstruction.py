@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Recovered: the motion of a program in the form of a plan, from program and trajectory alone.
+
+Enters: the strut motion of a program, the trajectory, the machine. Leaves: tool poses and rates at its knots, the
+segment of each knot and the time of each joint, so that ``certify`` can measure the program of any planner; and the
+deviation of the spin from the programmed one. Rests and events, and their order, must match the trajectory.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.certificate.consistency import event_fault
+from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.joint_times import joint_times
+from pkm_post.certificate.played_path import PlayedPath, largest_backward_motion, spin_deviation
+from pkm_post.geometry import Array, norm
+from pkm_post.machine import PosePath
+from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory
+
+Findings = tuple[Diagnostic, ...]
+
+_LOOKS = np.array([[0.25], [0.5], [0.75], [1.0]])
+"""Shares of each interval at which its pose path is sampled."""
+
+
+@dataclass(frozen=True)
+class ReconstructedMotion:
+    """The motion of a program in the form of a plan.
+
+    Attributes:
+        motion: motion with the knots of the program.
+        spin_deviation: (K + 1,) mm of a strut, deviation of the spin about each knot from the programmed one.
+        course: path of the tool.
+    """
+
+    motion: Motion
+    spin_deviation: Array
+    course: PlayedPath
+
+    def way(self) -> tuple[PosePath, Array]:
+        """The pose path through even instants of all intervals, and the segments of these."""
+        count = len(self.motion) - 1
+        first = self.course.at(np.array([0]), np.zeros((1, 1)))[:, 0]
+        inside = self.course.at(np.arange(count), _LOOKS).transpose(0, 2, 1).reshape(7, -1)
+        place = np.hstack([first, inside])
+        axis = (place[3:6] / norm(place[3:6].T)).T
+        looks = len(_LOOKS)
+        tool_length = np.append(self.motion.tool_length[:1], np.repeat(self.motion.tool_length[1:], looks))
+        segment = np.append(self.motion.segment[:1], np.repeat(self.motion.segment[1:], looks))
+        return PosePath.straight(place[:3].T, axis, place[6], tool_length), segment
+
+
+def reconstruct(
+    struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, tolerances: Tolerances
+) -> tuple[ReconstructedMotion | None, Findings]:
+    """The motion of a program, or None with diagnostics if it does not match the trajectory.
+
+    Args:
+        struts: the program, read back.
+        program_name: names the program in diagnostics.
+        trajectory: the programmed trajectory.
+        machine: the geometry.
+        tolerances: the requested tolerances.
+    """
+    rests = _Rests.of(struts, trajectory)
+    course, fault = None, rests.fault(struts, trajectory, machine)
+    if fault is None:
+        course, fault = _course(struts, rests, trajectory, machine)
+    if course is None:
+        return None, _diagnostics(fault, program_name)
+    ruler = TrajectoryRuler(trajectory, tolerances)
+    passed = joint_times(course, trajectory, machine, tolerances, rests.rows[1:] - 1, rests.knots[1:])
+    fault = _way_back(course, ruler, passed)
+    if fault is not None:
+        return None, _diagnostics(fault, program_name)
+    off = spin_deviation(course, trajectory, machine, ruler, passed)
+    return ReconstructedMotion(_motion(course, passed), off, course), ()
+
+
+_Fault = tuple[str, str]
+"""A code, and its finding."""
+
+
+def _diagnostics(fault: _Fault | None, program_name: str) -> Findings:
+    return () if fault is None else (Diagnostic(fault[0], Place(program_name), fault[1]),)
+
+
+def _course(
+    struts: StrutMotion, rests: _Rests, trajectory: Trajectory, machine: Machine
+) -> tuple[PlayedPath | None, _Fault | None]:
+    course, lost = PlayedPath.of(struts, rests.tool_lengths(trajectory), trajectory, machine)
+    if course is not None:
+        return course, None
+    found = f"from {struts.time_ms[lost] / 1000:g} s on no pose near the one before it has the strut lengths"
+    return None, ("V107", found)
+
+
+def _way_back(course: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> _Fault | None:
+    back, when = largest_backward_motion(course, ruler, passed)
+    if back <= 1:
+        return None
+    return (
+        "V110",
+        f"the tool goes back on its path, by {back:.3g} times what it may be off, {when:.3f} s after the start",
+    )
+
+
+def _motion(course: PlayedPath, passed: Array) -> Motion:
+    return Motion(
+        time_ms=course.struts.time_ms,
+        tip=course.place[:3].T,
+        axis=course.place[3:6].T,
+        spin=course.place[6],
+        tip_rate=course.rate[:3].T,
+        axis_rate=course.rate[3:6].T,
+        spin_rate=course.rate[6],
+        tool_length=course.tool_length,
+        segment=np.minimum(np.searchsorted(passed, course.time), len(passed) - 1),
+        joint_time=passed,
+        events=course.struts.events,
+    )
+
+
+@dataclass(frozen=True)
+class _Rests:
+    """The rests of program and trajectory, in order; comparable if their numbers are equal.
+
+    Attributes:
+        knots: knots of the program at which every printed speed is zero.
+        rows: rows of the trajectory before which the motion rests; row N is its end.
+    """
+
+    knots: Array
+    rows: Array
+
+    @classmethod
+    def of(cls, struts: StrutMotion, trajectory: Trajectory) -> _Rests:
+        rests = np.concatenate([[True], trajectory.exact_stop])
+        rests[-1] = True
+        return cls(np.flatnonzero(~struts.speed.any(axis=1)), np.flatnonzero(rests))
+
+    def fault(self, struts: StrutMotion, trajectory: Trajectory, machine: Machine) -> _Fault | None:
+        """The reason that prevents a comparison: another machine, motion at the ends, other rests or events."""
+        if trajectory.machine_fingerprint != machine.fingerprint:
+            return "T104", f"made for {trajectory.machine}, checked on {machine.name}"
+        for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):
+            if speed.any():
+                return "V105", f"{which} speeds {speed.tolist()} mm/s"
+        if len(self.knots) != len(self.rows):
+            return "V110", f"the program rests {len(self.knots)} times, the trajectory {len(self.rows)} times"
+        at = self.knots[np.searchsorted(self.rows, [event.row for event in trajectory.events])]
+        expected = tuple(replace(event, row=int(knot)) for knot, event in zip(at, trajectory.events, strict=True))
+        return None if struts.events == expected else ("V109", event_fault(struts.events, expected))
+
+    def tool_lengths(self, trajectory: Trajectory) -> Array:
+        """Gauge length of the tool before each knot, (K + 1,): constant between two rests."""
+        by_stretch = trajectory.tool_length()[self.rows[1:] - 1]
+        return np.append(by_stretch[:1], np.repeat(by_stretch, np.diff(self.knots)))

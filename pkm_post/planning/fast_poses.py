@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fast poses: tool pose and tangent of the tip at many places of a path at once, without most derivatives.
+
+Enters: path lengths. Leaves: tips, axes, spins and tangents of the tip, column-major in memory; the exact pair is
+``ToolPath.within``, which gives the same poses. In the half of a segment next to a joint, a path of lines needs no case
+distinction: with t the tangent of the segment, D that of its neighbour at the joint minus t, W the step, H its integral
+and x the distance from the joint,
+
+    p = p_line + D H(-x) before the joint, p_line - D H(-x) after it,    p' = t + D W(-x)
+
+as H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin follow the same formulas. Places near an arc are left to
+``ToolPath.within``, which extends both segments.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array, along, distinct, take_rows
+from pkm_post.planning.tool_path import ToolPath
+from pkm_post.toolpath import Segments
+
+_NO_WIDTH = 1e-200
+"""mm: replaces a blend width of zero, so that the share of it is 0 or 1 without a special case."""
+
+
+@dataclass(frozen=True)
+class FastPoses:
+    """Columns of M places.
+
+    Attributes:
+        tip: (M, 3) tool tip, mm.
+        axis: (M, 3) unit tool axis.
+        spin: (M,) rad.
+        tip_1: (M, 3) derivative of the tip by path length.
+        tool_length: (M,) gauge length in use, mm.
+        segment: (M,) the segment of each place; at a joint the earlier one.
+    """
+
+    tip: Array
+    axis: Array
+    spin: Array
+    tip_1: Array
+    tool_length: Array
+    segment: Array
+
+
+def fast_poses(path: ToolPath, s: Array) -> FastPoses:
+    """The result of ``path.at`` for path lengths s, (M,), without most derivatives."""
+    segment = np.clip(np.searchsorted(path.starts, s) - 1, 0, len(path.segments) - 1)
+    return fast_poses_within(path, segment, s - path.starts[segment])
+
+
+def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
+    """The same at path lengths u, (M,), of the given segments."""
+    seg, to_end = path.segments, path.segments.extent[segment] - u
+    nearer_end = u > to_end
+    joint = segment + nearer_end
+    side = np.where(nearer_end, 1.0, -1.0)
+    other = np.clip(np.where(nearer_end, joint, segment - 1), 0, len(seg) - 1)
+    half, distance = path.blend[joint], np.maximum(np.where(nearer_end, to_end, u), 0.0)
+    wide = np.maximum(2 * half, _NO_WIDTH)
+    share = np.maximum(half - distance, 0.0) / wide
+    square = share * share
+    rounding = wide * square * share * (1 - share / 2)
+
+    tangent = _columns(seg.tangent, segment)
+    bend = _columns(seg.tangent, other) - tangent
+    tip = _columns(seg.start, segment) + u * tangent + (side * rounding) * bend
+    tip_1 = tangent + (square * (3 - 2 * share)) * bend
+    if path.attitude is None:
+        turn = seg.spin_rate[segment]
+        spin = seg.spin[segment] + u * turn + side * rounding * (seg.spin_rate[other] - turn)
+        axis, tool_length = _axes(seg, *distinct(joint), -side * distance, rounding), path.tool_length[segment]
+    else:
+        axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
+    poses = FastPoses(tip.T, axis, spin, tip_1.T, tool_length, segment)
+    curved = np.union1d(*(seg.arcs.among(one)[0] for one in (segment, other)))
+    if len(curved):
+        _overwrite(poses, curved, path, u)
+    return poses
+
+
+def _columns(vectors: Array, rows: Array) -> Array:
+    """Rows of (N, 3) vectors, (3, M)."""
+    return np.ascontiguousarray(np.take(vectors, rows, axis=0).T)
+
+
+def _axes(seg: Segments, joints: Array, at: Array, x: Array, rounding: Array) -> Array:
+    """Tool axes at distances x from the joints ``joints[at]``, with H(-|x|)."""
+    before, after = np.maximum(joints - 1, 0), np.minimum(joints, len(seg) - 1)
+    if not (seg.axis_rate[before].any() or seg.axis_rate[after].any()):
+        return take_rows(seg.axis[before], at)
+    axis, rate, _ = seg.axis_at(before, np.where(joints > 0, seg.extent[before], 0.0))
+    change = seg.axis_rate[after] - rate
+    tangent = x[:, None] * take_rows(rate, at) + (rounding + np.maximum(x, 0.0))[:, None] * take_rows(change, at)
+    return along(take_rows(axis, at), tangent)
+
+
+def _overwrite(poses: FastPoses, rows: Array, path: ToolPath, u: Array) -> None:
+    exact = path.within(poses.segment[rows], u[rows])
+    poses.tip[rows], poses.tip_1[rows] = exact.tip, exact.tip_1
+    if path.attitude is None:
+        poses.axis[rows], poses.spin[rows] = exact.axis, exact.spin

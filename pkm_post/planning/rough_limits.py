@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rough limits: where a path demands so little of a machine that its limits are not computed at every station.
+
+The parameters of a segment and of its two blends bound its derivatives in closed form, without sampling, and these
+bound the demand on the machine. A plan under such rough limits is also valid under the exact ones of ``speed_limits``,
+so the exact plan is nowhere slower: where the rough plan runs at the feed, so does the exact one. Enters: a path and a
+machine. Leaves: bounds and limits by segment, and the segments that need exact limits. docs/planning.md has the
+derivations. Units: mm, s, rad.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array, norm, tilt, turn_by_tilt
+from pkm_post.machine import strut_rate_bounds
+from pkm_post.model import Machine
+from pkm_post.planning.speed_limits import (
+    FOR_CURVATURE,
+    NO_LIMIT,
+    PLANNED_SHARE,
+    LimitedQuantity,
+    Pair,
+    feed_of_path_length,
+    lowered,
+    machine_quantities,
+)
+from pkm_post.planning.speed_profile import speed_profile
+from pkm_post.planning.tool_path import OFFSET, ToolPath
+from pkm_post.toolpath import Segments
+
+_STEP = 0.75
+"""Largest slope of the cubic step from one segment to the next, per half width."""
+_PARTING_1, _PARTING_2 = 0.1, 0.73
+"""What two diverging arcs add to the first derivative of the tip, per half width and bends, and to the second, per
+bends: the maxima of |S - W| |x| + S' x^2 / 2 and of 2 S' |x| + |S''| x^2 / 2 in a blend of half width 1."""
+_WIDEST = 0.5
+"""rad: a blend in which the tool axis may turn by more has no bound."""
+_NO_BOUND = 1e12
+_BEYOND = 1.45
+"""How far a segment is extended for its two blends, per extent."""
+_AT_FEED = 1e-6
+"""Share of the speed squared by which rounding may put a plan at the feed below it."""
+_STRAIGHT = 0.01, 1e-4
+"""mm and rad: deviation from the segments in blends up to which a path counts as straight between its joints."""
+
+
+@dataclass(frozen=True)
+class DerivativeBounds:
+    """Upper bounds on N segments; ``_1`` and ``_2`` are derivatives by path length.
+
+    Attributes:
+        tip_1, tip_2: (N,) magnitudes of the derivatives of the tip.
+        axis_1, axis_2: (N,) magnitudes of those of the unit tool axis.
+        half_tilt: (N,) tangent of half the highest tilt of the tool axis.
+        spin_1, spin_2: (N,) magnitudes of those of the spin.
+    """
+
+    tip_1: Array
+    tip_2: Array
+    axis_1: Array
+    axis_2: Array
+    half_tilt: Array
+    spin_1: Array
+    spin_2: Array
+
+    @classmethod
+    def of(cls, path: ToolPath) -> DerivativeBounds:
+        """The bounds of a path."""
+        width, blended = path.blend[1:-1], path.blend[1:-1] > 0
+        steepness = np.divide(_STEP, width, out=np.zeros_like(width), where=blended)
+        return cls(
+            *_of_tip(path.segments, width, blended, steepness),
+            *_of_axis(path.segments, width, blended, steepness),
+            *_of_spin(path.segments, blended, steepness),
+        )
+
+
+def deviates_in_blends(path: ToolPath, bounds: DerivativeBounds) -> Array:
+    """Segments whose blends deviate too far for the path to count as straight between its joints, (N,).
+
+    A blend of half width d and curvature c at its joint leaves the segments by c d^2 / 4.
+    """
+    square = np.maximum(path.blend[1:], path.blend[:-1]) ** 2 / 4
+    tip, axis = _STRAIGHT
+    return np.asarray((bounds.tip_2 * square > tip) | (bounds.axis_2 * square > axis))
+
+
+def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> Pair:
+    """Speeds squared and accelerations along the path that are allowed on the whole of each segment, (N,) each.
+
+    Neither exceeds those of ``speed_limits.limits`` anywhere on the segment: each term of the acceleration has a fixed
+    share.
+    """
+    square, along = feed_of_path_length(path.feed, bounds.tip_1) ** 2, np.full(len(path.feed), NO_LIMIT)
+    for item in _quantities(machine, path, bounds):
+        planned = PLANNED_SHARE * item.acceleration
+        square = lowered(square, item.speed, item.first, 2)
+        square = lowered(square, FOR_CURVATURE * planned, item.second, 1)
+        along = lowered(along, (1 - FOR_CURVATURE) * planned, item.first, 1)
+    return square, along
+
+
+def _quantities(machine: Machine, path: ToolPath, bounds: DerivativeBounds) -> tuple[LimitedQuantity, ...]:
+    """The quantities that a machine limits, with bounds on the magnitudes of their derivatives, (N, 1)."""
+    tip, axis = (bounds.tip_1, bounds.tip_2), (bounds.axis_1, bounds.axis_2)
+    spin = bounds.spin_1, bounds.spin_2
+    struts = strut_rate_bounds(machine, tip, axis, spin, bounds.half_tilt, path.tool_length)
+    return machine_quantities(machine, _column(struts), _column(tip), _column(axis))
+
+
+def _column(sizes: Pair) -> Pair:
+    return sizes[0][:, None], sizes[1][:, None]
+
+
+def below_feed(path: ToolPath, square: Array, along: Array) -> Array:
+    """Segments on which the plan may be below the feed, (N,), from rough limits of each segment, (N,)."""
+    joint_square, joint_along = (
+        np.concatenate([one[:1], np.minimum(one[1:], one[:-1]), one[-1:]]) for one in (square, along)
+    )
+    joint_square[path.rests] = 0.0
+    planned = speed_profile(path.starts, joint_square, joint_along)
+    return np.asarray(np.minimum(planned[1:], planned[:-1]) < (1 - _AT_FEED) * path.feed**2)
+
+
+def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array]:
+    """Bounds of the tip: in a blend, the divergence of the extended segments adds to the change of the tangent."""
+    first, bend, arcs = norm(seg.tangent), np.zeros(len(seg)), seg.arcs
+    radius, scale = norm(arcs.radius), 1 + np.abs(arcs.growth) * _BEYOND * seg.extent[arcs.row]
+    first[arcs.row] = np.hypot(first[arcs.row], np.hypot(arcs.growth * radius, arcs.turn * radius * scale))
+    bend[arcs.row] = radius * np.hypot(2 * arcs.growth * arcs.turn, scale * arcs.turn**2)
+    before = np.arange(len(seg) - 1)
+    tangents = seg.tip_at(before, seg.extent[:-1])[1], seg.tip_at(before + 1, 0 * width)[1]
+    corner = norm(tangents[1] - tangents[0])
+    bends = np.where(blended, bend[1:] + bend[:-1], 0.0)
+    return (
+        _with_joints(first, np.maximum(first[1:], first[:-1]) + _PARTING_1 * bends * width, blended),
+        _with_joints(bend, np.maximum(bend[1:], bend[:-1]) + corner * steepness + _PARTING_2 * bends, blended),
+    )
+
+
+def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array, Array]:
+    """Bounds of the axis: a tangent vector a moves it by at most |a|, and bends it by |a'|^2 (1 + 2 |a|)."""
+    first = norm(seg.axis_rate)
+    if not first.any():
+        return first, first, _half_tilt(seg, first, first[1:])
+    before = np.arange(len(seg) - 1)
+    corner = np.where(blended, norm(seg.axis_rate[1:] - seg.axis_at(before, seg.extent[:-1])[1]), 0.0)
+    rate = np.maximum(first[1:], first[:-1])
+    angle = (1 + 2 * OFFSET) * width * rate
+    second = np.where(angle < _WIDEST, corner * steepness + rate**2 * (1 + 2 * angle), _NO_BOUND)
+    return (
+        _with_joints(first, rate, blended),
+        _with_joints(first**2, second, blended),
+        _half_tilt(seg, first * seg.extent, OFFSET * width * corner),
+    )
+
+
+def _half_tilt(seg: Segments, angle: Array, off: Array) -> Array:
+    """Highest tilt: a great circle rises above its ends by at most half its angle, plus the deviation of blends."""
+    last = seg.axis_at(np.array([len(seg) - 1]), seg.extent[-1:])[0]
+    tilts = tilt(np.concatenate([seg.axis, last]))
+    highest = np.maximum(tilts[1:], tilts[:-1]) + angle / 2 + _with_joints(np.zeros(len(seg)), off, off > 0)
+    return turn_by_tilt(highest)
+
+
+def _of_spin(seg: Segments, blended: Array, steepness: Array) -> tuple[Array, Array]:
+    first = np.abs(seg.spin_rate)
+    corner = np.abs(np.diff(seg.spin_rate))
+    return (
+        _with_joints(first, np.maximum(first[1:], first[:-1]), blended),
+        _with_joints(np.zeros(len(seg)), corner * steepness, blended),
+    )
+
+
+def _with_joints(inside: Array, at_joint: Array, blended: Array) -> Array:
+    """The maximum of the values of segments (N,) and of the blends at their joints (N - 1,)."""
+    joint = np.concatenate([[0.0], np.where(blended, at_joint, 0.0), [0.0]])
+    return np.maximum(inside, np.maximum(joint[1:], joint[:-1]))

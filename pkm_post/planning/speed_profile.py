@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Speed profile: the stations of a path, and the fastest speed at them, from rest to rest, within the limits.
+
+Stations are dense enough for limits to vary almost linearly between them: every blend is divided evenly, and between
+blends the tip moves and the axis turns only a little from station to station. Segments whose limits need no evaluation
+at stations have none in their blends.
+
+With x = v^2 the acceleration along the path is half of dx/ds, so a bound on acceleration is a bound on the slope of x:
+x_j <= x_i + 2 a_i (s_j - s_i). The largest such x under given ceilings is a running minimum of x - C with C the sum of
+the slopes, once from the left and once from the right: look-ahead of any depth without a loop. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array, expand_counts
+from pkm_post.model import pieces
+from pkm_post.planning.tool_path import ToolPath
+
+_ROUNDING = 4 * np.finfo(np.float64).eps
+"""Relative rounding error of sums of slopes and ceilings."""
+_AT_ONCE = 1 << 14
+_CELLS_IN_HALF_BLEND = 4
+_LONGEST_CELL = 5.0
+"""mm"""
+_WIDEST_CELL = np.radians(1.0)
+"""rad of axis turn, or of arc sweep"""
+
+
+@dataclass(frozen=True)
+class Stations:
+    """Columns of M stations in order.
+
+    Attributes:
+        segment: (M,) segment of each station; a joint is the end of the earlier one.
+        u: (M,) path length on that segment.
+        s: (M,) path length since the start.
+        rest: (M,) whether the motion stops there.
+        edges: (E,) path lengths at which blends begin or end, increasing.
+    """
+
+    segment: Array
+    u: Array
+    s: Array
+    rest: Array
+    edges: Array
+
+
+def stations(path: ToolPath, close: Array | None = None) -> Stations:
+    """The stations of a path.
+
+    Args:
+        path: N segments.
+        close: (N,) whether a segment gets all of its stations, including those in its blends; by default all do.
+    """
+    extent = path.segments.extent
+    close = np.ones(len(extent), dtype=bool) if close is None else close
+    entry, leave = np.where(close, path.blend[:-1], 0.0), np.where(close, path.blend[1:], 0.0)
+    middle = extent - entry - leave
+    turn = path.segments.turn() * middle
+    cells = np.column_stack(
+        [
+            np.where(entry > 0, _CELLS_IN_HALF_BLEND, 0),
+            np.maximum(1 + close, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
+            np.where(leave > 0, _CELLS_IN_HALF_BLEND, 0),
+        ]
+    ).ravel()
+    begin = np.column_stack([0 * entry, entry, extent - leave]).ravel()
+    width = np.column_stack([entry, middle, leave]).ravel()
+    part, number = expand_counts(cells)
+    segment = part // 3
+    u = begin[part] + width[part] * ((number + 1) / cells[part])
+    last = np.append(segment[1:] != segment[:-1], True)
+    u[last] = extent
+    joint = np.flatnonzero(path.blend)
+    return Stations(
+        segment=np.concatenate([[0], segment]),
+        u=np.concatenate([[0.0], u]),
+        s=np.concatenate([[0.0], path.starts[segment] + u]),
+        rest=np.concatenate([[True], last & path.rests[segment + 1]]),
+        edges=(path.starts[joint, None] + path.blend[joint, None] * [-1.0, 1.0]).ravel(),
+    )
+
+
+def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
+    """Highest speed squared at every station, (M,); between stations it is linear in s.
+
+    Args:
+        s: (M,) path lengths, not decreasing.
+        ceiling: (M,) highest speed squared; 0 where the motion rests.
+        acceleration: (M,) highest acceleration along the path.
+    """
+    climb, square = np.zeros(len(s)), np.empty(len(s))  # the only arrays of this length
+    rise = np.minimum(acceleration[1:], acceleration[:-1], out=climb[1:])
+    rise *= 2
+    for rows in pieces(len(rise), _AT_ONCE):
+        rise[rows] *= np.diff(s[rows.start : rows.stop + 1])
+    np.cumsum(rise, out=rise)
+    np.subtract(ceiling, climb, out=square)
+    np.minimum.accumulate(square, out=square)
+    square += climb
+    square += climb
+    np.minimum.accumulate(square[::-1], out=square[::-1])
+    square -= climb
+    # cancellation must not produce a standstill
+    least = np.minimum(ceiling, _ROUNDING * (climb[-1] + ceiling.max()), out=climb)
+    return np.clip(square, least, ceiling, out=square)
+
+
+def cell_times(s: Array, square: Array) -> Array:
+    """Duration of each cell, (M - 1,) s: with v^2 linear in s, 2 ds / (v0 + v1).
+
+    Args:
+        s: (M,) path lengths, not decreasing.
+        square: (M,) speed squared.
+    """
+    speed, times = np.sqrt(square), np.diff(s)
+    times *= 2
+    times /= speed[1:] + speed[:-1]
+    return times

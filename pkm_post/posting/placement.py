@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Placed: a program as a trajectory on its machine.
+
+Enters: a program in {C}. Leaves: the compensated trajectory on the machine, in {M}, with its spin, or diagnostics.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.machine import with_spin
+from pkm_post.model import Diagnostic, Machine, Mesh, Place, Program, Setup, Trajectory
+from pkm_post.options import NO_MESH, Options
+from pkm_post.reading import read_mesh
+from pkm_post.toolpath import compensate, place, with_surface_speed
+
+Findings = tuple[Diagnostic, ...]
+
+
+def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple[Trajectory | None, Findings]:
+    """The compensated program on the machine, with its spin; or None with diagnostics."""
+    offset, told = work_offset(machine, options)
+    moved, faults = compensate(program, options.contours, options.actual_tools)
+    told += faults
+    if offset is None or moved is None:
+        return None, told
+    if options.surface_speed is not None:
+        limits = machine.spindle_least_speed, machine.spindle_speed
+        moved, faults = with_surface_speed(moved, options.surface_speed, limits)
+        told += faults
+        if moved is None:
+            return None, told
+    placed, faults = place(moved, machine, offset)
+    told += faults
+    if placed is None:
+        return None, told
+    turned, faults = with_spin(placed, machine, options.spin)
+    return turned, told + faults
+
+
+def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findings]:
+    """The chosen work offset, (4, 4), or None with diagnostics."""
+    chosen = options.work_offset
+    if not isinstance(chosen, str):
+        return np.asarray(chosen, dtype=np.float64), ()
+    if chosen not in machine.work_offsets:
+        known = ", ".join(sorted(machine.work_offsets))
+        return None, (Diagnostic("K108", Place(machine.name), f"{chosen}, the machine file has {known}"),)
+    return machine.work_offsets[chosen], ()
+
+
+def setup_of(options: Options, program: Program | None) -> tuple[Setup, tuple[Diagnostic, ...]]:
+    """The set-up of a program, and diagnostics of its files.
+
+    Args:
+        options: the files, and the set-up of the job.
+        program: knows the tools with unknown corners, which a trajectory file does not store; None if it has errors.
+    """
+    files, found = options.mesh_files, list[Diagnostic]()
+
+    def read(file: str | None, otherwise: Mesh | None = None) -> Mesh | None:
+        if file is None or file == NO_MESH:
+            return otherwise if file is None else None
+        mesh, faults = read_mesh(file)
+        found.extend(faults)
+        return mesh
+
+    fixtures = tuple(mesh for mesh in map(read, files.fixtures) if mesh is not None)
+    tools = program.tools.values() if program is not None else ()
+    known = options.setup
+    setup = replace(
+        known,
+        part=read(files.part, known.part),
+        stock=read(files.stock, known.stock),
+        fixtures=(*known.fixtures, *fixtures),
+        unknown_corners=frozenset(tool.number for tool in tools if not tool.corner_known),
+    )
+    return setup, tuple(found)

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a program does is recovered from program and trajectory alone, whatever planner has made it."""
+
+import dataclasses
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from posted_jobs import NARROW, UNEQUAL, WIDE, offset, preset
+from programs import ON_PALLET, cone, program, random_job, square_with_arc, steep_helices
+
+from pkm_post.certificate import certify, reconstruct
+from pkm_post.machine import reach_faults, strut_lengths
+from pkm_post.model import Event, EventKind, StrutMotion
+from pkm_post.model.certificate import Tolerances
+from pkm_post.model.diagnostics import errors
+from pkm_post.planning import interpolate, plan_feed, strut_motion
+from pkm_post.toolpath.place import place
+
+TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+
+
+@pytest.fixture(scope="module")
+def machine():
+    return preset("example_6tps")
+
+
+def planned(trajectory, machine, tolerances, feed=1.0):
+    feed_plan, faults = plan_feed(replace(trajectory, feed=feed * trajectory.feed), machine, tolerances)
+    return interpolate(feed_plan).motion, faults
+
+
+def printed(motion, machine):
+    struts = strut_motion(motion, machine)
+    return StrutMotion(struts.time_ms, struts.length.round(6), struts.speed.round(4) + 0.0, struts.events)
+
+
+def refusals(struts, trajectory, machine, tolerances=TOLERANCES):
+    found, faults = reconstruct(struts, "job.pmc", trajectory, machine, tolerances)
+    if found is None:
+        return errors(faults)
+    measured = certify(
+        struts, "job.pmc", trajectory, machine, found.motion, tolerances, spin_deviation=found.spin_deviation
+    )
+    return errors((*measured[1], *reach_faults(machine, trajectory, *found.way())))
+
+
+def placed(job, machine):
+    trajectory, faults = place(job, machine, ON_PALLET)
+    assert not faults
+    return trajectory
+
+
+@pytest.mark.parametrize("job", [cone(120), square_with_arc(), steep_helices()], ids=["cone", "square", "helices"])
+@pytest.mark.parametrize("feed", [1.0, 0.7, 0.2])
+def test_programs_of_planners_that_drive_slower_hold(machine, job, feed):
+    trajectory = placed(job, machine)
+    motion, _ = planned(trajectory, machine, TOLERANCES, feed)
+    assert not refusals(printed(motion, machine), trajectory, machine)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5])
+def test_programs_of_planners_that_round_corners_otherwise_hold(machine, share):
+    trajectory = placed(square_with_arc(), machine)
+    tighter = Tolerances(share * TOLERANCES.tip, share * TOLERANCES.axis)
+    motion, _ = planned(trajectory, machine, tighter)
+    assert not refusals(printed(motion, machine), trajectory, machine)
+
+
+@pytest.mark.parametrize("tolerances", [NARROW, WIDE, UNEQUAL])
+@pytest.mark.parametrize("seed", range(6))
+def test_random_jobs_hold_when_their_plan_does(machine, tolerances, seed):
+    asked = Tolerances(tolerances[0], np.radians(tolerances[1]))
+    trajectory, _ = place(random_job(np.random.default_rng(seed)), machine, offset(machine))
+    motion, faults = planned(trajectory, machine, asked)
+    struts = printed(motion, machine)
+    by_plan = (*faults, *certify(struts, "job.pmc", trajectory, machine, motion, asked)[1])
+    if not errors(by_plan):
+        assert not refusals(struts, trajectory, machine, asked)
+
+
+def test_joints_are_passed_when_the_plan_passes_them(machine):
+    trajectory = placed(cone(120), machine)
+    motion, _ = planned(trajectory, machine, TOLERANCES)
+    found, _ = reconstruct(printed(motion, machine), "job.pmc", trajectory, machine, TOLERANCES)
+    assert np.abs(found.motion.joint_time - motion.joint_time).max() < 1e-3
+    assert np.abs(found.motion.tip - motion.tip).max() < 1e-5
+
+
+def test_a_spin_that_was_not_programmed_is_found(machine):
+    """Tip and axis are right all the time: the platform turns about the tool axis by a little and back."""
+    trajectory = placed(cone(60), machine)
+    motion, _ = planned(trajectory, machine, TOLERANCES)
+    seconds = motion.time_ms / 1000
+    turn, most = 2 * np.pi / seconds[-1], np.radians(0.02)
+    spin = motion.spin + most * (1 - np.cos(turn * seconds)) / 2
+    rate = motion.spin_rate + most * turn * np.sin(turn * seconds) / 2
+    rest = np.append(motion.time_ms[[0, -1]], motion.time_ms[[event.row for event in motion.events]])
+    rate[np.isin(motion.time_ms, rest)] = 0.0
+    turned = dataclasses.replace(motion, spin=spin, spin_rate=rate)
+    struts = printed(turned, machine)
+    lengths = strut_lengths(machine, motion.tip, motion.axis, spin, motion.tool_length)
+    assert np.abs(struts.length - lengths).max() < 1e-6
+    assert "V111" in {fault.code for fault in refusals(struts, trajectory, machine)}
+
+
+@pytest.mark.parametrize(("swing", "expected"), [(0.1, set()), (0.3, {"V110"})])
+def test_a_tool_that_runs_to_and_fro_on_its_path_is_found(machine, swing, expected):
+    """It slows down within two seconds, with more swing goes back, and catches up: it is never off the path."""
+    trajectory = placed(program([[0, 0, 60], [20, 0, 60], [40, 0, 60]]), machine)
+    motion, _ = planned(trajectory, machine, TOLERANCES, 0.1)
+    struts = printed(motion, machine)
+    found, _ = reconstruct(struts, "job.pmc", trajectory, machine, TOLERANCES)
+    begin, end = motion.time_ms[-1] - 4000, motion.time_ms[-1] - 2000
+    warped = np.arange(begin, end, 20)
+    turn = 2 * np.pi * (warped - begin) / (end - begin)
+    at = (warped - (end - begin) * swing * (1 - np.cos(turn))) / 1000
+    pace = 1 - 2 * np.pi * swing * np.sin(turn)
+    interval = np.searchsorted(found.course.time, at) - 1
+    share = (at - found.course.time[interval]) / np.diff(found.course.time)[interval]
+    place, rate = found.course.at(interval, share[None])[:, 0], pace * found.course.rates_at(interval, share)[0]
+    outside = (motion.time_ms < begin) | (motion.time_ms >= end)
+    columns = {
+        "time_ms": warped, "tip": place[:3].T, "axis": place[3:6].T, "spin": place[6], "tip_rate": rate[:3].T,
+        "axis_rate": rate[3:6].T, "spin_rate": rate[6], "tool_length": np.full(len(warped), motion.tool_length[0]),
+        "segment": np.full(len(warped), 2),
+    }  # fmt: skip
+    first = int(np.count_nonzero(motion.time_ms < begin))
+    assert all(event.row < first for event in motion.events)
+    joined = {
+        name: np.concatenate([getattr(motion, name)[outside][:first], column, getattr(motion, name)[outside][first:]])
+        for name, column in columns.items()
+    }
+    faults = refusals(printed(replace(motion, **joined), machine), trajectory, machine)
+    assert {fault.code for fault in faults} == expected
+    assert all("goes back on its path" in fault.found for fault in faults)
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (lambda events: events[:-1], "V109"),
+        (lambda events: (*events[:-1], replace(events[-1], value=1.0)), "V109"),
+        (lambda events: (*events, Event(events[-1].row, EventKind.STOP, 0.0)), "V109"),
+    ],
+)
+def test_events_are_those_of_the_trajectory_where_it_rests(machine, change, code):
+    stops = (Event(0, EventKind.TOOL_CHANGE, 1), Event(20, EventKind.STOP, 0.0))
+    trajectory = placed(replace(cone(40), events=stops), machine)
+    motion, _ = planned(trajectory, machine, TOLERANCES)
+    struts = printed(motion, machine)
+    assert not refusals(struts, trajectory, machine)
+    spoiled = replace(struts, events=change(struts.events))
+    assert code in {fault.code for fault in refusals(spoiled, trajectory, machine)}
+
+
+def test_a_rest_more_or_less_is_found(machine):
+    trajectory = placed(cone(40), machine)
+    motion, _ = planned(trajectory, machine, TOLERANCES)
+    struts = printed(motion, machine)
+    last = len(struts) - 1
+    longer = StrutMotion(
+        np.append(struts.time_ms, struts.time_ms[-1] + 20),
+        struts.length[[*range(last + 1), last]],
+        struts.speed[[*range(last + 1), last]],
+        struts.events,
+    )
+    assert {fault.code for fault in refusals(longer, trajectory, machine)} == {"V110"}
