@@ -23,8 +23,8 @@ from pkm_post.machine import (  # noqa: E402
 )
 from pkm_post.machine.kinematics.strut_cubics import tool_deviation  # noqa: E402
 from pkm_post.planning import interpolate, plan_feed  # noqa: E402 - the path comes first
-from pkm_post.planning.interpolation import poses_at  # noqa: E402
 from pkm_post.planning.fast_poses import fast_poses  # noqa: E402
+from pkm_post.planning.interpolation import poses_at  # noqa: E402
 from pkm_post.writing import trajectory_file  # noqa: E402 - the path comes first
 
 FIXED_MS = (1, 2, 5, 10)

@@ -15,7 +15,7 @@ from pkm_post.planning import interpolate, interpolation, motion, plan_feed
 from pkm_post.planning.interpolation import InterpolationCheck, Intervals, poses_at
 from pkm_post.planning.knots import even_marks, knots
 from pkm_post.planning.schedule import by_time
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 PATHS = {"lines that turn": cone, "arcs and a helix": square_with_arc}
@@ -70,8 +70,12 @@ def dense(machine, path, schedule, start, end):
     """How far the struts' cubics take tip and axis off the plan at dense instants, by what cubics may use, (N,)."""
     time, duration = (start[:, None] + (end - start)[:, None] * DENSE) / 1000, (end - start) / 1000
     poses = path.at(schedule.at(time.ravel())[0])
-    ends = (KnotState.of(machine, by_time(path.at(s), v, a)) for s, v, a in (schedule.at(ms / 1000) for ms in (start, end)))
-    found = tool_deviation(machine, *ends, ToolPoses(poses.tip, poses.axis, poses.spin, poses.tool_length), duration, DENSE)
+    ends = (
+        KnotState.of(machine, by_time(path.at(s), v, a)) for s, v, a in (schedule.at(ms / 1000) for ms in (start, end))
+    )
+    found = tool_deviation(
+        machine, *ends, ToolPoses(poses.tip, poses.axis, poses.spin, poses.tool_length), duration, DENSE
+    )
     return np.maximum(found.tip / TOLERANCES.tip, found.axis / TOLERANCES.axis).max(axis=1) / SHARE_OF_TOLERANCES
 
 

@@ -15,7 +15,7 @@ from pkm_post.planning import plan_feed
 from pkm_post.planning.jerk_limits import Ceilings, _least_of_covers, lowered_for_jerk
 from pkm_post.planning.schedule import MotionLaw, by_time
 from pkm_post.planning.speed_profile import speed_profile, stations
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 NANOMETRE = 1e-6
 JERK = 1e5

@@ -8,7 +8,7 @@ from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan_feed
 from pkm_post.planning.knots import LONGEST_MS, knots
 from pkm_post.planning.speed_profile import stations
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 NO_EDGES = np.array([], dtype=np.int64)
 

@@ -22,7 +22,7 @@ from pkm_post.planning.speed_limits import (
     limits,
 )
 from pkm_post.planning.speed_profile import cell_times, speed_profile, stations
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 LONGER = 1e-3

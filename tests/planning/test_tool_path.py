@@ -10,7 +10,7 @@ from pkm_post.geometry import dot, norm
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.tool_path import OFFSET, ToolPath, half_widths, smooth_step, step
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 MICRON = 1e-3
 AXIS = np.radians(0.001)

@@ -11,7 +11,7 @@ from pkm_post.model import Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning.motion import tool_path
 from pkm_post.planning.speed_profile import stations
-from pkm_post.toolpath.placement.place import place
+from pkm_post.toolpath.place import place
 
 
 def _corners():
