@@ -32,7 +32,7 @@ from pkm_post.freecad_app.tools import millimetres
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Shank, Tolerances, Trajectory
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
-from pkm_post.posting import Prepared, Study, setup_of, study, work_offset, work_offset_text
+from pkm_post.posting import Prepared, Study, effective_setup, study, work_offset, work_offset_text
 
 _SAME_PLACE = 1e-6
 """mm and directions: FreeCAD rounds placements when it stores them."""
@@ -129,7 +129,7 @@ def placed_job(job: Any, machine_object: Any = None) -> PlacedJob:
     print_diagnostics(each for each in prepared.found if each.code == "J125")
     trajectory, _ = prepared.placed()
     program, machine = prepared.sound
-    setup, _ = setup_of(prepared.options, program)
+    setup, _ = effective_setup(prepared.options, program)
     return PlacedJob(trajectory, machine, placed_workpiece(setup, trajectory), prepared.options.tolerances)
 
 

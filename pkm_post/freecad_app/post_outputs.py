@@ -22,7 +22,7 @@ from pkm_post.freecad_app.post_job import post_to
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.machine import check_reach, find_collisions
 from pkm_post.model import Diagnostic, Refused, Trajectory, errors
-from pkm_post.posting import setup_of, step_names
+from pkm_post.posting import effective_setup, step_names
 from pkm_post.system import staged, write_fault
 from pkm_post.writing import Form, manifest, outputs, trajectory_file, write
 
@@ -106,7 +106,7 @@ def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     read = prepared_job(job, settings)
     trajectory, found = _require(read.placed())
     program, machine = read.sound
-    setup, told = _require(setup_of(read.options, program), found)
+    setup, told = _require(effective_setup(read.options, program), found)
     collisions = find_collisions(trajectory, machine, setup, read.options.tolerances)
     return _require((trajectory, (*check_reach(trajectory, machine).faults(), *collisions.faults)), told)
 

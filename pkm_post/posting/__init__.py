@@ -5,7 +5,7 @@ Only ``steps`` defines the order of the steps. Either all files are written and 
 """
 
 from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
-from pkm_post.posting.placement import setup_of, trajectory_of, work_offset
+from pkm_post.posting.placement import effective_setup, trajectory_of, work_offset
 from pkm_post.posting.post_file import Prepared, post_file, prepared_file
 from pkm_post.posting.reach_study import Study, study, work_offset_text
 from pkm_post.posting.run import Log, Posted, Progress, no_log, no_progress
@@ -20,7 +20,7 @@ __all__ = [
     "Progress",
     "Study",
     "format_table",
-    "setup_of",
+    "effective_setup",
     "machine_faults",
     "post",
     "post_file",

@@ -52,7 +52,7 @@ def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findi
     return machine.work_offsets[chosen], ()
 
 
-def setup_of(options: Options, program: Program | None) -> tuple[Setup, tuple[Diagnostic, ...]]:
+def effective_setup(options: Options, program: Program | None) -> tuple[Setup, tuple[Diagnostic, ...]]:
     """The set-up of a program, and diagnostics of its files.
 
     Args:

@@ -25,7 +25,7 @@ from pkm_post.machine import (
 )
 from pkm_post.model import Diagnostic, Machine, Program, errors
 from pkm_post.options import Options
-from pkm_post.posting.placement import setup_of, trajectory_of
+from pkm_post.posting.placement import effective_setup, trajectory_of
 
 _LABELS = ("stroke", "joints", "from singular")
 
@@ -90,7 +90,7 @@ def study(
         if placed is None:
             return None, told
         stages.append((f"spin {options.spin.rule.value}", least_normalised_margins(placed, machine)))
-    setup, faults = setup_of(options, program)
+    setup, faults = effective_setup(options, program)
     if errors(faults):
         return None, (*told, *faults)
     checked = check_reach(placed, machine, placed_workpiece(setup, placed))

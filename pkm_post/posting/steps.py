@@ -31,7 +31,7 @@ from pkm_post.model import (
 from pkm_post.options import LINUXCNC, Options
 from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
 from pkm_post.posting.machine_check import home_faults
-from pkm_post.posting.placement import setup_of, trajectory_of
+from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import plots, summary
 from pkm_post.system import memory_guard, result_files, staged, write_fault
@@ -75,7 +75,7 @@ def post(
         Refused: the input has an error, or the folder cannot be written; nothing was written.
     """
     options = options or Options()
-    setup, faults = setup_of(options, program)
+    setup, faults = effective_setup(options, program)
     found = (*found, *faults)
     if program is None or machine is None or errors(found):
         raise Refused(found)
