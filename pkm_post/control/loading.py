@@ -19,7 +19,7 @@ from typing import Any
 from pkm_post.control.link.program import Job, read_job
 from pkm_post.model import Diagnostic, Machine, Place, Refused
 from pkm_post.posting import verify_texts
-from pkm_post.writing import PmacSettings, controller_of, manifest, program_seal, read_text, read_texts
+from pkm_post.writing import PmacSettings, controller_of, manifest, program_files, read_text, read_texts
 
 Findings = tuple[Diagnostic, ...]
 
@@ -72,7 +72,7 @@ def job_to_load(
     if text is None:
         return None, faults
     found, faults = _certified(program, text, machine)
-    digest = program_seal.digest(text)
+    digest = program_files.program_hash(text)
     if found is None and not uncertified:
         return None, faults
     if found is None:
@@ -93,7 +93,7 @@ def _certified(program: Path, text: str, machine: Machine) -> tuple[Certified | 
     number, count = controller.stated_part(text)
     first = _first_part(program, number)
     reasons = list(_reasons(program, text, machine, first, (number, count)))
-    digest = program_seal.digest(text)
+    digest = program_files.program_hash(text)
     if not reasons:
         return Certified(text, digest, False), ()
     doubts = (Diagnostic("C110", Place(str(program)), "; ".join(reasons)),)
@@ -121,23 +121,23 @@ def _first_part(program: Path, number: int) -> Path:
 
 def _reasons(program: Path, text: str, machine: Machine, first: Path, part: tuple[int, int]) -> Iterator[str]:
     """Reasons why the files alone do not prove that a program is certified."""
-    seal = program_seal.has_its_seal(text)
+    seal = program_files.own_hash_matches(text)
     if not seal:
         yield "its heading states no SHA-256" if seal is None else "its heading states another SHA-256"
-    if not program_seal.states(text, "machine", machine.fingerprint):
+    if not program_files.states_hash(text, "machine", machine.fingerprint):
         yield f"its heading does not name the machine file of {machine.name}"
     listed, faults = manifest.check(program)
     if listed is None:
         yield from (f"{fault.code} {fault.found}" for fault in faults)
         return
     trajectory = listed.fingerprint_of(first.with_suffix(".pkmt").name) or ""
-    if not program_seal.states(text, "trajectory", trajectory):
+    if not program_files.states_hash(text, "trajectory", trajectory):
         yield "its heading does not name the trajectory file beside it"
     report = first.with_name(f"{first.stem}-report.json")
     if listed.fingerprint_of(report.name) is None:
         yield f"the manifest lists no {report.name}"
         return
-    yield from _reasons_of_report(report, program_seal.digest(text), trajectory, machine, part)
+    yield from _reasons_of_report(report, program_files.program_hash(text), trajectory, machine, part)
 
 
 def _reasons_of_report(

@@ -35,7 +35,7 @@ from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import plots, summary
 from pkm_post.system import memory_guard, result_files, staged, write_fault
-from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_seal, read_texts, trajectory_file
+from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_files, read_texts, trajectory_file
 
 SUFFIX = result_files.PROGRAM
 """Suffix of a motion program."""
@@ -202,9 +202,9 @@ def _motion_program(run: Run, frame: PostContext, trajectory: Trajectory, struts
     """Write the program and the set-up it relies on; return the names of its parts."""
     with run.step(_PROGRAM) as told:
         controller, settings, machine = frame.controller, frame.settings, frame.machine
-        records = program_seal.record_lines(_trajectory_hash(frame), machine.fingerprint)
+        records = program_files.source_hash_lines(_trajectory_hash(frame), machine.fingerprint)
         heading = [*summary.heading(trajectory), *records]
-        parts = tuple(map(program_seal.sealed, controller.program_parts(struts, settings, heading)))
+        parts = tuple(map(program_files.with_own_hash, controller.program_parts(struts, settings, heading)))
         names = outputs.write_parts(frame.path, parts)
         setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
         if setup is not None:
@@ -230,7 +230,7 @@ def _read_back(run: Run, frame: PostContext) -> tuple[StrutMotion, list[str]]:
     """The motion of the program and the hashes of its parts; the texts are freed before it is measured."""
     texts = run.value(read_texts(frame.path, frame.controller))
     played = run.value(frame.controller.read_parts(texts, frame.settings))
-    return played, [program_seal.digest(text) for _, text in texts]
+    return played, [program_files.program_hash(text) for _, text in texts]
 
 
 def _report(

@@ -16,7 +16,7 @@ from pkm_post.certificate import certify, machine_fault, reconstruct, values_bey
 from pkm_post.machine import reach_faults
 from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
 from pkm_post.report import summary
-from pkm_post.writing import controller_settings, manifest, program_seal, read_texts, trajectory_file
+from pkm_post.writing import controller_settings, manifest, program_files, read_texts, trajectory_file
 
 Findings = tuple[Diagnostic, ...]
 Texts = Sequence[tuple[str, str]]
@@ -52,7 +52,7 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
     changed = tuple(
         Diagnostic("C109", Place(name), "the lines give another one")
         for name, text in texts
-        if program_seal.has_its_seal(text) is False
+        if program_files.own_hash_matches(text) is False
     )
     told = (*listed, *changed)
     try:
@@ -83,7 +83,9 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
     faults = (*faults, *reach_faults(machine, planned, *found.way()))
     if certificate is None or errors(faults):
         raise Refused(faults)
-    files = summary.hashes([program_seal.digest(text) for _, text in texts], manifest.fingerprint_of_file(trajectory))
+    files = summary.hashes(
+        [program_files.program_hash(text) for _, text in texts], manifest.fingerprint_of_file(trajectory)
+    )
     return summary.report(planned, machine, certificate, tolerances, struts, found.motion, files=files)
 
 

@@ -2,20 +2,17 @@
 """Writing: trajectory files, controller programs, G-code and what stands beside them."""
 
 from pkm_post.writing import manifest, outputs, trajectory_file
-from pkm_post.writing.controllers import pmac, power_pmac, program_seal
-from pkm_post.writing.controllers.kinds import Controller, controller_of, controller_settings
+from pkm_post.writing.controllers import pmac, power_pmac, program_files
 from pkm_post.writing.controllers.pmac import read_part
-from pkm_post.writing.controllers.pmac.program import program_text
-from pkm_post.writing.controllers.pmac.rotary import rotary_opening
-from pkm_post.writing.controllers.pmac.settings import PmacSettings
-from pkm_post.writing.controllers.pmac.setup import setup_text
-from pkm_post.writing.controllers.power_pmac.settings import PowerPmacSettings
+from pkm_post.writing.controllers.pmac.program import program_text, rotary_opening
+from pkm_post.writing.controllers.pmac.settings import PmacSettings, setup_text
+from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
 from pkm_post.writing.controllers.program_files import read_text, read_texts
 from pkm_post.writing.controllers.pvt.parts import parted
-from pkm_post.writing.controllers.tables import TABLES
+from pkm_post.writing.controllers.registry import TABLES, Controller, controller_of, controller_settings
 from pkm_post.writing.convert import TARGETS, convert
+from pkm_post.writing.gcode.tool_axes import Form
 from pkm_post.writing.gcode.writer import write
-from pkm_post.writing.gcode.writer_axes import Form
 
 __all__ = [
     "TABLES",
@@ -32,7 +29,7 @@ __all__ = [
     "parted",
     "pmac",
     "power_pmac",
-    "program_seal",
+    "program_files",
     "program_text",
     "read_part",
     "read_text",

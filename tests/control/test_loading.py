@@ -36,7 +36,10 @@ from pkm_post.options.choices import Options  # noqa: E402
 from pkm_post.posting.steps import post  # noqa: E402
 from pkm_post.posting.verify import verify  # noqa: E402
 from pkm_post.writing import trajectory_file  # noqa: E402
-from pkm_post.writing.controllers import pmac, program_seal  # noqa: E402
+from pkm_post.writing.controllers import (
+    pmac,  # noqa: E402
+    program_files,
+)
 
 MUTANTS = int(os.environ.get("MUTANTS", "60"))
 """Of each program; ``MUTANTS=3000`` for a long series."""
@@ -85,15 +88,15 @@ def codes(faults):
 def test_a_posted_program_is_certified_by_what_lies_beside_it(program, machine):
     found, faults = certified(program, machine)
     assert faults == () and not found.verified_now
-    assert found.text == program.read_text() and found.digest == program_seal.digest(found.text)
+    assert found.text == program.read_text() and found.digest == program_files.program_hash(found.text)
 
 
 def test_report_and_heading_name_the_bytes(original, machine):
     report, text = json.loads(original.with_name("cone-report.json").read_text()), original.read_text()
-    assert report["files"]["programs_sha256"] == [program_seal.digest(text)]
-    assert program_seal.has_its_seal(text)
-    assert program_seal.states(text, "machine", machine.fingerprint)
-    assert program_seal.states(text, "trajectory", report["files"]["trajectory_sha256"])
+    assert report["files"]["programs_sha256"] == [program_files.program_hash(text)]
+    assert program_files.own_hash_matches(text)
+    assert program_files.states_hash(text, "machine", machine.fingerprint)
+    assert program_files.states_hash(text, "trajectory", report["files"]["trajectory_sha256"])
 
 
 def test_line_ends_of_windows_are_certified(program, machine):

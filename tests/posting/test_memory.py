@@ -19,7 +19,7 @@ from pkm_post.reading.sources import Reading
 from pkm_post.writing import outputs
 from pkm_post.writing.controllers.pvt import reader as program_reader
 from pkm_post.writing.controllers.pvt import writer
-from pkm_post.writing.trajectory_file import parts
+from pkm_post.writing.trajectory_file import invariants as parts
 from pkm_post.writing.trajectory_file import reader as trajectory_reader
 
 PIECES = (
@@ -37,8 +37,8 @@ PIECES = (
     (writer, "_ROWS_PER_CHUNK"),
     (program_reader, "_CHUNK"),
     (outputs, "_CHARACTERS_AT_ONCE"),
-    (parts, "SEGMENTS"),
-    (trajectory_reader, "SEGMENTS"),
+    (parts, "SEGMENTS_PER_CHUNK"),
+    (trajectory_reader, "SEGMENTS_PER_CHUNK"),
 )
 ALL = 1 << 30
 BYTES_PER_LINE = 1600

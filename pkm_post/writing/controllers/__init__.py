@@ -4,16 +4,17 @@
 A folder for each controller, a table of controllers by ``controller.kind``, and tables of the motion for other readers.
 """
 
-from pkm_post.writing.controllers.kinds import (
+from pkm_post.writing.controllers.program_files import read_text, read_texts, text_of
+from pkm_post.writing.controllers.registry import (
     CONTROLLERS,
+    TABLES,
     Controller,
+    Table,
     controller_of,
     controller_settings,
     part_names,
     part_siblings,
 )
-from pkm_post.writing.controllers.program_files import read_text, read_texts, text_of
-from pkm_post.writing.controllers.tables import TABLES, Table
 
 __all__ = [
     "CONTROLLERS",

@@ -8,12 +8,13 @@ a comment, and some readers treat some of them as line ends.
 
 from __future__ import annotations
 
+import hashlib
 import re
 from itertools import islice
 from pathlib import Path
 
 from pkm_post.model import Diagnostic, Place
-from pkm_post.writing.controllers.kinds import Controller, part_siblings
+from pkm_post.writing.controllers.registry import Controller, part_siblings
 
 Findings = tuple[Diagnostic, ...]
 Texts = list[tuple[str, str]]
@@ -71,3 +72,56 @@ def read_texts(program: Path, controller: Controller) -> tuple[Texts | None, Fin
             return None, faults
         texts.append((name, text))
     return texts, ()
+
+
+_DIGITS = 32
+_HEADING = re.compile(r"(?:(?:;|//).*\n)*")
+_MARK = re.compile(r";|//")
+_WORDS = {"program": "program SHA-256", "trajectory": "trajectory file SHA-256", "machine": "machine file SHA-256"}
+_STATED = {name: re.compile(rf"^(?:;|//) {words} ([0-9a-f]{{{_DIGITS}}})\n", re.M) for name, words in _WORDS.items()}
+
+
+def program_hash(text: str) -> str:
+    """SHA-256 of a program, hexadecimal."""
+    return hashlib.sha256(text.encode("ascii")).hexdigest()
+
+
+def source_hash_lines(trajectory: str, machine: str) -> list[str]:
+    """Lines of the heading that identify the source files of a program by SHA-256."""
+    return [f"{_WORDS[name]} {value[:_DIGITS]}" for name, value in (("trajectory", trajectory), ("machine", machine))]
+
+
+def with_own_hash(text: str) -> str:
+    """Add the SHA-256 of all lines of a program as a line of its heading.
+
+    Raises:
+        ValueError: it has no heading.
+    """
+    mark = _MARK.match(text)
+    if mark is None:
+        raise ValueError("text: expected a comment in its first line, got none")
+    end = _heading_end(text)
+    return f"{text[:end]}{mark[0]} {_WORDS['program']} {program_hash(text)[:_DIGITS]}\n{text[end:]}"
+
+
+def own_hash_matches(text: str) -> bool | None:
+    """Whether a program has the hash that its heading states; None if it states none."""
+    found = _STATED["program"].search(text, 0, _heading_end(text))
+    return None if found is None else found[1] == program_hash(text[: found.start()] + text[found.end() :])[:_DIGITS]
+
+
+def states_hash(text: str, name: str, value: str) -> bool:
+    """Whether the heading of a program states a file with this SHA-256.
+
+    Args:
+        text: text of the program.
+        name: "trajectory" or "machine".
+        value: hexadecimal.
+    """
+    found = _STATED[name].search(text, 0, _heading_end(text))
+    return found is not None and found[1] == value[:_DIGITS]
+
+
+def _heading_end(text: str) -> int:
+    found = _HEADING.match(text)
+    return found.end() if found else 0

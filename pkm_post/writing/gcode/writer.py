@@ -8,18 +8,153 @@ decimals. What a form of G-code cannot express is refused, or replaced and repor
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Mapping
+
 import numpy as np
 
-from pkm_post.model import Diagnostic, Place, Program
+from pkm_post.model import Array, Diagnostic, EventKind, Place, Program
 from pkm_post.reading import exact_codes
 from pkm_post.toolpath import CHORD_ERROR, with_chords
-from pkm_post.writing.gcode.writer_arcs import WrittenArcs, written_arcs
-from pkm_post.writing.gcode.writer_axes import FORMS, SWING, Form, impossible_axis, swings
-from pkm_post.writing.gcode.writer_blocks import block_texts
-from pkm_post.writing.gcode.writer_codes import codes_of
-from pkm_post.writing.gcode.writer_columns import cutting
-from pkm_post.writing.gcode.writer_events import between_blocks, heading
-from pkm_post.writing.gcode.writer_words import Numbers, feed_as_written, words_of
+from pkm_post.writing.gcode.arcs import WrittenArcs, written_arcs
+from pkm_post.writing.gcode.tool_axes import FORMS, SWING, Form, impossible_axis, swings
+from pkm_post.writing.gcode.words import TEXTS, Codes, Numbers, Word, codes_of, cutting, feed_as_written, words_of
+
+_MODES = "{unit} G17 G90 G94 G40 G49 G80 G64\n"
+_COOLANT = {0: "M9", 1: "M8", 2: "M7"}
+_STOP = {0: "M0", 1: "M1"}
+_AT_TIP = ("G43.4", "G43.5")
+"""Tip control codes to cancel before a tool change."""
+_LONGEST_COMMENT = 200
+"""Characters; LinuxCNC reads lines of 255."""
+
+
+def heading(program: Program, form: Form, inch: bool) -> str:
+    """The lines before the first block: source, tools, modes."""
+    tools = [program.tools[number] for number in sorted(program.tools)]
+    lines = [
+        _comment(f"from {program.source}"),
+        *(
+            _comment(
+                f"tool {tool.number}: {tool.name}, diameter {_short(tool.diameter)}, "
+                f"corner radius {_short(tool.corner_radius)}, length {_short(tool.length)} mm"
+            )
+            for tool in tools
+        ),
+    ]
+    follows = FORMS[form].follows
+    starts_with_tool = any(event.row == 0 and event.kind is EventKind.TOOL_CHANGE for event in program.events)
+    if not starts_with_tool and follows in _AT_TIP:
+        return "".join(lines) + _MODES.format(unit="G20" if inch else "G21") + follows + "\n"
+    return "".join(lines) + _MODES.format(unit="G20" if inch else "G21")
+
+
+def between_blocks(program: Program, form: Form) -> dict[int, str]:
+    """Whole lines by the row that follows them; the row count as key places lines after the last row."""
+    lines: dict[int, str] = {}
+    for row in _first_rows(program):
+        lines[row] = _comment(f"operation: {program.operations[program.operation[row]]}")
+    say = _EVENTS | {EventKind.TOOL_CHANGE: _tool_change(form)}
+    for event in program.events:
+        lines[event.row] = lines.get(event.row, "") + say[event.kind](event.value)
+    return lines
+
+
+def _first_rows(program: Program) -> list[int]:
+    """First rows of operations."""
+    changes = np.append(True, np.diff(program.operation) != 0)[: len(program)]
+    rows: list[int] = np.flatnonzero(changes).tolist()
+    return rows
+
+
+def _tool_change(form: Form) -> Callable[[float], str]:
+    follows = FORMS[form].follows
+    cancel = "G49\n" if follows in _AT_TIP else ""
+
+    def say(number: float) -> str:
+        return f"{cancel}T{number:.0f} M6\n{follows} H{number:.0f}\n"
+
+    return say
+
+
+def _spindle(speed: float) -> str:
+    return f"S{_short(abs(speed))} M{3 if speed > 0 else 4}\n" if speed else "M5\n"
+
+
+_EVENTS: dict[EventKind, Callable[[float], str]] = {
+    EventKind.SPINDLE: _spindle,
+    EventKind.COOLANT: lambda value: _COOLANT[int(value)] + "\n",
+    EventKind.DWELL: lambda seconds: f"G4 P{seconds:.4f}\n",  # without a point some controls read it as ms
+    EventKind.STOP: lambda value: _STOP[int(value)] + "\n",
+}
+
+
+def _short(value: float) -> str:
+    """A number with up to four decimals, without trailing zeros."""
+    return f"{value:.4f}".rstrip("0").rstrip(".")
+
+
+def _comment(text: str) -> str:
+    """A comment that every control accepts: ASCII, one line, limited length, no nested parentheses."""
+    plain = text[:_LONGEST_COMMENT].translate({ord("("): "[", ord(")"): "]"}).encode("ascii", "replace").decode("ascii")
+    return "(" + "".join(character if character.isprintable() else " " for character in plain) + ")\n"
+
+
+_CHUNK = 1 << 13
+"""Rows formatted at a time."""
+
+
+def block_texts(words: list[Word], codes: Codes, between: Mapping[int, str]) -> Iterator[str]:
+    """The text of all blocks, in pieces.
+
+    Args:
+        words: in text order.
+        codes: written before the words, with P after the path code and D after the compensation code.
+        between: whole lines to insert before some rows.
+    """
+    columns = [codes.tolerance, codes.diameter, *words]
+    templates, of_row = _templates(columns, codes)
+    rows = sorted(between)
+    for begin in range(0, len(of_row), _CHUNK):
+        chunk = slice(begin, begin + _CHUNK)
+        lines = templates[of_row[chunk]].tolist()
+        for row in rows[bisect_left(rows, begin) : bisect_left(rows, begin + len(lines))]:
+            lines[row - begin] = between[row].replace("%", "%%") + lines[row - begin]
+        values = np.column_stack([word.values[chunk] for word in columns])
+        said = np.column_stack([word.said[chunk] for word in columns])
+        yield "".join(lines) % tuple(values[said].tolist())
+
+
+def _templates(columns: list[Word], codes: Codes) -> tuple[Array, Array]:
+    """The distinct templates, and the template index of each row, (N,)."""
+    radices = [len(TEXTS[group]) for group in Codes.ORDER] + [2] * len(columns)
+    digits = [getattr(codes, group) for group in Codes.ORDER] + [word.said for word in columns]
+    key = np.zeros(len(codes.motion), dtype=np.int64)
+    for radix, digit in zip(reversed(radices), reversed(digits), strict=True):
+        key = key * radix + digit
+    used, of_row = np.unique(key, return_inverse=True)
+    return np.array([_template(int(one), radices, columns) for one in used], dtype=object), of_row
+
+
+def _template(key: int, radices: list[int], columns: list[Word]) -> str:
+    digits = []
+    for radix in radices:
+        key, digit = divmod(key, radix)
+        digits.append(digit)
+    code = {group: TEXTS[group][digit] for group, digit in zip(Codes.ORDER, digits, strict=False)}
+    tolerance, diameter, *words = [
+        f"{word.letter}%.{word.decimals}f" if said else ""
+        for word, said in zip(columns, digits[len(Codes.ORDER) :], strict=True)
+    ]
+    parts = [code["plane"], code["side"], diameter, code["motion"], *words]
+    if tolerance:  # on a separate line: other codes use P as well
+        return f"{code['path']} {tolerance}\n" + _line(parts)
+    return _line([code["path"], *parts])
+
+
+def _line(parts: list[str]) -> str:
+    return " ".join(part for part in parts if part) + "\n"
+
 
 __all__ = ["Form", "write"]
 

@@ -18,8 +18,8 @@ import numpy as np
 
 from pkm_post.model import TRAJECTORY_COLUMNS, Event, Tool, Trajectory
 from pkm_post.system import staged
-from pkm_post.writing.trajectory_file.contradictions import contradictions
 from pkm_post.writing.trajectory_file.interpolation import blocks, interpolation, missed
+from pkm_post.writing.trajectory_file.invariants import chunks, contradictions, first_segments, violations
 from pkm_post.writing.trajectory_file.layout import (
     HEADER,
     INSTRUCTION,
@@ -35,8 +35,6 @@ from pkm_post.writing.trajectory_file.layout import (
     UNITS,
     Records,
 )
-from pkm_post.writing.trajectory_file.parts import parts
-from pkm_post.writing.trajectory_file.promises import broken_promises, in_segments
 
 
 def write(trajectory: Trajectory, path: Path) -> None:
@@ -51,7 +49,7 @@ def write(trajectory: Trajectory, path: Path) -> None:
             not Unicode.
         OSError: the file cannot be written.
     """
-    broken = broken_promises(trajectory) or contradictions(trajectory)
+    broken = violations(trajectory) or contradictions(trajectory)
     if broken:
         raise ValueError(f"expected a trajectory that can be read back, got {'; '.join(broken)}")
     strings = _Strings.of(trajectory)
@@ -109,7 +107,7 @@ def _header(trajectory: Trajectory, strings: _Strings) -> Records:
 def _write_tables(file: BinaryIO, header: Records, trajectory: Trajectory, strings: _Strings) -> None:
     """Write the tables after the header, and enter their offsets and checksum in it."""
     tables: dict[str, Iterable[Records]] = {
-        "segments": (_segments(begin, part) for begin, part in parts(trajectory)),
+        "segments": (_segments(begin, part) for begin, part in chunks(trajectory)),
         "blocks": (blocks(trajectory) for _ in range(1)),  # deferred until the segments are written
         "instructions": [_instructions(trajectory.events)],
         "tools": [_tools(_tools_by_number(trajectory), strings.tools)],
@@ -156,7 +154,7 @@ def _segments(begin: int, trajectory: Trajectory) -> Records:
     for column in TRAJECTORY_COLUMNS:
         table[column] = getattr(trajectory, column)
     columns = interpolation(trajectory)
-    for words in in_segments([(begin, missed(trajectory, columns))]):
+    for words in first_segments([(begin, missed(trajectory, columns))]):
         raise ValueError(f"expected segments that end where they say, got {words} does not follow from the rest")
     for column, values in columns.items():
         table[column] = values

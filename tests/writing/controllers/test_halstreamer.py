@@ -12,9 +12,9 @@ from pkm_post.writing.controllers.halstreamer import (
     lengths_at,
     measured,
     read_stream,
+    stretches,
     texts,
 )
-from pkm_post.writing.controllers.stretches import stretches
 
 HALF_DIGIT = 0.5001 * 10.0**-DECIMALS
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-from pkm_post.writing.controllers.pvt.comment import comment_lines
+from pkm_post.writing.controllers.pvt.writer import comment_lines
 
 
 def test_only_printable_ascii_reaches_the_controller():

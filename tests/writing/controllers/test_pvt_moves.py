@@ -7,8 +7,8 @@ from controller_settings import settings_for
 from hypothesis import given, strategies
 from hypothesis import settings as hypothesis_settings
 
-from pkm_post.writing.controllers.pmac.syntax import grammar as turbo
-from pkm_post.writing.controllers.power_pmac.syntax import grammar as power
+from pkm_post.writing.controllers.pmac.reader import _grammar as turbo
+from pkm_post.writing.controllers.power_pmac import _grammar as power
 from pkm_post.writing.controllers.pvt.moves import lines_of
 
 GRAMMARS = {"turbo": turbo(settings_for("turbo_pmac")), "power": power(settings_for("power_pmac"))}
@@ -16,8 +16,8 @@ LONGEST = 4095
 CHARACTERS = "0123456789-.: \nABCUVWPTpvtFXD;/+,eE\t\r\x00\x7f\x80\xb3\xff\u20ac\u0663\U0001f600"
 
 
-def found(text, grammar):
-    return lines_of(text.encode("latin-1", "replace"), grammar.forms["move"], grammar.forms["interval"], LONGEST)
+def found(text, _grammar):
+    return lines_of(text.encode("latin-1", "replace"), _grammar.forms["move"], _grammar.forms["interval"], LONGEST)
 
 
 def in_full(numbers):
@@ -26,16 +26,16 @@ def in_full(numbers):
     return all(len(part) == 2 and len(part[1]) <= 15 and int("".join(part)) < 2**53 for part in parts)
 
 
-def assert_as_one_by_one(text, grammar):
+def assert_as_one_by_one(text, _grammar):
     """Each line is judged as its form judges it, but for numbers that are printed in another way."""
-    lines = found(text, grammar)
+    lines = found(text, _grammar)
     one_by_one = text.split("\n")
     complete, rest = one_by_one[:-1], one_by_one[-1:] if one_by_one[-1] else []
     assert lines.complete == len(complete)
     assert np.diff(lines.edges).tolist() == [*(len(line) + 1 for line in complete), *map(len, rest)]
     assert lines.lengths().tolist() == [len(line) for line in [*complete, *rest]]
-    moves = [grammar.forms["move"].fits(line) for line in complete]
-    intervals = [grammar.forms["interval"].fits(line) for line in complete]
+    moves = [_grammar.forms["move"].fits(line) for line in complete]
+    intervals = [_grammar.forms["interval"].fits(line) for line in complete]
     assert lines.is_move.tolist() == [
         *(bool(move and in_full(move.groups())) for move in moves),
         *(False for _ in rest),
@@ -85,8 +85,8 @@ def test_lines_are_judged_as_their_forms_judge_them(name, seed, mutations):
 
 @pytest.mark.parametrize("name", GRAMMARS)
 def test_every_place_of_a_line_with_every_character(name):
-    grammar = GRAMMARS[name]
-    word = grammar.forms["interval"].name
+    _grammar = GRAMMARS[name]
+    word = _grammar.forms["interval"].name
     for line in ("A1009.941772:-65.2572 B0.5:0.0 C9.68:57.04 U1.7:28.2 V1008.753379:2.5 W1.9:-0.1", f"{word}63"):
         text = "".join(
             f"{line[:place]}{new}{line[place + dropped :]}\n"
@@ -94,7 +94,7 @@ def test_every_place_of_a_line_with_every_character(name):
             for new in CHARACTERS
             for dropped in (0, 1)
         )
-        assert_as_one_by_one(text, grammar)
+        assert_as_one_by_one(text, _grammar)
 
 
 @pytest.mark.parametrize(

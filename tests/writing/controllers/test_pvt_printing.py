@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.writing.controllers.pvt.printing import BLANK, printed, rounded
+from pkm_post.writing.controllers.pvt.decimals import BLANK, printed, rounded
 
 
 def texts(values, decimals):

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from pkm_post.model import Event, EventKind, StrutMotion
-from pkm_post.writing.controllers.stretches import stretches
+from pkm_post.writing.controllers.halstreamer import stretches
 
 
 def motion(*events):

@@ -14,7 +14,7 @@ from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.reading.gcode import ReadOptions, read
 from pkm_post.toolpath import CHORD_ERROR
 from pkm_post.writing.gcode import Form, write
-from pkm_post.writing.gcode.writer_axes import FORMS, POLE, SWING, swings
+from pkm_post.writing.gcode.tool_axes import FORMS, POLE, SWING, swings
 
 AXIS_WORDS = {Form.VECTOR: "vector", Form.AC: "AC", Form.BC: "BC", Form.LINUXCNC: "RPY", Form.PLAIN: "none"}
 TILTING = [form for form in Form if form is not Form.PLAIN]

@@ -3,8 +3,8 @@
 
 import math
 
-from pkm_post.writing.trajectory_file.container import opened
 from pkm_post.writing.trajectory_file.layout import STRING, TABLE, TABLES
+from pkm_post.writing.trajectory_file.reader import opened
 
 
 def lines_of(content):

@@ -13,9 +13,8 @@ from trajectories import everything, random_trajectory
 
 from pkm_post.model import Kind
 from pkm_post.writing.trajectory_file import decode, read, write
-from pkm_post.writing.trajectory_file.contradictions import contradictions
+from pkm_post.writing.trajectory_file.invariants import contradictions, violations
 from pkm_post.writing.trajectory_file.layout import HEADER, MAGIC, MINOR, SEGMENT, STRING, TABLES, offset_of
-from pkm_post.writing.trajectory_file.promises import broken_promises
 
 KILOBYTE = 1024
 BUFFERS = 256 * KILOBYTE
@@ -333,7 +332,7 @@ def test_thousands_of_damaged_files_of_each_sort_are_told_or_sound(path, sound, 
         else:
             assert diagnostics == ()
             assert seal
-            assert broken_promises(trajectory) == contradictions(trajectory) == []
+            assert violations(trajectory) == contradictions(trajectory) == []
             if turn % 25 == 0:
                 write(trajectory, path)
         outcomes.append(trajectory is None)

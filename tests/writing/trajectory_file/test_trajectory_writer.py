@@ -13,7 +13,7 @@ from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.model.certificate import Tolerances
 from pkm_post.toolpath.place import place
 from pkm_post.writing.trajectory_file import read, write
-from pkm_post.writing.trajectory_file.promises import SENSIBLE
+from pkm_post.writing.trajectory_file.invariants import VALID_EVENT_VALUE
 
 
 def read_back(trajectory, path):
@@ -181,4 +181,4 @@ def test_a_segment_ends_where_it_says(tmp_path, column, on_arc, what):
 
 
 def test_every_kind_of_event_has_its_values():
-    assert set(SENSIBLE) == set(EventKind)
+    assert set(VALID_EVENT_VALUE) == set(EventKind)

@@ -1,17 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The Turbo PMAC: motion programs written and read back, and the set-up they rely on."""
 
-from collections.abc import Sequence
-
 from pkm_post.model import Diagnostic, StrutMotion
 from pkm_post.system import result_files
 from pkm_post.writing.controllers.pmac.memory import memory_faults
-from pkm_post.writing.controllers.pmac.program import program_parts, program_text
-from pkm_post.writing.controllers.pmac.rotary import rotary_opening, rotary_text
-from pkm_post.writing.controllers.pmac.settings import PmacSettings, settings_of
-from pkm_post.writing.controllers.pmac.setup import setup_text
-from pkm_post.writing.controllers.pmac.syntax import grammar
-from pkm_post.writing.controllers.pvt import reader
+from pkm_post.writing.controllers.pmac.program import program_parts, program_text, rotary_opening, rotary_text
+from pkm_post.writing.controllers.pmac.reader import read_part, read_parts, read_program
+from pkm_post.writing.controllers.pmac.settings import PmacSettings, settings_of, setup_text
 from pkm_post.writing.controllers.pvt.codes import event_faults
 from pkm_post.writing.controllers.pvt.parts import stated_part
 
@@ -45,29 +40,3 @@ def faults(motion: StrutMotion, settings: PmacSettings, file: str) -> tuple[Diag
         file: name of the job, for the diagnostics.
     """
     return event_faults(motion, settings.codes, file) + memory_faults(motion, settings, file)
-
-
-def read_parts(
-    texts: Sequence[tuple[str, str]], settings: PmacSettings
-) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """Read a motion program in one or several parts; as ``pvt.reader.read_parts``."""
-    return reader.read_parts(texts, grammar(settings), settings)
-
-
-def read_part(text: str, settings: PmacSettings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """Read a motion program, or a single part of it; its statements about other parts are ignored."""
-    return reader.read_program(text, grammar(settings), settings, file)
-
-
-def read_program(text: str, settings: PmacSettings, file: str) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """Read a motion program in one part.
-
-    Args:
-        text: the program.
-        settings: settings of the controller it was written for.
-        file: its name, for the diagnostics.
-
-    Returns:
-        The motion, or None if there are faults; and the first 20 faults in line order.
-    """
-    return read_parts([(file, text)], settings)

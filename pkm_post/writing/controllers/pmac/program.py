@@ -15,7 +15,7 @@ from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.pvt import parts, writer
 from pkm_post.writing.controllers.pvt.decimals import plain
 from pkm_post.writing.controllers.pvt.settings import APPROACH_RAMP_MS
-from pkm_post.writing.controllers.pvt.words import Words
+from pkm_post.writing.controllers.pvt.writer import Words
 
 WORDS = Words(comment=";", linear="LINEAR", dwell="DWELL", interval="PVT", close="CLOSE")
 
@@ -52,3 +52,25 @@ def _opening(settings: PmacSettings) -> str:
         f"{buffer_opening(settings)}"
         f"ABS\nFRAX({','.join(settings.letters)})\nLINEAR\nTA{APPROACH_RAMP_MS} TS0 F{speed}\n"
     )
+
+
+def rotary_opening(settings: PmacSettings) -> tuple[str, ...]:
+    """The lines that open and clear the rotary buffer, with the coordinate system pointed to it."""
+    # After OPEN ROT, B0 would be a move of axis B.
+    return "CLOSE", "DELETE GATHER", f"&{settings.coordinate_system}B0", "OPEN ROT", "CLEAR"
+
+
+def rotary_text(program: str, settings: PmacSettings) -> str:
+    """The rotary form of a program.
+
+    Args:
+        program: text of a motion program in one part.
+        settings: settings of the controller it was written for.
+
+    Raises:
+        ValueError: the text lacks the frame of a program for this controller.
+    """
+    opening = buffer_opening(settings)
+    if program.count(opening) != 1:
+        raise ValueError(f"program: expected {opening!r} once, got it {program.count(opening)} times")
+    return program.replace(opening, "".join(f"{line}\n" for line in rotary_opening(settings)))

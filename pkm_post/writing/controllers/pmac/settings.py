@@ -6,10 +6,15 @@ Enters: the ``[controller]`` table of the machine file. Leaves: settings with th
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from decimal import Decimal
 
 from pkm_post.model import Diagnostic, Machine
 from pkm_post.writing.controllers.pvt import settings as pvt
+from pkm_post.writing.controllers.pvt.settings import ROTARY_LETTERS, axis_definitions, check_stroke, stroke_counts
+from pkm_post.writing.controllers.pvt.writer import comment_lines
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,3 +33,63 @@ class PmacSettings(pvt.Settings):
 def settings_of(machine: Machine) -> tuple[PmacSettings | None, tuple[Diagnostic, ...]]:
     """Settings of a machine's controller, or None with diagnostics."""
     return pvt.settings_of(PmacSettings, machine)
+
+
+def setup_text(settings: PmacSettings, machine_name: str, stroke: tuple[float, float]) -> str:
+    """Write the set-up file of a machine.
+
+        counts = counts_per_mm * (strut length - zero_length)
+
+    Args:
+        settings: settings of the controller.
+        machine_name: name of the machine, for the comment on top.
+        stroke: shortest and longest joint-to-joint length of a strut, mm.
+
+    Raises:
+        ValueError: the stroke is not two increasing lengths.
+    """
+    check_stroke(stroke)
+    # All lines with & and # come before the first assignment: some tools that read such files continue an expression
+    # into a following line that begins with one of these.
+    lines = [
+        *comment_lines(f"Set-up of {machine_name}", settings.line_limit),
+        "; Strut i is motor i. Axis values are joint-to-joint strut lengths in mm, speeds are in mm/s.",
+        "CLOSE ; no program buffer may be open",
+        *_axis_lines(settings),
+        *_coordinate_system_lines(settings),
+        *_motor_lines(settings, stroke),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _axis_lines(settings: PmacSettings) -> list[str]:
+    return [
+        f"&{settings.coordinate_system} ; the coordinate system that runs the program",
+        "; #motor->SCALE LETTER OFFSET: counts = SCALE * strut length + OFFSET; the offset is counts at length zero",
+        *axis_definitions(settings),
+    ]
+
+
+def _coordinate_system_lines(settings: PmacSettings) -> list[str]:
+    base = f"I{50 + settings.coordinate_system}"
+    return [
+        f"; I68 must be {settings.coordinate_system - 1} or more, or this coordinate system is not served",
+        "; I42 may be 0 or 1: all intervals of the program are whole milliseconds",
+        f"{base}90=1000 ; speeds are per 1000 ms, so mm/s",
+        f"{base}50=0 ; no kinematics in the controller: the program gives strut lengths",
+    ]
+
+
+def _motor_lines(settings: PmacSettings, stroke: tuple[float, float]) -> list[str]:
+    lines = ["; Soft limits: the stroke in counts. 0 would switch a limit off, so 1 or -1 stands for it"]
+    for motor, (low, high) in enumerate(stroke_counts(settings, stroke), start=1):
+        lines.append(f"I{motor}13={_limit(high, math.floor, 1)} ; strut {motor}, highest count")
+        lines.append(f"I{motor}14={_limit(low, math.ceil, -1)} ; strut {motor}, lowest count")
+    for motor, letter in enumerate(settings.letters, start=1):
+        if letter in ROTARY_LETTERS:
+            lines.append(f"I{motor}27=0 ; {letter} would be a rotary axis: no rollover, it is a length here")
+    return lines
+
+
+def _limit(counts: Decimal, inward: Callable[[Decimal], int], instead_of_zero: int) -> int:
+    return inward(counts) or instead_of_zero

@@ -9,6 +9,10 @@ from __future__ import annotations
 
 from decimal import Decimal
 
+import numpy as np
+
+from pkm_post.model import Array
+
 
 def exact(value: float | Decimal) -> Decimal:
     """The shortest decimal that reads back as ``value``, for arithmetic without binary rounding."""
@@ -28,3 +32,50 @@ def plain(value: float | Decimal) -> str:
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
+
+
+BLANK = b"\0"
+"""Fills places without a character; removed when the columns are joined."""
+_EXACT = 2**52
+"""In units of the last decimal; below it the nearest double errs by less than half a unit and prints exactly."""
+
+
+def rounded(values: Array, decimals: int) -> Array:
+    """The numbers as printed; adding zero turns -0.0 into 0.0."""
+    return np.round(values, decimals) + 0.0
+
+
+def printed(values: Array, decimals: int) -> Array:
+    """Print rounded numbers, zero without a sign.
+
+    Args:
+        values: (...), finite, at least one.
+        decimals: digits after the point, at least one.
+
+    Returns:
+        (..., W) characters, with W those of the longest number; shorter ones contain blanks.
+    """
+    scaled = np.rint(values * 10.0**decimals)
+    most = np.abs(scaled).max()
+    if most < _EXACT:
+        return _columns(scaled, int(most), decimals)
+    texts = [f"{value:.{decimals}f}".encode("ascii") for value in rounded(values, decimals).ravel().tolist()]
+    return np.array(texts)[:, None].view(np.uint8).reshape(*values.shape, -1)
+
+
+def _columns(scaled: Array, most: int, decimals: int) -> Array:
+    """Characters of integers in units of the last decimal, up to ``most``: sign, digits, point and decimals."""
+    before_point = len(str(most // 10**decimals))
+    columns = np.empty((1 + before_point + 1 + decimals, *scaled.shape), dtype=np.uint8)
+    last = len(columns) - 1
+    point = last - decimals
+    columns[0] = np.where(scaled < 0, ord("-"), 0)
+    columns[point] = ord(".")
+    rest = np.abs(scaled).astype(np.min_scalar_type(most))  # narrow integers divide much faster
+    for column in [*range(last, point, -1), *range(point - 1, 0, -1)]:
+        above = rest // 10
+        columns[column] = ord("0") + (rest - above * 10)
+        if column < point - 1:
+            columns[column] *= rest > 0  # no leading zeros
+        rest = above
+    return np.moveaxis(columns, 0, -1)

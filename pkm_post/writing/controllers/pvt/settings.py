@@ -9,12 +9,15 @@ file states. Units: mm, mm/s, ms, encoder counts.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from decimal import Decimal
 from typing import Any, ClassVar, Self, TypeVar
 
 from pkm_post.model import Diagnostic, Machine, Place
 from pkm_post.writing.controllers.pvt.codes import check_codes
+from pkm_post.writing.controllers.pvt.decimals import exact, plain
 
 APPROACH_RAMP_MS = 500
 """Duration of acceleration and of deceleration of the approach."""
@@ -89,3 +92,35 @@ def settings_of(form: type[AnySettings], machine: Machine) -> tuple[AnySettings 
         return form.of(machine.controller), ()
     except ValueError as fault:
         return None, (Diagnostic("M104", Place(machine.name), f"controller.{fault}"),)
+
+
+ROTARY_LETTERS = "ABC"
+"""Axes that controllers of the family treat as rotary."""
+
+
+def check_stroke(stroke: tuple[float, float]) -> None:
+    """Check that the stroke is two increasing lengths.
+
+    Raises:
+        ValueError: it is not.
+    """
+    shortest, longest = stroke
+    if not (math.isfinite(shortest) and math.isfinite(longest) and shortest < longest):
+        raise ValueError(f"stroke: expected two finite lengths, the shorter first, got {stroke}")
+
+
+def axis_definitions(settings: Settings) -> list[str]:
+    """The axis definition of each motor: ``#motor->SCALE LETTER OFFSET``, without the spaces."""
+    scale = exact(settings.counts_per_mm)
+    offsets = [-scale * exact(length) for length in settings.zero_length]
+    return [
+        f"#{motor}->{plain(scale)}{letter}{'' if offset < 0 else '+'}{plain(offset)}"
+        for motor, (letter, offset) in enumerate(zip(settings.letters, offsets, strict=True), start=1)
+    ]
+
+
+def stroke_counts(settings: Settings, stroke: tuple[float, float]) -> list[tuple[Decimal, Decimal]]:
+    """The lowest and highest count of each strut."""
+    scale = exact(settings.counts_per_mm)
+    ends = [[scale * (exact(length) - exact(zero)) for length in stroke] for zero in settings.zero_length]
+    return [(min(counts), max(counts)) for counts in ends]

@@ -8,17 +8,50 @@ Axis values are true strut lengths; times in the program are in ms.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
 
 from pkm_post.model import Array, StrutMotion
 from pkm_post.writing.controllers.pvt.codes import code_text
-from pkm_post.writing.controllers.pvt.comment import comment_lines
-from pkm_post.writing.controllers.pvt.printing import BLANK, printed, rounded
+from pkm_post.writing.controllers.pvt.decimals import BLANK, printed, rounded
 from pkm_post.writing.controllers.pvt.settings import Settings
-from pkm_post.writing.controllers.pvt.words import Words
+
+
+@dataclass(frozen=True)
+class Words:
+    """The command words of one controller.
+
+    Attributes:
+        comment: start of a comment.
+        linear: the mode of the approach, which also ends PVT mode.
+        dwell: a dwell in ms; a dwell of 0 also stops look-ahead.
+        interval: PVT mode with intervals in ms.
+        close: ends the program.
+    """
+
+    comment: str
+    linear: str
+    dwell: str
+    interval: str
+    close: str
+
+
+def comment_lines(text: str, line_limit: int, mark: str = ";") -> list[str]:
+    """Write one line of text as one or more comment lines.
+
+    Args:
+        text: any text; characters other than printable ASCII become escapes with their code point.
+        line_limit: longest line in characters.
+        mark: start of a comment.
+    """
+    safe = re.sub(r"[^ -~]", lambda character: ascii(character[0])[1:-1], text)
+    width = line_limit - len(mark) - 1
+    return [f"{mark} {safe[start : start + width]}".rstrip() for start in range(0, max(len(safe), 1), width)]
+
 
 LONGEST_INTERVAL_MS = 4095
 _ROWS_PER_CHUNK = 4096

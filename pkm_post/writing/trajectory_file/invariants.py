@@ -7,16 +7,59 @@ Enters: a ``model.Trajectory`` with any values. Leaves: in words, each promise t
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, norm
-from pkm_post.model import MAX_SPIN, MIN_TOLERANCE, Event, EventKind, Kind, Tool, Trajectory
-from pkm_post.writing.trajectory_file.parts import parts
+from pkm_post.geometry import Array, cross, dot, norm
+from pkm_post.model import (
+    MAX_SPIN,
+    MIN_TOLERANCE,
+    TRAJECTORY_COLUMNS,
+    Event,
+    EventKind,
+    Kind,
+    Tool,
+    Trajectory,
+    gauge_lengths,
+)
+
+SEGMENTS_PER_CHUNK = 1 << 13
+"""Segments per part: some megabytes of records, which stay in the processor's cache."""
+
+
+def chunks(trajectory: Trajectory) -> Iterator[tuple[int, Trajectory]]:
+    """The parts in order, each with the index of its first segment; events and names are those of the whole."""
+    for begin in range(0, len(trajectory), SEGMENTS_PER_CHUNK):
+        rows = slice(begin, begin + SEGMENTS_PER_CHUNK)
+        columns = {name: getattr(trajectory, name)[rows] for name in TRAJECTORY_COLUMNS}
+        yield begin, dataclasses.replace(trajectory, **columns, **_start_pose(trajectory, begin))
+
+
+def _start_pose(trajectory: Trajectory, row: int) -> dict[str, Any]:
+    """The pose before a segment; a tool change moves the tip, as in ``Trajectory.tip_before``."""
+    if not row:
+        return {}
+    last = row - 1
+    longer = _tool_length(trajectory, row) - _tool_length(trajectory, last)
+    tip, axis = trajectory.tip[last], trajectory.axis[last]
+    return {
+        "start_tip": tip - longer * axis if longer else tip,
+        "start_axis": axis,
+        "start_spin": float(trajectory.spin[last]),
+    }
+
+
+def _tool_length(trajectory: Trajectory, row: int) -> float:
+    """Gauge length in mm; NaN for a tool that is not in the table."""
+    tool = trajectory.tools.get(int(trajectory.tool[row]))
+    return tool.length if tool else math.nan
+
 
 UNIT_TOLERANCE = 1e-5
 """Tolerance of unit length: a work offset and a symmetry may each be 1e-6 from a rotation."""
@@ -29,7 +72,7 @@ LONGEST = 86_400.0
 _LARGEST_NUMBER = 2**31 - 1
 _FINGERPRINT = re.compile(r"[0-9a-f]{64}")
 
-SENSIBLE: dict[EventKind, Callable[[float], bool]] = {
+VALID_EVENT_VALUE: dict[EventKind, Callable[[float], bool]] = {
     EventKind.TOOL_CHANGE: lambda value: value == int(value) and 0 <= value <= _LARGEST_NUMBER,
     EventKind.SPINDLE: math.isfinite,
     EventKind.COOLANT: lambda value: value in (0, 1, 2),
@@ -39,15 +82,15 @@ SENSIBLE: dict[EventKind, Callable[[float], bool]] = {
 """Whether a finite value is valid, by kind of event."""
 
 
-def broken_promises(trajectory: Trajectory) -> list[str]:
+def violations(trajectory: Trajectory) -> list[str]:
     """Name the broken promises of a trajectory, each with its first offender; none for a sound one."""
     with np.errstate(all="ignore"):  # any numbers may occur
         return [
-            *_of_start(trajectory),
-            *_of_origin(trajectory),
-            *_first(_of_tools(trajectory.tools)),
-            *_of_segments(trajectory),
-            *_first(_of_events(trajectory.events, len(trajectory))),
+            *_start_violations(trajectory),
+            *_origin_violations(trajectory),
+            *_first(_tool_violations(trajectory.tools)),
+            *_segment_violations(trajectory),
+            *_first(_event_violations(trajectory.events, len(trajectory))),
         ]
 
 
@@ -58,7 +101,7 @@ def _first(broken: Iterable[str]) -> Iterator[str]:
         yield f"{first}, and {len(others)} more" if others else first
 
 
-def _of_start(trajectory: Trajectory) -> Iterator[str]:
+def _start_violations(trajectory: Trajectory) -> Iterator[str]:
     if not _is_near(trajectory.start_tip):
         yield f"the start tip is not finite, or farther than {FARTHEST:g} mm"
     if not _is_unit(trajectory.start_axis):
@@ -69,7 +112,7 @@ def _of_start(trajectory: Trajectory) -> Iterator[str]:
         yield "the work offset is not a rotation and a shift"
 
 
-def _of_origin(trajectory: Trajectory) -> Iterator[str]:
+def _origin_violations(trajectory: Trajectory) -> Iterator[str]:
     if not re.fullmatch(_FINGERPRINT, trajectory.machine_fingerprint):
         yield f"the fingerprint {trajectory.machine_fingerprint!r} is not 64 digits of 0-9 and a-f"
     source, tolerances = trajectory.source_fingerprint, trajectory.tolerances
@@ -79,7 +122,7 @@ def _of_origin(trajectory: Trajectory) -> Iterator[str]:
         yield f"the tolerances {tolerances.tip} mm and {tolerances.axis} rad are not both at least {MIN_TOLERANCE:g}"
 
 
-def _of_tools(tools: dict[int, Tool]) -> Iterator[str]:
+def _tool_violations(tools: dict[int, Tool]) -> Iterator[str]:
     for number, tool in tools.items():
         if tool.number != number or not 0 <= number <= _LARGEST_NUMBER:
             yield f"the number of tool {number} is {tool.number}"
@@ -91,11 +134,11 @@ def _of_tools(tools: dict[int, Tool]) -> Iterator[str]:
                 yield f"the {name.replace('_', ' ')} of tool {number} is {getattr(tool, name)} rad"
 
 
-def _of_segments(trajectory: Trajectory) -> Iterator[str]:
-    yield from in_segments((begin, _segment_rules(part)) for begin, part in parts(trajectory))
+def _segment_violations(trajectory: Trajectory) -> Iterator[str]:
+    yield from first_segments((begin, _segment_rules(part)) for begin, part in chunks(trajectory))
 
 
-def in_segments(found: Iterable[tuple[int, dict[str, Array]]]) -> Iterator[str]:
+def first_segments(found: Iterable[tuple[int, dict[str, Array]]]) -> Iterator[str]:
     """Name the first segment with each fault, and the number of further ones.
 
     Args:
@@ -126,9 +169,11 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
         "axis is not of unit length": ~_is_unit(trajectory.axis),
         f"spin is not finite, or beyond {MAX_SPIN:g} rad": ~(np.abs(trajectory.spin) <= MAX_SPIN),
         "feed is not a finite number above 0": ~(np.isfinite(trajectory.feed) & (trajectory.feed > 0)),
-        f"arc centre is not finite, or farther than {FARTHEST:g} mm": _at(arc, ~_is_near(trajectory.arc_centre[arc])),
+        f"arc centre is not finite, or farther than {FARTHEST:g} mm": _expanded(
+            arc, ~_is_near(trajectory.arc_centre[arc])
+        ),
         "arc centre is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_centre),
-        "arc axis is not of unit length": _at(arc, ~_is_unit(trajectory.arc_axis[arc])),
+        "arc axis is not of unit length": _expanded(arc, ~_is_unit(trajectory.arc_axis[arc])),
         "arc axis is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_axis),
         "sweep is not above 0 and at most a full turn": arc & ~(_within(sweep, 0, FULL_TURN) & (sweep > 0)),
         "sweep is not 0, although it is no arc": ~arc & (sweep != 0),
@@ -145,14 +190,14 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
     }
 
 
-def _of_events(events: tuple[Event, ...], segments: int) -> Iterator[str]:
+def _event_violations(events: tuple[Event, ...], segments: int) -> Iterator[str]:
     row_before = 0
     for number, event in enumerate(events):
         if not 0 <= event.row <= segments:
             yield f"instruction {number}: the row {event.row} is not between 0 and {segments}"
         elif event.row < row_before:
             yield f"instruction {number}: the row {event.row} is before that of the last one"
-        if not (math.isfinite(event.value) and SENSIBLE[event.kind](event.value)):
+        if not (math.isfinite(event.value) and VALID_EVENT_VALUE[event.kind](event.value)):
             yield f"instruction {number}: {event.kind.name} cannot have the value {event.value}"
         row_before = event.row
 
@@ -161,7 +206,7 @@ def _within(values: Array, least: float, most: float) -> Array:
     return (values >= least) & (values <= most)
 
 
-def _at(rows: Array, broken: Array) -> Array:
+def _expanded(rows: Array, broken: Array) -> Array:
     """Expand the result for some rows to a column of all rows, (N,)."""
     found = np.zeros(len(rows), dtype=np.bool_)
     found[rows] = broken
@@ -192,3 +237,87 @@ def _is_rigid(matrix: Array) -> bool:
     excess = np.array([*(rotation @ rotation.T - np.eye(3)), matrix[3, :3]])
     rigid = np.isfinite(matrix).all() and np.abs(excess).max() <= UNIT_TOLERANCE and matrix[3, 3] == 1
     return bool(rigid and np.linalg.det(rotation) > 0)
+
+
+SMOOTH = 1e-4
+"""rad: largest change of the tip's direction at a smooth joint; rounding causes a hundredth of it."""
+_NO_DIRECTION = 1e-9
+"""mm: a displacement up to this length has no direction."""
+
+
+def contradictions(trajectory: Trajectory) -> list[str]:
+    """Name the contradictions of a trajectory that keeps its promises; none for a sound one."""
+    if not len(trajectory):
+        return []
+    return [*_tool_contradictions(trajectory), *_rest_contradictions(trajectory), *_joint_contradictions(trajectory)]
+
+
+def _tool_contradictions(trajectory: Trajectory) -> Iterator[str]:
+    """A segment has the tool of the last change before it; before the first change, that of the first change."""
+    changes = [event for event in trajectory.events if event.kind is EventKind.TOOL_CHANGE]
+    numbers = [int(change.value) for change in changes] or [int(trajectory.tool[0])]
+    ends = [*(change.row for change in changes[1:]), len(trajectory)]
+    begin = 0
+    for number, end in zip(numbers, ends, strict=True):
+        wrong = np.flatnonzero(trajectory.tool[begin:end] != number)
+        if len(wrong):
+            row = begin + int(wrong[0])
+            yield f"segment {row} has tool {trajectory.tool[row]}, the instructions change to tool {number}"
+            return
+        begin = end
+
+
+def _rest_contradictions(trajectory: Trajectory) -> Iterator[str]:
+    """The motion rests at every instruction and at the end; a rest is not a smooth joint."""
+    rests = trajectory.exact_stop
+    for number, event in enumerate(trajectory.events):
+        if event.row and not rests[event.row - 1]:
+            yield f"instruction {number} takes place behind segment {event.row - 1}, which does not end at rest"
+            break
+    if not rests[-1]:
+        yield "the last segment does not end at rest"
+    both = np.flatnonzero(rests & trajectory.smooth)
+    if len(both):
+        yield f"segment {both[0]} ends at rest and goes on smoothly"
+
+
+def _joint_contradictions(trajectory: Trajectory) -> Iterator[str]:
+    """After a smooth segment the tip continues in the same direction."""
+    smooth = np.flatnonzero(trajectory.smooth[:-1])
+    for first in range(0, len(smooth), SEGMENTS_PER_CHUNK):
+        rows = smooth[first : first + SEGMENTS_PER_CHUNK]
+        _, at_end = _tangents(trajectory, rows)
+        at_start, _ = _tangents(trajectory, rows + 1)
+        corners = np.flatnonzero(~(norm(at_start - at_end) <= SMOOTH))
+        if len(corners):
+            yield f"segment {rows[corners[0]]} goes on smoothly, and a corner follows it"
+            return
+
+
+def _tangents(trajectory: Trajectory, rows: Array) -> tuple[Array, Array]:
+    """Unit tangents of the tip's path at the start and the end of segments, (M, 3) each; NaN where it stands still."""
+    start, end = _start_tips(trajectory, rows), trajectory.tip[rows]
+    at_start = _directions(end - start)
+    at_end = at_start.copy()
+    arc = np.flatnonzero(trajectory.kind[rows] == Kind.ARC)
+    turn, centre = trajectory.arc_axis[rows[arc]], trajectory.arc_centre[rows[arc]]
+    rise = (dot(end[arc] - start[arc], turn) / trajectory.sweep[rows[arc]])[:, None] * turn
+    for tangent, tip in ((at_start, start), (at_end, end)):
+        tangent[arc] = _directions(cross(turn, tip[arc] - centre) + rise)
+    return at_start, at_end
+
+
+def _start_tips(trajectory: Trajectory, rows: Array) -> Array:
+    """Tips at the starts of segments, (M, 3), as in ``Trajectory.tip_before``."""
+    before = np.maximum(rows - 1, 0)
+    lengths = (gauge_lengths(trajectory.tools, trajectory.tool[each]) for each in (rows, before))
+    longer = np.subtract(*lengths)
+    first = rows == 0
+    tip = np.where(first[:, None], trajectory.start_tip, trajectory.tip[before])
+    axis = np.where(first[:, None], trajectory.start_axis, trajectory.axis[before])
+    return np.asarray(tip - longer[:, None] * axis)
+
+
+def _directions(vectors: Array) -> Array:
+    length = norm(vectors)
+    return vectors / np.where(length > _NO_DIRECTION, length, np.nan)[:, None]

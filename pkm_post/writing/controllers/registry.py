@@ -11,7 +11,7 @@ from pathlib import PurePath
 from typing import Any, Protocol
 
 from pkm_post.model import Diagnostic, Machine, Place, StrutMotion
-from pkm_post.writing.controllers import pmac, power_pmac
+from pkm_post.writing.controllers import halstreamer, motion_csv, pmac, power_pmac
 
 Findings = tuple[Diagnostic, ...]
 
@@ -78,3 +78,23 @@ def part_siblings(controller: Controller, name: str, text: str) -> list[str]:
     """The names of the other parts of a program, as stated by its first part."""
     number, count = controller.stated_part(text)
     return part_names(name, count)[1:] if number == 1 else []
+
+
+class Table(Protocol):
+    """The interface of a table module.
+
+    Attributes:
+        SUFFIX: suffix of its file, appended to the name of the job.
+    """
+
+    SUFFIX: str
+
+    def texts(self, motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
+        """The table, as one text or several; the heading is for the user."""
+
+    def measured(self, texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
+        """Read file names and texts back and compare them with the motion: the result in words, and the faults."""
+
+
+TABLES: dict[str, Table] = {"csv": motion_csv, "halstreamer": halstreamer}
+"""Tables by option value."""

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Power PMAC: motion programs written and read back, and the set-up that they rely on.
+
+Enters: the ``[controller]`` table of a machine, strut motion in mm, mm/s and whole ms, and the text of programs.
+Leaves: text with the words and the frame of the Power PMAC, and strut motion. The memory for programs is configured in
+the controller's own project: the machine file does not state it, and a motion is never cut into parts. The grammar is
+independent of the writer, so that the reader detects a fault of the writer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pkm_post.model import Diagnostic, Machine, StrutMotion
+from pkm_post.system import result_files
+from pkm_post.writing.controllers.pvt import reader, writer
+from pkm_post.writing.controllers.pvt import settings as pvt
+from pkm_post.writing.controllers.pvt.codes import event_faults
+from pkm_post.writing.controllers.pvt.decimals import plain
+from pkm_post.writing.controllers.pvt.parts import stated_part
+from pkm_post.writing.controllers.pvt.settings import (
+    APPROACH_RAMP_MS,
+    ROTARY_LETTERS,
+    axis_definitions,
+    check_stroke,
+    stroke_counts,
+)
+from pkm_post.writing.controllers.pvt.syntax import FLOW_FROM_MODES, PRINTABLE, START, Flow, Grammar, body_forms, form
+from pkm_post.writing.controllers.pvt.writer import Words, comment_lines
+
+__all__ = [
+    "SETUP_SUFFIX",
+    "PowerPmacSettings",
+    "faults",
+    "program_parts",
+    "program_text",
+    "read_parts",
+    "settings_of",
+    "setup_text",
+    "stated_part",
+]
+SETUP_SUFFIX = result_files.SETUPS["power_pmac"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerPmacSettings(pvt.Settings):
+    """Settings of the Power PMAC of one machine; its numbers are doubles."""
+
+    KIND = "power_pmac"
+
+
+def settings_of(machine: Machine) -> tuple[PowerPmacSettings | None, tuple[Diagnostic, ...]]:
+    """Settings of a machine's controller, or None with diagnostics."""
+    return pvt.settings_of(PowerPmacSettings, machine)
+
+
+def faults(motion: StrutMotion, settings: PowerPmacSettings, file: str) -> tuple[Diagnostic, ...]:
+    """The reasons why a motion cannot be written for this controller.
+
+    Args:
+        motion: the motion to be written.
+        settings: settings of the controller.
+        file: name of the job, for the diagnostics.
+    """
+    return event_faults(motion, settings.codes, file)
+
+
+WORDS = Words(comment="//", linear="linear", dwell="dwell", interval="pvt", close="close")
+
+
+def program_text(motion: StrutMotion, settings: PowerPmacSettings, heading: Sequence[str]) -> str:
+    """Write a motion as a motion program; as ``pvt.writer.program_text``."""
+    return writer.program_text(motion, settings, WORDS, _opening(settings), heading)
+
+
+def program_parts(motion: StrutMotion, settings: PowerPmacSettings, heading: Sequence[str]) -> tuple[str, ...]:
+    """Write a motion, always as one part."""
+    return (program_text(motion, settings, heading),)
+
+
+def _opening(settings: PowerPmacSettings) -> str:
+    speed = plain(settings.approach_speed)
+    return (
+        f"open prog {settings.program}\nabs\nfrax({','.join(settings.letters)})\n"
+        f"linear\nta{APPROACH_RAMP_MS} ts0 F{speed}\n"
+    )
+
+
+_FLOW: Flow = {START: {"comment": START, "open": "cleared"}, **FLOW_FROM_MODES}
+"""Opening a program clears it."""
+
+
+def _grammar(settings: PowerPmacSettings) -> Grammar:
+    """The grammar of the programs of a Power PMAC."""
+    forms = {
+        "comment": form("a comment", "//", PRINTABLE),
+        "open": form(f"open prog {settings.program}", "open prog ", str(settings.program)),
+        **body_forms(settings, str.lower),
+    }
+    return Grammar(forms, _FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))
+
+
+_COMMENT = "//"
+
+
+def setup_text(settings: PowerPmacSettings, machine_name: str, stroke: tuple[float, float]) -> str:
+    """Write the set-up file of a machine.
+
+        motor units = counts_per_mm * (strut length - zero_length)
+
+    Args:
+        settings: settings of the controller.
+        machine_name: name of the machine, for the comment on top.
+        stroke: shortest and longest length of a strut, mm.
+
+    Raises:
+        ValueError: the stroke is not two increasing lengths.
+    """
+    check_stroke(stroke)
+    lines = [
+        *comment_lines(f"Set-up of {machine_name}", settings.line_limit, _COMMENT),
+        "// Strut i is motor i. Axis values are joint-to-joint strut lengths in mm, speeds are in mm/s.",
+        f"&{settings.coordinate_system} // the coordinate system that runs the program",
+        "// #motor->SCALE LETTER OFFSET: motor units = SCALE * strut length + OFFSET",
+        *axis_definitions(settings),
+        *_coordinate_system_lines(settings),
+        *_motor_lines(settings, stroke),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _coordinate_system_lines(settings: PowerPmacSettings) -> list[str]:
+    system = f"Coord[{settings.coordinate_system}]"
+    rollover = [
+        f"{system}.PosRollover[{ROTARY_LETTERS.index(letter)}]=0 // {letter} is a length here, not an angle"
+        for letter in settings.letters
+        if letter in ROTARY_LETTERS
+    ]
+    return [
+        f"{system}.FeedTime=1000 // speeds are per 1000 ms, so mm/s",
+        f"{system}.SegMoveTime=0 // no segmentation: each interval is one cubic",
+        *rollover,
+    ]
+
+
+def _motor_lines(settings: PowerPmacSettings, stroke: tuple[float, float]) -> list[str]:
+    lines = ["// Soft limits: the stroke in motor units. They act while the higher one is above the lower one"]
+    for motor, (low, high) in enumerate(stroke_counts(settings, stroke), start=1):
+        lines.append(f"Motor[{motor}].MaxPos={math.floor(high)} // strut {motor}")
+        lines.append(f"Motor[{motor}].MinPos={math.ceil(low)} // strut {motor}")
+    return lines
+
+
+def read_parts(
+    texts: Sequence[tuple[str, str]], settings: PowerPmacSettings
+) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+    """Read a motion program; as ``pvt.reader.read_parts``."""
+    return reader.read_parts(texts, _grammar(settings), settings)
