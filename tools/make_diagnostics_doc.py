@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Write docs/diagnostics.md from the table of faults in pkm_post/model/rules.py.
+"""Write docs/diagnostics.md from the tables of faults in pkm_post/model/rules.
 
     python3 tools/make_diagnostics_doc.py
 
-Needs a Python with numpy. Nothing but the table enters: the same table gives the same bytes.
+Needs a Python with numpy. The page depends on the tables alone: the same tables give the same bytes.
 """
 
 import sys
@@ -28,14 +28,14 @@ FAMILIES = {
 
 HEAD = """# Diagnostics
 
-Every fault of the input has a code. It is told in one line:
+Every fault of the input has a code. It is reported in one line:
 
     place: severity code: cause: what was found there; cure
 
-An error stops the job and no file is written. A warning is shown, and the job goes on. Codes are never given another
+An error stops the job and no file is written. A warning is shown, and the job goes on. A code never changes its
 meaning; a code that is no longer needed is not used again.
 
-This page is made from the table in `pkm_post/model/rules.py` by `tools/make_diagnostics_doc.py`: do not edit it.
+This page is generated from the tables in `pkm_post/model/rules` by `tools/make_diagnostics_doc.py`: do not edit it.
 """
 
 

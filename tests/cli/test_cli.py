@@ -136,7 +136,7 @@ def test_singular_path_is_refused(tmp_path):
         "post", saved_job(tmp_path / "part.FCStd"), "--machine", machine, "--out", tmp_path / "out", *REACHED
     )
     assert told.returncode == 1
-    assert "error K105: the path comes too near to a singular pose" in told.stderr
+    assert "error K105: the path comes too close to a singular pose" in told.stderr
 
 
 @pytest.mark.parametrize(

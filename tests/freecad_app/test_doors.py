@@ -129,7 +129,7 @@ def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
     replaced = {"both": flag not in ADDED, "job": flag == "--tool-length", "command line": flag in SAID_BY_EVERY_JOB}[
         where
     ]
-    assert (f"warning J125: an option stands in for what the job or the program says: {flag} " in told) == replaced
+    assert (f"warning J125: an option overrides a value of the job or the program: {flag} " in told) == replaced
 
 
 @pytest.mark.parametrize("flag", sorted(FOR_PART_PROGRAMS))
@@ -141,7 +141,7 @@ def test_what_is_for_part_programs_is_refused_at_every_door(job, tmp_path, flag,
             door(job, words(flag, 0), out)
         assert [each.code for each in refused.value.diagnostics if each.code != "J125"] == ["L442"]
     assert main(["post", job.Document.FileName, "--out", str(out), *words(flag, 0)]) == 2
-    assert f"error L442: an option means nothing for what is read: {flag} is for" in capsys.readouterr().err
+    assert f"error L442: an option does not apply to this input: {flag} is for" in capsys.readouterr().err
     says(job, shlex.join(words(flag, 0)))
     with pytest.raises(Refused, match=f"J117: .* {flag} is for"):
         prepared_job(job, settings_of(job))

@@ -60,7 +60,7 @@ def test_an_option_for_another_kind_of_file_is_refused(files, capsys, command, f
     told = capsys.readouterr()
     assert (told.out, told.err) == (
         "",
-        f"{file}: error L442: an option means nothing for what is read: {found}; leave it out\n",
+        f"{file}: error L442: an option does not apply to this input: {found}; leave it out\n",
     )
     assert sorted(path.name for path in files.iterdir()) == ["a.ngc", "b.apt"]
 
