@@ -111,7 +111,7 @@ def post(path, axes):
     """Post a file and print what that took; the whole life of a process."""
     from pkm_post.model import Refused
     from pkm_post.posting.post_file import post_file
-    from pkm_post.reading.sources import Reading
+    from pkm_post.reading.part_program import Reading
 
     meter = Meter()
     reading = Reading(axis_words="vector" if axes == 5 else "none")

@@ -51,12 +51,12 @@ def _target(text: str) -> str:
 
 
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.reading import check
+    from pkm_post.reading import check_file, checks_as_json, checks_as_text
 
     if print_misplaced(namespace, namespace.files):
         return 2
-    results = [check.check(file, reading_from(namespace)) for file in namespace.files]
-    print(check.as_json(results) if namespace.json else check.as_text(results))
+    results = [check_file(file, reading_from(namespace)) for file in namespace.files]
+    print(checks_as_json(results) if namespace.json else checks_as_text(results))
     return 0 if all(result.is_clean for result in results) else 1
 
 

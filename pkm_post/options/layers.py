@@ -178,11 +178,11 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
 
 def input_kind(file: Path) -> InputKind:
     """Kind of a file by its suffix; anything but a part program is a document with jobs."""
-    from pkm_post.reading import SUFFIXES, is_part_program
+    from pkm_post.reading import Language, is_part_program, language_of
 
     if not is_part_program(file):
         return InputKind.JOB
-    return InputKind.GCODE if SUFFIXES[file.suffix.lower()] is SUFFIXES[".ngc"] else InputKind.CLDATA
+    return InputKind.GCODE if language_of(file) is Language.GCODE else InputKind.CLDATA
 
 
 def inapplicable_options(names: Iterable[str], kinds: Collection[InputKind]) -> list[str]:

@@ -1,23 +1,28 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reading: G-code, CL data, CAM documents and meshes, from their files to a program."""
 
-from pkm_post.reading import check, gcode
+from pkm_post.reading import gcode
+from pkm_post.reading.check import check_file, checks_as_json, checks_as_text
 from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS, UNITS
+from pkm_post.reading.editing import TextFile, renumbered
 from pkm_post.reading.gcode.codes import SPINDLE_SYNCHRONISED
 from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
 from pkm_post.reading.gcode.events import LONG_DWELL
 from pkm_post.reading.gcode.feeds import exact_codes
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
 from pkm_post.reading.gcode.tool_axes import axis_of
+from pkm_post.reading.highlighting import Colour, coloured_spans, underlined
 from pkm_post.reading.mesh_file import mesh_of_triangles, read_mesh
-from pkm_post.reading.program_text.checked import CheckedText, check_text
-from pkm_post.reading.program_text.colours import Colour, spans
-from pkm_post.reading.program_text.content import Content
-from pkm_post.reading.program_text.extents import extent
-from pkm_post.reading.program_text.languages import Language, language_of
-from pkm_post.reading.program_text.renumber import renumbered
-from pkm_post.reading.program_text.ways import ways_of_line
-from pkm_post.reading.sources import AS_WRITTEN, SUFFIXES, Reading, is_part_program, read_part_program
+from pkm_post.reading.part_program import (
+    AS_WRITTEN,
+    SUFFIXES,
+    Language,
+    Reading,
+    is_part_program,
+    language_of,
+    read_part_program,
+)
+from pkm_post.reading.preview import CheckedText, check_text, tip_paths_of_line
 
 __all__ = [
     "AS_WRITTEN",
@@ -31,17 +36,19 @@ __all__ = [
     "UNITS",
     "CheckedText",
     "Colour",
-    "Content",
+    "TextFile",
     "Language",
     "Reading",
     "CycleSeries",
     "Strokes",
     "axis_of",
-    "check",
+    "check_file",
+    "checks_as_json",
+    "checks_as_text",
     "check_text",
     "exact_codes",
-    "extent",
     "cycle_fault",
+    "underlined",
     "gcode",
     "is_part_program",
     "language_of",
@@ -49,7 +56,7 @@ __all__ = [
     "read_mesh",
     "read_part_program",
     "renumbered",
-    "spans",
     "cycle_strokes",
-    "ways_of_line",
+    "coloured_spans",
+    "tip_paths_of_line",
 ]

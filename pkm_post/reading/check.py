@@ -16,12 +16,13 @@ import numpy as np
 
 from pkm_post.geometry import across, arc_length, arc_points, arc_sweep, cross, dot, norm
 from pkm_post.model import Array, Diagnostic, Kind, Program, errors
-from pkm_post.reading.sources import AS_WRITTEN, Reading, read_part_program
+from pkm_post.reading.part_program import AS_WRITTEN, Reading, read_part_program
 
 _LONGEST_LINE = 200
 """Maximum number of characters shown of a line."""
 _BYTES = 4
 """Maximum size of a UTF-8 character."""
+_COLUMNS = ("file", "blocks", "arcs", "length mm", "lowest X Y Z", "highest X Y Z")
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Size:
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckedFile:
     """Result for one file; ``size`` is None when it could not be read, ``reading`` is as in ``model.Program``."""
 
     file: Path
@@ -58,7 +59,7 @@ class Checked:
         return not errors(self.diagnostics)
 
 
-def check(file: Path, reading: Reading = AS_WRITTEN) -> Checked:
+def check_file(file: Path, reading: Reading = AS_WRITTEN) -> CheckedFile:
     """Read a part program and measure it.
 
     Args:
@@ -70,8 +71,8 @@ def check(file: Path, reading: Reading = AS_WRITTEN) -> Checked:
     """
     program, diagnostics = read_part_program(file, reading)
     if program is None:
-        return Checked(file, None, diagnostics)
-    return Checked(file, size_of(program), diagnostics, program.reading)
+        return CheckedFile(file, None, diagnostics)
+    return CheckedFile(file, size_of(program), diagnostics, program.reading)
 
 
 def size_of(program: Program) -> Size:
@@ -81,17 +82,17 @@ def size_of(program: Program) -> Size:
     row = np.flatnonzero(program.kind[1:] == Kind.ARC)
     centre, axis = program.arc_centre[1:][row], program.arc_axis[1:][row]
     length[row] = arc_length(start[row], end[row], centre, axis)
-    places = np.concatenate([program.position, _summits(start[row], end[row], centre, axis)])
+    points = np.concatenate([program.position, _extreme_points(start[row], end[row], centre, axis)])
     return Size(
         blocks=len(program),
         arcs=len(row),
         length=float(length.sum()),
-        lowest=tuple(places.min(axis=0).tolist()),
-        highest=tuple(places.max(axis=0).tolist()),
+        lowest=tuple(points.min(axis=0).tolist()),
+        highest=tuple(points.max(axis=0).tolist()),
     )
 
 
-def _summits(start: Array, end: Array, centre: Array, axis: Array) -> Array:
+def _extreme_points(start: Array, end: Array, centre: Array, axis: Array) -> Array:
     """Extreme points of arcs along X, Y and Z, between their end points, (m, 3).
 
     A coordinate of the point at angle t is a cos t + b sin t + const: extreme at atan2(b, a) and half a turn later.
@@ -106,20 +107,21 @@ def _summits(start: Array, end: Array, centre: Array, axis: Array) -> Array:
     return arc_points(start[arc], centre[arc], axis[arc], turned, rise)
 
 
-def as_text(results: Iterable[Checked]) -> str:
+def checks_as_text(results: Iterable[CheckedFile]) -> str:
     """Format diagnostics with their source lines and how files were interpreted, then one row per file."""
     results = tuple(results)
-    told = [text for result in results for text in _told(result)]
-    return "\n".join([*told, *_rows(results)])
+    faults = [text for result in results for text in _diagnostic_lines(result)]
+    return "\n".join([*faults, *_table(results)])
 
 
-def _told(result: Checked) -> list[str]:
-    lines = result.file.read_bytes().splitlines() if any(one.place.line for one in result.diagnostics) else []
-    told = [text for one in result.diagnostics for text in (str(one), *_with_caret(one, lines))]
-    return [*told, *(f"{result.file}: {line}" for line in result.reading)]
+def _diagnostic_lines(result: CheckedFile) -> list[str]:
+    """The diagnostics of a file with their source lines, and how it was interpreted."""
+    lines = result.file.read_bytes().splitlines() if any(fault.place.line for fault in result.diagnostics) else []
+    faults = [text for fault in result.diagnostics for text in (str(fault), *_source_line(fault, lines))]
+    return [*faults, *(f"{result.file}: {line}" for line in result.reading)]
 
 
-def _with_caret(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
+def _source_line(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
     """The source line of a diagnostic, with a caret below its column."""
     line, column = diagnostic.place.line, diagnostic.place.column
     if not (column and line <= len(lines)):
@@ -132,17 +134,14 @@ def _with_caret(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
     return ["    " + shown, "    " + " " * (column - 1) + "^"]
 
 
-_HEAD = ("file", "blocks", "arcs", "length mm", "lowest X Y Z", "highest X Y Z")
-
-
-def _rows(results: tuple[Checked, ...]) -> list[str]:
+def _table(results: tuple[CheckedFile, ...]) -> list[str]:
     """A table with fitted column widths."""
-    cells = [_HEAD, *(_cells(result) for result in results)]
+    cells = [_COLUMNS, *(_cells(result) for result in results)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
 
 
-def _cells(result: Checked) -> tuple[str, ...]:
+def _cells(result: CheckedFile) -> tuple[str, ...]:
     size = result.size
     if size is None:
         return (str(result.file), "-", "-", "-", "-", "-")
@@ -150,25 +149,25 @@ def _cells(result: Checked) -> tuple[str, ...]:
     return (str(result.file), str(size.blocks), str(size.arcs), f"{size.length:.3f}", *corners)
 
 
-def as_json(results: Iterable[Checked]) -> str:
+def checks_as_json(results: Iterable[CheckedFile]) -> str:
     """Format the results as JSON: a list with one object per file."""
     return json.dumps([_entry(result) for result in results], indent=1)
 
 
-def _entry(result: Checked) -> dict[str, Any]:
+def _entry(result: CheckedFile) -> dict[str, Any]:
     size = result.size
     return {
         "file": str(result.file),
         "diagnostics": [
             {
-                "code": one.code,
-                "severity": one.severity.value,
-                "line": one.place.line,
-                "column": one.place.column,
-                "found": one.found,
-                "text": str(one),
+                "code": fault.code,
+                "severity": fault.severity.value,
+                "line": fault.place.line,
+                "column": fault.place.column,
+                "found": fault.found,
+                "text": str(fault),
             }
-            for one in result.diagnostics
+            for fault in result.diagnostics
         ],
         "reading": list(result.reading),
         "size": None

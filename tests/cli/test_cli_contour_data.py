@@ -7,7 +7,7 @@ import pytest
 
 import pkm_post
 from pkm_post.cli import main
-from pkm_post.reading.sources import Reading
+from pkm_post.reading.part_program import Reading
 
 RECTANGLE = """\
 TOOL PATH/PROFILE,TOOL,MILL_10

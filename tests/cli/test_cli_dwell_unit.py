@@ -7,7 +7,7 @@ import pytest
 from pkm_post import post
 from pkm_post.cli import main
 from pkm_post.options.choices import Options
-from pkm_post.reading.sources import Reading
+from pkm_post.reading.part_program import Reading
 
 PROGRAM = "G21 F600\nG0 X0 Y0 Z5\nG82 X1 Z4 R5 P250\nG4 P1000\nG1 X2\nM2\n"
 POSTED = ["--tool-length", "0=120", "--work-offset=0,0,250"]

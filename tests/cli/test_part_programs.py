@@ -12,8 +12,8 @@ from programs import cone, program, random_job, square_with_arc
 from pkm_post.cli import main
 from pkm_post.model import Kind, Tool
 from pkm_post.model.diagnostics import errors
-from pkm_post.reading.check import check, size_of
-from pkm_post.reading.sources import Reading, read_part_program
+from pkm_post.reading.check import check_file, size_of
+from pkm_post.reading.part_program import Reading, read_part_program
 from pkm_post.writing.convert import TARGETS, convert
 from pkm_post.writing.gcode import Form, write
 
@@ -60,7 +60,7 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path):
 
 def test_compensation_needs_a_diameter(tmp_path):
     source = saved(tmp_path / "part.ngc", "T3 M6\nG0 X0 Y0 Z0\nG41\nG1 X10 F100\nY10\nG40\nX20\nM2\n")
-    assert "G411" in [one.code for one in check(source).diagnostics]
+    assert "G411" in [one.code for one in check_file(source).diagnostics]
     result, found = read_part_program(source, Reading(tools={3: Tool(3, "", 8.0, 0.0, 0.0, corner_known=False)}))
     assert not errors(found)
     assert result.side_offset.max() == 4.0
@@ -82,7 +82,7 @@ FINI
 
 def test_cl_data_is_checked_and_converted(tmp_path):
     source, out = saved(tmp_path / "part.apt", CL_DATA), tmp_path / "part.ngc"
-    checked = check(source)
+    checked = check_file(source)
     assert checked.is_clean
     assert (checked.size.blocks, checked.size.length) == (3, 10.0)
     assert not errors(convert(source, "gcode:BC", out))

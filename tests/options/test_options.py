@@ -20,7 +20,7 @@ from pkm_post.options import (
 from pkm_post.options.choices import Options
 from pkm_post.options.conversion import tools_from
 from pkm_post.reading import cldata
-from pkm_post.reading.sources import AS_WRITTEN
+from pkm_post.reading.part_program import AS_WRITTEN
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.surface_speed import SurfaceSpeed
 

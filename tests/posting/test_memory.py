@@ -15,7 +15,7 @@ from pkm_post.options.choices import Options
 from pkm_post.planning import motion, schedule, speed_limits, speed_profile
 from pkm_post.posting.post_file import post_file
 from pkm_post.posting.run import give_back_memory
-from pkm_post.reading.sources import Reading
+from pkm_post.reading.part_program import Reading
 from pkm_post.writing import outputs
 from pkm_post.writing.controllers.pvt import reader as program_reader
 from pkm_post.writing.controllers.pvt import writer

@@ -9,9 +9,9 @@ import pytest
 from pkm_post.model import Refused
 from pkm_post.model.diagnostics import errors
 from pkm_post.posting.post_file import post_file
-from pkm_post.reading.check import check
-from pkm_post.reading.program_text import check_text
-from pkm_post.reading.sources import AS_WRITTEN, Reading, read_content
+from pkm_post.reading.check import check_file
+from pkm_post.reading.part_program import AS_WRITTEN, Reading, read_content
+from pkm_post.reading.preview import check_text
 from pkm_post.writing.gcode import Form, write
 
 MILLED = b"""%
@@ -145,7 +145,7 @@ def test_the_option_takes_what_is_there(tmp_path, name, code, reading):
     text = {"part.ngc": "S80 M3\nG0 X0 Y0 Z5\nG1 X9 F100\n", "part.apt": "UNITS/MM\nSPINDL/80,CLW\nGOTO/1,2,3\n"}[name]
     file = tmp_path / name
     file.write_text(text, encoding="ascii")
-    checked = check(file, reading)
+    checked = check_file(file, reading)
     told = [each.code for each in checked.diagnostics if each.code != "L411"]
     assert (told, checked.is_clean) == ((["V130"], True) if reading.allow_open_end else ([code], False))
     assert (checked.size is not None) == reading.allow_open_end

@@ -14,7 +14,7 @@ from pkm_post.model import Refused, Tool
 from pkm_post.model.certificate import Tolerances
 from pkm_post.options.choices import Options
 from pkm_post.posting.post_file import post_file
-from pkm_post.reading.sources import Reading
+from pkm_post.reading.part_program import Reading
 from pkm_post.writing import trajectory_file
 
 ADDON = Path(__file__).parents[2]

@@ -23,7 +23,7 @@ from pkm_post.freecad_gui.editor.reading_fields import ReadingFields
 from pkm_post.freecad_gui.editor.shown_block import ShownBlock
 from pkm_post.freecad_gui.editor.text_view import TextView
 from pkm_post.model import Program
-from pkm_post.reading import CheckedText, Language, Reading, language_of, renumbered, ways_of_line
+from pkm_post.reading import CheckedText, Language, Reading, language_of, renumbered, tip_paths_of_line
 
 translate = FreeCAD.Qt.translate
 
@@ -145,5 +145,5 @@ class Body(QtWidgets.QWidget):
         self.text.setFocus()
 
     def _show_block(self) -> None:
-        ways = [] if self.program is None else ways_of_line(self.program, self.text.current_line())
-        self._shown.show(linked.scene_of(linked.object_of(self.file)), ways)
+        paths = [] if self.program is None else tip_paths_of_line(self.program, self.text.current_line())
+        self._shown.show(linked.scene_of(linked.object_of(self.file)), paths)

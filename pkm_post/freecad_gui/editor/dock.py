@@ -20,7 +20,7 @@ from pkm_post.freecad_gui.editor.file_drop import FileDrop
 from pkm_post.freecad_gui.editor.posting import Posting
 from pkm_post.freecad_gui.editor.tool_bar import tool_bar
 from pkm_post.model import Refused
-from pkm_post.reading import SUFFIXES, Content, is_part_program
+from pkm_post.reading import SUFFIXES, TextFile, is_part_program
 from pkm_post.system import memory_guard, staged
 
 translate = FreeCAD.Qt.translate
@@ -39,7 +39,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
     def __init__(self, window: QtWidgets.QMainWindow) -> None:
         super().__init__(window)
         self.setObjectName(NAME)
-        self._content = Content()
+        self._content = TextFile()
         inside = QtWidgets.QWidget(self)
         self.body, self.posting = Body(inside), Posting(self)
         layout = QtWidgets.QVBoxLayout(inside)
@@ -68,7 +68,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         if not self._may_leave():
             return False
         try:
-            self._content = Content.of(file.read_bytes())
+            self._content = TextFile.decode(file.read_bytes())
         except OSError as fault:
             QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Open"), str(fault))
             return False
@@ -94,7 +94,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         self.body.text.edits.finish()
         try:
             with staged(file.parent) as folder:
-                (folder / file.name).write_bytes(self._content.written(self.body.text.toPlainText()))
+                (folder / file.name).write_bytes(self._content.encode(self.body.text.toPlainText()))
         except OSError as fault:
             QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Save"), str(fault))
             return False

@@ -9,7 +9,7 @@ from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_gui.editor.text_view import Mark
 from pkm_post.model import RULES, Diagnostic, Severity
-from pkm_post.reading import Language, extent
+from pkm_post.reading import Language, underlined
 
 
 class Findings(QtWidgets.QListWidget):
@@ -45,7 +45,7 @@ def marks_of(diagnostics: Sequence[Diagnostic], lines: Sequence[str], language: 
     return [
         Mark(
             each.place.line - 1,
-            *extent(lines[each.place.line - 1], each.place.column, language),
+            *underlined(lines[each.place.line - 1], each.place.column, language),
             is_error=each.severity is Severity.ERROR,
         )
         for each in diagnostics

@@ -14,7 +14,7 @@ from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_gui.editor.long_edits import LongEdits
 from pkm_post.freecad_gui.editor.margin import Margin
-from pkm_post.reading import Colour, Language, spans
+from pkm_post.reading import Colour, Language, coloured_spans
 
 LIGHT: dict[Colour, str] = {
     Colour.COMMENT: "#5c6b5c",
@@ -159,9 +159,8 @@ class TextView(QtWidgets.QPlainTextEdit):
             state = 2 * block.revision() + (self._language is Language.CLDATA)
             if block.userState() != state:
                 block.setUserState(state)
-                block.layout().setFormats([
-                    _range(span.start, span.end, formats[span.colour]) for span in spans(block.text(), self._language)
-                ])  # fmt: skip
+                spans = coloured_spans(block.text(), self._language)
+                block.layout().setFormats([_range(span.start, span.end, formats[span.colour]) for span in spans])
                 self.document().markContentsDirty(block.position(), block.length())
 
     def _select_extra(self) -> None:

@@ -13,7 +13,7 @@ from pkm_post.model import Event, EventKind
 from pkm_post.model.diagnostics import errors
 from pkm_post.options.choices import LINUXCNC, Options
 from pkm_post.posting.steps import post
-from pkm_post.reading.sources import Reading, read_part_program
+from pkm_post.reading.part_program import Reading, read_part_program
 from pkm_post.writing import trajectory_file
 
 SPINS = [ZERO_TORSION, SpinPolicy(SpinRule.X_IN_PLANE, heading=0.3)]

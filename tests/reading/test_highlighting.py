@@ -10,12 +10,12 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pkm_post.reading.grammar import BLOCK, STATEMENT, parser_of
-from pkm_post.reading.program_text import Colour, Language, language_of, spans
-from pkm_post.reading.program_text.colours import LONGEST, TABLES
+from pkm_post.reading.highlighting import LONGEST, TABLES, Colour, coloured_spans
+from pkm_post.reading.part_program import Language, language_of
 
 BLANKS = {"BLANKS", "BLANK"}
 GRAMMARS = {Language.GCODE: BLOCK, Language.CLDATA: STATEMENT}
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 
 
 def colour_of(terminal, language):
@@ -32,7 +32,7 @@ def test_every_terminal_has_one_colour_and_no_colour_a_terminal_that_is_none(lan
 def assert_coloured_as_read(line, language):
     """Every character of every token has the colour of its terminal."""
     colours = [None] * len(line)
-    for span in spans(line, language):
+    for span in coloured_spans(line, language):
         colours[span.start : span.end] = [span.colour] * (span.end - span.start)
     parsing = parser_of(GRAMMARS[language]).parse_interactive(line)
     before = ""
@@ -126,19 +126,19 @@ def test_any_block_of_words_is_coloured_as_it_is_read(words):
 @given(st.text(max_size=80), st.sampled_from(list(Language)))
 def test_any_line_has_spans_in_order(line, language):
     at = 0
-    for span in spans(line, language):
+    for span in coloured_spans(line, language):
         assert at <= span.start < span.end <= len(line)
         at = span.end
 
 
 def test_comments_and_continuation_of_cl_data():
-    found = [(span.colour, span.start) for span in spans("GOTO/1,2,$ $$ more", Language.CLDATA)]
+    found = [(span.colour, span.start) for span in coloured_spans("GOTO/1,2,$ $$ more", Language.CLDATA)]
     assert found[-1] == (Colour.COMMENT, 11)
-    assert [span.colour for span in spans("GOTO/1,$ ", Language.CLDATA)][-1] is Colour.OPERATOR
+    assert [span.colour for span in coloured_spans("GOTO/1,$ ", Language.CLDATA)][-1] is Colour.OPERATOR
 
 
 def test_a_comment_that_is_not_closed_is_a_comment():
-    assert [(span.start, span.end, span.colour) for span in spans("G1 (open X1", Language.GCODE)][-1] == (
+    assert [(span.start, span.end, span.colour) for span in coloured_spans("G1 (open X1", Language.GCODE)][-1] == (
         3,
         11,
         Colour.COMMENT,
@@ -146,14 +146,14 @@ def test_a_comment_that_is_not_closed_is_a_comment():
 
 
 def test_a_long_line_is_coloured_as_far_as_people_see_it():
-    assert max(span.end for span in spans("X1" * LONGEST, Language.GCODE)) <= LONGEST
+    assert max(span.end for span in coloured_spans("X1" * LONGEST, Language.GCODE)) <= LONGEST
 
 
 def test_lines_of_the_faulty_examples_do_not_matter_to_colours():
     chosen = random.Random(7).sample(sorted((ROOT / "tests/data/bad_gcode").glob("*.ngc")), 20)
     for file in chosen:
         for line in re.split(r"\r?\n", file.read_bytes().decode("latin-1")):
-            assert all(span.colour in Colour for span in spans(line, Language.GCODE))
+            assert all(span.colour in Colour for span in coloured_spans(line, Language.GCODE))
 
 
 def test_language_is_told_by_the_suffix():

@@ -5,7 +5,7 @@ import pytest
 
 from pkm_post.model import Tool
 from pkm_post.reading.gcode import ReadOptions, read
-from pkm_post.reading.program_end import end_warnings
+from pkm_post.reading.part_program import end_warnings
 
 OPTIONS = ReadOptions(default_tool=Tool(1, "", 6.0, 0.0, 100.0), axis_words="vector")
 IN = "G0 X0 Y0 Z50\nG0 Z2\nM3 S9000\nG1 Z-1 F100\nG1 X50\n"

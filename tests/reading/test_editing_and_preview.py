@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Texts of part programs: bytes and back, line numbers, places of diagnostics, ways of lines."""
+"""Texts of part programs: bytes and back, line numbers, places of diagnostics, tip paths of lines."""
 
 import math
 
@@ -9,17 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pkm_post.reading import gcode
-from pkm_post.reading.program_text import Content, Language, check_text, extent, renumbered, ways_of_line
-from pkm_post.reading.sources import Reading
+from pkm_post.reading.editing import TextFile, renumbered
+from pkm_post.reading.highlighting import underlined
+from pkm_post.reading.part_program import Language, Reading
+from pkm_post.reading.preview import check_text, tip_paths_of_line
 
-# Content
+# Text of a file
 
 
 @given(st.binary(max_size=60).filter(lambda content: len({b"\r\n", b"\n", b"\r"} & set(_ends(content))) <= 1))
 def test_bytes_come_back(content):
-    read = Content.of(content)
+    read = TextFile.decode(content)
     assert "\r" not in read.text
-    assert read.written(read.text) == content
+    assert read.encode(read.text) == content
 
 
 def _ends(content):
@@ -28,11 +30,11 @@ def _ends(content):
 
 
 def test_mark_line_ends_and_encoding_are_kept():
-    content = Content.of(b"\xef\xbb\xbfG1\r\nX1\r\n")
-    assert (content.text, content.line_end, content.marked) == ("G1\nX1\n", "\r\n", True)
-    latin = Content.of(b"(\xe4)\n")
-    assert latin.written("(\xe4!)\n") == b"(\xe4!)\n"
-    assert latin.written("(\u2014)\n") == "(\u2014)\n".encode()
+    content = TextFile.decode(b"\xef\xbb\xbfG1\r\nX1\r\n")
+    assert (content.text, content.line_end, content.has_byte_order_mark) == ("G1\nX1\n", "\r\n", True)
+    latin = TextFile.decode(b"(\xe4)\n")
+    assert latin.encode("(\xe4!)\n") == b"(\xe4!)\n"
+    assert latin.encode("(\u2014)\n") == "(\u2014)\n".encode()
 
 
 # Renumbering
@@ -82,7 +84,7 @@ def test_faults_of_a_text_that_is_not_saved():
     found = [
         (
             one.code,
-            lines[one.place.line - 1][slice(*extent(lines[one.place.line - 1], one.place.column, Language.GCODE))],
+            lines[one.place.line - 1][slice(*underlined(lines[one.place.line - 1], one.place.column, Language.GCODE))],
         )
         for one in checked.diagnostics
     ]
@@ -106,35 +108,35 @@ def test_an_unknown_suffix_is_a_fault_of_the_caller():
         check_text("G1", "a.txt")
 
 
-def test_extents():
+def test_underlined():
     line = "  N10 G1 X12.5 (note)  "
-    assert [line[slice(*extent(line, column, Language.GCODE))] for column in (0, 3, 7, 11, 99)] == [
+    assert [line[slice(*underlined(line, column, Language.GCODE))] for column in (0, 3, 7, 11, 99)] == [
         line.strip(),
         "N10",
         "G",
         "12.5",
         line.strip(),
     ]
-    assert extent("a\u00e9", 2, Language.GCODE) == (1, 2)
+    assert underlined("a\u00e9", 2, Language.GCODE) == (1, 2)
 
 
-# Ways
+# Tip paths
 
 
-def test_way_of_lines_and_arcs():
+def test_tip_paths_of_lines_and_arcs():
     checked = check_text("G21 G90 G17\nG0 X0 Y0 Z0\nG1 X10 F100\nG3 X0 Y10 I-10 J0\n\nG0 Z5\n", "a.ngc")
     program = checked.program
-    assert [len(ways_of_line(program, line)) for line in range(1, 8)] == [0, 1, 1, 1, 0, 1, 0]
-    assert ways_of_line(program, 3)[0] == pytest.approx(np.array([[0, 0, 0], [10, 0, 0]]))
-    (arc,) = ways_of_line(program, 4)
+    assert [len(tip_paths_of_line(program, line)) for line in range(1, 8)] == [0, 1, 1, 1, 0, 1, 0]
+    assert tip_paths_of_line(program, 3)[0] == pytest.approx(np.array([[0, 0, 0], [10, 0, 0]]))
+    (arc,) = tip_paths_of_line(program, 4)
     assert arc[[0, -1]] == pytest.approx(np.array([[10, 0, 0], [0, 10, 0]]), abs=1e-12)
     assert np.hypot(arc[:, 0], arc[:, 1]) == pytest.approx(10)
     assert arc[len(arc) // 2] == pytest.approx([10 * math.sqrt(0.5), 10 * math.sqrt(0.5), 0])
 
 
-def test_a_line_in_a_loop_has_a_way_for_each_turn():
+def test_a_line_in_a_loop_has_a_tip_path_for_each_turn():
     text = "G21 G90 G91.1\nG0 X0 Y0 Z0\n#1=0\nO1 while [#1 lt 4]\n#1=[#1+1]\nG0 X#1\nO1 endwhile\nM2\n"
-    assert [way[:, 0].tolist() for way in ways_of_line(check_text(text, "a.ngc").program, 6)] == [
+    assert [path[:, 0].tolist() for path in tip_paths_of_line(check_text(text, "a.ngc").program, 6)] == [
         [0, 1],
         [1, 2],
         [2, 3],

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Colours: classify the parts of a line for syntax highlighting.
+"""Highlighting: the coloured parts of a line of a part program, and the part that a diagnostic underlines.
 
-Enters: a line. Leaves: classified spans. The tables list for each kind the corresponding terminals of the grammars of
-record (``gcode/block.lark``, ``cldata/statement.lark``). One regular expression splits a line instead of the grammar:
-an editor colours the visible lines at every keystroke, including faulty ones. Valid lines are coloured as the grammar
-reads them; tests keep the two consistent. One exception: where the word A has the value of a sine, cosine or tangent,
-as in Asin[30], asin is taken for the function.
+Enters: a line, and the column of a diagnostic. Leaves: classified spans. The tables list for each kind the
+corresponding terminals of the grammars of record (``gcode/block.lark``, ``cldata/statement.lark``). One regular
+expression splits a line instead of the grammar: an editor colours the visible lines at every keystroke, including
+faulty ones. Valid lines are coloured as the grammar reads them; tests keep the two consistent. One exception: where the
+word A has the value of a sine, cosine or tangent, as in Asin[30], asin is taken for the function.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pkm_post.reading.program_text.languages import Language
+from pkm_post.reading.part_program import Language
 
 LONGEST = 10_000
 """Maximum number of coloured characters of a line."""
@@ -115,7 +115,7 @@ _COMPILED = {
 }
 
 
-def spans(line: str, language: Language) -> Iterator[Span]:
+def coloured_spans(line: str, language: Language) -> Iterator[Span]:
     """The coloured parts of a line, left to right, without overlap.
 
     Args:
@@ -129,3 +129,23 @@ def spans(line: str, language: Language) -> Iterator[Span]:
         if row.rest is not None:
             yield Span(match.end(), len(shown), row.rest)
             return
+
+
+def underlined(line: str, column: int, language: Language) -> tuple[int, int]:
+    """Start and end of the text a diagnostic refers to, in characters of a line.
+
+    A malformed number, such as 1..5, is taken as a whole. Without a column it is the whole line, stripped.
+
+    Args:
+        line: without its end.
+        column: from 1; 0 for the whole line.
+        language: of the line.
+    """
+    if column == 0 or column > len(line):
+        return len(line) - len(line.lstrip()), len(line.rstrip())
+    start = end = column - 1
+    colour = None
+    for span in coloured_spans(line, language):
+        if span.start <= end < span.end and colour in (None, span.colour):
+            end, colour = span.end, span.colour
+    return start, max(end, start + 1)

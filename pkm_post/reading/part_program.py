@@ -1,38 +1,51 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sources: read a part program file by its suffix.
+"""Part program: read a file of G-code or CL data by its suffix, and check the state in which it leaves the machine.
 
-Enters: a path and the tool data of the user. Leaves: a ``Program`` or the faults of the file. G-code rarely contains
-tool dimensions. That is a fault only if cutter compensation needs a diameter.
+Enters: a path and the tool data of the user. Leaves: a ``Program`` in {C}, mm, or the faults of the file, and warnings
+about a spindle left running and a tool left low. Truncated programs end like this, and so do programs that leave both
+to the operator.
+
+G-code rarely contains tool dimensions. That is a fault only if cutter compensation needs a diameter. At the end the
+tool must return to the level of the last retract: the last rapid move that rises along the tool axis, or else the first
+move, the approach.
 """
 
 from __future__ import annotations
 
+import enum
 import hashlib
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Place, Program, Tool
+from pkm_post.geometry import dot
+from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
 from pkm_post.reading import cldata, gcode
-from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
-from pkm_post.reading.program_end import end_warnings
 
-__all__ = [
-    "AS_WRITTEN",
-    "AXIS_WORDS",
-    "DWELL_UNITS",
-    "SUFFIXES",
-    "Reading",
-    "is_part_program",
-    "read_content",
-    "read_part_program",
-]
+_Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
-Result = tuple[Program | None, tuple[Diagnostic, ...]]
+_HEIGHT = 1e-3
+"""mm; smaller height differences are rounding errors."""
+_SAME_AXIS = 1 - 1e-9
+"""Cosine above which two tool axes are the same."""
+
+
+class Language(enum.Enum):
+    """Language of a part program."""
+
+    GCODE = "G-code"
+    CLDATA = "CL data"
+
+
+SUFFIXES: dict[str, Language] = {
+    **dict.fromkeys((".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".eia", ".iso"), Language.GCODE),
+    **dict.fromkeys((".cls", ".clsf", ".ncl", ".cl", ".apt", ".aptsource", ".cldata"), Language.CLDATA),
+}
+"""Languages by file suffix in lower case."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +86,19 @@ def is_part_program(file: Path) -> bool:
     return file.suffix.lower() in SUFFIXES
 
 
-def read_part_program(file: Path, reading: Reading) -> Result:
+def language_of(file: str | Path) -> Language:
+    """The language of a file.
+
+    Raises:
+        ValueError: the suffix is not that of a part program.
+    """
+    suffix = Path(file).suffix.lower()
+    if suffix not in SUFFIXES:
+        raise ValueError(f"suffix of {file}: expected one of {', '.join(SUFFIXES)}")
+    return SUFFIXES[suffix]
+
+
+def read_part_program(file: Path, reading: Reading) -> _Result:
     """Read a file.
 
     Args:
@@ -83,8 +108,9 @@ def read_part_program(file: Path, reading: Reading) -> Result:
     Raises:
         ValueError: the suffix is not known.
     """
-    _check_suffix(file)
-    name = _storable(file)
+    language_of(file)
+    # File name as Unicode for storage in results; undecodable bytes are replaced.
+    name = os.fsencode(file).decode("utf-8", "replace")
     try:
         content = file.read_bytes()
     except OSError as fault:
@@ -95,7 +121,7 @@ def read_part_program(file: Path, reading: Reading) -> Result:
     return program, diagnostics
 
 
-def read_content(content: bytes, name: str, reading: Reading) -> Result:
+def read_content(content: bytes, name: str, reading: Reading) -> _Result:
     """Read the content of a file.
 
     Args:
@@ -106,22 +132,12 @@ def read_content(content: bytes, name: str, reading: Reading) -> Result:
     Raises:
         ValueError: the suffix is not known.
     """
-    _check_suffix(Path(name))
-    program, diagnostics = SUFFIXES[Path(name).suffix.lower()](content, name, reading)
+    read = _read_gcode if language_of(name) is Language.GCODE else _read_cldata
+    program, diagnostics = read(content, name, reading)
     return program, diagnostics if program is None else (*diagnostics, *end_warnings(program))
 
 
-def _check_suffix(file: Path) -> None:
-    if not is_part_program(file):
-        raise ValueError(f"suffix of {file}: expected one of {', '.join(SUFFIXES)}")
-
-
-def _storable(file: Path) -> str:
-    """File name as Unicode for storage in results; undecodable bytes are replaced."""
-    return os.fsencode(file).decode("utf-8", "replace")
-
-
-def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
+def _read_gcode(content: bytes, file: str, reading: Reading) -> _Result:
     # NaN as diameter or length is reported where it is used.
     unknown = Tool(0, "", math.nan, 0.0, math.nan, corner_known=False)
     numbers = {*reading.tools, *reading.lengths}
@@ -139,7 +155,7 @@ def _read_gcode(content: bytes, file: str, reading: Reading) -> Result:
     )
     program, diagnostics = gcode.read(content, file, options)
     if reading.wear:
-        found = "this is G-code: say the diameter that the cutter has by --tool"
+        found = "this is G-code: give the diameter of the cutter with --tool"
         return None, (*diagnostics, Diagnostic("L432", Place(file), found))
     if program is None:
         return None, diagnostics
@@ -155,7 +171,7 @@ def _zero_where_unknown(tool: Tool) -> Tool:
     return replace(tool, diameter=float(np.nan_to_num(tool.diameter)), length=float(np.nan_to_num(tool.length)))
 
 
-def _read_cldata(content: bytes, file: str, reading: Reading) -> Result:
+def _read_cldata(content: bytes, file: str, reading: Reading) -> _Result:
     options = cldata.ReadOptions(
         dialect=reading.cl_dialect,
         units=reading.unit,
@@ -168,8 +184,33 @@ def _read_cldata(content: bytes, file: str, reading: Reading) -> Result:
     return cldata.read(content, file, options)
 
 
-SUFFIXES: dict[str, Callable[[bytes, str, Reading], Result]] = {
-    **dict.fromkeys((".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".eia", ".iso"), _read_gcode),
-    **dict.fromkeys((".cls", ".clsf", ".ncl", ".cl", ".apt", ".aptsource", ".cldata"), _read_cldata),
-}
-"""Readers by file suffix in lower case."""
+def end_warnings(program: Program) -> tuple[Diagnostic, ...]:
+    """Warnings about the end of a program of at least one row."""
+    return (*_turning(program), *_low(program))
+
+
+def _turning(program: Program) -> Iterator[Diagnostic]:
+    speeds = [event.value for event in program.events if event.kind is EventKind.SPINDLE]
+    if speeds and speeds[-1]:
+        yield Diagnostic("V130", program.place(len(program) - 1), f"{abs(speeds[-1]):g} rpm")
+
+
+def _low(program: Program) -> Iterator[Diagnostic]:
+    """Warn of a tool that ends below its last retract, measured along the final tool axis."""
+    axis, last = program.tool_axis[-1], len(program) - 1
+    retract = _last_retract(program)
+    below = float(dot(program.position[retract] - program.position[-1], axis))
+    has_cut = bool((program.kind[retract + 1 :] != Kind.RAPID).any())
+    comparable = has_cut or float(dot(program.tool_axis[retract], axis)) > _SAME_AXIS
+    if below > _HEIGHT and comparable:
+        at = program.place(retract)
+        found = f"{below:.6g} mm lower than after the retract in line {at.line}" if at.line else f"{below:.6g} mm lower"
+        yield Diagnostic("V131", program.place(last), found)
+
+
+def _last_retract(program: Program) -> int:
+    """The row of the last rapid move that rises along its tool axis, or else the first row."""
+    rapid = np.flatnonzero(program.kind[1:] == Kind.RAPID) + 1
+    rise = dot(program.position[rapid] - program.position[rapid - 1], program.tool_axis[rapid])
+    rising = rapid[rise > _HEIGHT]
+    return int(rising[-1]) if len(rising) else 0
