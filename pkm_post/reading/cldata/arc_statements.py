@@ -45,7 +45,7 @@ def circle(state: ReaderState, row: int, statement: Statement) -> None:
     counts = _COUNTS[statement.word]
     if len(values) != len(items) or len(values) not in counts:
         expected = ", ".join(map(str, counts[:-1])) + " or " if len(counts) > 1 else ""
-        state.report("L402", row, f"{statement.word}/{statement.items_text()}, expected {expected}{counts[-1]} values")
+        state.report_items(row, statement, f"{expected}{counts[-1]} values")
         return
     if not 0 <= turns <= MAX_TURNS or turns != int(turns):
         state.report("L403", row, f"TIMES,{turns + 1:g}")
@@ -65,7 +65,7 @@ def movarc(state: ReaderState, row: int, statement: Statement) -> None:
     """MOVARC/x,y,z,i,j,k,r[,ANGLE,a] and MOVARC/CENTER,x,y,z,AXIS,i,j,k,RADIUS,r[,ANGLE,a]."""
     values = _values_by_word(statement)
     if values is None or not {"CENTER", "AXIS"} <= values.keys():
-        state.report("L402", row, f"MOVARC/{statement.items_text()}, expected x,y,z,i,j,k,r,ANGLE,a")
+        state.report_items(row, statement, "x,y,z,i,j,k,r,ANGLE,a")
         return
     angle = math.radians(abs(values["ANGLE"][0])) if "ANGLE" in values else math.nan
     if angle > 2 * math.pi * (1 + 1e-9):
@@ -132,7 +132,7 @@ def arcmov(state: ReaderState, row: int, statement: Statement) -> None:
                 _arcmov(state, row, arc, data.rise, start, np.array([x, y, z]), math.radians(angle))
         case _:
             expected = "CLW or CCLW,x,y,z,angle after ARCDAT"
-            state.report("L402", row, f"ARCMOV/{statement.items_text()}, expected {expected}")
+            state.report_items(row, statement, expected)
 
 
 def _arcmov(state: ReaderState, row: int, arc: Arc, rise: float, start: Array, end: Array, angle: float) -> None:

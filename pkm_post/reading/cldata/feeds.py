@@ -7,6 +7,7 @@ Enters: statements. Leaves: feeds in mm/s and events. A feed per revolution foll
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from pkm_post.model import EventKind
 from pkm_post.reading.cldata.options import UNITS
@@ -53,9 +54,7 @@ def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
     words = [item for item in items if isinstance(item, str)]
     units = [word for word in words if word in FEED_WORDS]
     if len(numbers) > 1 or len(units) > 1 or not set(words) <= FEED_WORDS | _FEED_MODES:
-        state.report(
-            "L402", row, f"FEDRAT/{statement.items_text()}, expected one number and one of {_list(FEED_WORDS)}"
-        )
+        state.report_items(row, statement, f"one number and one of {_list(FEED_WORDS)}")
     elif numbers and not numbers[0] > 0:
         state.report("L403", row, f"feed {numbers[0]:g}")
     elif numbers:
@@ -76,16 +75,15 @@ def spindl(state: ReaderState, row: int, statement: Statement) -> None:
     numbers = [item for item in items if isinstance(item, float)]
     words = {item for item in items if isinstance(item, str)}
     if len(numbers) > 1 or not words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS} or not statement.items:
-        state.report("L402", row, f"SPINDL/{statement.items_text()}, expected one number, RPM, SFM or SMM, CLW or CCLW")
+        state.report_items(row, statement, "one number, RPM, SFM or SMM, CLW or CCLW")
         return
     sense = next((_SENSES[word] for word in ("CLW", "CCLW") if word in words), state.spindle_sense or 1.0)
     if numbers and not _new_speed(state, row, numbers[0], words):
         return
     stopped = bool(words & {"OFF", "ORIENT", "LOCK", "NEUTRL"}) or (not words and not numbers)
     state.spindle_sense = 0.0 if stopped and not numbers else sense
-    state.events.append(
-        (row, EventKind.SPINDLE, state.spindle_sense * state.spindle_speed if state.spindle_sense else 0.0)
-    )
+    speed = state.spindle_sense * state.spindle_speed if state.spindle_sense else 0.0
+    state.events.append((row, EventKind.SPINDLE, speed))
     if state.feed_per_turn:
         state.set_feed(row, Feed(state.feed_per_turn * state.spindle_speed / 60))
 
@@ -104,7 +102,7 @@ def coolnt(state: ReaderState, row: int, statement: Statement) -> None:
     """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; a following pressure is ignored."""
     word = next(iter(statement.words), "")
     if word not in _COOLANT:
-        state.report("L402", row, f"COOLNT/{statement.items_text()}, expected {_list(_COOLANT)}")
+        state.report_items(row, statement, _list(_COOLANT))
         return
     state.events.append((row, EventKind.COOLANT, _COOLANT[word]))
 
@@ -113,7 +111,7 @@ def delay(state: ReaderState, row: int, statement: Statement) -> None:
     """DELAY/seconds or DELAY/turns,REV."""
     numbers, turns = statement.numbers, "REV" in statement.words
     if len(numbers) != 1 or not set(statement.words) <= {"REV"}:
-        state.report("L402", row, f"{statement.word}/{statement.items_text()}, expected seconds, or turns and REV")
+        state.report_items(row, statement, "seconds, or turns and REV")
     elif numbers[0] < 0 or (turns and not state.spindle_speed):
         state.report(
             "L403", row, f"{statement.word} {numbers[0]:g}" + (" revolutions of a stopped spindle" if turns else "")
@@ -142,5 +140,5 @@ def _without_pairs(statement: Statement, names: frozenset[str]) -> list[object]:
     return items
 
 
-def _list(words: object) -> str:
-    return ", ".join(sorted(words))  # type: ignore[call-overload]
+def _list(words: Iterable[str]) -> str:
+    return ", ".join(sorted(words))

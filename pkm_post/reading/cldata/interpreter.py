@@ -32,11 +32,11 @@ from pkm_post.reading.cldata.check_surface import autops, indirp, indirv, psis, 
 from pkm_post.reading.cldata.cutcom import cutcom, geometry_type, points_comment
 from pkm_post.reading.cldata.cycle_statement import cycle
 from pkm_post.reading.cldata.feeds import coolnt, delay, fedrat, rapid, spindl, stop
-from pkm_post.reading.cldata.frames import machining_frame, origin, trans, trntyp, units
 from pkm_post.reading.cldata.points import from_or_godlta, goto, multax, numbers_only, tlaxis
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement, Statements
 from pkm_post.reading.cldata.tools import cutter, insert, load, tldata
+from pkm_post.reading.cldata.units_and_frames import machining_frame, origin, trans, trntyp, units
 
 _LARGEST = 1e9
 """Numbers beyond this are not plausible lengths, feeds or speeds."""

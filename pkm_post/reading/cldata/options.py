@@ -59,7 +59,7 @@ _SEARCHED = 200_000
 """Characters of a file searched to detect its dialect."""
 
 
-def detect(text: str) -> Dialect:
+def detect_dialect(text: str) -> Dialect:
     """The dialect matched by most lines at the start of a text; "apt" if none matches."""
     head = text[:_SEARCHED]
     counts = {

@@ -15,14 +15,14 @@ from pkm_post.reading.cldata.cutcom import cutcom_offsets
 from pkm_post.reading.cldata.cycle_statement import cycle_descriptions
 from pkm_post.reading.cldata.faults import Faults
 from pkm_post.reading.cldata.interpreter import interpret
-from pkm_post.reading.cldata.length_unit import length_unit
 from pkm_post.reading.cldata.logical_lines import LONGEST_LINE, decoded, logical_lines, without_long_lines
-from pkm_post.reading.cldata.options import DIALECTS, ReadOptions, detect
+from pkm_post.reading.cldata.options import DIALECTS, ReadOptions, detect_dialect
 from pkm_post.reading.cldata.points import Points, ValueNames, all_points, bulk_rows, resolve_points
 from pkm_post.reading.cldata.program import build_program
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import scan
 from pkm_post.reading.cldata.tools import record_tool
+from pkm_post.reading.cldata.units_and_frames import length_unit
 
 _LARGE_INCHES = 2000.0
 """mm; a larger part in inches is more likely in mm."""
@@ -50,7 +50,7 @@ def read(
     for line, size in too_long:
         faults.add("L104", (line, 0), f"a line of {size} bytes, at most {LONGEST_LINE}")
     whole = decoded(text)
-    dialect = DIALECTS[options.dialect] if options.dialect else detect(whole)
+    dialect = DIALECTS[options.dialect] if options.dialect else detect_dialect(whole)
     statements = scan(logical_lines(whole), faults)
     bulk, names = bulk_rows(statements, options, dialect)
     unit = length_unit(statements, whole)

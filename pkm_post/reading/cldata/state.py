@@ -12,11 +12,27 @@ from dataclasses import dataclass, field
 from pkm_post.model import Array, EventKind, Tool
 from pkm_post.reading.cldata.cycle_notation import Cycle
 from pkm_post.reading.cldata.faults import Faults
-from pkm_post.reading.cldata.length_unit import LengthUnit
 from pkm_post.reading.cldata.options import UNITS, Dialect, ReadOptions
 from pkm_post.reading.cldata.statements import Statement, Statements
 
 Vector = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class LengthUnit:
+    """The unit of a file.
+
+    Attributes:
+        name: a key of ``options.UNITS``; empty if the file does not define it.
+        evidence: the defining words and their location; or why there is no unit.
+        stated: whether UNITS defines it.
+        contradiction: a feed of the other unit, empty if there is none.
+    """
+
+    name: str
+    evidence: str
+    stated: bool = False
+    contradiction: str = ""
 
 
 @dataclass(frozen=True)
@@ -187,13 +203,16 @@ class ReaderState:
         """Report a fault of a statement."""
         self.faults.add(code, self.statements.place(row), found)
 
+    def report_items(self, row: int, statement: Statement, expected: str) -> None:
+        """Report a statement whose items are not those expected."""
+        self.report("L402", row, f"{statement.word}/{statement.items_text()}, expected {expected}")
+
     def expect_values(self, row: int, statement: Statement, *counts: int) -> list[float]:
         """The values of a statement; empty, with a fault, unless their number is one of the counts."""
         values = statement.values
         if len(values) in counts:
             return values
-        expected = " or ".join(map(str, counts))
-        self.report("L402", row, f"{statement.word}/{statement.items_text()}, expected {expected} values")
+        self.report_items(row, statement, f"{' or '.join(map(str, counts))} values")
         return []
 
     def set_feed(self, row: int, feed: Feed) -> None:

@@ -22,7 +22,7 @@ def cutter(state: ReaderState, row: int, statement: Statement) -> None:
     """CUTTER/d[,r[,e,f,a,b,h]], angles in degrees; e and f follow from the others."""
     numbers = statement.numbers
     if not numbers or statement.words:
-        state.report("L402", row, f"CUTTER/{statement.items_text()}, expected d[,r[,e,f,a,b,h]]")
+        state.report_items(row, statement, "d[,r[,e,f,a,b,h]]")
         return
     d, r, e, f, a, b = _padded(numbers, 6)
     if not _new_cutter(state, row, d, r, a, b):
@@ -36,7 +36,7 @@ def tldata(state: ReaderState, row: int, statement: Statement) -> None:
     """TLDATA/MILL,d,r,length,taper,tip,... and TLDATA/DRILL,MILL,d,...: only the diameter of the latter."""
     numbers = statement.numbers
     if not numbers:
-        state.report("L402", row, f"TLDATA/{statement.items_text()}, expected a diameter")
+        state.report_items(row, statement, "a diameter")
         return
     given = numbers[:1] if "DRILL" in statement.words else numbers
     d, r, _, taper, tip = _padded(given, 5)
@@ -85,7 +85,7 @@ def load(state: ReaderState, row: int, statement: Statement) -> None:
         return
     number = next(iter(items[1:] if statement.word == "LOAD" else items), None)
     if not isinstance(number, float) or number != int(number) or not 0 <= number < 2**31:
-        state.report("L402", row, f"{statement.word}/{statement.items_text()}, expected the number of a tool")
+        state.report_items(row, statement, "the number of a tool")
         return
     record_tool_if_used(state, row)
     length = _after(statement, "LENGTH") * state.scale

@@ -7,7 +7,7 @@ import pytest
 from pkm_post.geometry import arc_sweep
 from pkm_post.model import EventKind, Kind
 from pkm_post.model.diagnostics import errors
-from pkm_post.reading.cldata import DIALECTS, ReadOptions, detect, read
+from pkm_post.reading.cldata import DIALECTS, ReadOptions, detect_dialect, read
 
 MICRON = 1e-3
 
@@ -127,7 +127,7 @@ SAMPLES = {"creo": CREO, "nx": NX, "catia": CATIA, "solidworks": SOLIDWORKS, "ma
 @pytest.mark.parametrize("name", sorted(SAMPLES))
 def test_every_dialect_says_the_same_part(name):
     assert set(SAMPLES) == set(DIALECTS)
-    assert detect(SAMPLES[name]).name == name
+    assert detect_dialect(SAMPLES[name]).name == name
     program, diagnostics = read(SAMPLES[name], name)
     assert not errors(diagnostics)
     assert program.kind.tolist() == [Kind.RAPID, Kind.ARC, Kind.LINE]

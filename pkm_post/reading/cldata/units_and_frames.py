@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Units and frames: UNITS, MSYS, CSYS, CATIA's matrix, ORIGIN, TRANS and TRACUT.
+"""Length unit and frames: UNITS, MSYS, CSYS, CATIA's matrix, ORIGIN, TRANS and TRACUT.
+
+UNITS decides on the length unit. Without it the unit of the feeds applies, or a comment that names the units; if these
+disagree or are absent, the unit is unknown.
 
 Enters: statements. Leaves: 4 x 4 matrices that transform points of the file, in mm, to the work frame. That is the
 first machining frame of the file, or the frame those are defined in: matrix = shift @ inverse(first) @ active.
@@ -7,23 +10,82 @@ first machining frame of the file, or the frame those are defined in: matrix = s
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.cldata.length_unit import UNIT_WORDS
 from pkm_post.reading.cldata.options import UNITS
-from pkm_post.reading.cldata.state import ReaderState
-from pkm_post.reading.cldata.statements import Statement
+from pkm_post.reading.cldata.state import LengthUnit, ReaderState
+from pkm_post.reading.cldata.statements import Statement, Statements
 
+_UNIT_WORDS: dict[str, str] = {"MM": "mm", "INCHES": "inch", "INCH": "inch", "IN": "inch"}
+"""Operands of UNITS."""
+_FEED_UNITS: dict[str, str] = {
+    **dict.fromkeys(("MMPM", "MMPR"), "mm"),
+    **dict.fromkeys(("IPM", "IPR", "FPM", "FPR"), "inch"),
+}
+_WITH_FEEDS = ("FEDRAT", "CYCLE")
+_UNITS_COMMENT = re.compile(
+    r"^[ \t]*(?:\$\$|PPRINT\b|REMARK\b)[^\n]*\bUNITS?\b[ \t]*[:=/]?[ \t]*"
+    r"(MM|MILLIMET(?:ER|RE)S?|IN|INCH|INCHES)[ \t.]*$",
+    re.MULTILINE | re.IGNORECASE,
+)
 _AXIS_TOLERANCE = 1e-3
 """Tolerance of frame axes from unit length and right angles."""
 
 
+def length_unit(statements: Statements, text: str) -> LengthUnit:
+    """Determine the length unit of a file.
+
+    Args:
+        statements: of the file; those after FINI are ignored.
+        text: the same with its comments.
+    """
+    end = next(iter(_rows(statements, "FINI")), len(statements))
+    feeds = _first_words(statements, _WITH_FEEDS, _FEED_UNITS, end)
+    stated = _first_words(statements, ("UNITS", "UNIT"), _UNIT_WORDS, end)
+    if stated:
+        row, name = min((row, name) for name, (row, _) in stated.items())
+        other = next((words for unit, (_, words) in feeds.items() if unit != name), "")
+        return LengthUnit(name, stated[name][1], stated=True, contradiction=other)
+    votes = {name: words for name, (_, words) in feeds.items()}
+    for comment in _UNITS_COMMENT.finditer(text):
+        name = "mm" if comment[1].upper().startswith("M") else "inch"
+        votes.setdefault(name, f"the comment in line {text.count(chr(10), 0, comment.start()) + 1}")
+    if len(votes) == 1:
+        return LengthUnit(*next(iter(votes.items())))
+    words = " and ".join(votes.values()) or "no feed in MMPM or IPM"
+    return LengthUnit("", f"there is no UNITS, and {words}")
+
+
+def _rows(statements: Statements, word: str) -> list[int]:
+    """The statements with a major word."""
+    templates = [index for index, template in enumerate(statements.templates) if template.word == word]
+    rows: list[int] = np.flatnonzero(np.isin(statements.template, templates)).tolist()
+    return rows
+
+
+def _first_words(
+    statements: Statements, majors: tuple[str, ...], table: dict[str, str], end: int
+) -> dict[str, tuple[int, str]]:
+    """By unit, the first statement before a row that contains one of its words, and the words."""
+    first: dict[str, tuple[int, str]] = {}
+    for index, template in enumerate(statements.templates):
+        items = template.items if template.word in majors else ()
+        words = [item for item in items if isinstance(item, str) and item in table]
+        for row in np.flatnonzero(statements.template == index)[:1].tolist() if words else []:
+            unit, line = table[words[0]], statements.place(row)[0]
+            if row < end and row < first.get(unit, (end, ""))[0]:
+                first[unit] = row, f"{template.word}/{words[0]} in line {line}"
+    return first
+
+
 def units(state: ReaderState, row: int, statement: Statement) -> None:
     """UNITS/MM or INCHES; an option takes precedence."""
-    name = UNIT_WORDS.get(next(iter(statement.words), ""))
+    name = _UNIT_WORDS.get(next(iter(statement.words), ""))
     if name is None:
-        state.report("L402", row, f"{statement.word}/{statement.items_text()}, expected MM or INCHES")
+        state.report_items(row, statement, "MM or INCHES")
         return
     if state.options.units is None:
         state.unit, state.scale = name, UNITS[name]
