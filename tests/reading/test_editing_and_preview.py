@@ -59,7 +59,7 @@ def test_renumbering_twice_is_renumbering_once(text, first, step):
 @given(_LINES)
 def test_renumbering_changes_nothing_of_the_program(text):
     read = [gcode.read(each, "part.ngc", gcode.ReadOptions()) for each in (text, renumbered(text))]
-    assert [[(one.code, one.place.line) for one in told] for _, told in read][0] == [
+    assert [[(one.code, one.place.line) for one in diagnostics] for _, diagnostics in read][0] == [
         (one.code, one.place.line) for one in read[1][1]
     ]
     if read[0][0] is not None:

@@ -156,7 +156,7 @@ def test_lines_of_the_faulty_examples_do_not_matter_to_colours():
             assert all(span.colour in Colour for span in coloured_spans(line, Language.GCODE))
 
 
-def test_language_is_told_by_the_suffix():
+def test_language_by_suffix():
     assert [language_of(name) for name in ("a.NGC", "b.tap", "c.cls", "d.aptsource")] == [
         Language.GCODE,
         Language.GCODE,

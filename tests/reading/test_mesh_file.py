@@ -56,7 +56,7 @@ def test_damaged_files_are_refused(content, line, found):
     assert found in fault.found
 
 
-def test_other_kinds_of_files_are_refused_by_name_and_missing_ones_told(tmp_path):
+def test_other_kinds_of_files_are_refused_by_name_and_missing_ones_reported(tmp_path):
     for name, code in (("part.obj", "K138"), ("part", "K138"), ("none.stl", "F103")):
         mesh, (fault,) = read_mesh(tmp_path / name)
         assert mesh is None and fault.code == code and name in fault.place.file

@@ -38,7 +38,7 @@ class Drilled:
 
 @dataclass
 class Heights:
-    """A cycle in the words of nobody: heights above the point, mm, None for the height before the first hole."""
+    """A cycle in no system's words: heights above the point, mm, None for the height before the first hole."""
 
     depth: float
     clear: float
@@ -97,24 +97,24 @@ class ByHand:
             self.initial = None
 
     def heights(self, items):
-        said = {word: self.number(after) for word, after in zip(items, [*items[1:], ""], strict=True)}
-        step = next((said[word] for word in ("STEP", "INCR", "SUBPECK") if word in said), None)
+        values = {word: self.number(after) for word, after in zip(items, [*items[1:], ""], strict=True)}
+        step = next((values[word] for word in ("STEP", "INCR", "SUBPECK") if word in values), None)
         if self.maker == "nx":
-            depth, clear = -said["FEDTO"], said.get("RAPTO", said.get("CLEAR"))
-            start, back = clear, None if said.get("RTRCTO") == "AUTO" else said.get("RTRCTO", clear)
+            depth, clear = -values["FEDTO"], values.get("RAPTO", values.get("CLEAR"))
+            start, back = clear, None if values.get("RTRCTO") == "AUTO" else values.get("RTRCTO", clear)
         elif self.maker == "creo":
-            depth, clear = said["DEPTH"], said["CLEAR"]
-            start, back = clear - said.get("RAPTO", 0), said.get("RETURN", clear)
+            depth, clear = values["DEPTH"], values["CLEAR"]
+            start, back = clear - values.get("RAPTO", 0), values.get("RETURN", clear)
             back = None if back == 0 else back
         else:
-            depth, clear = said["FEDTO"], said["RAPTO"]
-            start, back = clear, said.get("RTRCTO", None if self.returns == "INIT" else clear)
+            depth, clear = values["FEDTO"], values["RAPTO"]
+            start, back = clear, values.get("RTRCTO", None if self.returns == "INIT" else clear)
             back = clear if self.returns == "CLEAR" else back
-        pecks = self.pecks(depth, said.get("1STPECK", step), step) if step else [depth]
+        pecks = self.pecks(depth, values.get("1STPECK", step), step) if step else [depth]
         lengths = [length * self.scale for length in (depth, clear, start)]
         height = None if back is None else max(back, clear) * self.scale
         kinds = {"DEEP", "DEEP2", "BRKCHP"} & set(items)
-        feed = said.get("MMPM", self.feed)
+        feed = values.get("MMPM", self.feed)
         pecks = [peck * self.scale for peck in pecks] if kinds else lengths[:1]
         return Heights(*lengths, height, pecks, "BRKCHP" not in kinds, bool({"REAM", "BORE"} & set(items)), feed)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every form of an arc against the same arc written as CIRCLE with its end behind it, and against hand-made numbers."""
+"""Every form of an arc against the same arc written as CIRCLE with its end after it, and against hand-made numbers."""
 
 import numpy as np
 import pytest
@@ -95,7 +95,7 @@ def test_on_a_plane_through_the_axis(circle):
 
 
 def test_on_a_plane_through_two_points_of_the_circle(circle):
-    """Of the two crossings the number says which one."""
+    """The number selects one of the two intersections."""
     other = np.random.default_rng(7).uniform(0.1, 6.1)
     number = 1 if circle.angle < other else 2
     normal = unit(np.cross(circle.axis, circle.at(other) - circle.at(circle.angle))) + 0.3 * circle.axis

@@ -115,8 +115,8 @@ def programs(dialect):
     """Programs of a dialect, each with its text, the reader by hand, and what the product makes of it."""
     for seed in range(PROGRAMS):
         text = Writer(dialect, [seed, len(dialect)]).text()
-        program, told = read(text, "part.cl", ReadOptions(dialect=dialect))
-        assert not errors(told), text + "\n".join(map(str, told))
+        program, diagnostics = read(text, "part.cl", ReadOptions(dialect=dialect))
+        assert not errors(diagnostics), text + "\n".join(map(str, diagnostics))
         yield text, ByHand(MAKERS[dialect], text), program
 
 
@@ -193,10 +193,10 @@ def test_upright_series_are_those_of_canned_cycles():
         for x, y, z, clear, depth in random.integers(1, 25, (random.integers(1, 7), 5)).tolist():
             cl += [f"CYCLE/DRILL,RAPTO,{clear},FEDTO,{-depth},MMPM,100{back}", f"GOTO/{x},{y},{z}"]
             nc += [f"G81 X{x} Y{y} R{z + clear} Z{z - depth} F100"]
-        drilled, told = read("\n".join(cl), "part.cls", ReadOptions(dialect="nx"))
-        assert not errors(told)
-        canned, told = gcode.read("\n".join([*nc, "G80", "M2"]), "part.ngc")
-        assert not errors(told)
+        drilled, diagnostics = read("\n".join(cl), "part.cls", ReadOptions(dialect="nx"))
+        assert not errors(diagnostics)
+        canned, diagnostics = gcode.read("\n".join([*nc, "G80", "M2"]), "part.ngc")
+        assert not errors(diagnostics)
         assert tips(drilled) == pytest.approx(tips(canned), abs=NANOMETRE), cl
 
 
@@ -222,8 +222,8 @@ def test_any_cycle_gives_a_program_or_diagnostics():
             lines += [f"CYCLE/{','.join(items)}", "GOTO/1,2,3", "GOTO/4,5,6,.1,0,.995"]
         names = ((), ("depth", "feed", "clearance"))[random.integers(2)]
         options = ReadOptions(dialect=random.choice([None, "nx", "creo", "solidworks", "catia"]), cycle_values=names)
-        program, told = read("\n".join(lines), "part.cl", options)
-        assert (program is None) == bool(errors(told)), lines
+        program, diagnostics = read("\n".join(lines), "part.cl", options)
+        assert (program is None) == bool(errors(diagnostics)), lines
         if program is not None:
             kept += 1
             assert np.isfinite(program.position).all()

@@ -46,7 +46,7 @@ def test_bad_programs_give_the_stated_diagnostics(path):
         ("GOTO/1,2,3)", "')'"),
     ],
 )
-def test_diagnostics_tell_what_was_found_and_expected(line, found):
+def test_diagnostics_state_what_was_found_and_expected(line, found):
     (fault,) = read(line, "part.cl")[1]
     assert fault.found == found
 
@@ -56,7 +56,7 @@ def test_every_terminal_has_words():
     assert terminals - {"BLANK", "TEXT"} <= {name for names in EXPECTED.values() for name in names}
 
 
-def test_a_hundred_errors_are_told_and_the_others_counted():
+def test_a_hundred_errors_are_reported_and_the_others_counted():
     diagnostics = read("GOTO/;\n" * 250, "part.cl")[1]
     assert len(diagnostics) == MAX_REPORTED + 1
     assert (diagnostics[-1].code, diagnostics[-1].found) == ("L199", "and 150 more")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The unit of length: each word that says it, alone, with each other one, and with the option."""
+"""The unit of length: each word that gives it, alone, with each other one, and with the option."""
 
 import itertools
 import re
@@ -73,7 +73,7 @@ def test_a_comment_says_the_unit_of_a_file_without_units(comment):
 @pytest.mark.parametrize("units, feed", list(itertools.product(UNITS, FEEDS)))
 def test_units_go_before_the_unit_of_a_feed_which_keeps_its_own(units, feed):
     unit, speed = FEEDS[feed]
-    for lines in ((units,), ("PAINT/PATH", units)):  # behind the tool and the frame, which are in this unit as well
+    for lines in ((units,), ("PAINT/PATH", units)):  # after the tool and the frame, which are in this unit as well
         program, codes, _ = found(text(*lines, feed=feed))
         assert_in(program, UNITS[units])
         assert program.feed[1] == pytest.approx(speed)

@@ -98,7 +98,7 @@ def test_points_follow_on_lines_of_their_own():
     assert mapped.normal[2].tolist() == [1, 0, 0]
 
 
-def test_text_for_the_post_processor_is_told_once():
+def test_text_for_the_post_processor_is_reported_once():
     text = "INSERT M8\nGOTO/1,0,0\nINSERT/M9\n"
     diagnostics = read(HEAD + text, "part.cl")[1]
     assert [(fault.code, fault.found, fault.place.line) for fault in diagnostics] == [("L404", "INSERT, 2 times", 6)]
@@ -267,9 +267,9 @@ def test_numbers_without_words_are_what_an_option_says(names, cycle, z, feed, di
     options = ReadOptions(dialect=dialect, cycle_values=tuple(names.split()))
     if dialect == "nx":
         cycle = cycle.replace("DEEP", "DRILL,DEEP")
-    found, told = read(f"{HEAD}GOTO/0,0,30\nCYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", "part.cl", options)
+    found, diagnostics = read(f"{HEAD}GOTO/0,0,30\nCYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", "part.cl", options)
     if z is None:
-        assert [fault.code for fault in errors(told)] == ["L412" if names else "L420"]
+        assert [fault.code for fault in errors(diagnostics)] == ["L412" if names else "L420"]
     else:
         assert found.position[2:, 2] == pytest.approx(z)
         assert found.feed[4] == pytest.approx(feed)
@@ -297,9 +297,9 @@ def test_numbers_without_words_are_what_an_option_says(names, cycle, z, feed, di
     ],
 )  # fmt: skip
 def test_cycles_that_are_refused(dialect, cycle, code):
-    found, told = read(f"{HEAD}CYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", "part.cl", ReadOptions(dialect=dialect))
+    found, diagnostics = read(f"{HEAD}CYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", "part.cl", ReadOptions(dialect=dialect))
     assert found is None
-    assert [fault.code for fault in errors(told)] == [code]
+    assert [fault.code for fault in errors(diagnostics)] == [code]
 
 
 def test_words_may_follow_numbers():
@@ -348,8 +348,8 @@ def test_tools_are_kept_apart():
     ],
 )  # fmt: skip
 def test_words_that_would_change_the_motion_are_refused(statement, code):
-    found, told = read(f"{HEAD}{statement}\nRAPID\nGOTO/7,0,1\n", "part.cl")
-    assert [fault.code for fault in errors(told)] == ([code] if code else [])
+    found, diagnostics = read(f"{HEAD}{statement}\nRAPID\nGOTO/7,0,1\n", "part.cl")
+    assert [fault.code for fault in errors(diagnostics)] == ([code] if code else [])
     assert (found is None) == bool(code)
 
 
@@ -361,7 +361,7 @@ def test_increments_between_holes_count_from_point_to_point():
 
 
 @pytest.mark.parametrize(
-    "options, cycles, told",
+    "options, cycles, descriptions",
     [
         ({"dialect": "nx"}, ["DRILL,RAPTO,2,FEDTO,-5"], ["5: words of NX, as the option says"]),
         ({}, ["DRILL,FEDTO,5,RAPTO,2"] * 3, ["5 and 2 more: words of NCCS PostWorks, by themselves"]),
@@ -375,11 +375,11 @@ def test_increments_between_holes_count_from_point_to_point():
         ),
     ],
 )
-def test_the_program_tells_whose_words_its_cycles_were_taken_for(options, cycles, told):
+def test_the_program_describes_how_its_cycles_were_read(options, cycles, descriptions):
     text = "UNITS/MM\nLOADTL/1,LENGTH,100\nFEDRAT/600,MMPM\nGOTO/0,0,9\n"
     text += "".join(f"CYCLE/{cycle}\nGOTO/0,0,0\n" for cycle in cycles)
     lines = [line for line in program(text, **options).reading if line.startswith("CYCLE")]
-    assert lines == [f"CYCLE in line {one}" for one in told]
+    assert lines == [f"CYCLE in line {one}" for one in descriptions]
 
 
 def test_a_dialect_that_shows_says_whose_words_cycles_have():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Scanning CL data: the fast way and the grammar agree; lines, columns and encodings are kept."""
+"""Statements: the scan agrees with the grammar; lines, columns and encodings are kept."""
 
 import numpy as np
 import pytest
@@ -38,7 +38,7 @@ def leaves(tree):
 
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(st.lists(statements(), min_size=1, max_size=8))
-def test_the_fast_way_and_the_grammar_agree(written):
+def test_scan_agrees_with_the_grammar(written):
     text = "\n".join(written)
     faults = Faults("part.cl")
     table = scan(logical_lines(text), faults)
@@ -69,7 +69,7 @@ def test_continued_statements_keep_their_lines():
     assert [(fault.code, str(fault.place)) for fault in diagnostics] == [("L101", "part.cl: line 6:5")]
 
 
-def test_text_goes_on_behind_a_tilde():
+def test_a_tilde_continues_text():
     table = scan(logical_lines("TPRINT/one, ~\ntwo ~  \nthree\nGOTO/1,2,3\nPPRINT a ~ b\nRAPID"), Faults("part.cl"))
     assert [template.word for template in table.templates] == ["TPRINT", "GOTO", "PPRINT", "RAPID"]
     assert table.statement(0).text == "one, two three"

@@ -29,13 +29,13 @@ HEADS = {
     "makino": "PPRINT/APTCL-SPEC,MAKINO-FF,1\nPPRINT/BEGIN-SECTION,DEFINE\nCUTTER/10\nLOAD/TOOL,1\n",
     "apt": "PARTNO P\nCUTTER/10\nLOADTL/1\n",
 }
-SAID = {
+COMMENTS = {
     ("nx", "centre"): "$$ centerline data\n",
     ("nx", "contour"): "$$ contact contour data\n",
     ("creo", "centre"): "$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER\n",
     ("creo", "contour"): "$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_PROFILE\n",
 }
-"""What a file says of its points, by dialect."""
+"""What a file states about its points, by dialect."""
 
 
 def pocket(seed):
@@ -47,13 +47,13 @@ def pocket(seed):
     return np.round(40 * np.stack([np.cos(angle), np.sin(angle)], axis=1), 4)
 
 
-def written(dialect, corners, side, said=""):
+def written(dialect, corners, side, comment=""):
     """A file: from the middle to the first line of a pocket, round it, and back."""
     first = (corners[0] + corners[1]) / 2
     round_it = np.roll(corners, -1, axis=0)
     points = [first, *(round_it if side == "LEFT" else round_it[::-1]), first]
     goto = "".join(f"GOTO/{x:.4f},{y:.4f},-1.\n" for x, y in points)
-    head = ("" if dialect == "solidworks" else "UNITS/MM\n") + HEADS[dialect] + said
+    head = ("" if dialect == "solidworks" else "UNITS/MM\n") + HEADS[dialect] + comment
     begin = "RAPID\nGOTO/0,0,5.,0,0,1.\nFEDRAT/300.,MMPM\nGOTO/0,0,-1.\n"
     return f"{head}{begin}CUTCOM/{side}\n{goto}CUTCOM/OFF\nGOTO/0,0,-1.\nRAPID\nGOTO/0,0,5.\n"
 
@@ -64,7 +64,7 @@ def as_they_stand(text):
 
 
 def moved_inwards(corners, by):
-    """Corners of a pocket whose lines are moved to the left of their way and crossed again."""
+    """Corners of a pocket whose lines are moved to the left of the direction of travel and crossed again."""
     ahead = np.roll(corners, -1, axis=0) - corners
     ahead /= np.hypot(*ahead.T)[:, None]
     normal = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
@@ -76,8 +76,8 @@ def moved_inwards(corners, by):
 def found(text, **options):
     program, diagnostics = read(text, "part.cl", ReadOptions(**options))
     assert not errors(diagnostics), [str(fault) for fault in diagnostics]
-    moved, told = compensate(program, OffsetOptions(), {})
-    assert not errors(told), [str(fault) for fault in told]
+    moved, diagnostics = compensate(program, OffsetOptions(), {})
+    assert not errors(diagnostics), [str(fault) for fault in diagnostics]
     return program, moved, [fault.code for fault in diagnostics if fault.code != "L411"]
 
 
@@ -94,20 +94,20 @@ def assert_corners(moved, corners):
         assert np.hypot(*(path - corner).T).min() < MICRON
 
 
-WAYS = [(dialect, points, "said") for dialect, points in SAID]
-WAYS += [(dialect, points, "option") for dialect in DIALECTS for points in CONTOUR_DATA]
+SOURCES = [(dialect, points, "comment") for dialect, points in COMMENTS]
+SOURCES += [(dialect, points, "option") for dialect in DIALECTS for points in CONTOUR_DATA]
 
 
-@pytest.mark.parametrize("dialect, points, way", WAYS)
-def test_pockets_are_cut_where_both_readings_have_them(dialect, points, way):
-    options = {"contour_data": points} if way == "option" else {}
-    said = SAID[dialect, points] if way == "said" else ""
+@pytest.mark.parametrize("dialect, points, source", SOURCES)
+def test_pockets_are_cut_where_both_readings_have_them(dialect, points, source):
+    options = {"contour_data": points} if source == "option" else {}
+    comment = COMMENTS[dialect, points] if source == "comment" else ""
     for seed in SEEDS:
         side = ("LEFT", "RIGHT")[seed % 2]
         corners = pocket(seed)
-        text = written(dialect, corners, side, said)
-        program, moved, told = found(text, **options)
-        assert told == [] and DIALECTS[dialect].title
+        text = written(dialect, corners, side, comment)
+        program, moved, diagnostics = found(text, **options)
+        assert diagnostics == [] and DIALECTS[dialect].title
         if points == "centre":
             assert moved.position == pytest.approx(as_they_stand(text), abs=1e-9)
         else:
@@ -136,7 +136,7 @@ def test_a_file_that_does_not_say_is_refused(dialect):
 
 
 def test_the_header_of_one_tool_path_says_nothing_of_the_next():
-    one = written("nx", pocket(1), "LEFT", SAID["nx", "centre"]) + "END-OF-PATH\n"
+    one = written("nx", pocket(1), "LEFT", COMMENTS["nx", "centre"]) + "END-OF-PATH\n"
     other = written("nx", pocket(2), "LEFT").removeprefix("UNITS/MM\n")
     assert codes(one + other) == ["L429"]
     both = one + other.replace("PAINT/PATH\n", "$$ contact contour data\n")
@@ -206,8 +206,8 @@ def test_arcs_that_no_such_tool_can_follow_show_the_centre(turn):
     for size in [0.5, 1.0, 4.98, 5.0, 5.02, *(chance.uniform(0.2, 15) for _ in range(20))]:
         text = led(size, turn)
         if size < RADIUS - 0.01:
-            program, moved, told = found(text)
-            assert told == ["L430"]
+            program, moved, diagnostics = found(text)
+            assert diagnostics == ["L430"]
             assert moved.position == pytest.approx(as_they_stand(text), abs=1e-8)
             assert "points are the centre of the tool, since 2 arcs bend towards it" in program.reading[0]
         else:
@@ -269,7 +269,7 @@ def rounded(corners, radius):
     return centres, centres + radius * np.roll(outwards, 1, axis=0), centres + radius * outwards
 
 
-def written_rounded(dialect, corners, radius, said=""):
+def written_rounded(dialect, corners, radius, comment=""):
     """A file: a pocket with fillets, counterclockwise, with the axis that the dialect gives to such arcs."""
     centres, begins, ends = rounded(corners, radius)
     sense = {"nx": -1, "makino": -1}.get(dialect, 1)
@@ -282,18 +282,18 @@ def written_rounded(dialect, corners, radius, said=""):
             f"CIRCLE/{centre[0]:.6f},{centre[1]:.6f},-1,0,0,{sense}{size}",
         ]
         body += [f"GOTO/{end[0]:.6f},{end[1]:.6f},-1"]
-    head = ("" if dialect == "solidworks" else "UNITS/MM\n") + HEADS[dialect] + said
+    head = ("" if dialect == "solidworks" else "UNITS/MM\n") + HEADS[dialect] + comment
     body = "\n".join([*body, body[0]])
     return f"{head}FEDRAT/300.,MMPM\nGOTO/0,0,-1\nCUTCOM/LEFT\n{body}\nCUTCOM/OFF\nGOTO/0,0,-1\n"
 
 
-@pytest.mark.parametrize("dialect, points, way", WAYS)
-def test_fillets_are_those_of_the_reading(dialect, points, way):
-    options = {"contour_data": points} if way == "option" else {}
-    said = SAID[dialect, points] if way == "said" else ""
+@pytest.mark.parametrize("dialect, points, source", SOURCES)
+def test_fillets_are_those_of_the_reading(dialect, points, source):
+    options = {"contour_data": points} if source == "option" else {}
+    comment = COMMENTS[dialect, points] if source == "comment" else ""
     for seed in SEEDS:
         corners, radius = pocket(seed), random.Random(seed).choice([6.0, 7.5, 9.0])
-        _, moved, _ = found(written_rounded(dialect, corners, radius, said), **options)
+        _, moved, _ = found(written_rounded(dialect, corners, radius, comment), **options)
         left = radius - RADIUS if points == "contour" else radius
         centres, begins, ends = (np.roll(each, -1, axis=0) for each in rounded(corners, radius))
         arcs = np.flatnonzero(moved.kind == Kind.ARC)
@@ -327,13 +327,13 @@ def test_wear_round_sharp_corners(side, wear):
 
 
 def lapped(side, gap):
-    """A cut along a slot and back, so far beside itself, the tool between both cuts; it ends on its own beginning."""
-    way = -1.0 if side == "LEFT" else 1.0
-    y = -way * gap
+    """A cut along a slot and back, offset by a gap, the tool between both cuts; it ends on its own beginning."""
+    sign = -1.0 if side == "LEFT" else 1.0
+    y = -sign * gap
     points = [(0, 0), (60, 0), (60, y), (-5, y), (-5, 0), (3, 0)]
     goto = "".join(f"GOTO/{x},{place:.4f},-1\n" for x, place in points)
     head = "UNITS/MM\nCUTTER/10\nLOADTL/1\nFEDRAT/300,MMPM\n"
-    return f"{head}GOTO/0,{-2 * way},-1\nCUTCOM/{side}\n{goto}CUTCOM/OFF\nGOTO/3,{-2 * way},-1\n"
+    return f"{head}GOTO/0,{-2 * sign},-1\nCUTCOM/{side}\n{goto}CUTCOM/OFF\nGOTO/3,{-2 * sign},-1\n"
 
 
 @pytest.mark.parametrize("side", ["LEFT", "RIGHT"])
@@ -341,8 +341,8 @@ def test_a_larger_tool_may_cut_the_other_side_and_a_smaller_one_may_not(side):
     text = lapped(side, 8.0)
     for wear, faulty in ((0.1, False), (-0.1, False), (3.9, False), (4.1, True), (-4.1, False)):
         program, _ = read(text, "part.cl", ReadOptions(contour_data="centre", wear={1: wear}))
-        moved, told = compensate(program, OffsetOptions(), {})
-        assert (moved is None) == faulty, (wear, [str(fault) for fault in told])
+        moved, diagnostics = compensate(program, OffsetOptions(), {})
+        assert (moved is None) == faulty, (wear, [str(fault) for fault in diagnostics])
         assert program.smaller_tool.any() == (wear < 0)
     program, _ = read(text, "part.cl", ReadOptions(contour_data="contour", wear={1: -0.1}))
     assert not program.smaller_tool.any()
@@ -352,22 +352,22 @@ def test_a_larger_tool_may_cut_the_other_side_and_a_smaller_one_may_not(side):
     "items", ["LEFT,OSETNO,5", "LEFT,XYPLAN,OSETNO,5", "LEFT,PLANE,XYPLAN", "LEFT,ADJUST,5", "LEFT,5"]
 )
 def test_registers_of_the_control_say_nothing_of_the_path(items):
-    text = written("nx", pocket(4), "LEFT", SAID["nx", "contour"])
-    _, moved, told = found(text.replace("CUTCOM/LEFT", f"CUTCOM/{items}"))
-    assert told == []
+    text = written("nx", pocket(4), "LEFT", COMMENTS["nx", "contour"])
+    _, moved, diagnostics = found(text.replace("CUTCOM/LEFT", f"CUTCOM/{items}"))
+    assert diagnostics == []
     assert_corners(moved, moved_inwards(pocket(4), RADIUS))
 
 
 def test_the_diameter_that_the_user_gives_goes_before_that_of_the_file():
     from pkm_post.model import Tool
 
-    text = written("nx", pocket(5), "LEFT", SAID["nx", "contour"])
+    text = written("nx", pocket(5), "LEFT", COMMENTS["nx", "contour"])
     _, moved, _ = found(text, tools={1: Tool(1, "", 6.0, 0.0, 0.0)})
     assert_corners(moved, moved_inwards(pocket(5), 3.0))
 
 
-def test_wear_of_a_tool_without_cutcom_is_told():
-    text = written("nx", pocket(6), "LEFT", SAID["nx", "centre"])
+def test_wear_of_a_tool_without_cutcom_is_reported():
+    text = written("nx", pocket(6), "LEFT", COMMENTS["nx", "centre"])
     assert codes(text, wear={2: 0.1}) == ["L432"]
     assert codes(text.replace("CUTCOM/LEFT\n", ""), wear={1: 0.1}) == ["L432"]
 
