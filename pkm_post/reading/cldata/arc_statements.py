@@ -58,7 +58,7 @@ def commented_circle(state: ReaderState, row: int, statement: Statement) -> None
     """$$ CIRCLE/x,y,z,i,j,k,r: the following points may lie on this circle."""
     values = statement.numbers
     if state.dialect.goto_continues and len(values) == 7 and math.hypot(*values[3:6]) > NO_DIRECTION and values[6] > 0:
-        state.circles.append((row, Arc(tuple(values[:3]), tuple(values[3:6]), values[6], minor=True)))
+        state.commented_circles.append((row, Arc(tuple(values[:3]), tuple(values[3:6]), values[6], minor=True)))
 
 
 def movarc(state: ReaderState, row: int, statement: Statement) -> None:
@@ -103,12 +103,12 @@ def arcslp(state: ReaderState, row: int, statement: Statement) -> None:
     if len(statement.values) != 1 or after != "ARCDAT":
         state.report("L401", row, f"ARCSLP/{statement.items_text()}, other than a depth before ARCDAT")
         return
-    state.slope = abs(statement.values[0])
+    state.arc_rise = abs(statement.values[0])
 
 
 def arcdat(state: ReaderState, row: int, statement: Statement) -> None:
     """ARCDAT/x,y,z,i,j,k,r: the circle of the next ARCMOV."""
-    rise, state.slope = state.slope, 0.0
+    rise, state.arc_rise = state.arc_rise, 0.0
     values = state.expect_values(row, statement, 7)
     if values:
         report_unused_arcdat(state)

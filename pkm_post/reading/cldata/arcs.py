@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -59,10 +58,6 @@ class _ArcMove:
     arc: Arc
 
 
-_ToWorkFrame = Callable[[list[_ArcMove]], tuple[Array, Array, Array]]
-"""Returns centres, unit axes and radii of arcs in mm and in the work frame."""
-
-
 def resolve_arcs(state: ReaderState, points: Points, frames: Array) -> Arcs:
     """The arcs with their end points, oriented by the sense of rotation of the file.
 
@@ -71,7 +66,7 @@ def resolve_arcs(state: ReaderState, points: Points, frames: Array) -> Arcs:
         points: resolved points.
         frames: (P, 4, 4) or (1, 4, 4) transforms of the points to the work frame.
     """
-    arcs = _arc_moves(state, points, lambda moves: _in_work_frame(state, moves, frames))
+    arcs = _arc_moves(state, points, frames)
     row, end = _rows_and_ends(arcs)
     centre, axis, radius = _in_work_frame(state, arcs, frames)
     _check_radii(state, row, radius, points, end, centre, axis)
@@ -79,7 +74,7 @@ def resolve_arcs(state: ReaderState, points: Points, frames: Array) -> Arcs:
     return Arcs(end, centre, axis * sense[:, None], np.array([one.arc.turns for one in arcs], dtype=np.int64))
 
 
-def _arc_moves(state: ReaderState, points: Points, to_work_frame: _ToWorkFrame) -> list[_ArcMove]:
+def _arc_moves(state: ReaderState, points: Points, frames: Array) -> list[_ArcMove]:
     """The arcs with start and end points, by end point; report the others."""
     rows = np.array([row for row, _ in state.arcs], dtype=np.int64)
     ends = np.searchsorted(points.row, rows, "left")
@@ -96,8 +91,8 @@ def _arc_moves(state: ReaderState, points: Points, to_work_frame: _ToWorkFrame) 
             moves += _arcs_to_points(state, _ArcMove(row, end, arc), without_word)
     ends_of_arcs = {arc.end for arc in moves}
     minor = [move for move in moves if move.arc.minor]
-    minor += _arcs_on_commented_circles(state, points, ends_of_arcs, to_work_frame)
-    return [move for move in moves if not move.arc.minor] + _minor_arcs(state, points, minor, to_work_frame)
+    minor += _arcs_on_commented_circles(state, points, ends_of_arcs, frames)
+    return [move for move in moves if not move.arc.minor] + _minor_arcs(state, points, minor, frames)
 
 
 def _arcs_to_points(state: ReaderState, first: _ArcMove, without_word: Array) -> list[_ArcMove]:
@@ -113,14 +108,12 @@ def _arcs_to_points(state: ReaderState, first: _ArcMove, without_word: Array) ->
     return [_ArcMove(first.row, end, arc) for end in range(first.end, last)]
 
 
-def _minor_arcs(
-    state: ReaderState, points: Points, moves: list[_ArcMove], to_work_frame: _ToWorkFrame
-) -> list[_ArcMove]:
+def _minor_arcs(state: ReaderState, points: Points, moves: list[_ArcMove], frames: Array) -> list[_ArcMove]:
     """The moves that are arcs, not repeated points; report those with an ambiguous sense of rotation."""
     if not moves:
         return []
     end = np.array([move.end for move in moves])
-    centre, axis, radius = to_work_frame(moves)
+    centre, axis, radius = _in_work_frame(state, moves, frames)
     sweep = arc_sweep(points.position[end - 1], points.position[end], centre, axis)
     angle = np.minimum(sweep, 2 * np.pi - sweep)
     for index in np.flatnonzero(angle > _HALF_TURN).tolist():
@@ -130,24 +123,24 @@ def _minor_arcs(
 
 
 def _arcs_on_commented_circles(
-    state: ReaderState, points: Points, taken_points: set[int], to_work_frame: _ToWorkFrame
+    state: ReaderState, points: Points, other_ends: set[int], frames: Array
 ) -> list[_ArcMove]:
-    """Points after circles in comments whose start and end both lie on the circle."""
+    """Arcs to the points after circles in comments whose start and end both lie on the circle."""
     moves: list[_ArcMove] = []
-    changes = (state.arcs, state.circles, state.cycles, state.frames, state.scales)
+    changes = (state.arcs, state.commented_circles, state.cycles, state.frames, state.scales)
     stops = sorted({*state.rapids, *(change[0] for column in changes for change in column), len(state.statements)})
-    for row, arc in state.circles:
+    for row, arc in state.commented_circles:
         first = max(int(np.searchsorted(points.row, row)), 1)
         last = int(np.searchsorted(points.row, stops[bisect_right(stops, row)]))
         if first < last:
-            on_circle = _on_circle(_ArcMove(row, first, arc), last, points, to_work_frame)
-            moves += [move for move in on_circle if move.end not in taken_points]
+            on_circle = _on_circle(state, _ArcMove(row, first, arc), last, points, frames)
+            moves += [move for move in on_circle if move.end not in other_ends]
     return moves
 
 
-def _on_circle(first: _ArcMove, last: int, points: Points, to_work_frame: _ToWorkFrame) -> list[_ArcMove]:
+def _on_circle(state: ReaderState, first: _ArcMove, last: int, points: Points, frames: Array) -> list[_ArcMove]:
     """Arcs to consecutive points on a circle, up to the first point off it."""
-    centre, axis, radius = to_work_frame([first])
+    centre, axis, radius = _in_work_frame(state, [first], frames)
     from_centre = points.position[first.end - 1 : last] - centre
     off = np.hypot(norm(across(from_centre, axis)) - radius, dot(from_centre - from_centre[1], axis))
     on = (off < _ON_CIRCLE) & ~points.start[first.end - 1 : last]

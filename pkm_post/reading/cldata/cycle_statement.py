@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 from pkm_post.reading.cldata.cycle_notation import (
     AUTO,
@@ -44,109 +45,6 @@ class _CycleError(Exception):
         self.code, self.found = code, found
 
 
-@dataclass
-class _CycleItems:
-    """Parser of the items of one statement.
-
-    Attributes:
-        notation: of the CAM system.
-        kind: kind of the cycle.
-        guessed: the CAM system is inferred from these words only.
-        positions: meanings of numbers without a word, in order; a depth among them counts down from the point.
-        values: the numbers by meaning.
-        feed: with its unit; the unit is empty if none is written.
-        to_initial: the tool returns to its height before the cycle.
-        by_position: numbers follow the kind without words.
-    """
-
-    notation: CycleNotation
-    kind: str
-    guessed: bool
-    positions: tuple[str, ...] = ()
-    values: dict[str, float] = field(default_factory=dict)
-    feed: tuple[str, float] | None = None
-    to_initial: bool = False
-    by_position: bool = False
-    _unit: str = ""
-    _pending: str = ""
-    _next: int = 0
-
-    def read(self, items: Iterable[_Item]) -> None:
-        """Read the items after the kind.
-
-        Raises:
-            _CycleError: an item is not understood.
-        """
-        present = [item for item in items if item is not None]
-        self.by_position = bool(present) and isinstance(present[0], float)
-        if self.by_position and not self.positions:
-            raise _CycleError("L420", f"CYCLE/{self.kind},{present[0]:g}")
-        for item in present:
-            if isinstance(item, Statement):
-                raise _CycleError("L412", f"{item.word}, {self._expected()}")
-            if isinstance(item, str):
-                self._word(item)
-            else:
-                self._number(item)
-        self._check_no_pending_word()
-        if self.by_position and "feed" in self.values:
-            self.feed = self._unit, self.values.pop("feed")
-
-    def _word(self, word: str) -> None:
-        """Process a word: the name of the next number, a unit, or a standalone word."""
-        if self.notation.down < 0 and word == AUTO and self._pending_means("return"):
-            self.to_initial, self._pending = True, ""
-        elif self.notation.down < 0 and word == MANUAL and not self._pending and "return" in self.values:
-            pass
-        elif word == "REV" and self._pending_means("dwell"):
-            self._pending = word
-        else:
-            if word not in FEED_WORDS and word not in self.notation.known_words(self.kind):
-                self._refuse(word)
-            self._check_no_pending_word()
-            if word in FEED_WORDS:
-                self._unit = word
-            self._pending = "" if self.by_position and word in FEED_WORDS else word
-
-    def _pending_means(self, meaning: str) -> bool:
-        """Whether the pending word has a given meaning."""
-        return self.notation.words.get(self._pending) == meaning
-
-    def _number(self, number: float) -> None:
-        """Process a number."""
-        name, self._pending = self._pending, ""
-        if name in FEED_WORDS:
-            if self.feed is not None:
-                raise _CycleError("L412", f"{name},{number:g}, a second feed")
-            self.feed = name, number
-            return
-        meaning = self.notation.words[name] if name else self._next_meaning(number)
-        if not name and meaning == "depth":
-            number *= self.notation.down
-        if meaning in self.values:
-            raise _CycleError("L412", f"{name},{number:g}, a second {meaning}")
-        self.values[meaning] = number
-
-    def _next_meaning(self, number: float) -> str:
-        """Meaning of the next number without a word."""
-        if self._next >= len(self.positions):
-            raise _CycleError("L412", f"{number:g}, {self._expected()}")
-        self._next += 1
-        return self.positions[self._next - 1]
-
-    def _check_no_pending_word(self) -> None:
-        if self._pending:
-            raise _CycleError("L412", f"{self._pending} without a number")
-
-    def _refuse(self, word: str) -> None:
-        if self.guessed and is_known_word(word):
-            raise _CycleError("L419", f"{word} among the words of {self.notation.system}")
-        raise _CycleError("L412", f"{word}, {self._expected()}")
-
-    def _expected(self) -> str:
-        return f"expected one of {', '.join(sorted(self.notation.known_words(self.kind) | FEED_WORDS))}"
-
-
 def cycle(state: ReaderState, row: int, statement: Statement) -> None:
     """CYCLE/kind,items; INIT and CLEAR set the return height; ON and OFF."""
     word = next(iter(statement.words), "")
@@ -160,7 +58,7 @@ def cycle(state: ReaderState, row: int, statement: Statement) -> None:
         try:
             state.cycle, interpretation = _interpret(state, statement)
             state.cycles.append((row, state.cycle))
-            state.cycles_read.setdefault(interpretation, []).append(row)
+            state.cycle_interpretations.setdefault(interpretation, []).append(row)
         except _CycleError as fault:
             state.report(fault.code, row, fault.found)
 
@@ -168,7 +66,7 @@ def cycle(state: ReaderState, row: int, statement: Statement) -> None:
 def cycle_descriptions(state: ReaderState) -> list[str]:
     """Describe how the cycles of a file were interpreted: one line per CAM system."""
     descriptions = []
-    for interpretation, rows in state.cycles_read.items():
+    for interpretation, rows in state.cycle_interpretations.items():
         more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
         descriptions.append(f"CYCLE in line {state.statements.place(rows[0])[0]}{more}: {interpretation}")
     return descriptions
@@ -278,3 +176,108 @@ def _fault_of(cycle: Cycle, notation: CycleNotation) -> str:
     if cycle.kind.pecks != "none" and not cycle.step * _MAX_PECKS > cycle.depth:
         return f"the step is {cycle.step:g} mm"
     return ""
+
+
+@dataclass
+class _CycleItems:
+    """Parser of the items of one statement.
+
+    Attributes:
+        notation: of the CAM system.
+        kind: kind of the cycle.
+        guessed: the CAM system is inferred from these words only.
+        positions: meanings of numbers without a word, in order; a depth among them counts down from the point.
+        values: the numbers by meaning.
+        feed: with its unit; the unit is empty if none is written.
+        to_initial: the tool returns to its height before the cycle.
+        by_position: numbers follow the kind without words.
+    """
+
+    notation: CycleNotation
+    kind: str
+    guessed: bool
+    positions: tuple[str, ...] = ()
+    values: dict[str, float] = field(default_factory=dict)
+    feed: tuple[str, float] | None = None
+    to_initial: bool = False
+    by_position: bool = False
+    _unit: str = ""
+    _pending: str = ""
+    _next: int = 0
+
+    def read(self, items: Iterable[_Item]) -> None:
+        """Read the items after the kind.
+
+        Raises:
+            _CycleError: an item is not understood.
+        """
+        present = [item for item in items if item is not None]
+        self.by_position = bool(present) and isinstance(present[0], float)
+        if self.by_position and not self.positions:
+            raise _CycleError("L420", f"CYCLE/{self.kind},{present[0]:g}")
+        for item in present:
+            if isinstance(item, Statement):
+                raise _CycleError("L412", f"{item.word}, {self._expected()}")
+            if isinstance(item, str):
+                self._word(item)
+            else:
+                self._number(item)
+        self._check_no_pending_word()
+        if self.by_position and "feed" in self.values:
+            self.feed = self._unit, self.values.pop("feed")
+
+    def _word(self, word: str) -> None:
+        """Process a word: the name of the next number, a unit, or a standalone word."""
+        if self.notation.down < 0 and word == AUTO and self._pending_means("return"):
+            self.to_initial, self._pending = True, ""
+        elif self.notation.down < 0 and word == MANUAL and not self._pending and "return" in self.values:
+            pass
+        elif word == "REV" and self._pending_means("dwell"):
+            self._pending = word
+        else:
+            if word not in FEED_WORDS and word not in self.notation.known_words(self.kind):
+                self._refuse(word)
+            self._check_no_pending_word()
+            if word in FEED_WORDS:
+                self._unit = word
+            self._pending = "" if self.by_position and word in FEED_WORDS else word
+
+    def _pending_means(self, meaning: str) -> bool:
+        """Whether the pending word has a given meaning."""
+        return self.notation.words.get(self._pending) == meaning
+
+    def _number(self, number: float) -> None:
+        """Process a number."""
+        name, self._pending = self._pending, ""
+        if name in FEED_WORDS:
+            if self.feed is not None:
+                raise _CycleError("L412", f"{name},{number:g}, a second feed")
+            self.feed = name, number
+            return
+        meaning = self.notation.words[name] if name else self._next_meaning(number)
+        if not name and meaning == "depth":
+            number *= self.notation.down
+        if meaning in self.values:
+            raise _CycleError("L412", f"{name},{number:g}, a second {meaning}")
+        self.values[meaning] = number
+
+    def _next_meaning(self, number: float) -> str:
+        """Meaning of the next number without a word."""
+        if self._next >= len(self.positions):
+            raise _CycleError("L412", f"{number:g}, {self._expected()}")
+        self._next += 1
+        return self.positions[self._next - 1]
+
+    def _check_no_pending_word(self) -> None:
+        """Check that the last word that needs a number has one."""
+        if self._pending:
+            raise _CycleError("L412", f"{self._pending} without a number")
+
+    def _refuse(self, word: str) -> NoReturn:
+        """Raise the fault of an unknown word."""
+        if self.guessed and is_known_word(word):
+            raise _CycleError("L419", f"{word} among the words of {self.notation.system}")
+        raise _CycleError("L412", f"{word}, {self._expected()}")
+
+    def _expected(self) -> str:
+        return f"expected one of {', '.join(sorted(self.notation.known_words(self.kind) | FEED_WORDS))}"

@@ -52,7 +52,7 @@ def _operation(state: ReaderState, row: int, statement: Statement) -> None:
     name, _, tool = statement.text.partition(",TOOL,")
     state.inserted_name = tool or state.inserted_name
     number = statement.numbers
-    state.starts.append((row, len(state.operations)))
+    state.operation_starts.append((row, len(state.operations)))
     state.operations.append(f"{statement.word} {number[0]:g}" if number else name.strip())
 
 

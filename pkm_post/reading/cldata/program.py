@@ -62,7 +62,7 @@ def build_program(
         feed=rows.feed,
         arc_centre=rows.centre,
         arc_axis=rows.axis,
-        operation=_column(state.starts, points.row, 1, 0)[point].astype(np.int32),
+        operation=_column(state.operation_starts, points.row, 1, 0)[point].astype(np.int32),
         line=lines[point],
         events=_events(state, points, rows.start, holes),
         operations=tuple(state.operations),

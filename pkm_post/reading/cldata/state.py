@@ -134,9 +134,45 @@ class ReaderState:
     """Modal state during reading, and the recorded changes, each with its statement row.
 
     Attributes:
+        statements: of the file.
+        dialect: of the file.
+        options: of the user.
+        faults: collects the faults.
         goto_rows: rows of the plain GOTO statements.
         gotos_before: (N,) their count up to each row.
         file_unit: the length unit of the file.
+        scale: mm per active length unit.
+        unit: name of that unit.
+        feed_word: unit of feeds that are written without one.
+        feed_per_turn: mm per revolution, 0 if the feed is not per revolution.
+        feed: active feed of moves, None before the first.
+        spindle_speed: 1/min.
+        spindle_sense: 1 clockwise, -1 counterclockwise, 0 stopped.
+        tool: active tool number.
+        changed_tool: tool number of the last tool change, -1 before the first.
+        motions_at_change: number of motions before it.
+        motions_recorded: number of motions before the last tool was recorded.
+        inserted_name: tool name for the next cutter.
+        tool_name: of the active cutter.
+        tool_length: mm, 0 if unknown.
+        diameter: mm.
+        corner_radius: mm.
+        corner_known: whether the file gives it.
+        bottom_angle: rad.
+        side_angle: rad.
+        point_meaning: of the points under CUTCOM, None if the file does not state it.
+        cycle: last cycle, also after CYCLE/OFF.
+        cycle_return: INIT or CLEAR, the return height of the next cycles; empty before.
+        machining_frame: (4, 4) active frame of the points, mm.
+        shift: (4, 4) of ORIGIN, TRANS or TRACUT, mm.
+        work_from_file: (4, 4) from the frame in which machining frames are defined to the work frame, mm.
+        tangent: start direction of the next TLON,GOFWD.
+        part_surface: of PSIS; None for the tool position.
+        arc_rise: of the next ARCDAT, as written.
+        arc_data: circle of the next ARCMOV.
+        ended: whether FINI was read.
+        tools: by number.
+        operations: names; the first is that of the rows before any operation.
     """
 
     statements: Statements
@@ -155,31 +191,32 @@ class ReaderState:
     spindle_speed: float = 0.0
     spindle_sense: float = 0.0
     tool: int = 0
+    changed_tool: int = -1
+    motions_at_change: int = 0
+    motions_recorded: int = 0
     inserted_name: str = ""
     tool_name: str = ""
-    tool_changed: int = -1
-    motions_recorded: int = 0
-    motions_at_change: int = 0
+    tool_length: float = 0.0
     diameter: float = 0.0
-    corner: float = 0.0
+    corner_radius: float = 0.0
     corner_known: bool = False
     bottom_angle: float = 0.0
     side_angle: float = 0.0
-    length: float = 0.0
     point_meaning: PointMeaning | None = None
-    cycle_return: str = ""
     cycle: Cycle | None = None
+    cycle_return: str = ""
     machining_frame: Array | None = None
     shift: Array | None = None
     work_from_file: Array | None = None
     tangent: Vector | None = None
     part_surface: Plane | None = None
-    slope: float = 0.0
+    arc_rise: float = 0.0
     arc_data: ArcData | None = None
     ended: bool = False
 
     tools: dict[int, Tool] = field(default_factory=dict)
     operations: list[str] = field(default_factory=lambda: [""])
+    operation_starts: list[tuple[int, int]] = field(default_factory=list)
     points: list[tuple[int, Point]] = field(default_factory=list)
     rapids: list[int] = field(default_factory=list)
     feeds: list[tuple[int, Feed]] = field(default_factory=list)
@@ -187,11 +224,10 @@ class ReaderState:
     scales: list[tuple[int, float]] = field(default_factory=list)
     frames: list[tuple[int, Array]] = field(default_factory=list)
     arcs: list[tuple[int, Arc]] = field(default_factory=list)
-    circles: list[tuple[int, Arc]] = field(default_factory=list)
+    commented_circles: list[tuple[int, Arc]] = field(default_factory=list)
     cycles: list[tuple[int, Cycle | None]] = field(default_factory=list)
-    cycles_read: dict[str, list[int]] = field(default_factory=dict)
+    cycle_interpretations: dict[str, list[int]] = field(default_factory=dict)
     cutcoms: list[Cutcom] = field(default_factory=list)
-    starts: list[tuple[int, int]] = field(default_factory=list)
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:

@@ -46,7 +46,7 @@ def tldata(state: ReaderState, row: int, statement: Statement) -> None:
 
 def _check_corner(state: ReaderState, row: int, e: float, f: float) -> None:
     """Report e or f that does not belong to the corner tangent to bottom and side."""
-    a, b, r = state.bottom_angle, state.side_angle, state.corner
+    a, b, r = state.bottom_angle, state.side_angle, state.corner_radius
     tangent_e = state.diameter / 2 - r * corner_reach(a, b)
     tangent_f = tangent_e * math.tan(a) + r / math.cos(a)
     if abs(e - tangent_e) > _TANGENT_TOLERANCE or abs(f - tangent_f) > _TANGENT_TOLERANCE:
@@ -71,7 +71,7 @@ def _new_cutter(state: ReaderState, row: int, diameter: float, corner: float, bo
         state.report("L403", row, f"diameter {diameter:g} mm, corner radius {corner:g} mm")
         return False
     record_tool_if_used(state, row)
-    state.diameter, state.corner = diameter, min(corner, largest)
+    state.diameter, state.corner_radius = diameter, min(corner, largest)
     state.bottom_angle, state.side_angle = bottom_angle, side_angle
     state.tool_name = state.inserted_name
     return True
@@ -89,12 +89,12 @@ def load(state: ReaderState, row: int, statement: Statement) -> None:
         return
     record_tool_if_used(state, row)
     length = _after(statement, "LENGTH") * state.scale
-    if int(number) == state.tool_changed and state.motions_recorded == state.motions_at_change:
-        state.length = length or state.length
+    if int(number) == state.changed_tool and state.motions_recorded == state.motions_at_change:
+        state.tool_length = length or state.tool_length
         return
-    state.tool = state.tool_changed = int(number)
+    state.tool = state.changed_tool = int(number)
     state.motions_at_change = state.motions_recorded
-    state.length = length
+    state.tool_length = length
     if state.tool not in state.tools:
         record_tool(state)
     state.events.append((row, EventKind.TOOL_CHANGE, float(state.tool)))
@@ -126,8 +126,8 @@ def record_tool(state: ReaderState) -> None:
     """Record the tool as currently known."""
     default = state.options.default_tool
     given = state.options.tools.get(state.tool)
-    length = state.length or (default.length if default else 0.0)
-    shape = (state.diameter, state.corner, length, state.bottom_angle, state.side_angle)
+    length = state.tool_length or (default.length if default else 0.0)
+    shape = (state.diameter, state.corner_radius, length, state.bottom_angle, state.side_angle)
     known = Tool(state.tool, state.tool_name, *shape, state.corner_known)
     if given is not None:
         known = replace(given, name=given.name or known.name, length=given.length or known.length)
