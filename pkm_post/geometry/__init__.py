@@ -11,6 +11,7 @@ from pkm_post.geometry.curves import (
     hermite_lengths,
     hermite_powers,
     hermite_speeds,
+    move_lengths,
 )
 from pkm_post.geometry.cylinders import (
     TRIANGLE_EDGES,
@@ -89,6 +90,7 @@ __all__ = [
     "grid_points_inside",
     "is_closed",
     "length_of",
+    "move_lengths",
     "nearest_on_nurbs",
     "nearest_on_triangle",
     "norm",

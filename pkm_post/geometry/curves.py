@@ -54,6 +54,13 @@ def arc_length(start: Array, end: Array, centre: Array, axis: Array) -> Array:
     return np.hypot(radius * arc_sweep(start, end, centre, axis), dot(end - start, axis))
 
 
+def move_lengths(start: Array, end: Array, is_arc: Array, centre: Array, axis: Array) -> Array:
+    """Lengths of moves, (N,) mm: of arcs and helices where ``is_arc``, else of straight lines."""
+    length = norm(end - start)
+    length[is_arc] = arc_length(start[is_arc], end[is_arc], centre[is_arc], axis[is_arc])
+    return length
+
+
 def _coefficients(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array]:
     """c2 T^2 and c3 T^3, each (N, 6): in units of length, to avoid division by a short time."""
     distance = p1 - p0

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import across, arc_length, arc_points, arc_sweep, cross, dot, norm
+from pkm_post.geometry import across, arc_points, arc_sweep, cross, dot, move_lengths
 from pkm_post.model import Array, Diagnostic, Kind, Program, errors
 from pkm_post.reading.part_program import AS_WRITTEN, Reading, read_part_program
 
@@ -78,14 +78,13 @@ def check_file(file: Path, reading: Reading = AS_WRITTEN) -> CheckedFile:
 def size_of(program: Program) -> Size:
     """Measure a program of at least one row."""
     start, end = program.position[:-1], program.position[1:]
-    length = norm(end - start)
-    row = np.flatnonzero(program.kind[1:] == Kind.ARC)
-    centre, axis = program.arc_centre[1:][row], program.arc_axis[1:][row]
-    length[row] = arc_length(start[row], end[row], centre, axis)
-    points = np.concatenate([program.position, _extreme_points(start[row], end[row], centre, axis)])
+    arc = program.kind[1:] == Kind.ARC
+    centre, axis = program.arc_centre[1:], program.arc_axis[1:]
+    length = move_lengths(start, end, arc, centre, axis)
+    points = np.concatenate([program.position, _extreme_points(start[arc], end[arc], centre[arc], axis[arc])])
     return Size(
         blocks=len(program),
-        arcs=len(row),
+        arcs=int(arc.sum()),
         length=float(length.sum()),
         lowest=tuple(points.min(axis=0).tolist()),
         highest=tuple(points.max(axis=0).tolist()),

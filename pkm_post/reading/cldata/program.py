@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import arc_length, arc_sweep, dot, norm
+from pkm_post.geometry import arc_sweep, dot, move_lengths
 from pkm_post.model import Array, Event, EventKind, Kind, Program
 from pkm_post.reading.cldata.arcs import Arcs
 from pkm_post.reading.cldata.cutcom import Offset
@@ -152,9 +152,7 @@ def _convert_inverse_time(state: ReaderState, points: Points, rows: _Rows) -> No
     cutting = rows.kind != Kind.RAPID
     if rows.inverse.any():
         before = np.vstack([rows.position[:1], rows.position[:-1]])
-        length = norm(rows.position - before)
-        arc = np.flatnonzero(rows.kind == Kind.ARC)
-        length[arc] = arc_length(before[arc], rows.position[arc], rows.centre[arc], rows.axis[arc])
+        length = move_lengths(before, rows.position, rows.kind == Kind.ARC, rows.centre, rows.axis)
         inverse = rows.inverse & cutting
         for row in np.flatnonzero(inverse & (length == 0)).tolist():
             state.report("L416", int(points.row[rows.point[row]]), "a move of zero length")

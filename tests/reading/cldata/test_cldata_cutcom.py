@@ -76,8 +76,8 @@ def moved_inwards(corners, by):
 def found(text, **options):
     program, diagnostics = read(text, "part.cl", ReadOptions(**options))
     assert not errors(diagnostics), [str(fault) for fault in diagnostics]
-    moved, diagnostics = compensate(program, OffsetOptions(), {})
-    assert not errors(diagnostics), [str(fault) for fault in diagnostics]
+    moved, faults = compensate(program, OffsetOptions(), {})
+    assert not errors(faults), [str(fault) for fault in faults]
     return program, moved, [fault.code for fault in diagnostics if fault.code != "L411"]
 
 
