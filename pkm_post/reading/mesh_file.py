@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Mesh file: read a solid from a binary or ASCII STL file as a mesh in mm, or report the faults of the file.
 
-Higher-level packages register readers for other formats.
-
 Binary: 80 bytes, the number of triangles, 50 bytes for each; ASCII: ``solid``, then facets of an outer loop of three
 vertices, then ``endsolid``; several solids may follow each other. STL states no unit; mm in the work frame {C} are
 assumed. Normals and attributes are ignored: the vertex order defines the outside. [STL1988]
@@ -29,8 +27,11 @@ _FACET = (
     *("endloop", "endfacet"),
 )
 """Tokens of a facet, None for numbers."""
+_WORDS = [column for column, word in enumerate(_FACET) if word is not None]
+_NUMBERS = [column for column, word in enumerate(_FACET) if word is None]
+_NO_TRIANGLES = np.empty((0, 3, 3))
 _NAME_LINE = re.compile(rb"^\s*(?:end)?solid\b[^\n]*$", re.IGNORECASE | re.MULTILINE)
-_FARTHEST = 1e6
+_LARGEST_COORDINATE = 1e6
 """mm: coordinates beyond this are rejected as implausible."""
 
 Result = tuple[Mesh | None, tuple[Diagnostic, ...]]
@@ -51,7 +52,7 @@ def read_mesh(file: str | Path) -> Result:
         return READERS[suffix](path, name)
     if suffix != SUFFIX:
         known = f"expected a name that ends in {' or '.join((SUFFIX, *STEP_SUFFIXES))}"
-        found = "STEP is read inside FreeCAD alone" if suffix in STEP_SUFFIXES else known
+        found = "STEP files are read only inside FreeCAD" if suffix in STEP_SUFFIXES else known
         return None, (Diagnostic("K138", Place(name), found),)
     try:
         content = path.read_bytes()
@@ -71,7 +72,7 @@ def decode(content: bytes, name: str) -> Result:
             return None, (Diagnostic("K138", Place(name, line=line), found),)
     else:
         stated = f"{count} triangles are {_HEADER + count * _RECORD.itemsize} bytes, the file has {len(content)}"
-        found = stated if len(content) >= _HEADER else f"{len(content)} bytes are no STL file"
+        found = stated if len(content) >= _HEADER else f"{len(content)} bytes are not an STL file"
         return None, (Diagnostic("K138", Place(name), found),)
     return mesh_of_triangles(triangles, name)
 
@@ -80,15 +81,11 @@ def mesh_of_triangles(triangles: Array, name: str) -> Result:
     """Build a mesh from triangles (T, 3, 3); there must be at least one, with plausible coordinates."""
     if not len(triangles):
         return None, (Diagnostic("K138", Place(name), "no triangles"),)
-    if not np.all(np.abs(triangles) <= _FARTHEST):
-        bad = int(np.argmin(np.all(np.abs(triangles) <= _FARTHEST, axis=(1, 2))))
-        return None, (Diagnostic("K138", Place(name), f"triangle {bad + 1} has a coordinate that is no place"),)
-    return Mesh(path_name(name), triangles), ()
-
-
-def path_name(name: str) -> str:
-    """File name for messages and certificates: without its folder, so independent of its location."""
-    return Path(name).name
+    if not np.all(np.abs(triangles) <= _LARGEST_COORDINATE):
+        bad = int(np.argmin(np.all(np.abs(triangles) <= _LARGEST_COORDINATE, axis=(1, 2))))
+        return None, (Diagnostic("K138", Place(name), f"triangle {bad + 1} has an implausible coordinate"),)
+    # Without its folder the name in messages and certificates is independent of the location of the file.
+    return Mesh(Path(name).name, triangles), ()
 
 
 def _ascii(content: bytes) -> tuple[Array, int, str]:
@@ -105,18 +102,13 @@ def _ascii(content: bytes) -> tuple[Array, int, str]:
         fits[:, _NUMBERS] = [[_is_number(word) for word in row] for row in table[:, _NUMBERS].tolist()]
     if not fits.all():
         bad = int(np.argmin(fits))
-        return _NONE, *_where(content, bad, _FACET[bad % len(_FACET)] or "a number")
+        return _NO_TRIANGLES, *_location(content, bad, _FACET[bad % len(_FACET)] or "a number")
     if rest:
-        return _NONE, *_where(content, len(words) - 1, "a whole facet")
+        return _NO_TRIANGLES, *_location(content, len(words) - 1, "a whole facet")
     return values[:, 3:].reshape(-1, 3, 3), 0, ""
 
 
-_WORDS = [column for column, word in enumerate(_FACET) if word is not None]
-_NUMBERS = [column for column, word in enumerate(_FACET) if word is None]
-_NONE = np.empty((0, 3, 3))
-
-
-def _where(content: bytes, number: int, expected: str) -> tuple[int, str]:
+def _location(content: bytes, number: int, expected: str) -> tuple[int, str]:
     """The line of the token with a number, and what was found there."""
     before = 0
     for line, text in enumerate(content.split(b"\n"), start=1):

@@ -34,7 +34,7 @@ LINES = ascii_stl(MESH[:3]).split(b"\n")
 @pytest.mark.parametrize(
     ("content", "line", "found"),
     [
-        (b"", 0, "0 bytes are no STL file"),
+        (b"", 0, "0 bytes are not an STL file"),
         (b"PK\3\4" + b"x" * 200, 0, "the file has 204"),
         (binary_stl(MESH)[:-1], 0, "the file has"),
         (binary_stl(MESH) + b"x", 0, "the file has"),
@@ -44,9 +44,9 @@ LINES = ascii_stl(MESH[:3]).split(b"\n")
         (b"\n".join([*LINES[:3], b"    vertex 1 2", *LINES[4:]]), 5, "got 'vertex'"),
         (b"\n".join([*LINES[:6], b"endloop x", *LINES[7:]]), 7, "expected endfacet, got 'x'"),
         (b"\n".join(LINES[:12]), 12, "expected a whole facet"),
-        (b"\n".join([*LINES[:3], b"    vertex 1 2 nan", *LINES[4:]]), 0, "triangle 1 has a coordinate"),
-        (binary_stl(np.where(np.arange(3) == 1, np.inf, MESH)), 0, "triangle 1 has a coordinate"),
-        (binary_stl(MESH * 1e6), 0, "a coordinate that is no place"),
+        (b"\n".join([*LINES[:3], b"    vertex 1 2 nan", *LINES[4:]]), 0, "triangle 1 has an implausible coordinate"),
+        (binary_stl(np.where(np.arange(3) == 1, np.inf, MESH)), 0, "triangle 1 has an implausible coordinate"),
+        (binary_stl(MESH * 1e6), 0, "an implausible coordinate"),
     ],
 )  # fmt: skip
 def test_damaged_files_are_refused(content, line, found):
