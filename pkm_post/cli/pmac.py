@@ -241,8 +241,8 @@ def _session(namespace: argparse.Namespace) -> Session:
         handshake=namespace.rtscts,
         known_hosts=namespace.known_hosts,
     )
-    leftover = OpenBufferPolicy.STOP if namespace.name in _STOPS else OpenBufferPolicy.LEAVE
-    return Session(port, namespace.patience, leftover=leftover)
+    open_buffer = OpenBufferPolicy.STOP if namespace.name in _STOPS else OpenBufferPolicy.LEAVE
+    return Session(port, namespace.patience, open_buffer=open_buffer)
 
 
 def _target(namespace: argparse.Namespace) -> Target | None:

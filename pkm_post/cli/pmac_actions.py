@@ -68,7 +68,7 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
     is_power = namespace.port.is_power
     for query in _IDENTITY_OF_POWER_PMAC if is_power else _IDENTITY:
         try:
-            print(f"{query}: {' '.join(session.ask(query))}")
+            print(f"{query}: {' '.join(session.query(query))}")
         except RefusedError as refused:
             print(f"{query}: {refused}")
     _print_motion(session, target, is_power)
@@ -171,7 +171,7 @@ def terminal(session: Session, target: Target | None, namespace: argparse.Namesp
         try:
             if session.keeper is None and not _NEEDS_NO_RIGHT.fullmatch(line.strip()):
                 claim(session, "terminal")
-            print("\n".join(session.order(line.strip())) or "done", flush=True)
+            print("\n".join(session.command(line.strip())) or "done", flush=True)
         except (PmacError, ValueError) as fault:
             refused |= isinstance(fault, NotOwnerError)
             print(fault, flush=True)

@@ -85,7 +85,7 @@ def ended_elsewhere(status: Status, lengths: Array) -> bool:
     from pkm_post.control import target_deviation
     from pkm_post.options import START_TOLERANCE_MM
 
-    words = [_HELD] if status.held else list(status.words())
+    words = [_HELD] if status.held else list(status.fault_texts())
     if not words and target_deviation(status, lengths) > START_TOLERANCE_MM:
         words = [f"it ended {target_deviation(status, lengths):.3f} mm of a strut from where it leads to"]
     print(*words, sep="\n", end="\n" if words else "", file=sys.stderr)

@@ -21,7 +21,7 @@ from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Bits, Status, is_busy, read_status, settled_status
 from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S
 from pkm_post.control.link.stream import stream
-from pkm_post.control.link.tool_pose import Pose, ToolPoseReadout, activity_text, pose_text, state_text
+from pkm_post.control.link.tool_pose import ToolPoseReadout, activity_text, pose_text, state_text
 from pkm_post.control.loading import job_to_load
 from pkm_post.control.numerical_control.connection import (
     SIMULATED_HOMING,
@@ -78,9 +78,7 @@ __all__ = [
     "HomingPhase",
     "Plan",
     "PmacError",
-    "PmacSettings",
     "Port",
-    "Pose",
     "MdiSettings",
     "ToolPoseReadout",
     "RefusedError",

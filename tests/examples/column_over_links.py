@@ -147,7 +147,7 @@ def follow(program, kind, speed=SPEED):
         tip=float(tip.max()),
         axis=math.degrees(axis.max()),
         end=float(np.abs(status.commanded - job.motion.length[-1]).max()),
-        words=status.words(),
+        words=status.fault_texts(),
     )
 
 

@@ -20,8 +20,8 @@ def words_are_those_of_the_rooms_below():
     return {
         "why": {why: why.value for why in Interlock} == words.WHY,
         "phases": {phase: phase.value for phase in HomingPhase} == words.PHASES,
-        "motor": words.MOTOR == MotorBits.TOLD,
-        "system": words.SYSTEM == SystemBits.TOLD,
+        "motor": words.MOTOR == MotorBits.FAULT_TEXTS,
+        "system": words.SYSTEM == SystemBits.FAULT_TEXTS,
         "emergency": words.EMERGENCY == EMERGENCY_STEPS,
     }
 

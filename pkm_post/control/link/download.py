@@ -54,7 +54,7 @@ def verify_listing(session: Session, program: PmacProgram) -> ListingComparison:
     """Compare the controller's listing of a program with the program."""
     most = 3 * sum(map(len, program.lines)) + (1 << 16)
     try:
-        listed = session.ask(f"LIST PROG {program.number}", most)
+        listed = session.query(f"LIST PROG {program.number}", most)
     except RefusedError as refused:
         if refused.number not in _NO_SUCH_PROGRAM:
             raise
@@ -132,15 +132,15 @@ def clear(session: Session, number: int) -> None:
 
 def _cleared(session: Session, number: int) -> bool:
     _open(session, number)
-    session.order("CLEAR")
-    session.order("CLOSE")
+    session.command("CLEAR")
+    session.command("CLOSE")
     # Checked twice: a missing program shows as a refusal, which a corrupted byte causes as well.
     return free_memory(session) >= 0 and all(verify_listing(session, PmacProgram(number, ())).same for _ in range(2))
 
 
 def _open(session: Session, number: int) -> None:
     for line in ("CLOSE", "DELETE GATHER", f"OPEN PROG {number}"):
-        session.order(line)
+        session.command(line)
 
 
 def _clear_away(session: Session, number: int) -> bool:
@@ -187,10 +187,10 @@ def _send(
     lines = program.lines
     _open(session, program.number)
     if not held:
-        session.order("CLEAR")
+        session.command("CLEAR")
     while held < len(lines):
         if is_cancelled():
             raise CancelledError("the download was stopped")
         held += session.load(lines[held : held + _LINES_IN_VIEW])
         progress(held, len(lines))
-    session.order("CLOSE")
+    session.command("CLOSE")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ethernet conversation: commands in packets of the Turbo PMAC's Ethernet card.
+"""Ethernet protocol: commands in packets of the Turbo PMAC's Ethernet card.
 
 Every packet has a header of eight bytes: request type, request, and value, index and length as big-endian words.
 
@@ -12,7 +12,7 @@ Every packet has a header of eight bytes: request type, request, and value, inde
 | CTRL_RESPONSE C4 | C0 | a control character, in the value | its answer |
 
 TCP neither loses nor corrupts data, so there are no checksums (I4=0), and invalid bytes mean that the connection is
-unusable: the conversation ends with ``Lost``, and its caller reconnects.
+unusable: the protocol ends with ``Lost``, and its caller reconnects.
 [UMACEthernet, Ethernet Protocol]
 
 Enters: commands, bytes and times. Leaves: bytes and events.
@@ -52,7 +52,7 @@ def packet(request: int, data: bytes = b"", value: int = 0, length: int | None =
 
 
 class EthernetProtocol(ByteProtocol):
-    """A conversation in packets: I3=2, I4=0, I6=1.
+    """A protocol in packets: I3=2, I4=0, I6=1.
 
     Attributes:
         deadline: when ``expire`` is due.
@@ -62,29 +62,29 @@ class EthernetProtocol(ByteProtocol):
     handshake = "I3=2 I4=0 I6=1 I9=3"
 
     def __init__(self, silence: float = 0.1) -> None:
-        """Create a conversation; as ``ByteProtocol``."""
+        """Create a protocol; as ``ByteProtocol``."""
         super().__init__(silence)
         self._reader = ResponseParser(b"", False)
         self._in_packet = 0
 
     def begin(self, command: Command, now: float) -> None:
-        """As ``exchange.Conversation``."""
+        """As ``CommandProtocol``."""
         # Each line of a buffer takes a terminator byte.
         self._take_up(command, MOST_LINES - 1 if command.kind is CommandKind.BUFFER else LONGEST_COMMAND)
         text = command.text.encode("ascii")
         if command.kind is CommandKind.BUFFER:
             self._out += packet(WRITEBUFFER, text.replace(b"\n", b"\0") + b"\0")
-            self._wait_patiently(self._lines_taken, now)
+            self._wait_for_answer(self._lines_taken, now)
             return
         self._out += packet(GETRESPONSE, text)
         if command.kind is CommandKind.BLIND:
             self._wait_for_silence(now)
             return
         self._reader, self._in_packet = ResponseParser(text, False), 0
-        self._wait_patiently(self._answer, now)
+        self._wait_for_answer(self._answer, now)
 
     def reset(self, now: float, control: int | None = None) -> None:
-        """As ``exchange.Conversation``."""
+        """As ``CommandProtocol``."""
         self._forget()
         if control is not None:
             self._out += packet(CTRL_RESPONSE, value=control, length=MOST_ANSWER)
@@ -111,7 +111,7 @@ class EthernetProtocol(ByteProtocol):
         if self._in_packet == MOST_ANSWER:
             self._in_packet = 0
             self._out += packet(GETBUFFER, length=MOST_ANSWER)
-        self._wait_patiently(self._answer, now)
+        self._wait_for_answer(self._answer, now)
 
     def _lines_taken(self, byte: int, now: float) -> None:
         """Four bytes: line number, low byte first; error number; 80 if there is an error."""

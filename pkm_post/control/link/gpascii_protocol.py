@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gpascii conversation: commands to a Power PMAC, in the shell of its ssh server.
+"""Gpascii protocol: commands to a Power PMAC, in the shell of its ssh server.
 
 The shell starts ``gpascii -2``, which reports ``STDIN Open for ASCII Input`` and ACK when it is ready. ``echo 7``
 reduces its answers to values. From then on each line sent, terminated by one LF, returns as
@@ -50,7 +50,7 @@ _ERROR = re.compile(r"\w+:\d+:\d+: error #(\d+): *(.*)")
 
 
 class GpasciiProtocol(ByteProtocol):
-    """A conversation with gpascii.
+    """A protocol with gpascii.
 
     Attributes:
         deadline: when ``expire`` is due.
@@ -60,13 +60,13 @@ class GpasciiProtocol(ByteProtocol):
     handshake = ""
 
     def __init__(self, silence: float = 0.5) -> None:
-        """Create a conversation; as ``ByteProtocol``."""
+        """Create a protocol; as ``ByteProtocol``."""
         super().__init__(silence)
         self._lines: list[str] = []
         self._refusal: Refusal | None = None
 
     def begin(self, command: Command, now: float) -> None:
-        """As ``exchange.Conversation``."""
+        """As ``CommandProtocol``."""
         if "\n" in command.text:
             raise ValueError(f"command: expected one line, got {command.text[:40]!r}")
         self._take_up(command, LONGEST_LINE)
@@ -82,7 +82,7 @@ class GpasciiProtocol(ByteProtocol):
             raise ValueError(f"control: expected none over gpascii, got {control}")
         self._begin_with(Command(START, CommandKind.SET, START_S))
         self._out += f"{START}\n".encode("ascii")
-        self._wait_patiently(self._greeted, now)
+        self._wait_for_answer(self._greeted, now)
 
     def _greeted(self, byte: int, now: float) -> None:
         """Ignore what the shell prints before gpascii is ready."""
@@ -91,28 +91,28 @@ class GpasciiProtocol(ByteProtocol):
             self._send(now)
             return
         self._collected.append(byte)
-        self.deadline = now + self._command.patience
+        self.deadline = now + self._command.answer_timeout
 
     def _send(self, now: float) -> None:
         self._lines, self._refusal = [], None
         self._collected.clear()
         self._out += f"{self._command.text}\n".encode("ascii")
-        self._wait_patiently(self._echoed, now)
+        self._wait_for_answer(self._echoed, now)
 
     def _echoed(self, byte: int, now: float) -> None:
         """Wait for the echo of the command."""
-        self._wait_patiently(self._echoed, now)
+        self._wait_for_answer(self._echoed, now)
         line = self._line_with(byte)
         if line is None:
             return
         if line == self._command.text:
-            self._wait_patiently(self._answered, now)
+            self._wait_for_answer(self._answered, now)
         elif line:
             self._end(Lost(f"{line[:60]!r} in place of the echo of {self._command.text[:60]!r}"))
 
     def _answered(self, byte: int, now: float) -> None:
         if self._refusal is None:
-            self._wait_patiently(self._answered, now)
+            self._wait_for_answer(self._answered, now)
         else:
             self.deadline = now + self._silence
         if byte == _ACK:

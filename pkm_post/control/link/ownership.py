@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Ownership: one client at a time may move a machine or load its controller; all others may monitor and stop it.
 
-Two clients that load or start at the same time close each other's buffers, or move the struts where neither wants them.
+Two clients that load or start at the same time close each other's buffers, or move the struts to unwanted places.
 So a client first claims ownership: with a lock file among the clients of this computer, and with five P-variables of
 the controller among those of all computers. They record the owner, its operation, its start time, and a heartbeat
 count.
@@ -44,7 +44,7 @@ BEAT_S = 1.0
 """Heartbeat period of the owner, s."""
 SILENCE_S = 5.0
 """Seconds without a sign of life after which an owner is overridden."""
-LOOK_S = 0.5
+POLL_S = 0.5
 ATTEMPTS = 3
 OPERATIONS = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal")
 """Operations of an owner; the controller stores the index in this list, from 1. Append new ones at its end."""
@@ -79,9 +79,9 @@ class Owner:
 
     def __str__(self) -> str:
         if not self.what:
-            return "a client that does not say who it is"
+            return "an unidentified client"
         where = f"at {ipaddress.IPv4Address(self.address)}" if 0 < self.address < 1 << 32 else "without an address"
-        return f"a client {where}, {self.action or 'something'}, since {_moment(self.since)}"
+        return f"a client {where}, {self.action or 'something'}, since {_time_text(self.since)}"
 
 
 class Ownership:
@@ -96,38 +96,38 @@ class Ownership:
             owner: the number in the controller; 0 if the controller keeps none.
         """
         self._session, self._lock, self._owner = session, lock, owner
-        self._seen, self._connections, self._is_asking = session.now(), session.connections, False
+        self._verified_at, self._connections, self._is_querying = session.now(), session.connections, False
 
     def answered(self) -> None:
         """Send a due heartbeat, unless a program buffer is open: the assignment would become a line of it."""
-        if self._is_asking or not self._owner or self._session.has_open_buffer or not self._is_older_than(BEAT_S):
+        if self._is_querying or not self._owner or self._session.has_open_buffer or not self._is_older_than(BEAT_S):
             return
-        self._is_asking = True
+        self._is_querying = True
         try:
-            self._session.ask(f"P{COUNT}=P{COUNT}+1")
-            self._see()
+            self._session.query(f"P{COUNT}=P{COUNT}+1")
+            self._verify()
         except (LinkLostError, RefusedError) as fault:  # retried after the next answer; others wait much longer
-            _log.warning("the right to move the machine could not be renewed: %s", fault)
+            _log.warning("ownership of the machine could not be renewed: %s", fault)
         finally:
-            self._is_asking = False
+            self._is_querying = False
 
     def check(self) -> None:
         """Verify ownership, if it was not seen recently or the link was lost meanwhile.
 
         Raises:
-            NotOwnerError: another client has taken it.
+            NotOwnerError: another client has claimed it.
             LinkLostError: it cannot be verified.
         """
-        if self._is_asking or not self._owner or self.is_sure():
+        if self._is_querying or not self._owner or self.is_certain():
             return
-        self._is_asking = True
+        self._is_querying = True
         try:
-            self._see()
+            self._verify()
         finally:
-            self._is_asking = False
+            self._is_querying = False
 
-    def is_sure(self) -> bool:
-        """Whether ownership was seen so recently that no other client can have taken it since."""
+    def is_certain(self) -> bool:
+        """Whether ownership was seen so recently that no other client can have claimed it since."""
         is_same_link = self._connections == self._session.connections
         return is_same_link and not self._is_older_than(SILENCE_S / 2)
 
@@ -136,35 +136,35 @@ class Ownership:
         self._session.keeper = None
         try:
             if self._owner and not self._session.has_open_buffer:
-                with self._session.in_a_hurry():
-                    self._session.ask(_swap(self._owner, 0))
+                with self._session.short_timeouts():
+                    self._session.query(_exchange_owner(self._owner, 0))
         except PmacError as fault:
-            _log.warning("the right to move the machine could not be given back: %s", fault)
+            _log.warning("ownership of the machine could not be released: %s", fault)
         finally:
             if self._lock is not None:
                 self._lock.release()
 
-    def _see(self) -> None:
+    def _verify(self) -> None:
         there = read_record(self._session)
         if not there.owner and not there.since and free_memory(self._session) >= 0:
-            self._session.ask(_swap(0, self._owner))  # a controller that was reset has lost all of it
+            self._session.query(_exchange_owner(0, self._owner))  # a controller that was reset has lost all of it
             there = read_record(self._session)
         if there.owner != self._owner:
             raise NotOwnerError(_diagnostic(self._session, "C211", str(there)), there.action)
-        self._seen, self._connections = self._session.now(), self._session.connections
+        self._verified_at, self._connections = self._session.now(), self._session.connections
 
     def _is_older_than(self, seconds: float) -> bool:
-        return self._session.now() - self._seen > seconds
+        return self._session.now() - self._verified_at > seconds
 
 
 @contextmanager
-def owned(session: Session, what: str, beside: tuple[str, ...] = ()) -> Iterator[None]:
+def owned(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Iterator[None]:
     """Hold ownership for a block; a session that already has it keeps it.
 
     Args:
         session: an open session.
         what: the operation, one of ``OPERATIONS``.
-        beside: operations of another client that are allowed meanwhile; any other silent client's program may continue.
+        concurrent: operations of another client that are allowed meanwhile; a silent client's program may continue.
 
     Raises:
         NotOwnerError: another client has it.
@@ -174,25 +174,25 @@ def owned(session: Session, what: str, beside: tuple[str, ...] = ()) -> Iterator
         yield
         return
     try:
-        taken: Ownership | None = claim(session, what, beside)
+        claimed: Ownership | None = claim(session, what, concurrent)
     except NotOwnerError as fault:
-        if fault.what not in beside:
+        if fault.what not in concurrent:
             raise
-        taken = None
+        claimed = None
     try:
         yield
     finally:
-        if taken is not None:
-            taken.release()
+        if claimed is not None:
+            claimed.release()
 
 
-def claim(session: Session, what: str, beside: tuple[str, ...] = ()) -> Ownership:
+def claim(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Ownership:
     """Claim ownership; clear and close a program buffer that is no longer being filled.
 
     Args:
         session: an open session without ownership.
         what: the operation, one of ``OPERATIONS``.
-        beside: as ``owned``.
+        concurrent: as ``owned``.
 
     Raises:
         NotOwnerError: another client has it, or its operation still moves the machine.
@@ -200,9 +200,9 @@ def claim(session: Session, what: str, beside: tuple[str, ...] = ()) -> Ownershi
         LinkLostError: the controller cannot be queried.
         CancelledError: a stop came first.
     """
-    lock = _locked(session, what) if session.port_name else None
+    lock = _claim_lock(session, what) if session.port_name else None
     try:
-        owner = _taken_in_controller(session, what, beside) if session.has_handshake else 0
+        owner = _claim_in_controller(session, what, concurrent) if session.has_handshake else 0
     except BaseException:
         if lock is not None:
             lock.release()
@@ -218,15 +218,15 @@ def read_record(session: Session) -> Owner:
         DiagnosedError: the variables hold values that no client writes.
         LinkLostError: the answer makes no sense.
     """
-    told = session.ask(RECORD)
+    answer = session.query(RECORD)
     try:
-        values = [float(line) for line in told]
+        values = [float(line) for line in answer]
         if len(values) != len(VARIABLES):
             raise ValueError(f"expected {len(VARIABLES)} lines, got {len(values)}")
     except ValueError as fault:
         raise LinkLostError(f"{RECORD}: {fault}") from None
     if not all(value.is_integer() and value >= 0 for value in values):
-        raise DiagnosedError(_diagnostic(session, "C213", f"{RECORD} is {' '.join(told)}"))
+        raise DiagnosedError(_diagnostic(session, "C213", f"{RECORD} is {' '.join(answer)}"))
     return Owner(*map(int, values))
 
 
@@ -237,30 +237,30 @@ def lock_path(port: str) -> Path:
     return Path(tempfile.gettempdir()) / f"pkm-post-{sha256(name.encode()).hexdigest()[:16]}.lock"
 
 
-def _locked(session: Session, what: str) -> Lock:
+def _claim_lock(session: Session, what: str) -> Lock:
     path = lock_path(session.port_name)
     try:
         lock = try_lock(path)
     except OSError as fault:
         raise DiagnosedError(_diagnostic(session, "C212", f"{path}: {fault.strerror}")) from fault
     if lock is None:
-        said = lock_owner(path)
-        raise NotOwnerError(_diagnostic(session, "C210", _process(said)), str(said.get("what", "")))
+        record = lock_owner(path)
+        raise NotOwnerError(_diagnostic(session, "C210", _process(record)), str(record.get("what", "")))
     lock.describe({"user": _user(), "process": os.getpid(), "what": what, "since": int(time.time())})
     return lock
 
 
-def _taken_in_controller(session: Session, what: str, beside: tuple[str, ...]) -> int:
+def _claim_in_controller(session: Session, what: str, concurrent: tuple[str, ...]) -> int:
     """Claim ownership in the controller; return the number of this client."""
     before = read_record(session)
     is_open = free_memory(session) < 0
     if before.owner or is_open:
-        _see_silence(session, before, beside)
+        _wait_for_silence(session, before, concurrent)
     if is_open:
-        _close_leftover(session)
+        _close_abandoned_buffer(session)
     owner, seen = random.SystemRandom().randrange(1, 1 << 30), before.owner
     for _ in range(ATTEMPTS):
-        session.ask(_swap(seen, owner))  # safe to repeat: it may arrive twice
+        session.query(_exchange_owner(seen, owner))  # safe to repeat: it may arrive twice
         there = read_record(session)
         if there.owner not in (0, seen):
             break
@@ -268,68 +268,68 @@ def _taken_in_controller(session: Session, what: str, beside: tuple[str, ...]) -
     if there.owner != owner:
         raise NotOwnerError(_diagnostic(session, "C210", str(there)), there.action)
     words = (1, _own_address(session.port_name), int(time.time()), OPERATIONS.index(what) + 1)
-    session.ask(" ".join(f"P{number}={word}" for number, word in zip(VARIABLES[1:], words, strict=True)))
+    session.query(" ".join(f"P{number}={word}" for number, word in zip(VARIABLES[1:], words, strict=True)))
     return owner
 
 
-def _swap(old: int, new: int) -> str:
+def _exchange_owner(old: int, new: int) -> str:
     """Replace the owner if it is the expected one: INT is 1 then, and else 0."""
     return f"P{OWNER}=P{OWNER}+({new}-{old})*INT(1/(ABS(P{OWNER}-{old})+1))"
 
 
-def _see_silence(session: Session, record: Owner, beside: tuple[str, ...]) -> None:
+def _wait_for_silence(session: Session, record: Owner, concurrent: tuple[str, ...]) -> None:
     """Wait until an owner has shown no sign of life for so long that it counts as gone.
 
     An owner whose machine moves or is held may be busy with a buffer, so it keeps ownership. A client that resumes such
-    a program checks its count alone, which would grow while a program runs, except for programs it may continue beside.
+    a program checks its count alone, which would grow while a program runs, except for programs it may resume.
 
     Raises:
         NotOwnerError: it shows a sign of life, or the machine is busy.
     """
     known = str(record)
-    signs, until = _signs(session, record), session.now() + SILENCE_S
+    signs, until = _signs_of_life(session, record), session.now() + SILENCE_S
     while True:
-        is_left_alone = record.action in beside or (not beside and is_busy(session))
-        if is_left_alone or _signs(session, read_record(session)) != signs:
+        is_left_alone = record.action in concurrent or (not concurrent and is_busy(session))
+        if is_left_alone or _signs_of_life(session, read_record(session)) != signs:
             raise NotOwnerError(_diagnostic(session, "C210", known), record.action if record.owner else "")
         if session.now() >= until:
             break
-        session.give_way()
-        session.sleep(LOOK_S)
+        session.check_preemption()
+        session.sleep(POLL_S)
     if record.owner:
-        _log.warning("nothing was seen of %s for %g s: it is passed over", known, SILENCE_S)
+        _log.warning("no sign of life from %s for %g s: its ownership is overridden", known, SILENCE_S)
 
 
-def _signs(session: Session, record: Owner) -> tuple[object, ...]:
+def _signs_of_life(session: Session, record: Owner) -> tuple[object, ...]:
     """Signs of life of an owner: its count, free memory while it loads, lines ahead while it streams."""
-    return record.owner, record.count, session.ask("SIZE"), session.ask("PR")
+    return record.owner, record.count, session.query("SIZE"), session.query("PR")
 
 
-def _close_leftover(session: Session) -> None:
+def _close_abandoned_buffer(session: Session) -> None:
     """Clear and close a program buffer that is no longer being filled."""
     try:
-        session.order("CLEAR")
+        session.command("CLEAR")
     except RefusedError as refused:  # it belongs to another port; the check below shows whether CLOSE works
         if refused.number != _ERR_NOT_OPEN:
             raise
-    session.order("CLOSE")
+    session.command("CLOSE")
     if free_memory(session) < 0:
         raise DiagnosedError(_diagnostic(session, "C214", "SIZE is below zero after CLOSE"))
-    _log.warning("a program buffer was open, the rest of a download that was cut: it was made empty")
+    _log.warning("a program buffer was open after an interrupted download: it was cleared")
 
 
 def _diagnostic(session: Session, code: str, found: str) -> Diagnostic:
     return Diagnostic(code, Place(session.port_name or "controller"), found)
 
 
-def _process(said: OwnerRecord) -> str:
+def _process(record: OwnerRecord) -> str:
     """The process that holds the lock on this computer, in plain text."""
-    if not {"user", "process", "what", "since"} <= said.keys():
-        return "a process of this computer that does not say who it is"
-    return f"process {said['process']} of {said['user']}, {said['what']}, since {_moment(said['since'])}"
+    if not {"user", "process", "what", "since"} <= record.keys():
+        return "an unidentified process of this computer"
+    return f"process {record['process']} of {record['user']}, {record['what']}, since {_time_text(record['since'])}"
 
 
-def _moment(seconds: object) -> str:
+def _time_text(seconds: object) -> str:
     try:
         return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(str(seconds))))
     except (ValueError, OverflowError, OSError):
@@ -347,8 +347,8 @@ def _own_address(port: str) -> int:
     if kind != "tcp":
         return 0
     try:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
-            asked.connect((host, int(number)))
-            return int(ipaddress.IPv4Address(asked.getsockname()[0]))
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.connect((host, int(number)))
+            return int(ipaddress.IPv4Address(probe.getsockname()[0]))
     except OSError:
         return 0  # an IPv6 address does not fit into a variable

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Ports: turn ``serial:/dev/ttyUSB0``, ``tcp:HOST[:PORT]`` or ``ssh:USER@HOST[:PORT]`` into a link.
 
-Enters: the name of a port. Leaves: its link, and the conversation that this kind of link requires.
+Enters: the name of a port. Leaves: its link, and the protocol that this kind of link requires.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ class PortInterface(Protocol):
     def link(self) -> Link:
         """A link, not yet connected: ``restart`` connects."""
 
-    def conversation(self) -> CommandProtocol:
-        """A conversation for this kind of link."""
+    def protocol(self) -> CommandProtocol:
+        """A protocol for this kind of link."""
 
 
 @dataclass(frozen=True)
@@ -89,12 +89,12 @@ class Port:
             return SerialLink(self.address, self.baud, self.parity, self.handshake, self.timeout)
         return TcpLink(self.address, self.number, self.timeout)
 
-    def conversation(self) -> CommandProtocol:
-        """A conversation for this kind of link."""
-        return _CONVERSATIONS[self.kind](self.silence)
+    def protocol(self) -> CommandProtocol:
+        """A protocol for this kind of link."""
+        return _PROTOCOLS[self.kind](self.silence)
 
 
-_CONVERSATIONS: dict[str, Callable[[float], CommandProtocol]] = {
+_PROTOCOLS: dict[str, Callable[[float], CommandProtocol]] = {
     "serial": SerialProtocol,
     "tcp": EthernetProtocol,
     "ssh": GpasciiProtocol,

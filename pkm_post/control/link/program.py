@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Listing: verify that the controller's listing is the program sent.
+"""Program: a motion program as lines for the controller, and the comparison of a listing with it.
 
 A controller does not list the original text: it stores numbers, not digits, so ``A512.062500`` is listed as
 ``A512.0625``, and it sets its own blanks. So each line is split into words, signs and numbers. Words and signs must be
 equal, and so must the lines: half a line is a different move. A number must match to a hundredth of its last
 written digit, or to the precision of the controller's numbers.
 
-Enters: the lines of a program and of a listing. Leaves: how many lines match, and where they differ.
+Enters: the text of a program or of one part of it, with the settings it was written for; the lines of a listing.
+Leaves: a job (lines and motion in mm) or its faults; how many lines match, and where they differ.
 """
 
 from __future__ import annotations
@@ -113,7 +114,7 @@ def compare_listing(written: Sequence[str], listed: Sequence[str]) -> ListingCom
             lines, False, lines == len(rows), f"line {lines + 1}: sent {written[lines]!r}, listed is {shown!r}"
         )
     return ListingComparison(
-        lines, True, lines == len(rows), "" if lines == len(rows) else f"behind the last line: {shown!r}"
+        lines, True, lines == len(rows), "" if lines == len(rows) else f"after the last line: {shown!r}"
     )
 
 

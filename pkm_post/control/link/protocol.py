@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Exchange: the commands and events of a conversation with the controller.
+"""Protocol: commands, events, and the base of all protocols of a controller.
 
-A command enters; bytes go out and come in; one event ends it. A conversation does no I/O and has no clock: its caller
+A command enters; bytes go out and come in; one event ends it. A protocol does no I/O and has no clock: its caller
 passes the bytes and the time in seconds, from any monotonic clock.
 """
 
@@ -33,7 +33,7 @@ class Command:
     Attributes:
         text: without its terminator. Printable ASCII; the lines of a ``CommandKind.BUFFER`` are separated by ``\n``.
         kind: its effect.
-        patience: seconds without a byte before the answer is given up.
+        answer_timeout: seconds without a byte before the answer is given up.
         most: maximum bytes of an answer; a longer one is invalid.
 
     Raises:
@@ -42,7 +42,7 @@ class Command:
 
     text: str
     kind: CommandKind = CommandKind.QUERY
-    patience: float = 2.0
+    answer_timeout: float = 2.0
     most: int = 1 << 16
 
     def __post_init__(self) -> None:
@@ -146,14 +146,14 @@ _Timeout = Callable[[float], None]
 
 
 class ByteProtocol:
-    """A conversation without a protocol.
+    """A protocol without a protocol.
 
     Attributes:
         deadline: when ``expire`` is due.
     """
 
     def __init__(self, silence: float) -> None:
-        """Create a conversation.
+        """Create a protocol.
 
         Args:
             silence: seconds without a byte that end an answer; longer than the longest pause within one.
@@ -162,34 +162,34 @@ class ByteProtocol:
         self._silence = silence
         self._command = Command("?")
         self._step: _Step | None = None
-        self._late: _Timeout = self._unanswered
+        self._on_timeout: _Timeout = self._no_answer
         self._out = bytearray()
         self._events: list[Event] = []
         self._collected = bytearray()
-        self._taken = 0
+        self._received = 0
 
     def receive(self, data: bytes, now: float) -> None:
-        """As ``exchange.Conversation``."""
+        """As ``CommandProtocol``."""
         for byte in data:
             if self._step is None:
                 continue  # nothing is outstanding: a stray byte
-            self._taken += 1
+            self._received += 1
             self._step(byte, now)
-            if self._taken > self._command.most and self._step is not None:
+            if self._received > self._command.most and self._step is not None:
                 self._end(Lost(f"more than {self._command.most} bytes", self._is_untouched()))
 
     def expire(self, now: float) -> None:
-        """As ``exchange.Conversation``."""
+        """As ``CommandProtocol``."""
         if self._step is not None:
-            self._late(now)
+            self._on_timeout(now)
 
     def outgoing(self) -> bytes:
-        """As ``exchange.Conversation``."""
+        """As ``CommandProtocol``."""
         data, self._out = bytes(self._out), bytearray()
         return data
 
     def events(self) -> list[Event]:
-        """As ``exchange.Conversation``."""
+        """As ``CommandProtocol``."""
         events, self._events = self._events, []
         return events
 
@@ -214,19 +214,19 @@ class ByteProtocol:
         self._begin_with(Command("forget", CommandKind.BLIND, self._silence))
 
     def _begin_with(self, command: Command) -> None:
-        self._command, self._taken = command, 0
+        self._command, self._received = command, 0
         self._collected.clear()
 
-    def _wait(self, step: _Step, late: _Timeout, deadline: float) -> None:
-        self._step, self._late, self.deadline = step, late, deadline
+    def _wait(self, step: _Step, on_timeout: _Timeout, deadline: float) -> None:
+        self._step, self._on_timeout, self.deadline = step, on_timeout, deadline
 
-    def _wait_patiently(self, step: _Step, now: float) -> None:
-        self._wait(step, self._unanswered, now + self._command.patience)
+    def _wait_for_answer(self, step: _Step, now: float) -> None:
+        self._wait(step, self._no_answer, now + self._command.answer_timeout)
 
     def _wait_for_silence(self, now: float) -> None:
         # A controller thinks before it answers: the first byte may take longer than those after it.
         self._collected.clear()
-        self._wait(self._collect, self._silent, now + self._command.patience)
+        self._wait(self._collect, self._silent, now + self._command.answer_timeout)
 
     def _collect(self, byte: int, now: float) -> None:
         self._collected.append(byte)
@@ -235,8 +235,8 @@ class ByteProtocol:
     def _silent(self, now: float) -> None:
         self._end(Answer(tuple(self._collected.decode("latin-1").split("\r"))))
 
-    def _unanswered(self, now: float) -> None:
-        self._end(Lost(f"no answer for {self._command.patience:g} s"))
+    def _no_answer(self, now: float) -> None:
+        self._end(Lost(f"no answer for {self._command.answer_timeout:g} s"))
 
     def _is_untouched(self) -> bool:
         """Whether the controller certainly did not execute the command."""

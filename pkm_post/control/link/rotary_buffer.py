@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotary buffer: sends lines into it and tracks its contents.
+"""Rotary buffer: cut a program into segments for it, load their lines and track what it holds.
+
+A controller executes a rotary buffer as long as it holds lines. If they run out within a move because the link was cut,
+the struts stop abruptly, or do something undocumented. So each segment ends with STOP where the struts rest anyway, and
+all its lines are loaded before R releases the first of them: whatever happens to the link, the controller holds all
+lines up to a place where it stops by itself.
 
 Lines are counted from the first one sent: some are certainly in the controller, some after them may be. The controller
 reports how many it has not begun, which shows how many of the last ones arrived.
 
-Enters: a session, the lines, the size of the buffer in 48-bit words. Leaves: lines in the buffer.
+Enters: a session, a program, the size of the buffer in 48-bit words. Leaves: segments, and lines in the buffer.
 """
 
 from __future__ import annotations
@@ -29,105 +34,10 @@ _MARGIN = 2
 """Lines no longer ahead that may still occupy the buffer: the running one, and the one after it."""
 _log = logging.getLogger(__name__)
 
-
-class RotaryBuffer:
-    """Tracks the contents of the buffer.
-
-    Attributes:
-        loaded: lines that certainly arrived, executed or not.
-        unsure: lines after those that may have arrived.
-    """
-
-    def __init__(self, session: Session, settings: PmacSettings, lines: Sequence[str], words: int) -> None:
-        self.loaded = self.unsure = 0
-        self._session, self._lines, self._system = session, lines, f"&{settings.coordinate_system}"
-        self._opening = rotary_opening(settings)
-        self._filled = [0, *accumulate(map(line_words, lines))]
-        self._words, self._room = words, words
-        self._connections = session.connections
-
-    def open(self) -> None:
-        """Open it empty and point the coordinate system to it."""
-        # A retry of the whole sequence is safe: nothing has been released.
-        if ahead := self._ordered(*self._opening):
-            raise PmacError(f"{ahead} lines are in the rotary buffer after CLEAR")
-
-    def empty(self) -> bool:
-        """Empty and close it; return whether the controller confirms that."""
-        return self._ordered("CLOSE", self._system, "OPEN ROT", "CLEAR", "CLOSE") == 0
-
-    def ahead(self) -> int:
-        """Lines in it that have not begun."""
-        told = self._session.ask(f"{self._system}PR")
-        if len(told) != 1 or not re.fullmatch(r"\d{1,9}", told[0].strip()):
-            raise LinkLostError(f"PR: expected a number of lines, got {told}")
-        return int(told[0])
-
-    def send(self, end: int) -> bool:
-        """Send as many of the lines up to ``end`` as fit; return whether any did.
-
-        Raises:
-            RefusedError: a line was refused; those before it may be in the buffer.
-            LinkLostError: the link failed, or has reconnected; ``recount`` must come next.
-        """
-        batch = self._lines[self.loaded : self.loaded + self._fitting(end)]
-        if not self._is_still_open():
-            raise LinkLostError("the link was called back, which closed the rotary buffer")
-        if not batch:
-            return False
-        self.unsure = min(len(batch), self._session.lines_at_once(batch))
-        done = self._session.load(batch)
-        self._room -= self._filled[self.loaded + done] - self._filled[self.loaded]
-        self.loaded, self.unsure = self.loaded + done, 0
-        return True
-
-    def recount(self, begun: int) -> None:
-        """After a failure, at rest after line ``begun``: count the loaded lines and reopen the buffer.
-
-        Raises:
-            PmacError: the controller's count is inconsistent.
-        """
-        there = begun + self._ordered("CLOSE", self._system, "OPEN ROT")
-        if not self.loaded <= there <= self.loaded + self.unsure:
-            raise PmacError(f"the controller has {there} lines, {self.loaded} to {self.loaded + self.unsure} were sent")
-        self.loaded, self.unsure, self._room = there, 0, 0
-
-    def _ordered(self, *lines: str) -> int:
-        """Execute lines, all again when the link fails; return how many lines lie ahead then."""
-        for attempt in range(ATTEMPTS):
-            self._connections = self._session.connections
-            try:
-                for line in lines:
-                    self._session.order(line)
-                ahead = self.ahead()
-            except LinkLostError as lost:
-                _log.warning("the link failed: %s", lost)
-                if attempt == ATTEMPTS - 1:
-                    raise
-            else:
-                if self._is_still_open():
-                    return ahead
-        raise LinkLostError("the link fails again and again")
-
-    def _is_still_open(self) -> bool:
-        """Whether it is still open: a reconnect closes it, and a line would then be executed at once, not stored."""
-        return self._connections == self._session.connections
-
-    def _fitting(self, end: int) -> int:
-        """How many of the next lines fit."""
-        if self._filled[self.loaded + 1] - self._filled[self.loaded] > self._room:
-            oldest = max(self.loaded - self.ahead() - _MARGIN, 0)
-            self._room = self._words - (self._filled[self.loaded] - self._filled[oldest])
-        count = self.loaded
-        while count < end and self._filled[count + 1] - self._filled[self.loaded] <= self._room:
-            count += 1
-        return count - self.loaded
-
-
 STOP = "STOP"
-_STAND = "DWELL0"
+_DWELL_AT_REST = "DWELL0"
 _DWELL, _INTERVAL = re.compile(r"DWELL"), re.compile(r"PVT\d+")
-_GATE_WORDS = 34
+_SEGMENT_END_WORDS = 34
 """More than the words of DWELL0, STOP, the repeated interval, and two executed lines that may still be there."""
 _VALUE = r"(-?\d+\.\d+)"
 
@@ -177,7 +87,7 @@ def split_into_segments(program: PmacProgram, settings: PmacSettings, words: int
         rest = _next(rests, start, filled, words)
         lines = [interval] if interval else []
         lines += program.lines[start : rest.behind]
-        lines += [_STAND, STOP] if rest.interval else [STOP]
+        lines += [_DWELL_AT_REST, STOP] if rest.interval else [STOP]
         segments.append(Segment(tuple(lines), rest.length, rest.behind))
         start, interval = rest.behind, rest.interval
     return tuple(segments)
@@ -186,9 +96,9 @@ def split_into_segments(program: PmacProgram, settings: PmacSettings, words: int
 def _next(rests: list[_Rest], start: int, filled: list[int], words: int) -> _Rest:
     """The farthest rest within half of the buffer, else the nearest one."""
     ahead = [rest for rest in rests if rest.behind > start]
-    within = [rest for rest in ahead if filled[rest.behind] - filled[start] + _GATE_WORDS <= words // 2]
+    within = [rest for rest in ahead if filled[rest.behind] - filled[start] + _SEGMENT_END_WORDS <= words // 2]
     chosen = within[-1] if within else ahead[0]
-    needed = filled[chosen.behind] - filled[start] + _GATE_WORDS
+    needed = filled[chosen.behind] - filled[start] + _SEGMENT_END_WORDS
     if needed > words:
         raise NotReadyError(
             [
@@ -220,3 +130,99 @@ def _rests(lines: tuple[str, ...], settings: PmacSettings) -> Iterator[_Rest]:
             yield _Rest(index + 1, length, "")
         elif length is not None and stands and found and not dwells_next:
             yield _Rest(index + 1, length, interval)
+
+
+class RotaryBuffer:
+    """Tracks the contents of the buffer.
+
+    Attributes:
+        loaded: lines that certainly arrived, executed or not.
+        uncertain: lines after those that may have arrived.
+    """
+
+    def __init__(self, session: Session, settings: PmacSettings, lines: Sequence[str], words: int) -> None:
+        self.loaded = self.uncertain = 0
+        self._session, self._lines, self._system = session, lines, f"&{settings.coordinate_system}"
+        self._opening = rotary_opening(settings)
+        self._filled = [0, *accumulate(map(line_words, lines))]
+        self._words, self._room = words, words
+        self._connections = session.connections
+
+    def open(self) -> None:
+        """Open it empty and point the coordinate system to it."""
+        # A retry of the whole sequence is safe: nothing has been released.
+        if ahead := self._execute_all(*self._opening):
+            raise PmacError(f"{ahead} lines are in the rotary buffer after CLEAR")
+
+    def empty(self) -> bool:
+        """Empty and close it; return whether the controller confirms that."""
+        return self._execute_all("CLOSE", self._system, "OPEN ROT", "CLEAR", "CLOSE") == 0
+
+    def lines_ahead(self) -> int:
+        """Lines in it that have not begun."""
+        answer = self._session.query(f"{self._system}PR")
+        if len(answer) != 1 or not re.fullmatch(r"\d{1,9}", answer[0].strip()):
+            raise LinkLostError(f"PR: expected a number of lines, got {answer}")
+        return int(answer[0])
+
+    def send(self, end: int) -> bool:
+        """Send as many of the lines up to ``end`` as fit; return whether any did.
+
+        Raises:
+            RefusedError: a line was refused; those before it may be in the buffer.
+            LinkLostError: the link failed, or has reconnected; ``recount`` must come next.
+        """
+        batch = self._lines[self.loaded : self.loaded + self._fitting(end)]
+        if not self._is_still_open():
+            raise LinkLostError("the link has reconnected, which closed the rotary buffer")
+        if not batch:
+            return False
+        self.uncertain = min(len(batch), self._session.lines_at_once(batch))
+        done = self._session.load(batch)
+        self._room -= self._filled[self.loaded + done] - self._filled[self.loaded]
+        self.loaded, self.uncertain = self.loaded + done, 0
+        return True
+
+    def recount(self, begun: int) -> None:
+        """After a failure, at rest after line ``begun``: count the loaded lines and reopen the buffer.
+
+        Raises:
+            PmacError: the controller's count is inconsistent.
+        """
+        there = begun + self._execute_all("CLOSE", self._system, "OPEN ROT")
+        if not self.loaded <= there <= self.loaded + self.uncertain:
+            raise PmacError(
+                f"the controller has {there} lines, sent were {self.loaded} to {self.loaded + self.uncertain}"
+            )
+        self.loaded, self.uncertain, self._room = there, 0, 0
+
+    def _execute_all(self, *lines: str) -> int:
+        """Execute lines, all again when the link fails; return how many lines lie ahead then."""
+        for attempt in range(ATTEMPTS):
+            self._connections = self._session.connections
+            try:
+                for line in lines:
+                    self._session.command(line)
+                ahead = self.lines_ahead()
+            except LinkLostError as lost:
+                _log.warning("the link failed: %s", lost)
+                if attempt == ATTEMPTS - 1:
+                    raise
+            else:
+                if self._is_still_open():
+                    return ahead
+        raise LinkLostError("the link fails repeatedly")
+
+    def _is_still_open(self) -> bool:
+        """Whether it is still open: a reconnect closes it, and a line would then be executed at once, not stored."""
+        return self._connections == self._session.connections
+
+    def _fitting(self, end: int) -> int:
+        """How many of the next lines fit."""
+        if self._filled[self.loaded + 1] - self._filled[self.loaded] > self._room:
+            oldest = max(self.loaded - self.lines_ahead() - _MARGIN, 0)
+            self._room = self._words - (self._filled[self.loaded] - self._filled[oldest])
+        count = self.loaded
+        while count < end and self._filled[count + 1] - self._filled[self.loaded] <= self._room:
+            count += 1
+        return count - self.loaded

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Operate: run and resume a program, and set its override. Each command is sent once; then the state is read.
+"""Run: check, start and resume a program, and set its override. Each command is sent once; then the state is read.
 
 Hold and abort are in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts are moving.
-The controller's state shows a command with a short delay, so each command is watched until it shows.
+The controller's state shows a command with a short delay, so the state is polled until it does. Preconditions in
+controller and machine are queried, never assumed.
 
-Enters: a session, settings, a program. Leaves: the resulting state.
+Enters: a session, settings, a program, strut lengths in mm. Leaves: the resulting state, or ``NotReadyError``
+with every reason.
 """
 
 from __future__ import annotations
@@ -64,7 +66,7 @@ def check_start(status: Status, first: Array, near: float = START_TOLERANCE_MM, 
     Raises:
         NotReadyError: lists every reason.
     """
-    reasons = [*_motor_faults(status), *status.words()]
+    reasons = [*_motor_faults(status), *status.fault_texts()]
     if status.running:
         reasons.append("a program runs, or is held")
     if status.override > 100:
@@ -87,10 +89,10 @@ def read_number(session: Session, name: str) -> float:
     Raises:
         LinkLostError: the answer is not a number.
     """
-    told = _one(session, name)
-    if not re.fullmatch(_REAL, told):
-        raise LinkLostError(f"{name}: expected a number, got {told!r}")
-    return float(told)
+    answer = _query_line(session, name)
+    if not re.fullmatch(_REAL, answer):
+        raise LinkLostError(f"{name}: expected a number, got {answer!r}")
+    return float(answer)
 
 
 def _motor_faults(status: Status) -> Iterator[str]:
@@ -112,12 +114,12 @@ def _axis_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
     scale = Decimal(repr(float(settings.counts_per_mm)))
     for motor, letter, zero in zip(MOTORS, settings.letters, settings.zero_length, strict=True):
         wanted = (scale, letter, -scale * Decimal(repr(float(zero))))
-        told = _one(session, f"&{settings.coordinate_system}#{motor}->").replace(" ", "")
-        found = _DEFINITION.fullmatch(told.removeprefix(f"#{motor}->").upper())
+        answer = _query_line(session, f"&{settings.coordinate_system}#{motor}->").replace(" ", "")
+        found = _DEFINITION.fullmatch(answer.removeprefix(f"#{motor}->").upper())
         got = found and (Decimal(found[1] or 1), found[2], Decimal(found[3] or 0))
         if got != wanted:
             stated = f"{wanted[0].normalize():f}{letter}{wanted[2].normalize():+f}"
-            yield f"#{motor}->: expected {stated}, the controller has {told or 'nothing'}"
+            yield f"#{motor}->: expected {stated}, the controller has {answer or 'nothing'}"
 
 
 def _variable_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
@@ -146,11 +148,11 @@ def _limit_faults(session: Session, settings: PmacSettings, stroke: tuple[float,
                 yield f"{name}: expected {within} and not 0, which is no limit; the controller has {got:g}"
 
 
-def _one(session: Session, query: str) -> str:
-    told = session.ask(query)
-    if len(told) != 1:
-        raise PmacError(f"{query}: expected one line, got {len(told)}")
-    return told[0].strip()
+def _query_line(session: Session, query: str) -> str:
+    answer = session.query(query)
+    if len(answer) != 1:
+        raise PmacError(f"{query}: expected one line, got {len(answer)}")
+    return answer[0].strip()
 
 
 OVERRIDE_S = 5.0
@@ -189,9 +191,9 @@ def start_program(
     with owned(session, "run"):
         there = verify_listing(session, program)
         if not there.same:
-            raise NotReadyError([f"program {program.number} in the controller is another one: {there.difference}"])
+            raise NotReadyError([f"program {program.number} in the controller is a different one: {there.difference}"])
         check_start(settled_status(session, settings), first, near, machine)
-        return _go(session, settings, f"B{program.number}R", lambda status: status.running)
+        return _start_motion(session, settings, f"B{program.number}R", lambda status: status.running)
 
 
 def resume_program(session: Session, settings: PmacSettings) -> Status:
@@ -203,18 +205,18 @@ def resume_program(session: Session, settings: PmacSettings) -> Status:
         CancelledError: a stop came first; the program is still held.
         NotOwnerError: the program belongs to another client; it is still held.
     """
-    with owned(session, "resume", beside=RESUMED_BY_ALL):
+    with owned(session, "resume", concurrent=RESUMED_BY_ALL):
         return _resume(session, settings)
 
 
 def _resume(session: Session, settings: PmacSettings) -> Status:
     status = read_status(session, settings)
-    reasons = list(status.words())
+    reasons = list(status.fault_texts())
     if not status.held:
-        reasons.append("no program is held; after a stop (M0, M1) continue it, else start it from its beginning")
+        reasons.append("no program is held; after a stop (M0, M1) continue it, otherwise start it from its beginning")
     if reasons:
         raise NotReadyError(reasons)
-    return _go(session, settings, "R", lambda status: status.running and not status.held)
+    return _start_motion(session, settings, "R", lambda status: status.running and not status.held)
 
 
 def set_feed_override(
@@ -237,42 +239,42 @@ def set_feed_override(
     """
     if not 0 < percent <= 100:
         raise ValueError(f"percent: expected above 0 and up to 100, got {percent:g}")
-    with owned(session, "override", beside=RESUMED_BY_ALL):
+    with owned(session, "override", concurrent=RESUMED_BY_ALL):
         return _override(session, settings, percent, meanwhile)
 
 
 def _override(session: Session, settings: PmacSettings, percent: float, meanwhile: Callable[[], None]) -> Status:
     if read_status(session, settings).held:
         raise NotReadyError(["a program is held: resume it, or abort it, before the override is changed"])
-    session.order(f"&{settings.coordinate_system}%{percent:.2f}")
+    session.command(f"&{settings.coordinate_system}%{percent:.2f}")
 
     def is_reached(status: Status) -> bool:
         return abs(status.override - percent) <= _OVERRIDE_REACHED
 
-    status = _watched(session, settings, is_reached, OVERRIDE_S, session.is_waited_for, meanwhile)
+    status = _wait_until(session, settings, is_reached, OVERRIDE_S, session.stop_pending, meanwhile)
     if is_reached(status):
         return status
-    session.give_way()
+    session.check_preemption()
     taken_from = f"I{50 + settings.coordinate_system}93"
     raise PmacError(
-        f"the time base stays at {status.override:g} % after %{percent:g}: {taken_from} may take it from elsewhere"
+        f"the time base stays at {status.override:g} % after %{percent:g}: {taken_from} may select another source"
     )
 
 
-def _go(session: Session, settings: PmacSettings, order: str, goes: Callable[[Status], bool]) -> Status:
+def _start_motion(session: Session, settings: PmacSettings, order: str, goes: Callable[[Status], bool]) -> Status:
     """Send a command that moves the machine, once, unless a stop waits; if its answer is lost, the state decides."""
-    session.give_way()
+    session.check_preemption()
     try:
-        session.order(f"&{settings.coordinate_system}{order}")
+        session.command(f"&{settings.coordinate_system}{order}")
     except OutcomeUnknownError:
-        status = _watched(session, settings, goes, SHOWN_S)
+        status = _wait_until(session, settings, goes, SHOWN_S)
         if not goes(status):
             raise
         return status
-    return _watched(session, settings, goes, SHOWN_S)
+    return _wait_until(session, settings, goes, SHOWN_S)
 
 
-def _watched(
+def _wait_until(
     session: Session,
     settings: PmacSettings,
     holds: Callable[[Status], bool],

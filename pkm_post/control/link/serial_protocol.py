@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Serial conversation: commands over a line that may lose, duplicate or corrupt bytes.
+"""Serial protocol: commands over a line that may lose, duplicate or corrupt bytes.
 
 No line is executed before the controller has confirmed its checksum: the line is sent without CR, then ^N; the
 controller returns one byte, the sum of what it holds. If it matches, CR follows; if not, ^X discards the line, and it
@@ -142,7 +142,7 @@ ILLEGAL_CHARACTER = 4
 
 
 class SerialProtocol(ByteProtocol):
-    """A conversation with checksums: I3=2, I4=1, I6=1.
+    """A protocol with checksums: I3=2, I4=1, I6=1.
 
     Attributes:
         deadline: when ``expire`` is due.
@@ -152,13 +152,13 @@ class SerialProtocol(ByteProtocol):
     handshake = "I3=2 I4=1 I6=1 I9=3"
 
     def __init__(self, silence: float = 0.1) -> None:
-        """Create a conversation; as ``ByteProtocol``, allowing for the pauses of USB adapters."""
+        """Create a protocol; as ``ByteProtocol``, allowing for the pauses of USB adapters."""
         super().__init__(silence)
         self._reader = ResponseParser(b"", True)
         self._attempts = 0
 
     def begin(self, command: Command, now: float) -> None:
-        """As ``exchange.Conversation``."""
+        """As ``CommandProtocol``."""
         if "\n" in command.text:
             raise ValueError(f"command: expected one line, got {command.text[:40]!r}")
         self._take_up(command, LONGEST_LINE)
@@ -166,7 +166,7 @@ class SerialProtocol(ByteProtocol):
         self._send_line(now)
 
     def reset(self, now: float, control: int | None = None) -> None:
-        """As ``exchange.Conversation``; a control character acts at once, even inside a line."""
+        """As ``CommandProtocol``; a control character acts at once, even inside a line."""
         self._forget()
         self._out += FORGET if control is None else bytes([control]) + FORGET
         self._wait_for_silence(now)
@@ -174,7 +174,7 @@ class SerialProtocol(ByteProtocol):
     def _send_line(self, now: float) -> None:
         self._attempts += 1
         self._out += self._command.text.encode("ascii") + SUM
-        self._wait(self._guard, self._unguarded, now + self._command.patience)
+        self._wait(self._guard, self._unguarded, now + self._command.answer_timeout)
 
     def _guard(self, byte: int, now: float) -> None:
         """Check the checksum of the line just sent."""
@@ -187,7 +187,7 @@ class SerialProtocol(ByteProtocol):
             self._wait_for_silence(now)
             return
         self._reader = ResponseParser(line, True)
-        self._wait_patiently(self._answer, now)
+        self._wait_for_answer(self._answer, now)
 
     def _unguarded(self, now: float) -> None:
         self._flush("no checksum came back", now)
@@ -214,4 +214,4 @@ class SerialProtocol(ByteProtocol):
         elif event is not None:
             self._end(event)
         else:
-            self._wait_patiently(self._answer, now)
+            self._wait_for_answer(self._answer, now)

@@ -21,15 +21,15 @@ from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, R
 
 __all__ = ["OpenBufferPolicy", "Session"]
 
-ATTEMPTS = 5
+QUERY_ATTEMPTS = 5
 """How often a query is sent."""
-CALLS = 3
+CONNECT_ATTEMPTS = 3
 """How many reconnects are tried in a row."""
-HURRY_S = 0.4
+SHORT_TIMEOUT_S = 0.4
 """Longest silence while a stop is sent, which is retried soon."""
 
 
-class Keeper(Protocol):
+class OwnershipKeeper(Protocol):
     """Holds ownership of the machine; the session calls it (``ownership``)."""
 
     def answered(self) -> None:
@@ -42,7 +42,7 @@ class Keeper(Protocol):
             PmacError: ownership is lost.
         """
 
-    def is_sure(self) -> bool:
+    def is_certain(self) -> bool:
         """Whether ownership was seen so recently that no other client can have taken it since."""
 
     def release(self) -> None:
@@ -61,9 +61,9 @@ class Session:
     def __init__(
         self,
         port: PortInterface,
-        patience: float = 2.0,
+        answer_timeout: float = 2.0,
         pause: float = 0.5,
-        leftover: OpenBufferPolicy = OpenBufferPolicy.LEAVE,
+        open_buffer: OpenBufferPolicy = OpenBufferPolicy.LEAVE,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
@@ -71,19 +71,19 @@ class Session:
 
         Args:
             port: of the controller.
-            patience: seconds without a byte before an answer is given up.
+            answer_timeout: seconds without a byte before an answer is given up.
             pause: seconds before a reconnect, longer each time.
-            leftover: what to do with a program buffer that is open when connecting without ownership.
+            open_buffer: what to do with a program buffer that is open when connecting without ownership.
             clock: monotonic clock, s.
             sleep: waits that many seconds of the clock.
         """
-        self._patience, self._pause, self._leftover = patience, pause, leftover
+        self._answer_timeout, self._pause, self._open_buffer = answer_timeout, pause, open_buffer
         self._clock, self._sleep = clock, sleep
-        self._dialogue = CommandChannel(port, patience, clock)
-        self._in_step, self._in_a_hurry = False, False
-        self._attempts, self._calls = ATTEMPTS, CALLS
+        self._channel = CommandChannel(port, answer_timeout, clock)
+        self._is_synchronized, self._is_short = False, False
+        self._query_attempts, self._connect_attempts = QUERY_ATTEMPTS, CONNECT_ATTEMPTS
         self.port_name = port.name
-        self.keeper: Keeper | None = None
+        self.keeper: OwnershipKeeper | None = None
         self.has_open_buffer = False
         self.connections = 0
 
@@ -97,7 +97,7 @@ class Session:
     @property
     def messages(self) -> list[str]:
         """Unsolicited messages from programs in the controller."""
-        return self._dialogue.messages
+        return self._channel.messages
 
     def open(self) -> None:
         """Connect and establish the handshake.
@@ -105,19 +105,19 @@ class Session:
         Raises:
             LinkLostError: no controller answers.
         """
-        self._call()
+        self._connect()
 
     def close(self) -> None:
         """Disconnect, and release ownership of the machine."""
         if self.keeper is not None:
             self.keeper.release()
-        self._dialogue.close()
-        self._in_step = False
+        self._channel.close()
+        self._is_synchronized = False
 
     @property
     def has_handshake(self) -> bool:
         """Whether it is a Turbo PMAC, whose answers need a handshake."""
-        return bool(self._dialogue.handshake)
+        return bool(self._channel.handshake)
 
     def now(self) -> float:
         """Current time of the session's clock, s."""
@@ -127,24 +127,24 @@ class Session:
         """Wait for this many seconds of the session's clock."""
         self._sleep(seconds)
 
-    def give_way_when(self, is_waited_for: Callable[[], bool]) -> None:
-        """Abandon long operations, and start no motion, while ``is_waited_for`` is true."""
-        self._dialogue.gives_way = is_waited_for
+    def preempt_when(self, stop_pending: Callable[[], bool]) -> None:
+        """Abandon long operations, and start no motion, while ``stop_pending()`` is true."""
+        self._channel.is_preempted = stop_pending
 
-    def is_waited_for(self) -> bool:
-        """Whether something more urgent waits."""
-        return self._dialogue.gives_way()
+    def stop_pending(self) -> bool:
+        """Whether a stop is waiting to be sent."""
+        return self._channel.is_preempted()
 
-    def give_way(self) -> None:
-        """Check that nothing more urgent waits.
+    def check_preemption(self) -> None:
+        """Check that no stop is waiting to be sent.
 
         Raises:
-            CancelledError: something does.
+            CancelledError: one is.
         """
-        if self.is_waited_for():
-            raise CancelledError("not carried out, or not to its end: a stop came first")
+        if self.stop_pending():
+            raise CancelledError("not executed, or not completed: a stop came first")
 
-    def ask(self, text: str, most: int = 1 << 16) -> tuple[str, ...]:
+    def query(self, text: str, most: int = 1 << 16) -> tuple[str, ...]:
         """Send a query; return the lines of its answer.
 
         Args:
@@ -153,15 +153,15 @@ class Session:
 
         Raises:
             RefusedError: the controller refuses it.
-            LinkLostError: no answer to ``ATTEMPTS`` attempts.
+            LinkLostError: no answer to ``QUERY_ATTEMPTS`` attempts.
             CancelledError: it takes long, and something more urgent waits.
         """
-        told = self._asked(Command(text, CommandKind.QUERY, self._patience, most))
-        if self.keeper is not None and not self._in_a_hurry:
+        answer = self._query_with_retries(Command(text, CommandKind.QUERY, self._answer_timeout, most))
+        if self.keeper is not None and not self._is_short:
             self.keeper.answered()
-        return told
+        return answer
 
-    def order(self, text: str) -> tuple[str, ...]:
+    def command(self, text: str) -> tuple[str, ...]:
         """Execute a command, sent once; return its answer.
 
         Raises:
@@ -172,21 +172,22 @@ class Session:
         """
         self._check()
         self.has_open_buffer |= text.startswith("OPEN")
-        said = self._exchange(Command(text, CommandKind.SET, self._patience))
+        answer = self._exchange(Command(text, CommandKind.SET, self._answer_timeout))
         self.has_open_buffer &= text != "CLOSE"
-        return said
+        return answer
 
     @contextmanager
-    def in_a_hurry(self) -> Iterator[None]:
-        """No retries, one reconnect and a timeout of ``HURRY_S``, for a stop that is retried by its caller."""
-        before = self._patience, self._attempts, self._calls, self._in_a_hurry
-        self._patience, self._attempts, self._calls, self._in_a_hurry = min(self._patience, HURRY_S), 1, 1, True
-        self._dialogue.patience = self._patience
+    def short_timeouts(self) -> Iterator[None]:
+        """No retries, one reconnect and a timeout of ``SHORT_TIMEOUT_S``, for a stop that is retried by its caller."""
+        before = self._answer_timeout, self._query_attempts, self._connect_attempts, self._is_short
+        self._answer_timeout = min(self._answer_timeout, SHORT_TIMEOUT_S)
+        self._query_attempts, self._connect_attempts, self._is_short = 1, 1, True
+        self._channel.answer_timeout = self._answer_timeout
         try:
             yield
         finally:
-            self._patience, self._attempts, self._calls, self._in_a_hurry = before
-            self._dialogue.patience = self._patience
+            self._answer_timeout, self._query_attempts, self._connect_attempts, self._is_short = before
+            self._channel.answer_timeout = self._answer_timeout
 
     def interrupt(self, control: int) -> None:
         """Send a control character, which the controller obeys in any state; it is not acknowledged.
@@ -197,14 +198,14 @@ class Session:
         Raises:
             LinkLostError: it could not be sent, or later answers make no sense.
         """
-        if not self._in_step:
-            self._dialogue.restart(control)
+        if not self._is_synchronized:
+            self._channel.restart(control)
             return
-        self._in_step = False
-        ended = self._dialogue.run(None, control)
-        if isinstance(ended, Lost):
-            raise LinkLostError(ended.why)
-        self._in_step = True
+        self._is_synchronized = False
+        outcome = self._channel.run(None, control)
+        if isinstance(outcome, Lost):
+            raise LinkLostError(outcome.why)
+        self._is_synchronized = True
 
     def load(self, lines: Sequence[str]) -> int:
         """Put lines into the open program buffer, as many as one exchange takes; return their number.
@@ -221,58 +222,58 @@ class Session:
         if not count:
             raise ValueError(f"lines: expected lines that fit into one exchange, got {lines[:1]}")
         self._check()
-        self._exchange(Command("\n".join(lines[:count]), CommandKind.BUFFER, self._patience))
+        self._exchange(Command("\n".join(lines[:count]), CommandKind.BUFFER, self._answer_timeout))
         return count
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
         """How many of these lines ``load`` sends in one exchange."""
-        return self._dialogue.lines_at_once(lines)
+        return self._channel.lines_at_once(lines)
 
     def _check(self) -> None:
-        if self.keeper is not None and not self._in_a_hurry:
+        if self.keeper is not None and not self._is_short:
             self.keeper.check()
 
-    def _asked(self, command: Command) -> tuple[str, ...]:
-        for _ in range(self._attempts - 1):
+    def _query_with_retries(self, command: Command) -> tuple[str, ...]:
+        for _ in range(self._query_attempts - 1):
             try:
                 return self._exchange(command)
             except LinkLostError:
-                self.give_way()
+                self.check_preemption()
         return self._exchange(command)
 
     def _exchange(self, command: Command) -> tuple[str, ...]:
-        if not self._in_step:
-            self._call()
-        self._in_step = False  # until the outcome is known: an interrupt may come at any time
+        if not self._is_synchronized:
+            self._connect()
+        self._is_synchronized = False  # until the outcome is known: an interrupt may come at any time
         try:
-            ended = self._dialogue.run(command)
+            outcome = self._channel.run(command)
         except LinkLostError as lost:
-            ended = Lost(str(lost))
-        self._in_step = not isinstance(ended, Lost)
-        if isinstance(ended, Answer):
-            return ended.lines
-        if isinstance(ended, Refusal):
-            raise RefusedError(command.text.split("\n")[ended.line], ended.number, ended.words)
-        if command.kind is CommandKind.QUERY or ended.untouched:
-            raise LinkLostError(f"{command.text[:60]!r}: {ended.why}")
-        raise OutcomeUnknownError(command.text[:60], ended.why)
+            outcome = Lost(str(lost))
+        self._is_synchronized = not isinstance(outcome, Lost)
+        if isinstance(outcome, Answer):
+            return outcome.lines
+        if isinstance(outcome, Refusal):
+            raise RefusedError(command.text.split("\n")[outcome.line], outcome.number, outcome.words)
+        if command.kind is CommandKind.QUERY or outcome.untouched:
+            raise LinkLostError(f"{command.text[:60]!r}: {outcome.why}")
+        raise OutcomeUnknownError(command.text[:60], outcome.why)
 
-    def _call(self) -> None:
+    def _connect(self) -> None:
         """Connect, with retries."""
-        is_own = self.keeper is not None and self.keeper.is_sure()
-        leftover = OpenBufferPolicy.CLOSE if is_own else self._leftover
-        for attempt in range(self._calls):
+        is_own = self.keeper is not None and self.keeper.is_certain()
+        open_buffer = OpenBufferPolicy.CLOSE if is_own else self._open_buffer
+        for attempt in range(self._connect_attempts):
             if attempt:
-                self.give_way()
+                self.check_preemption()
                 self._sleep(self._pause * attempt)
             try:
-                establish_handshake(self._dialogue, leftover)
+                establish_handshake(self._channel, open_buffer)
             except (LinkLostError, RefusedError) as fault:
-                if attempt == self._calls - 1:
-                    raise LinkLostError(f"no controller that can be understood: {fault}") from fault
+                if attempt == self._connect_attempts - 1:
+                    raise LinkLostError(f"no controller answers as expected: {fault}") from fault
             else:
-                self._in_step = True
-                self.has_open_buffer &= leftover is not OpenBufferPolicy.CLOSE
+                self._is_synchronized = True
+                self.has_open_buffer &= open_buffer is not OpenBufferPolicy.CLOSE
                 self.connections += 1
                 return
 
@@ -283,8 +284,8 @@ def free_memory(session: Session) -> int:
     Raises:
         LinkLostError: the answer makes no sense.
     """
-    (told,) = session.ask("SIZE")[:1] or ("",)
+    (answer,) = session.query("SIZE")[:1] or ("",)
     try:
-        return int(told)
+        return int(answer)
     except ValueError:
-        raise LinkLostError(f"SIZE: expected a number of words, got {told!r}") from None
+        raise LinkLostError(f"SIZE: expected a number of words, got {answer!r}") from None

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Status: positions, following errors and status bits of the six motors, queried in one line.
 
-Enters: a session. Leaves: counts, bits, and their meanings. Bits are counted from the least significant one of all
-hexadecimal digits of an answer. [TurboPMAC, #n?, &n??]
+Bits are counted from the least significant one of all hexadecimal digits of an answer. On a Turbo PMAC they are words
+of 24 bits [TurboPMAC, #n?, &n??]. On a Power PMAC they are two words of 32 bits with other bit numbers, and elements of
+its data structure show whether a program runs [EPICSpmac, pmacHardwarePower].
+
+A motor may move without a program: when another client jogs it, during homing, under a PLC program, or after losing
+power. And a strut that reverses in the middle of a move stands for a moment. So ``settled_status`` reads twice.
+
+Enters: a session, the settings of its controller. Leaves: lengths in mm, bits and their meanings.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, TypeVar
 
@@ -21,6 +27,10 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 AnySettings = TypeVar("AnySettings", PmacSettings, PowerPmacSettings)
 
 MOTORS = range(1, 7)
+SETTLING_S = 0.1
+"""Seconds between the two readings."""
+REST_TOLERANCE_MM = 0.01
+"""A standing strut moves less than this between the readings: a hundred counts of a common encoder."""
 
 
 @dataclass(frozen=True)
@@ -34,17 +44,17 @@ class Bits:
     value: int
 
     DIGITS: ClassVar[int]
-    PLACES: ClassVar[Mapping[str, int]]
-    TOLD: ClassVar[Mapping[str, str]] = {}
+    BIT_NUMBERS: ClassVar[Mapping[str, int]]
+    FAULT_TEXTS: ClassVar[Mapping[str, str]] = {}
     """Bits that are reported in plain text when set."""
 
     def has(self, name: str) -> bool:
         """Whether a bit is set."""
-        return bool(self.value >> self.PLACES[name] & 1)
+        return bool(self.value >> self.BIT_NUMBERS[name] & 1)
 
-    def words(self) -> tuple[str, ...]:
+    def fault_texts(self) -> tuple[str, ...]:
         """Faults in plain text."""
-        return tuple(text for name, text in self.TOLD.items() if self.has(name))
+        return tuple(text for name, text in self.FAULT_TEXTS.items() if self.has(name))
 
 
 class MotorBits(Bits):
@@ -52,15 +62,15 @@ class MotorBits(Bits):
 
     def moving(self) -> MotorBits:
         """A copy with the standing bit cleared."""
-        return type(self)(self.value & ~(1 << self.PLACES["standing"]))
+        return type(self)(self.value & ~(1 << self.BIT_NUMBERS["standing"]))
 
     DIGITS = 12
-    PLACES = {
+    BIT_NUMBERS = {
         "activated": 47, "negative_limit": 46, "positive_limit": 45, "amplifier_enabled": 43, "open_loop": 42,
         "standing": 37, "homing": 34, "assigned": 15, "stopped_on_limit": 11, "homed": 10, "amplifier_fault": 3,
         "fatal_following_error": 2, "warning_following_error": 1, "in_position": 0,
     }  # fmt: skip
-    TOLD = {
+    FAULT_TEXTS = {
         "negative_limit": "on its lower limit",
         "positive_limit": "on its upper limit",
         "stopped_on_limit": "stopped on a limit",
@@ -76,11 +86,11 @@ class SystemBits(Bits):
     """Three words of 24 bits: ``&n??``."""
 
     DIGITS = 18
-    PLACES = {
+    BIT_NUMBERS = {
         "running": 48, "held": 47, "runtime_error": 46, "amplifier_fault": 44, "fatal_following_error": 43,
         "warning_following_error": 42, "in_position": 41, "limit": 1,
     }  # fmt: skip
-    TOLD = {
+    FAULT_TEXTS = {
         "runtime_error": "the program ended with an error",
         "amplifier_fault": "an amplifier has a fault",
         "fatal_following_error": "a following error was too large",
@@ -138,79 +148,14 @@ class Status:
         """Whether any amplifier is enabled."""
         return any(motor.has("amplifier_enabled") for motor in self.motors)
 
-    def words(self) -> tuple[str, ...]:
+    def fault_texts(self) -> tuple[str, ...]:
         """Faults in plain text, strut by strut."""
         own = [
             f"strut {number}: {word}"
             for number, motor in zip(MOTORS, self.motors, strict=True)
-            for word in motor.words()
+            for word in motor.fault_texts()
         ]
-        return (*own, *self.system.words())
-
-
-def read_status(session: Session, settings: PmacSettings | PowerPmacSettings) -> Status:
-    """Query everything in one line, so that it is consistent.
-
-    Raises:
-        LinkLostError: the answer makes no sense.
-    """
-    if isinstance(settings, PowerPmacSettings):
-        from pkm_post.control.link import status as power_status
-
-        return _asked(session, power_status.query(settings), settings, power_status.status_of)
-    return _asked(session, _query(settings), settings, _status_of)
-
-
-def _asked(
-    session: Session, query: str, settings: AnySettings, status_of: Callable[[tuple[str, ...], AnySettings], Status]
-) -> Status:
-    """The parsed state; a ValueError means that the answer makes no sense."""
-    told = session.ask(query)
-    try:
-        return status_of(told, settings)
-    except ValueError as fault:
-        raise LinkLostError(f"{query!r}: {fault}") from None
-
-
-def _query(settings: PmacSettings) -> str:
-    system = f"&{settings.coordinate_system}"
-    return " ".join(f"#{motor}? #{motor}P #{motor}F" for motor in MOTORS) + f" {system}?? {system}%"
-
-
-def _status_of(told: tuple[str, ...], settings: PmacSettings) -> Status:
-    if len(told) != 20:
-        raise ValueError(f"expected 20 lines, got {len(told)}")
-    motors = tuple(MotorBits(hexadecimal(line, MotorBits.DIGITS)) for line in told[0:18:3])
-    system = SystemBits(hexadecimal(told[18], SystemBits.DIGITS))
-    return Status(motors, system, float(told[19]), *lengths_and_errors(told, settings))
-
-
-def lengths_and_errors(told: tuple[str, ...], settings: PmacSettings | PowerPmacSettings) -> tuple[Array, Array]:
-    """Lengths and following errors of the struts, (6,) each in mm.
-
-    Args:
-        told: three lines for each strut, bits and the counts of position and following error; further lines are
-            ignored.
-        settings: of the controller.
-
-    Raises:
-        ValueError: a count is not a number.
-    """
-    counts = np.array([[float(line) for line in told[column : 3 * len(MOTORS) : 3]] for column in (1, 2)])
-    position, error = counts / settings.counts_per_mm
-    return position + np.array(settings.zero_length), error
-
-
-def hexadecimal(text: str, digits: int) -> int:
-    """The bits of an answer.
-
-    Raises:
-        ValueError: the number of digits differs.
-    """
-    text = text.strip().lstrip("$")
-    if len(text) != digits:
-        raise ValueError(f"expected {digits} hexadecimal digits, got {text!r}")
-    return int(text, 16)
+        return (*own, *self.system.fault_texts())
 
 
 _ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus")
@@ -218,16 +163,16 @@ _STATUS_BITS = 64
 
 
 class PowerMotorBits(MotorBits):
-    """Two words of 32 bits: ``#n?``. They have a bit for the closed loop, not for the open loop; see ``_motor``."""
+    """Two words of 32 bits: ``#n?``. They have a bit for the closed loop, not for the open loop."""
 
     DIGITS = 16
-    PLACES = {
+    BIT_NUMBERS = {
         "homing": 62, "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59,
         "fatal_following_error": 58, "stopped_on_limit": 57, "amplifier_fault": 56, "lower_soft_limit": 55,
         "upper_soft_limit": 54, "homed": 47, "standing": 46, "closed_loop": 45, "amplifier_enabled": 44,
         "in_position": 43, "open_loop": _STATUS_BITS,
     }  # fmt: skip
-    TOLD = MotorBits.TOLD | {
+    FAULT_TEXTS = MotorBits.FAULT_TEXTS | {
         "lower_soft_limit": "on its lower soft limit",
         "upper_soft_limit": "on its upper soft limit",
     }
@@ -237,17 +182,46 @@ class PowerSystemBits(SystemBits):
     """Two words of 32 bits: ``&n?``; above them one bit for each of three elements, set if it is not 0."""
 
     DIGITS = 16
-    PLACES = {
+    BIT_NUMBERS = {
         "negative_limit": 61, "positive_limit": 60, "warning_following_error": 59, "fatal_following_error": 58,
         "amplifier_fault": 56, "running": _STATUS_BITS, "held": _STATUS_BITS + 1, "runtime_error": _STATUS_BITS + 2,
     }  # fmt: skip
-    TOLD = {name: text for name, text in SystemBits.TOLD.items() if name != "limit"} | {
+    FAULT_TEXTS = {name: text for name, text in SystemBits.FAULT_TEXTS.items() if name != "limit"} | {
         "negative_limit": "a lower limit was met",
         "positive_limit": "an upper limit was met",
     }
 
 
-def query(settings: PowerPmacSettings) -> str:
+def read_status(session: Session, settings: PmacSettings | PowerPmacSettings) -> Status:
+    """Query everything in one line, so that it is consistent.
+
+    Raises:
+        LinkLostError: the answer makes no sense.
+    """
+    query = _power_query(settings) if isinstance(settings, PowerPmacSettings) else _turbo_query(settings)
+    answer = session.query(query)
+    try:
+        if isinstance(settings, PowerPmacSettings):
+            return _power_status(answer, settings)
+        return _turbo_status(answer, settings)
+    except ValueError as fault:
+        raise LinkLostError(f"{query!r}: {fault}") from None
+
+
+def _turbo_query(settings: PmacSettings) -> str:
+    system = f"&{settings.coordinate_system}"
+    return " ".join(f"#{motor}? #{motor}P #{motor}F" for motor in MOTORS) + f" {system}?? {system}%"
+
+
+def _turbo_status(answer: tuple[str, ...], settings: PmacSettings) -> Status:
+    if len(answer) != 20:
+        raise ValueError(f"expected 20 lines, got {len(answer)}")
+    motors = tuple(MotorBits(_parse_bits(line, MotorBits.DIGITS)) for line in answer[0:18:3])
+    system = SystemBits(_parse_bits(answer[18], SystemBits.DIGITS))
+    return Status(motors, system, float(answer[19]), *_lengths_and_errors(answer, settings))
+
+
+def _power_query(settings: PowerPmacSettings) -> str:
     """The query line for the complete state."""
     system = settings.coordinate_system
     return " ".join(
@@ -259,42 +233,66 @@ def query(settings: PowerPmacSettings) -> str:
     )
 
 
-def status_of(told: tuple[str, ...], settings: PowerPmacSettings) -> Status:
+def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Status:
     """Parse the lines of the answer.
 
     Raises:
         ValueError: they make no sense.
     """
     expected = 3 * len(MOTORS) + 2 + len(_ELEMENTS)
-    if len(told) != expected:
-        raise ValueError(f"expected {expected} lines, got {len(told)}")
-    motors = tuple(_motor(hexadecimal(line, PowerMotorBits.DIGITS)) for line in told[0:18:3])
-    bits = hexadecimal(told[18], PowerSystemBits.DIGITS)
-    for place, value in enumerate(told[20:], start=_STATUS_BITS):
+    if len(answer) != expected:
+        raise ValueError(f"expected {expected} lines, got {len(answer)}")
+    motors = tuple(_power_motor(_parse_bits(line, PowerMotorBits.DIGITS)) for line in answer[0:18:3])
+    bits = _parse_bits(answer[18], PowerSystemBits.DIGITS)
+    for place, value in enumerate(answer[20:], start=_STATUS_BITS):
         bits |= int(float(value) != 0) << place
-    length, error = lengths_and_errors(told, settings)
-    return Status(motors, PowerSystemBits(bits), float(told[19]), length, error, slows_in_a_hold=False)
+    length, error = _lengths_and_errors(answer, settings)
+    return Status(motors, PowerSystemBits(bits), float(answer[19]), length, error, slows_in_a_hold=False)
 
 
-def _motor(value: int) -> PowerMotorBits:
-    is_closed = value >> PowerMotorBits.PLACES["closed_loop"] & 1
-    return PowerMotorBits(value | (1 - is_closed) << PowerMotorBits.PLACES["open_loop"])
+def _power_motor(value: int) -> PowerMotorBits:
+    is_closed = value >> PowerMotorBits.BIT_NUMBERS["closed_loop"] & 1
+    return PowerMotorBits(value | (1 - is_closed) << PowerMotorBits.BIT_NUMBERS["open_loop"])
 
 
-LOOK_S = 0.1
-"""Seconds between the two readings."""
-STAYED_MM = 0.01
-"""A standing strut moves less than this between the readings: a hundred counts of a common encoder."""
+def _lengths_and_errors(answer: tuple[str, ...], settings: PmacSettings | PowerPmacSettings) -> tuple[Array, Array]:
+    """Lengths and following errors of the struts, (6,) each in mm.
+
+    Args:
+        answer: three lines for each strut, bits and the counts of position and following error; further lines are
+            ignored.
+        settings: of the controller.
+
+    Raises:
+        ValueError: a count is not a number.
+    """
+    counts = np.array([[float(line) for line in answer[column : 3 * len(MOTORS) : 3]] for column in (1, 2)])
+    position, error = counts / settings.counts_per_mm
+    return position + np.array(settings.zero_length), error
+
+
+def _parse_bits(text: str, digits: int) -> int:
+    """The bits of an answer.
+
+    Raises:
+        ValueError: the number of digits differs.
+    """
+    text = text.strip().lstrip("$")
+    if len(text) != digits:
+        raise ValueError(f"expected {digits} hexadecimal digits, got {text!r}")
+    return int(text, 16)
 
 
 def settled_status(session: Session, settings: AnySettings) -> Status:
     """The state after a second reading: a strut stands if both readings command it to stand and it has not moved."""
     before = read_status(session, settings)
-    session.sleep(LOOK_S)
+    session.sleep(SETTLING_S)
     status = read_status(session, settings)
-    moved = np.abs([status.length - before.length, status.commanded - before.commanded]).max(axis=0) > STAYED_MM
+    moved = np.abs([status.length - before.length, status.commanded - before.commanded]).max(axis=0) > REST_TOLERANCE_MM
     pairs = zip(before.motors, status.motors, moved, strict=True)
-    return replace(status, motors=tuple(now.moving() if away else _both(then, now) for then, now, away in pairs))
+    return replace(
+        status, motors=tuple(now.moving() if away else _rests_in_both(then, now) for then, now, away in pairs)
+    )
 
 
 def is_busy(session: Session) -> bool:
@@ -305,15 +303,15 @@ def is_busy(session: Session) -> bool:
     Raises:
         LinkLostError: the answer makes no sense.
     """
-    told = session.ask(" ".join(f"#{motor}?" for motor in MOTORS) + " ??")
+    answer = session.query(" ".join(f"#{motor}?" for motor in MOTORS) + " ??")
     try:
-        *motors, system = told
-        bits = [MotorBits(hexadecimal(line, MotorBits.DIGITS)) for line in motors]
-        runs = SystemBits(hexadecimal(system, SystemBits.DIGITS)).has("running")
+        *motors, system = answer
+        bits = [MotorBits(_parse_bits(line, MotorBits.DIGITS)) for line in motors]
+        runs = SystemBits(_parse_bits(system, SystemBits.DIGITS)).has("running")
     except ValueError as fault:
         raise LinkLostError(f"state: {fault}") from None
     return runs or not all(motor.has("standing") for motor in bits)
 
 
-def _both(before: MotorBits, now: MotorBits) -> MotorBits:
+def _rests_in_both(before: MotorBits, now: MotorBits) -> MotorBits:
     return now if before.has("standing") else now.moving()

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stopping: a hold or an abort, resent until the machine is seen at rest.
+"""Stopping: a hold or an abort, resent until the machine is at rest, and instructions for the operator meanwhile.
 
 A stop never gives up. It is a ladder: a hold slows the program down along its path; an abort stops each strut on its
 own ramp; a control character aborts everything in the controller and does not depend on a line arriving intact; the
 last one cuts motor power. Each rung has a timeout. A failing link does not stop the climb, except for the last rung:
 struts without power may sink, so power is cut only while they are seen to move after everything else was sent.
+
+A computer without a link stops nothing: then, and after a stop that is not confirmed in time, the operator gets
+instructions.
 
 Enters: a session, settings. Leaves: the state of a machine at rest. Only another waiting stop ends it earlier.
 """
@@ -30,6 +33,25 @@ NEXT_SEGMENT_S = 1.0
 """Seconds within which a stream with a working link releases its next segment."""
 _log = logging.getLogger(__name__)
 
+EMERGENCY_STEPS = (
+    "THE LINK TO THE CONTROLLER IS LOST AND THE MACHINE MAY BE MOVING. This computer cannot stop it now.",
+    "1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
+    "2. Keep everybody away from the machine. The program goes on in the controller until it ends.",
+    "3. If the machine has a feed hold of its own, press it, and look that all six struts stand.",
+    "4. Then look at the cable, at the power of the controller, and at this computer; leave the machine as it is.",
+    "5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.",
+    "6. If the power was off or the emergency stop was pressed: home the machine before anything else.",
+    "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",
+)
+"""In order of priority: people, machine, link, workpiece."""
+REST_DEADLINE_S = 2.0
+"""Seconds after a stop within which the machine must be seen at rest, or the operator is alerted."""
+NOT_AT_REST = (
+    "THE MACHINE IS NOT SEEN AT REST. This computer goes on trying to stop it; do not wait for that.",
+    *EMERGENCY_STEPS[1:],
+)
+"""The same after a stop that was sent but not confirmed in time."""
+
 
 @dataclass(frozen=True)
 class Rung:
@@ -38,7 +60,7 @@ class Rung:
     Attributes:
         name: in plain text.
         send: sends it.
-        is_taken: whether a state shows that the controller obeys it.
+        is_obeyed: whether a state shows that the controller obeys it.
         unseen_s: seconds for which it is resent while no state shows that.
         rest_s: seconds for the struts to come to rest once a state has shown it.
         blindly: whether it is sent even if the machine is not known to move.
@@ -46,14 +68,14 @@ class Rung:
 
     name: str
     send: Callable[[Session, AnySettings], object]
-    is_taken: Callable[[Status], bool]
+    is_obeyed: Callable[[Status], bool]
     unseen_s: float
     rest_s: float
     blindly: bool = True
 
 
-def _order(text: str) -> Callable[[Session, AnySettings], object]:
-    return lambda session, settings: session.order(f"&{settings.coordinate_system}{text}")
+def _command(text: str) -> Callable[[Session, AnySettings], object]:
+    return lambda session, settings: session.command(f"&{settings.coordinate_system}{text}")
 
 
 def _control(code: int) -> Callable[[Session, AnySettings], object]:
@@ -61,7 +83,7 @@ def _control(code: int) -> Callable[[Session, AnySettings], object]:
 
 
 def _kill_each(session: Session, settings: AnySettings) -> None:
-    session.order(" ".join(f"#{motor}k" for motor in MOTORS))
+    session.command(" ".join(f"#{motor}k" for motor in MOTORS))
 
 
 def _is_held(status: Status) -> bool:
@@ -81,8 +103,8 @@ def _never(status: Status) -> bool:
     return False
 
 
-HOLD = Rung("hold", _order("H"), _is_held, unseen_s=1.0, rest_s=5.0)
-ABORT = Rung("abort", _order("A"), _is_ended, unseen_s=1.0, rest_s=2.0)
+HOLD = Rung("hold", _command("H"), _is_held, unseen_s=1.0, rest_s=5.0)
+ABORT = Rung("abort", _command("A"), _is_ended, unseen_s=1.0, rest_s=2.0)
 ABORT_ALL = Rung("abort of everything (^A)", _control(0x01), _is_ended, unseen_s=1.0, rest_s=2.0)
 KILL_ALL = Rung("power off all motors (^K)", _control(0x0B), _never, unseen_s=1.0, rest_s=0.0, blindly=False)
 KILL_EACH = Rung("power off all motors", _kill_each, _never, unseen_s=1.0, rest_s=0.0, blindly=False)
@@ -117,7 +139,7 @@ def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Sta
     _, *rungs = _ladder(settings)
     if not at_once:
         try:
-            with session.in_a_hurry():
+            with session.short_timeouts():
                 _try(session, settings, HOLD, _is_held_or_ended)
         except CancelledError:
             _log.warning("aborted without coming to rest before: another stop waits")
@@ -133,12 +155,12 @@ def _climb(
 ) -> Status:
     """Climb until a state shows the machine at rest; from the top on, repeat the upper two rungs."""
     seen: Status | None = None
-    with session.in_a_hurry():
-        for rung in _without_end(rungs):
+    with session.short_timeouts():
+        for rung in _endless(rungs):
             if not rung.blindly and (seen is None or seen.standing):
                 continue
             seen = _try(session, settings, rung, is_stopped)
-            if seen is not None and _rests(seen, is_stopped) and _goes_on(session, settings, seen):
+            if seen is not None and _rests(seen, is_stopped) and _is_continued(session, settings, seen):
                 seen = _try(session, settings, rungs[0], is_stopped)
             if seen is not None and _rests(seen, is_stopped):
                 return seen
@@ -146,7 +168,7 @@ def _climb(
     raise AssertionError("the ladder has no end")
 
 
-def _goes_on(session: Session, settings: AnySettings, status: Status) -> bool:
+def _is_continued(session: Session, settings: AnySettings, status: Status) -> bool:
     """Whether another client's stream releases its next segment: between segments the machine rests by itself."""
     if status.held or session.keeper is not None or not _is_streamed(session):
         return False
@@ -155,7 +177,7 @@ def _goes_on(session: Session, settings: AnySettings, status: Status) -> bool:
         seen = _read(session, settings)
         if seen is not None and seen.running:
             return True
-        session.give_way()
+        session.check_preemption()
         session.sleep(POLL_S)
     return False
 
@@ -169,12 +191,12 @@ def _is_streamed(session: Session) -> bool:
     except (CancelledError, NoAccessError):
         raise
     except PmacError as fault:
-        _log.warning("whether a program is streamed is not known: %s", fault)
+        _log.warning("whether a program is streamed is unknown: %s", fault)
         return True
     return bool(record.owner) and record.action == "stream"
 
 
-def _without_end(rungs: tuple[Rung, ...]) -> Iterator[Rung]:
+def _endless(rungs: tuple[Rung, ...]) -> Iterator[Rung]:
     yield from rungs
     while True:
         yield from rungs[-2:]
@@ -187,17 +209,17 @@ def _rests(status: Status, is_stopped: Callable[[Status], bool]) -> bool:
 
 def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callable[[Status], bool]) -> Status | None:
     """Send one rung until it shows, and wait for rest; return the last state read, None if none could be read."""
-    until, is_taken, seen = session.now() + rung.unseen_s, False, None
+    until, is_obeyed, seen = session.now() + rung.unseen_s, False, None
     while session.now() < until:
         _send(session, settings, rung)
         again = session.now() + SHOWN_S
-        while session.now() < (until if is_taken else min(again, until)):
+        while session.now() < (until if is_obeyed else min(again, until)):
             seen = _read(session, settings)
             if seen is not None and _rests(seen, is_stopped):
                 return seen
-            if seen is not None and not is_taken and rung.is_taken(seen):
-                is_taken, until = True, session.now() + rung.rest_s
-            session.give_way()
+            if seen is not None and not is_obeyed and rung.is_obeyed(seen):
+                is_obeyed, until = True, session.now() + rung.rest_s
+            session.check_preemption()
             session.sleep(POLL_S)
     return seen
 
@@ -219,28 +241,6 @@ def _read(session: Session, settings: AnySettings) -> Status | None:
         raise
     except PmacError:
         return None
-
-
-EMERGENCY_STEPS = (
-    "THE LINK TO THE CONTROLLER IS LOST AND THE MACHINE MAY BE MOVING. This computer cannot stop it now.",
-    "1. If anything is not as it should be, press the EMERGENCY STOP of the machine. Do not wait for this computer.",
-    "2. Keep everybody away from the machine. The program goes on in the controller until it ends.",
-    "3. If the machine has a feed hold of its own, press it, and look that all six struts stand.",
-    "4. Then look at the cable, at the power of the controller, and at this computer; leave the machine as it is.",
-    "5. When the controller answers again: status, then hold, then abort. Do not start, resume, jog or load before.",
-    "6. If the power was off or the emergency stop was pressed: home the machine before anything else.",
-    "7. Bring the tool free of the part by short jogs along its axis, then to the start, before a program runs again.",
-)
-"""In order of priority: people, machine, link, workpiece."""
-
-
-REST_DEADLINE_S = 2.0
-"""Seconds after a stop within which the machine must be seen at rest, or the operator is alerted."""
-NOT_AT_REST = (
-    "THE MACHINE IS NOT SEEN AT REST. This computer goes on trying to stop it; do not wait for that.",
-    *EMERGENCY_STEPS[1:],
-)
-"""The same after a stop that was sent but not confirmed in time."""
 
 
 def emergency_text(last: Status | None) -> tuple[str, ...]:

@@ -139,11 +139,11 @@ class RotaryStream:
 
     def _is_done(self) -> bool:
         left = self._buffer.loaded - self._let_go
-        return left <= self._buffer.ahead() <= left + self._buffer.unsure
+        return left <= self._buffer.lines_ahead() <= left + self._buffer.uncertain
 
     def _check_done(self) -> None:
         if not self._is_done():
-            ahead = self._buffer.ahead()
+            ahead = self._buffer.lines_ahead()
             raise PmacError(f"the program was stopped with {ahead} lines of the rotary buffer ahead of it")
 
     def _settle(self, check: Callable[[], None]) -> None:
@@ -165,7 +165,7 @@ class RotaryStream:
             # From here on the machine may move as far as this, whatever the answer.
             self.rest, self.line, self._let_go = segment.rest, segment.last, end
             try:
-                self._session.order(f"&{self._settings.coordinate_system}R")
+                self._session.command(f"&{self._settings.coordinate_system}R")
                 return
             except (LinkLostError, RefusedError) as fault:
                 if isinstance(fault, LinkLostError) and self._goes(before):
@@ -178,7 +178,10 @@ class RotaryStream:
 
     def _goes(self, before: int) -> bool:
         """Whether lines after the first ``before`` have begun."""
-        return read_status(self._session, self._settings).running or self._buffer.loaded - self._buffer.ahead() > before
+        return (
+            read_status(self._session, self._settings).running
+            or self._buffer.loaded - self._buffer.lines_ahead() > before
+        )
 
     def _check(self, status: Status) -> None:
         check_start(status, self.rest, self._near)

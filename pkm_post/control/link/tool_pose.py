@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Readout: DRO of the tool pose, from the six strut lengths that the controller reports.
+"""Tool pose: DRO of the tool from the six strut lengths that the controller reports, and its deviation from a start.
 
-Enters: a machine, the gauge length of its tool, states of the controller. Leaves: tip in mm, axis and spin by forward
-kinematics, each warm-started from the previous pose, and lines of text.
+Enters: a machine, the gauge length of its tool, states of the controller or strut lengths in mm. Leaves: tip in mm,
+axis and spin by forward kinematics, deviations, and lines of text. The deviation uses the tool of the rest pose: the
+distance that the platform has to travel is nearly the same for any other.
 """
 
 from __future__ import annotations
@@ -16,23 +17,9 @@ from pkm_post.control.link.status import MOTORS, Array, Status
 from pkm_post.geometry import angle_between, norm
 from pkm_post.machine import forward_along_path, forward_from_rotation, platform_rotation, strut_lengths
 from pkm_post.model import Machine
+from pkm_post.toolpath import ToolPose
 
 _STEPS_FROM_HOME = 128
-
-
-@dataclass(frozen=True)
-class Pose:
-    """A tool pose.
-
-    Attributes:
-        tip: (3,) in {M}, mm.
-        axis: (3,) unit tool axis in {M}, from the tip towards the spindle.
-        spin: rotation of the platform about it, rad.
-    """
-
-    tip: Array
-    axis: Array
-    spin: float
 
 
 class ToolPoseReadout:
@@ -51,13 +38,13 @@ class ToolPoseReadout:
             platform_rotation(np.array([machine.home_axis]), np.array([machine.home_spin])),
         )
 
-    def pose(self, status: Status) -> Pose | None:
+    def pose(self, status: Status) -> ToolPose | None:
         """The pose of the actual lengths nearest to the previous one; None if there is none nearby."""
         for tip, rotation in ((self._tip, self._rotation), self._home):
             found = forward_from_rotation(self._machine, status.length[None], self._tool, tip, rotation)
             if found.converged[0]:
                 self._tip, self._rotation = found.tip, found.rotation
-                return Pose(found.tip[0], found.axis[0], float(spin_of(found.rotation)[0]))
+                return ToolPose(found.tip[0], found.axis[0], float(spin_of(found.rotation)[0]))
         return None
 
 
@@ -68,7 +55,7 @@ def spin_of(rotation: Array) -> Array:
     return spun
 
 
-def pose_from_home(machine: Machine, length: Array, tool_length: float) -> Pose | None:
+def pose_from_home(machine: Machine, length: Array, tool_length: float) -> ToolPose | None:
     """The pose for strut lengths, given only that the machine reached them from its home.
 
     A single Newton solve may converge to another pose with the same lengths. So the lengths are stepped from home in
@@ -86,18 +73,18 @@ def pose_from_home(machine: Machine, length: Array, tool_length: float) -> Pose 
     found = forward_along_path(machine, way, tool, home[0][0], platform_rotation(*home[1:])[0])
     if not found.converged[-1]:
         return None
-    return Pose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
+    return ToolPose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
 
 
-def pose_text(pose: Pose | None) -> str:
+def pose_text(pose: ToolPose | None) -> str:
     """The tool pose, for a terminal."""
     if pose is None:
         return "tool: no pose has these strut lengths"
     tilt = np.degrees(np.arccos(np.clip(pose.axis[2], -1, 1)))
     x, y, z = pose.tip
     i, j, k = pose.axis
-    told = f"tip X{x:.3f} Y{y:.3f} Z{z:.3f} mm, axis I{i:.5f} J{j:.5f} K{k:.5f}, {tilt:.3f} deg from upright"
-    return f"{told}, spin {np.degrees(pose.spin):.3f} deg"
+    position = f"tip X{x:.3f} Y{y:.3f} Z{z:.3f} mm, axis I{i:.5f} J{j:.5f} K{k:.5f}, {tilt:.3f} deg from upright"
+    return f"{position}, spin {np.degrees(pose.spin):.3f} deg"
 
 
 def state_text(status: Status) -> str:
@@ -106,7 +93,7 @@ def state_text(status: Status) -> str:
         f"strut {motor}: {length:10.4f} mm, following error {error:8.4f} mm{'' if bits.has('homed') else ', NOT HOMED'}"
         for motor, length, error, bits in zip(MOTORS, status.length, status.following_error, status.motors, strict=True)
     ]
-    return "\n".join([*rows, activity_text(status), *status.words()])
+    return "\n".join([*rows, activity_text(status), *status.fault_texts()])
 
 
 def activity_text(status: Status) -> str:
@@ -138,7 +125,7 @@ class PoseDeviation:
         axis, spin = math.degrees(self.axis), math.degrees(self.spin)
         return f"tip {self.tip:.3f} mm, axis {axis:.4f} degrees, spin {spin:.4f} degrees"
 
-    def most(self, radius: float) -> float:
+    def largest(self, radius: float) -> float:
         """The largest of tip distance and turns, mm, where a turn counts as the displacement of a point at a radius."""
         return max(self.tip, radius * self.axis, radius * self.spin)
 
@@ -168,9 +155,9 @@ def start_faults(machine: Machine, length: Array, first: Array, near: float) -> 
         first: (6,) strut lengths of the first point, mm.
         near: largest distance of the tip, and, by its turns, of a point at the characteristic length, mm.
     """
-    away = deviation_from_start(machine, length, first) if np.isfinite([length, first]).all() else None
-    if away is None:
-        return ("no pose of the platform that small steps from home lead to has the lengths of the struts",)
-    if away.most(machine.characteristic_length) <= near:
+    deviation = deviation_from_start(machine, length, first) if np.isfinite([length, first]).all() else None
+    if deviation is None:
+        return ("no pose of the platform reachable in small steps from home has the lengths of the struts",)
+    if deviation.largest(machine.characteristic_length) <= near:
         return ()
-    return (f"the tool is away from the start of the program: {away}; let the way there be planned: approach",)
+    return (f"the tool is away from the start of the program: {deviation}; plan the move there: approach",)

@@ -35,7 +35,7 @@ _DRIVES = "I{0}11={1:.0f} I{0}15={2:.6f} I{0}16={3:.6f} I{0}17={4:.6f} I{0}19={5
 _PER_COUNT = (32.0, 0.001, 0.2, 0.002, 0.0005, 0.05, 0.005)
 """Per count/mm: following error of 2 mm in 16ths, then mm/s and mm/s^2 in counts and ms: aborts at 1000 mm/s^2,
 programs up to 200 mm/s and 2000 mm/s^2, jogs at 500 mm/s^2 and 50 mm/s, homing at 5 mm/s towards the flags."""
-_END_S = 10.0
+_CLOSE_S = 10.0
 
 
 class SimulatedMachine:
@@ -54,11 +54,11 @@ class SimulatedMachine:
             tool_length: gauge length of the tool in the spindle, mm.
             speed: simulated seconds per real second.
         """
-        self._controller, self._is_home = _controller(settings, machine.strut_stroke), False
-        self._go_home = _way_home(machine, settings, tool_length)
+        self._controller, self._is_homed = _controller(settings, machine.strut_stroke), False
+        self._home_lines = _home_jogs(machine, settings, tool_length)
         server = Server(self._controller, speed)
         self.port = f"tcp:{LOOPBACK}:{server.add_tcp(0)}"
-        self._server, self._over = server, threading.Event()
+        self._server, self._closed = server, threading.Event()
         self._thread = threading.Thread(target=self._run, name="simulated machine", daemon=True)
         self._thread.start()
 
@@ -68,10 +68,10 @@ class SimulatedMachine:
         Raises:
             RuntimeError: the thread does not end.
         """
-        self._over.set()
-        self._thread.join(_END_S)
+        self._closed.set()
+        self._thread.join(_CLOSE_S)
         if self._thread.is_alive():
-            raise RuntimeError(f"the simulated machine does not end within {_END_S:g} s")
+            raise RuntimeError(f"the simulated machine does not end within {_CLOSE_S:g} s")
 
     def _run(self) -> None:
         try:
@@ -83,14 +83,14 @@ class SimulatedMachine:
         """The server thread calls this as a controller runs its PLC programs; return whether to end."""
         motors = self._controller.motors
         if not motors.homed.all():
-            self._is_home = False
-        elif not self._is_home and not motors.moving().any():
-            self._is_home = True
-            self._controller.load(self._go_home)
-        return self._over.is_set()
+            self._is_homed = False
+        elif not self._is_homed and not motors.moving().any():
+            self._is_homed = True
+            self._controller.load(self._home_lines)
+        return self._closed.is_set()
 
 
-def _way_home(machine: Machine, settings: PmacSettings, tool_length: float) -> list[str]:
+def _home_jogs(machine: Machine, settings: PmacSettings, tool_length: float) -> list[str]:
     """Lines that move the struts to the machine's home; none if that exceeds their stroke."""
     pose = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin]), np.array([tool_length])
     length = strut_lengths(machine, *pose)[0]
@@ -105,7 +105,7 @@ def _controller(settings: PmacSettings, stroke: tuple[float, float]) -> Controll
     """A controller set up for the machine, with drives that are fast enough."""
     scale = settings.counts_per_mm
     made = Controller(SimulatorSettings(tick_ms=_TICK_MS, home_flag=_FLAG_MM * scale))
-    made.load(setup_text(settings, "training", stroke).splitlines())
+    made.load(setup_text(settings, "simulated", stroke).splitlines())
     for motor in range(1, 7):
         made.load([_DRIVES.format(motor, *(value * scale for value in _PER_COUNT)), f"#{motor}J/"])
     return made
@@ -143,12 +143,12 @@ class Connection:
     target: ConnectionTarget
     worker: Worker
     _session: Session
-    _training: SimulatedMachine | None
+    _simulated: SimulatedMachine | None
 
     @property
     def simulated(self) -> bool:
         """Whether the machine is simulated."""
-        return self._training is not None
+        return self._simulated is not None
 
     def close(self) -> None:
         """Close worker, link and simulation; the machine is not stopped.
@@ -160,8 +160,8 @@ class Connection:
             self.worker.close()
         finally:
             self._session.close()
-            if self._training is not None:
-                self._training.close()
+            if self._simulated is not None:
+                self._simulated.close()
 
 
 def connection_target(port: str | None, machine: str) -> tuple[ConnectionTarget | None, tuple[Diagnostic, ...]]:
@@ -175,12 +175,12 @@ def connection_target(port: str | None, machine: str) -> tuple[ConnectionTarget 
         ValueError: the port name has no known form.
     """
     found = None if port is None else port_named(port)
-    model, told = machine_named(machine)
+    model, diagnostics = machine_named(machine)
     if model is None:
-        return None, told
+        return None, diagnostics
     kind: Any = power_pmac if found is not None and found.is_power else pmac
     settings, faults = kind.settings_of(model)
-    return (None if settings is None else ConnectionTarget(found, model, settings)), told + tuple(faults)
+    return (None if settings is None else ConnectionTarget(found, model, settings)), diagnostics + tuple(faults)
 
 
 def connect(target: ConnectionTarget, tool_length: float, simulated_speed: float = 1.0) -> Connection:
@@ -195,23 +195,23 @@ def connect(target: ConnectionTarget, tool_length: float, simulated_speed: float
         PmacError: no controller answers, or it denies access.
         ValueError: the length is not positive.
     """
-    training, port = None, target.port
+    simulated, port = None, target.port
     if port is None:
-        training = SimulatedMachine(target.machine, target.settings, tool_length, simulated_speed)
-        port = port_named(training.port)
-    session = Session(port, leftover=OpenBufferPolicy.STOP)
-    number = _own_number(target.settings.program)
+        simulated = SimulatedMachine(target.machine, target.settings, tool_length, simulated_speed)
+        port = port_named(simulated.port)
+    session = Session(port, open_buffer=OpenBufferPolicy.STOP)
+    number = _manual_program(target.settings.program)
     try:
         control = NumericalControl(session, target.machine, target.settings, tool_length, number)
         session.open()
-        return Connection(target, Worker(control), session, training)
+        return Connection(target, Worker(control), session, simulated)
     except BaseException:
         session.close()
-        if training is not None:
-            training.close()
+        if simulated is not None:
+            simulated.close()
         raise
 
 
-def _own_number(of_jobs: int) -> int:
+def _manual_program(of_jobs: int) -> int:
     """A program number for manual moves that differs from that of the jobs."""
     return MANUAL_MOVE_PROGRAM if of_jobs != MANUAL_MOVE_PROGRAM else MANUAL_MOVE_PROGRAM - 1

@@ -24,7 +24,7 @@ from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Status, read_status, settled_status
 from pkm_post.control.link.stopping import emergency_text
-from pkm_post.control.link.tool_pose import Pose, ToolPoseReadout, pose_from_home
+from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_from_home
 from pkm_post.control.numerical_control import execute, manual_moves
 from pkm_post.control.numerical_control.execute import Watchdog
 from pkm_post.control.numerical_control.homing import (
@@ -39,6 +39,7 @@ from pkm_post.control.numerical_control.plan import Plan, planned
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks
 from pkm_post.model import Diagnostic, Machine, Tolerances, Trajectory
 from pkm_post.options import APPROACH_MM_S, MANUAL_MOVE_PROGRAM, START_TOLERANCE_MM
+from pkm_post.toolpath import ToolPose
 from pkm_post.writing import PmacSettings
 
 Findings = tuple[Diagnostic, ...]
@@ -64,7 +65,7 @@ class ControlState:
     """
 
     status: Status | None
-    pose: Pose | None
+    pose: ToolPose | None
     lost: str = ""
     emergency: tuple[str, ...] = ()
     homing: Homing | None = None
@@ -98,16 +99,16 @@ class NumericalControl:
         self._last = ControlState(None, None)
         self._may_move = False
         self._watchdog: Watchdog | None = None
-        self._is_attended: Callable[[], bool] = lambda: True
+        self._is_operator_present: Callable[[], bool] = lambda: True
         self.tool_length = tool_length
 
-    def give_way_when(self, is_waited_for: Callable[[], bool]) -> None:
-        """Abandon long operations and start none while ``is_waited_for`` reports a waiting stop."""
-        self._session.give_way_when(is_waited_for)
+    def preempt_when(self, stop_pending: Callable[[], bool]) -> None:
+        """Abandon long operations and start none while ``stop_pending`` reports a waiting stop."""
+        self._session.preempt_when(stop_pending)
 
     def attended_while(self, is_attended: Callable[[], bool]) -> None:
         """Renew the watchdog of a jog only while ``is_attended`` reports that the operator is watching."""
-        self._is_attended = is_attended
+        self._is_operator_present = is_attended
 
     @property
     def tool_length(self) -> float:
@@ -125,7 +126,7 @@ class NumericalControl:
         """Read the state once and renew the watchdog of a jog; a lost link is a state, not an error."""
         try:
             status = read_status(self._session, self._settings)
-            self._end_watch(status)
+            self._drop_watchdog(status)
             self.renew()
         except CancelledError:
             return self._last  # a stop has priority; the next reading catches up
@@ -140,7 +141,7 @@ class NumericalControl:
             )
             return self._last
         self._may_move = False
-        self._give_back(status)
+        self._release_at_rest(status)
         homing = None if self._watch is None else self._watch.see(status, self._session.now())
         if homing is not None and homing.phase is not HomingPhase.SEARCHING:
             self._watch = None
@@ -155,9 +156,9 @@ class NumericalControl:
         Raises:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
-        here = self._here()
-        plan, told = self._planned(*manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed))
-        return (None if plan is None else replace(plan, is_jog=True)), told
+        here = self._standing_pose()
+        plan, diagnostics = self._plan(*manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed))
+        return (None if plan is None else replace(plan, is_jog=True)), diagnostics
 
     def plan_line(self, line: str, reading: manual_moves.MdiSettings | None = None) -> tuple[Plan | None, Findings]:
         """Plan a line of G-code from the current pose.
@@ -165,7 +166,9 @@ class NumericalControl:
         Raises:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
-        return self._planned(*manual_moves.mdi_trajectory(line, self._machine, self._here(), self.tool_length, reading))
+        return self._plan(
+            *manual_moves.mdi_trajectory(line, self._machine, self._standing_pose(), self.tool_length, reading)
+        )
 
     def plan_approach(self, job: Job, feed: float = APPROACH_MM_S) -> tuple[Plan | None, Findings]:
         """Plan the approach from the current pose to the start of a program; as ``manual_moves.approach_trajectory``.
@@ -173,10 +176,10 @@ class NumericalControl:
         Raises:
             NotReadyError: the tool pose is unknown, the machine moves, or the start has no pose.
         """
-        here, start = self._here(), pose_from_home(self._machine, job.first, self.tool_length)
+        here, start = self._standing_pose(), pose_from_home(self._machine, job.first, self.tool_length)
         if start is None:
-            raise NotReadyError(["no pose of the platform that small steps from home lead to is that of the start"])
-        return self._planned(*manual_moves.approach_trajectory(self._machine, here, start, self.tool_length, feed))
+            raise NotReadyError(["no pose of the platform reachable in small steps from home is that of the start"])
+        return self._plan(*manual_moves.approach_trajectory(self._machine, here, start, self.tool_length, feed))
 
     def execute(self, plan: Plan, near: float = START_TOLERANCE_MM) -> Status:
         """Load a plan, verify its listing and start it; as ``execute.execute``.
@@ -185,11 +188,11 @@ class NumericalControl:
         """
         order = self._session, self._machine, self._settings, plan.job
         if plan.is_jog:
-            status, self._watchdog = self._owning("jog", lambda: execute.execute_watched(*order))
+            status, self._watchdog = self._with_ownership("jog", lambda: execute.execute_watched(*order))
         else:
-            status = self._owning("run", lambda: execute.execute(*order, near))
+            status = self._with_ownership("run", lambda: execute.execute(*order, near))
         if plan.block and self._blocks is not None:
-            self._take_block(self._blocks[0], plan.block + 1)
+            self._set_next_block(self._blocks[0], plan.block + 1)
         return status
 
     @property
@@ -199,13 +202,13 @@ class NumericalControl:
 
     def renew(self) -> None:
         """Renew the watchdog of an active jog while the operator is watching; call several times a second."""
-        if self._watchdog is not None and self._is_attended():
+        if self._watchdog is not None and self._is_operator_present():
             self._watchdog.renew(self._session)
 
     def wait_for_rest(self, seconds: float) -> Status:
         """Poll until the machine rests, and renew the watchdog of a jog; as ``execute.wait_for_rest``."""
         status = execute.wait_for_rest(self._session, self._settings, seconds, self.renew)
-        self._end_watch(status)
+        self._drop_watchdog(status)
         return status
 
     def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> DownloadResult:
@@ -214,16 +217,16 @@ class NumericalControl:
         A waiting stop ends the download as ``is_cancelled`` does.
         """
         check_setup(self._session, self._settings, self._machine.strut_stroke)
-        return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.is_waited_for())
+        return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.stop_pending())
 
     def start(self, job: Job, near: float = START_TOLERANCE_MM) -> Status:
         """Start a loaded program from its beginning; as ``run.start_program``."""
         order = self._session, self._settings, job.program, job.first, near, self._machine
-        return self._owning("run", lambda: run.start_program(*order))
+        return self._with_ownership("run", lambda: run.start_program(*order))
 
-    def go_on(self, job: Job, stop: int, near: float = START_TOLERANCE_MM) -> Status:
+    def continue_after_stop(self, job: Job, stop: int, near: float = START_TOLERANCE_MM) -> Status:
         """Continue a program after its stop (M0, M1), from 1, where it stands; as ``execute.continue_after_stop``."""
-        return self._owning(
+        return self._with_ownership(
             "run",
             lambda: execute.continue_after_stop(self._session, self._machine, self._settings, job, stop, near),
         )
@@ -240,7 +243,7 @@ class NumericalControl:
         """
         if not 1 <= at <= len(blocks):
             raise ValueError(f"at: expected a block from 1 to {len(blocks)}, got {at}")
-        self._take_block(blocks, at)
+        self._set_next_block(blocks, at)
         return len(blocks)
 
     def plan_step(self) -> tuple[Plan | None, Findings]:
@@ -253,8 +256,8 @@ class NumericalControl:
             raise ValueError("plan_step: expected a block that comes next, got none")
         blocks, number = self._blocks
         block = blocks.block(number)
-        plan, told = self._planned(block, (), block.tolerances or TOLERANCES)
-        return (None if plan is None else replace(plan, block=number)), told
+        plan, diagnostics = self._plan(block, (), block.tolerances or TOLERANCES)
+        return (None if plan is None else replace(plan, block=number)), diagnostics
 
     def hold(self) -> Status:
         """Feed hold: slow down to rest on the path."""
@@ -263,7 +266,7 @@ class NumericalControl:
     def resume(self) -> Status:
         """Resume after a hold; a jog held by its watchdog resumes as well."""
         self.renew()
-        return self._moving(lambda: run.resume_program(self._session, self._settings))
+        return self._execute_motion(lambda: run.resume_program(self._session, self._settings))
 
     def abort(self, at_once: bool = False) -> Status:
         """Abort the program, after a hold unless ``at_once``, and stop watching a homing."""
@@ -277,14 +280,14 @@ class NumericalControl:
     def home(self, trigger: str) -> None:
         """Send the line that starts the homing of the machine; ``poll`` then watches it."""
         check_trigger(trigger)
-        self._watch = self._owning("home", lambda: start_homing(self._session, self._settings, trigger))
+        self._watch = self._with_ownership("home", lambda: start_homing(self._session, self._settings, trigger))
 
-    def _end_watch(self, status: Status) -> None:
+    def _drop_watchdog(self, status: Status) -> None:
         """Drop the watchdog of a program that has ended."""
         if not status.running:
             self._watchdog = None
 
-    def _take_block(self, blocks: ProgramBlocks, number: int) -> None:
+    def _set_next_block(self, blocks: ProgramBlocks, number: int) -> None:
         """Make a block the next one."""
         self._blocks, self._block = (blocks, number), blocks.shown(number)
 
@@ -294,23 +297,23 @@ class NumericalControl:
             return emergency_text(None)
         return () if self._last.status is None else emergency_text(self._last.status)
 
-    def _owning(self, what: str, order: Callable[[], Done]) -> Done:
+    def _with_ownership(self, what: str, order: Callable[[], Done]) -> Done:
         """Execute an order that moves the machine; keep ownership until the machine is seen at rest."""
         keeper = self._session.keeper or claim(self._session, what)
         try:
-            return self._moving(order)
+            return self._execute_motion(order)
         except LinkLostError:
             raise  # the machine may move
         except BaseException:
             keeper.release()
             raise
 
-    def _give_back(self, status: Status) -> None:
+    def _release_at_rest(self, status: Status) -> None:
         """Release ownership once the machine rests."""
         if self._session.keeper is not None and self._watch is None and status.standing and not status.running:
             self._session.keeper.release()
 
-    def _moving(self, order: Callable[[], Done]) -> Done:
+    def _execute_motion(self, order: Callable[[], Done]) -> Done:
         """Execute an order that may move the machine; until the next reading it may be moving."""
         try:
             done = order()
@@ -320,7 +323,7 @@ class NumericalControl:
         self._may_move = True
         return done
 
-    def _here(self) -> Pose:
+    def _standing_pose(self) -> ToolPose:
         """The commanded pose of a machine at standstill."""
         status = settled_status(self._session, self._settings)
         reasons = [f"strut {strut}: not homed" for strut in missing_homes(status)]
@@ -330,13 +333,13 @@ class NumericalControl:
             raise NotReadyError(reasons)
         pose = pose_from_home(self._machine, status.commanded, self.tool_length)
         if pose is None:
-            raise NotReadyError(["no pose of the platform that small steps from home lead to has these strut lengths"])
+            raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
         return pose
 
-    def _planned(
-        self, trajectory: Trajectory | None, told: Findings, tolerances: Tolerances = TOLERANCES
+    def _plan(
+        self, trajectory: Trajectory | None, diagnostics: Findings, tolerances: Tolerances = TOLERANCES
     ) -> tuple[Plan | None, Findings]:
         if trajectory is None:
-            return None, told
+            return None, diagnostics
         plan, faults = planned(trajectory, self._machine, self._settings, tolerances, self._number)
-        return plan, told + faults
+        return plan, diagnostics + faults

@@ -54,7 +54,7 @@ class Watchdog:
         Raises:
             PmacError: the controller is unreachable, or refuses.
         """
-        session.ask(_credit(self.variable))
+        session.query(_credit(self.variable))
 
 
 def watchdog_of(session: Session, settings: PmacSettings, program: PmacProgram) -> Watchdog:
@@ -71,7 +71,9 @@ def watchdog_of(session: Session, settings: PmacSettings, program: PmacProgram) 
     name = f"I{50 + settings.coordinate_system}95"
     slew = abs(read_number(session, name))
     if slew == 0:
-        raise NotReadyError([f"{name} is 0: a hold would not stop the struts, so nothing would when the link fails"])
+        raise NotReadyError(
+            [f"{name} is 0: a hold would not stop the struts, so nothing stops them when the link fails"]
+        )
     lines = with_watchdog(program.lines, program.number, settings.coordinate_system)
     silence = (CREDIT_MS + _AHEAD_MS) / 1000 + _FULL_SLEW / slew
     return Watchdog(PmacProgram(program.number, lines), program.number, silence)
@@ -136,14 +138,14 @@ def execute(
     with owned(session, "jog"):
         check_start(read_status(session, settings), job.first, near, machine)
         check_setup(session, settings, machine.strut_stroke)
-        download(session, job.program, is_cancelled=session.is_waited_for)
+        download(session, job.program, is_cancelled=session.stop_pending)
         return operate.start_program(session, settings, job.program, job.first, near, machine)
 
 
 def execute_watched(session: Session, machine: Machine, settings: PmacSettings, job: Job) -> tuple[Status, Watchdog]:
     """Load a program with a watchdog and start it; unless renewed, the watchdog holds it. Otherwise as ``execute``."""
-    dog = watchdog_of(session, settings, job.program)
-    return execute(session, machine, settings, replace(job, program=dog.program)), dog
+    watchdog = watchdog_of(session, settings, job.program)
+    return execute(session, machine, settings, replace(job, program=watchdog.program)), watchdog
 
 
 def wait_for_rest(
@@ -218,7 +220,7 @@ def remaining_job(job: Job, stop: ProgramStop, settings: PmacSettings) -> Job:
     row = job.motion.events[stop.event].row
     rest = replace(job.motion, events=job.motion.events[stop.event + 1 :])
     motion = parted(rest, [row])[-1] if row else rest
-    return job_of(motion, replace(settings, program=job.program.number), f"behind stop {stop.number}")
+    return job_of(motion, replace(settings, program=job.program.number), f"after stop {stop.number}")
 
 
 def job_of(motion: StrutMotion, settings: PmacSettings, name: str) -> Job:
@@ -265,6 +267,6 @@ def continue_after_stop(
     """
     stops = program_stops(job)
     if not 1 <= number <= len(stops):
-        told = f"the program has {len(stops)} stops (M0, M1) with moves after them: there is none with number {number}"
-        raise NotReadyError([told])
+        reason = f"the program has {len(stops)} stops (M0, M1) with moves after them: there is no stop {number}"
+        raise NotReadyError([reason])
     return execute(session, machine, settings, remaining_job(job, stops[number - 1], settings), near)

@@ -88,7 +88,7 @@ def start_homing(session: Session, settings: PmacSettings, trigger: str) -> Homi
     check_trigger(trigger)
     with owned(session, "home"):
         _check_rest(settled_status(session, settings))
-        session.order(trigger)
+        session.command(trigger)
     return HomingWatch(session.now())
 
 
@@ -128,7 +128,7 @@ class HomingWatch:
         busy = searching or not status.standing or status.running
         self._seen = self._seen or busy or bool(missing)
         self._quiet_since = None if busy or missing else now if self._quiet_since is None else self._quiet_since
-        return Homing(self._phase(status, busy, now), missing, status.words())
+        return Homing(self._phase(status, busy, now), missing, status.fault_texts())
 
     def _phase(self, status: Status, busy: bool, now: float) -> HomingPhase:
         if any(_faults(status)):
@@ -143,7 +143,7 @@ class HomingWatch:
 def _faults(status: Status) -> tuple[str, ...]:
     """Faults that end a homing; limits are not among them, as homes may lie there."""
     return tuple(
-        f"strut {number}: {motor.TOLD[name]}"
+        f"strut {number}: {motor.FAULT_TEXTS[name]}"
         for number, motor in zip(MOTORS, status.motors, strict=True)
         for name in _STOPS_IT
         if motor.has(name)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Permissions: which orders make sense in which state, and why the others do not.
+"""Interlocks: the commands an operator can give, and why one is not allowed in a state of the machine.
 
-Enters: the state of a machine and what a panel knows in addition. Leaves: for each order the obstacles, the most
-important first. This only saves the operator orders that would be refused; the checks of the control and the controller
+Enters: the state of a machine and of a panel. Leaves: for each command the active interlocks, the most important
+first. This only saves the operator commands that would be refused; the checks of the control and of the controller
 alone decide what may move the machine.
 """
 
@@ -16,7 +16,7 @@ from pkm_post.control.numerical_control.homing import HomingPhase
 
 
 class OperatorCommand(enum.Enum):
-    """Orders an operator can give."""
+    """Commands of the operator."""
 
     HOME = "home"
     JOG = "jog"
@@ -34,7 +34,7 @@ class OperatorCommand(enum.Enum):
 
 
 class Interlock(enum.Enum):
-    """Obstacles to an order."""
+    """Why a command is not allowed."""
 
     NOT_CONNECTED = "there is no connection"
     WATCH_ONLY = "a Power PMAC can be watched, held and aborted alone"
@@ -83,7 +83,7 @@ class PanelState:
     Attributes:
         connected: whether a connection is open.
         watch_only: whether the controller accepts stops only.
-        busy: whether an order is in progress.
+        busy: whether a command is in progress.
         has_job: whether a program is open.
         loaded: whether it is in the controller, as far as known here.
         has_stops: whether it has stops (M0, M1) to continue after.
@@ -101,21 +101,21 @@ class PanelState:
     homing: bool = False
 
 
-def active_interlocks(state: ControlState, desk: PanelState) -> frozenset[Interlock]:
-    """All obstacles in this state."""
+def active_interlocks(state: ControlState, panel: PanelState) -> frozenset[Interlock]:
+    """All interlocks that are active in this state."""
     status = state.status
     answers = status is not None and not state.lost
     held = status is not None and status.held
-    searches = desk.homing and state.homing is not None and state.homing.phase is HomingPhase.SEARCHING
+    searches = panel.homing and state.homing is not None and state.homing.phase is HomingPhase.SEARCHING
     holds = {
-        Interlock.NOT_CONNECTED: not desk.connected,
-        Interlock.WATCH_ONLY: desk.watch_only,
+        Interlock.NOT_CONNECTED: not panel.connected,
+        Interlock.WATCH_ONLY: panel.watch_only,
         Interlock.NO_ANSWER: not answers,
-        Interlock.BUSY: desk.busy,
-        Interlock.NO_JOB: not desk.has_job,
-        Interlock.NOT_LOADED: not desk.loaded,
-        Interlock.NO_BLOCK: not desk.stepping or state.block is None or state.block.is_over,
-        Interlock.NO_STOP: not desk.has_stops,
+        Interlock.BUSY: panel.busy,
+        Interlock.NO_JOB: not panel.has_job,
+        Interlock.NOT_LOADED: not panel.loaded,
+        Interlock.NO_BLOCK: not panel.stepping or state.block is None or state.block.is_over,
+        Interlock.NO_STOP: not panel.has_stops,
         Interlock.RUNS: status is not None and status.running and not held,
         Interlock.HELD: held,
         Interlock.NOT_HELD: not held,
@@ -125,9 +125,9 @@ def active_interlocks(state: ControlState, desk: PanelState) -> frozenset[Interl
     return frozenset(why for why, is_so in holds.items() if is_so)
 
 
-def blocking_interlock(order: OperatorCommand, found: frozenset[Interlock]) -> Interlock | None:
-    """The first obstacle to an order; None if it is allowed."""
-    return next((why for why in INTERLOCKS_OF[order] if why in found), None)
+def blocking_interlock(command: OperatorCommand, active: frozenset[Interlock]) -> Interlock | None:
+    """The first active interlock of a command; None if it is allowed."""
+    return next((why for why in INTERLOCKS_OF[command] if why in active), None)
 
 
 def may_move(state: ControlState) -> bool:

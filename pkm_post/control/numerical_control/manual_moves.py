@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.control.link.tool_pose import Pose, spin_of
+from pkm_post.control.link.tool_pose import spin_of
 from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.machine import SpinPolicy, SpinRule, forward_along_path, platform_rotation, strut_lengths
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Tool, Trajectory, errors
@@ -69,7 +69,7 @@ Jog = CartesianJog | StrutJog
 
 
 def jog_trajectory(
-    jog: Jog, machine: Machine, here: Pose, tool_length: float, feed: float
+    jog: Jog, machine: Machine, here: ToolPose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The trajectory of a jog, or why there is none.
 
@@ -95,7 +95,7 @@ def jog_trajectory(
 
 
 def approach_trajectory(
-    machine: Machine, here: Pose, start: Pose, tool_length: float, feed: float
+    machine: Machine, here: ToolPose, start: ToolPose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The safe approach to the start of a program: up along the tool axis, across, down along the axis of the start.
 
@@ -111,18 +111,19 @@ def approach_trajectory(
     height = float(start.tip[2])
     if machine.tool_change is not None:
         height = max(height, machine.tool_change.safe_height)
-    begin, end = (ToolPose(pose.tip, pose.axis, pose.spin) for pose in (here, start))
-    if not (begin.rises_to(height) and end.rises_to(height)):
-        return None, (Diagnostic("K142", Place("approach_trajectory"), f"to z {height:.3f} mm"),)
-    way = [begin, *clearance_path(begin, end, height)]
+    if not (here.rises_to(height) and start.rises_to(height)):
+        return None, (Diagnostic("K142", Place("approach"), f"to z {height:.3f} mm"),)
+    way = [here, *clearance_path(here, start, height)]
     moved = [pose for before, pose in itertools.pairwise(way) if not before.is_at(pose)]
     if not moved:
-        return None, (Diagnostic("C201", Place("approach_trajectory"), "the tool is at the start of the program"),)
-    trajectory, told = _through(machine, here, pose_columns(moved), tool_length, min(feed, machine.feed_speed))
-    return None if trajectory is None else replace(trajectory, source="approach_trajectory"), told
+        return None, (Diagnostic("C201", Place("approach"), "the tool is at the start of the program"),)
+    trajectory, diagnostics = _through(machine, here, pose_columns(moved), tool_length, min(feed, machine.feed_speed))
+    return None if trajectory is None else replace(trajectory, source="approach"), diagnostics
 
 
-def stationary_trajectory(machine: Machine, here: Pose, tool_length: float, events: tuple[Event, ...]) -> Trajectory:
+def stationary_trajectory(
+    machine: Machine, here: ToolPose, tool_length: float, events: tuple[Event, ...]
+) -> Trajectory:
     """Events at standstill, with the minimal path that planning needs.
 
     Args:
@@ -133,13 +134,13 @@ def stationary_trajectory(machine: Machine, here: Pose, tool_length: float, even
     """
     tip = (here.tip + _MEASURABLE * here.axis)[None]
     poses = tip, here.axis[None], np.array([here.spin])
-    trajectory, told = _through(machine, here, poses, tool_length, machine.feed_speed)
+    trajectory, diagnostics = _through(machine, here, poses, tool_length, machine.feed_speed)
     if trajectory is None:
-        raise ValueError(f"here: expected a pose, got {here}: {told}")
+        raise ValueError(f"here: expected a pose, got {here}: {diagnostics}")
     return replace(trajectory, events=events)
 
 
-def _of_tool(jog: CartesianJog, here: Pose) -> tuple[Array, Array, Array]:
+def _of_tool(jog: CartesianJog, here: ToolPose) -> tuple[Array, Array, Array]:
     values = np.array([*jog.shift, *jog.tilt, jog.spin])
     if not np.isfinite(values).all():
         raise ValueError(f"jog: expected finite numbers, got {values.tolist()}")
@@ -156,7 +157,7 @@ def _about(coordinate: int, angle: float) -> Array:
     return turn
 
 
-def _of_strut(jog: StrutJog, machine: Machine, here: Pose, tool_length: float) -> tuple[Array, Array, Array] | None:
+def _of_strut(jog: StrutJog, machine: Machine, here: ToolPose, tool_length: float) -> tuple[Array, Array, Array] | None:
     if not np.isfinite(jog.by):
         raise ValueError(f"by: expected a finite number, got {jog.by}")
     steps = max(1, int(np.ceil(abs(jog.by) / _STEP_MM)))
@@ -168,13 +169,13 @@ def _of_strut(jog: StrutJog, machine: Machine, here: Pose, tool_length: float) -
     return (found.tip, found.axis, spin_of(found.rotation)) if found.converged.all() else None
 
 
-def _lengths(machine: Machine, here: Pose, tool_length: float) -> Array:
+def _lengths(machine: Machine, here: ToolPose, tool_length: float) -> Array:
     """(1, 6) strut lengths of a pose, mm."""
     return strut_lengths(machine, here.tip[None], here.axis[None], np.array([here.spin]), np.array([tool_length]))
 
 
 def _through(
-    machine: Machine, here: Pose, poses: tuple[Array, Array, Array], tool_length: float, feed: float
+    machine: Machine, here: ToolPose, poses: tuple[Array, Array, Array], tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """Straight segments from the current pose through poses, to rest."""
     tip, axis, spin = poses
@@ -246,7 +247,7 @@ class MdiSettings:
 
 
 def mdi_trajectory(
-    line: str, machine: Machine, here: Pose, tool_length: float, reading: MdiSettings | None = None
+    line: str, machine: Machine, here: ToolPose, tool_length: float, reading: MdiSettings | None = None
 ) -> tuple[Trajectory | None, Findings]:
     """The trajectory of a line of G-code.
 
@@ -264,48 +265,48 @@ def mdi_trajectory(
         raise ValueError(f"line: expected one line, got {len(line.splitlines())}")
     reading = reading or MdiSettings()
     options = Options(work_offset=reading.work_offset, spin=SpinPolicy(SpinRule.FILE))
-    offset, told = work_offset(machine, options)
+    offset, diagnostics = work_offset(machine, options)
     if offset is None:
-        return None, told
+        return None, diagnostics
     program, faults = _read(line, here, offset, tool_length, reading)
     if any(fault.code == _EMPTY_CODE for fault in faults):
         return _standing(line, machine, here, offset, tool_length, reading)
-    told += faults
-    if program is None or errors(told):
-        return None, told
+    diagnostics += faults
+    if program is None or errors(diagnostics):
+        return None, diagnostics
     # A trajectory starts at the home of its machine. Here that is the current pose, so that the line leads straight
     # from it.
     standing = replace(machine, home_tip=here.tip, home_axis=here.axis, home_spin=here.spin, tool_change=None)
     standing = replace(standing, largest_tool_diameter=math.inf)  # diameter of the tool in the spindle is unknown
     trajectory, faults = trajectory_of(program, standing, options)
-    told += tuple(replace(fault, code="C201") if fault.code == _NO_MOVES_CODE else fault for fault in faults)
+    diagnostics += tuple(replace(fault, code="C201") if fault.code == _NO_MOVES_CODE else fault for fault in faults)
     if trajectory is None or reading.axis_words == _SAYS_THE_SPIN:
-        return trajectory, told
-    return replace(trajectory, spin=np.full(len(trajectory), here.spin)), told
+        return trajectory, diagnostics
+    return replace(trajectory, spin=np.full(len(trajectory), here.spin)), diagnostics
 
 
 def _standing(
-    line: str, machine: Machine, here: Pose, machine_from_work: Array, tool_length: float, reading: MdiSettings
+    line: str, machine: Machine, here: ToolPose, machine_from_work: Array, tool_length: float, reading: MdiSettings
 ) -> tuple[Trajectory | None, Findings]:
     """A line without a move: switching codes at standstill."""
     stay = _STAY.format(*_in_work(here, machine_from_work))
-    program, told = _read(f"{line}\n{stay}", here, machine_from_work, tool_length, reading)
-    if program is not None and program.events and not errors(told):
-        return stationary_trajectory(machine, here, tool_length, program.events), told
-    told = tuple(fault for fault in told if fault.code != _EMPTY_CODE)
-    if not errors(told):
-        told += (Diagnostic("C201", Place(_MDI, line=1), line.strip() or "an empty line"),)
-    return None, told
+    program, diagnostics = _read(f"{line}\n{stay}", here, machine_from_work, tool_length, reading)
+    if program is not None and program.events and not errors(diagnostics):
+        return stationary_trajectory(machine, here, tool_length, program.events), diagnostics
+    diagnostics = tuple(fault for fault in diagnostics if fault.code != _EMPTY_CODE)
+    if not errors(diagnostics):
+        diagnostics += (Diagnostic("C201", Place(_MDI, line=1), line.strip() or "an empty line"),)
+    return None, diagnostics
 
 
-def _in_work(here: Pose, machine_from_work: Array) -> tuple[float, float, float]:
+def _in_work(here: ToolPose, machine_from_work: Array) -> tuple[float, float, float]:
     """The tip in {C}, mm."""
     x, y, z = (machine_from_work[:3, :3].T @ (here.tip - machine_from_work[:3, 3])).tolist()
     return x, y, z
 
 
 def _read(
-    line: str, here: Pose, machine_from_work: Array, tool_length: float, reading: MdiSettings
+    line: str, here: ToolPose, machine_from_work: Array, tool_length: float, reading: MdiSettings
 ) -> tuple[Program | None, Findings]:
     """The line as a program in {C}."""
     # A NaN diameter reveals cutter compensation.
@@ -313,16 +314,16 @@ def _read(
     options = gcode.ReadOptions(
         default_tool=tool, start=_in_work(here, machine_from_work), axis_words=reading.axis_words
     )
-    program, told = gcode.read(line, _MDI, options)
+    program, diagnostics = gcode.read(line, _MDI, options)
     if program is None:
-        return None, told
+        return None, diagnostics
     if np.isnan(program.side_offset).any():
         found = "cutter compensation with a tool of unknown diameter"
-        return None, (*told, Diagnostic("G411", Place(_MDI, line=1), found))
+        return None, (*diagnostics, Diagnostic("G411", Place(_MDI, line=1), found))
     if any(event.kind is EventKind.TOOL_CHANGE for event in program.events):
-        return None, (*told, Diagnostic("C203", Place(_MDI, line=1), line.splitlines()[0].strip()))
+        return None, (*diagnostics, Diagnostic("C203", Place(_MDI, line=1), line.splitlines()[0].strip()))
     tools = {number: replace(each, diameter=0.0) for number, each in program.tools.items()}
     if reading.axis_words == "none":
         kept = np.tile(machine_from_work[:3, :3].T @ here.axis, (len(program), 1))
-        return replace(program, tools=tools, tool_axis=kept), told
-    return replace(program, tools=tools), told
+        return replace(program, tools=tools, tool_axis=kept), diagnostics
+    return replace(program, tools=tools), diagnostics

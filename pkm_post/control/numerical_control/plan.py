@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.certificate import certify
 from pkm_post.control.link.program import Job, read_job
-from pkm_post.control.link.tool_pose import Pose, spin_of
+from pkm_post.control.link.tool_pose import spin_of
 from pkm_post.geometry import Array, hermite_lengths
 from pkm_post.machine import (
     ForwardSolution,
@@ -29,6 +29,7 @@ from pkm_post.model import Certificate, Diagnostic, Machine, Motion, Place, Stru
 from pkm_post.options import MANUAL_MOVE_PROGRAM
 from pkm_post.planning import plan
 from pkm_post.report import heading
+from pkm_post.toolpath import ToolPose
 from pkm_post.writing import pmac
 
 Findings = tuple[Diagnostic, ...]
@@ -50,7 +51,7 @@ class Plan:
 
     job: Job
     certificate: Certificate
-    end: Pose
+    end: ToolPose
     is_jog: bool = False
     block: int = 0
 
@@ -87,39 +88,39 @@ def planned(
     if number == settings.program:
         raise ValueError(f"number: expected another one than that of the jobs, got {number}")
     settings = replace(settings, program=number)
-    text, motion, told = _program(trajectory, machine, settings, tolerances)
+    text, motion, diagnostics = _program(trajectory, machine, settings, tolerances)
     if text is None or motion is None:
-        return None, told
+        return None, diagnostics
     name = trajectory.source
     job, faults = read_job(text, settings, name)
     if job is None:
-        return None, told + faults
+        return None, diagnostics + faults
     certificate, faults = certify(job.motion, name, trajectory, machine, motion, tolerances)
-    told += faults
-    end, faults = _followed(job.motion, trajectory, machine)
-    told += faults
-    if certificate is None or end is None or errors(told):
-        return None, told
-    return Plan(job, certificate, end), told
+    diagnostics += faults
+    end, faults = _end_pose(job.motion, trajectory, machine)
+    diagnostics += faults
+    if certificate is None or end is None or errors(diagnostics):
+        return None, diagnostics
+    return Plan(job, certificate, end), diagnostics
 
 
 def _program(
     trajectory: Trajectory, machine: Machine, settings: pmac.PmacSettings, tolerances: Tolerances
 ) -> tuple[str | None, Motion | None, Findings]:
-    made, told = plan(trajectory, machine, tolerances)
+    made, diagnostics = plan(trajectory, machine, tolerances)
     if made is None:
-        return None, None, told
-    told += pmac.faults(made.struts, settings, trajectory.source)
-    if errors(told):
-        return None, None, told
+        return None, None, diagnostics
+    diagnostics += pmac.faults(made.struts, settings, trajectory.source)
+    if errors(diagnostics):
+        return None, None, diagnostics
     parts = pmac.program_parts(made.struts, settings, heading(trajectory))
     if len(parts) > 1:
         found = f"{len(parts)} programs of {settings.memory_words} words"
-        return None, None, (*told, Diagnostic("C204", Place(trajectory.source), found))
-    return parts[0], made.motion, told
+        return None, None, (*diagnostics, Diagnostic("C204", Place(trajectory.source), found))
+    return parts[0], made.motion, diagnostics
 
 
-def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[Pose | None, Findings]:
+def _end_pose(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[ToolPose | None, Findings]:
     """The end pose of the lengths, followed from the start pose, if the whole path is within reach."""
     lengths = _lengths(played)
     tool = np.full(len(lengths), trajectory.tool_length()[0])
@@ -127,9 +128,9 @@ def _followed(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> 
     found = forward_along_path(machine, lengths, tool, trajectory.start_tip, rotation)
     if not found.converged.all():
         second = float(np.argmin(found.converged)) / len(lengths) * played.time_ms[-1] / 1000
-        told = f"from about {second:.3f} s on the poses of the lengths do not hang together"
-        return None, (Diagnostic("V107", Place(trajectory.source), told),)
-    end = Pose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
+        text = f"from about {second:.3f} s on, the poses of the strut lengths are discontinuous"
+        return None, (Diagnostic("V107", Place(trajectory.source), text),)
+    end = ToolPose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
     return end, _reach_faults(found, tool, trajectory, machine)
 
 

@@ -21,7 +21,7 @@ from pkm_post.control.link.stopping import NOT_AT_REST, REST_DEADLINE_S
 from pkm_post.control.numerical_control.control import ControlState, NumericalControl
 
 Done = TypeVar("Done")
-Order = tuple[Future[Any], Callable[[NumericalControl], Any]]
+_Order = tuple[Future[Any], Callable[[NumericalControl], Any]]
 
 POLL_S = 0.1
 ATTENDED_S = 0.5
@@ -46,14 +46,14 @@ class Worker:
             attended: seconds for which ``attend`` counts as attendance.
         """
         self._control, self._period = control, period
-        self._stops: deque[Order] = deque()
-        self._orders: deque[Order] = deque()
+        self._stops: deque[_Order] = deque()
+        self._orders: deque[_Order] = deque()
         self._change, self._ended = threading.Condition(), False
         self._state, self._stop_since = ControlState(None, None), math.inf
         self.failure: BaseException | None = None
         self._stopping = False
         self._attended, self._attended_at = attended, -math.inf
-        control.give_way_when(self._is_waited_for)
+        control.preempt_when(self._stop_pending)
         control.attended_while(self._is_attended)
         self._thread = threading.Thread(target=self._run, name="numerical control", daemon=True)
         self._thread.start()
@@ -112,7 +112,7 @@ class Worker:
     def _is_attended(self) -> bool:
         return time.monotonic() - self._attended_at < self._attended
 
-    def _is_waited_for(self) -> bool:
+    def _stop_pending(self) -> bool:
         """Whether a stop or the shutdown waits; the shutdown waits for a stop in progress, but not forever."""
         return bool(self._stops) or (self._ended and (not self._stopping or self._is_stop_overdue()))
 
@@ -126,7 +126,7 @@ class Worker:
                 if time.monotonic() >= due:
                     self._state = self._control.poll()
                     due = time.monotonic() + self._period
-                self._carry_out_next(due)
+                self._execute_next(due)
         except BaseException as failure:  # ``submit`` and ``close`` raise it: a thread has no caller
             self.failure = failure
         with self._change:
@@ -134,7 +134,7 @@ class Worker:
             _cancel(self._stops)
             _cancel(self._orders)
 
-    def _carry_out_next(self, due: float) -> None:
+    def _execute_next(self, due: float) -> None:
         with self._change:
             waits = self._stops or self._orders
             if not waits:
@@ -158,6 +158,6 @@ class Worker:
             self._stopping = False
 
 
-def _cancel(waiting: deque[Order]) -> None:
+def _cancel(waiting: deque[_Order]) -> None:
     while waiting:
         waiting.popleft()[0].cancel()

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.control import Pose
 from pkm_post.freecad_gui.deletion_watch import DeletionWatch
 from pkm_post.geometry import Array
 from pkm_post.machine import machine_named
 from pkm_post.model import Machine
+from pkm_post.toolpath import ToolPose
 
 _SEEN = 1e-5
 """mm, rad: smaller changes are not visible."""
@@ -41,7 +41,7 @@ class Follower:
         self._watches = [DeletionWatch(self._forget, document.Name, obj.Name)]
         return True
 
-    def show(self, pose: Pose | None, tool_length: float) -> None:
+    def show(self, pose: ToolPose | None, tool_length: float) -> None:
         """Move to a pose; mm."""
         if self._view is None or self._view.scene is None or pose is None:
             return

@@ -132,7 +132,7 @@ class ProgramPage(QtWidgets.QWidget):
     def _go_on(self) -> None:
         job, stop = self._console.job, self.stop.value()
         self._console.loaded = False  # its remainder replaces it in the controller
-        self._console.order(lambda control: control.go_on(job, stop))
+        self._console.order(lambda control: control.continue_after_stop(job, stop))
 
     def _begin_at(self) -> None:
         file, connection, at = self._file, self._console.connection, self.block.value()

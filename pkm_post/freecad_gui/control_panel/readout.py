@@ -13,9 +13,10 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.control import Pose, Status
+from pkm_post.control import Status
 from pkm_post.freecad_gui.control_panel.words import strut_text
 from pkm_post.geometry import Array
+from pkm_post.toolpath import ToolPose
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -68,7 +69,7 @@ class PoseReadout(QtWidgets.QWidget):
             layout.addWidget(QtWidgets.QLabel(text), row, 0)
             layout.addWidget(label, row, 1)
 
-    def refresh(self, pose: Pose | None, machine_from_work: Array) -> None:
+    def refresh(self, pose: ToolPose | None, machine_from_work: Array) -> None:
         """Show a pose, or that there is none."""
         if pose is None:
             for label in (*self.in_work.values(), *self.in_machine.values(), self.axis, self.tilt, self.spin):

@@ -135,4 +135,4 @@ def emergency_text(lines: tuple[str, ...]) -> str:
 
 
 def _told(bits: Bits, texts: dict[str, str]) -> list[str]:
-    return [translate("ControlPanel", texts[name]) for name in bits.TOLD if bits.has(name)]
+    return [translate("ControlPanel", texts[name]) for name in bits.FAULT_TEXTS if bits.has(name)]

@@ -121,7 +121,7 @@ def assert_nothing_runs(wire, program):
     try:
         operate.start_program(session, SETTINGS, program, FIRST)
     except NotReadyError as refused:
-        assert f"program {program.number} in the controller is another one" in str(refused)
+        assert f"program {program.number} in the controller is a different one" in str(refused)
     else:
         raise AssertionError("a program that is not the one that was sent was started")
     assert not made.runs_program()

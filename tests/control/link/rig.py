@@ -94,11 +94,11 @@ class Wire:
     def link(self):
         return WiredLink(self)
 
-    def conversation(self):
+    def protocol(self):
         return SerialProtocol(self.silence) if self.kind == "serial" else EthernetProtocol(self.silence)
 
-    def session(self, patience=0.5, leftover=OpenBufferPolicy.LEAVE):
-        return Session(self, patience, 0.1, leftover, self.clock, self.sleep)
+    def session(self, answer_timeout=0.5, open_buffer=OpenBufferPolicy.LEAVE):
+        return Session(self, answer_timeout, 0.1, open_buffer, self.clock, self.sleep)
 
 
 class WiredLink:

@@ -225,7 +225,7 @@ def _stop_under_noise(choice, wire):
         other.sleep(choice.uniform(0.1, LENGTH_S))
         if wire.kind == "serial":
             noisy(choice, other, choice.choice((0.3, 0.7, 0.95)))
-        with other.session(leftover=OpenBufferPolicy.STOP) as session:
+        with other.session(open_buffer=OpenBufferPolicy.STOP) as session:
             stopped(choice, session, other)
             other.fault = carried
             stopping.abort(session, SETTINGS)  # a stream waits as long as it is held
@@ -233,7 +233,7 @@ def _stop_under_noise(choice, wire):
     def work():
         with wire.session() as session:
             until = wire.now + 2 * LENGTH_S
-            session.give_way_when(lambda: wire.now > until)
+            session.preempt_when(lambda: wire.now > until)
             begun(choice, session, until)
 
     ended = wire.turns.play(work, stop)
@@ -298,7 +298,9 @@ def _second_client(choice, wire):
             other.sleep(choice.uniform(0.05, LENGTH_S / 2))
             done.append(choice.choice(tuple(_ACTS)))
             try:
-                with other.session(leftover=choice.choice((OpenBufferPolicy.LEAVE, OpenBufferPolicy.STOP))) as session:
+                with other.session(
+                    open_buffer=choice.choice((OpenBufferPolicy.LEAVE, OpenBufferPolicy.STOP))
+                ) as session:
                     _ACTS[done[-1]](session)
             except PmacError:
                 pass
@@ -341,7 +343,7 @@ def _dead_link(choice, wire):
     except PmacError:
         pass
     until = wire.now + 2.0
-    session.give_way_when(lambda: wire.now > until)
+    session.preempt_when(lambda: wire.now > until)
     try:
         stopping.hold(session, SETTINGS)
     except CancelledError:
@@ -389,7 +391,7 @@ def _assert_all_is_well(wire):
     wire.sleep(0.5)
     assert wire.off < MICRON and wire.controller.systems[0].path.abrupt_stops == 0
     assert_at_rest(wire, 1.0)
-    with wire.beside().session(leftover=OpenBufferPolicy.STOP) as session:
+    with wire.beside().session(open_buffer=OpenBufferPolicy.STOP) as session:
         stopping.abort(session, SETTINGS)
         assert not wire.controller.runs_program()
         if wire.controller.motors.closed.all():

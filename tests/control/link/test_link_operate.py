@@ -84,14 +84,14 @@ def test_a_program_runs_to_its_end(wire, loaded):
     operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     wire.sleep(10.0)
     status = read_status(loaded, SETTINGS)
-    assert not status.running and status.words() == ()
+    assert not status.running and status.fault_texts() == ()
     assert np.allclose(status.length, 500.0, atol=MICRON)
 
 
 def test_another_program_is_not_started(loaded, wire):
     for line in ("OPEN PROG 10", "A1:0", "CLOSE"):
-        loaded.order(line)
-    with pytest.raises(NotReadyError, match="program 10 in the controller is another one"):
+        loaded.command(line)
+    with pytest.raises(NotReadyError, match="program 10 in the controller is a different one"):
         operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     assert not wire.controller.runs_program()
 
@@ -140,7 +140,7 @@ def test_nothing_is_resumed_that_is_not_held(loaded):
 
 
 def test_an_override_beyond_the_plan_is_refused(wire, loaded):
-    loaded.order("&1%120")
+    loaded.command("&1%120")
     wire.sleep(1.0)  # the time base goes there slowly
     with pytest.raises(NotReadyError, match="the override is 120 %"):
         operate.start_program(loaded, SETTINGS, SLOW, FIRST)
@@ -173,13 +173,13 @@ def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):
 
 
 def test_nothing_is_started_while_a_stop_waits(wire, loaded):
-    loaded.give_way_when(lambda: True)
+    loaded.preempt_when(lambda: True)
     with pytest.raises(CancelledError, match="a stop came first"):
         operate.start_program(loaded, SETTINGS, SLOW, FIRST)
-    loaded.give_way_when(lambda: False)
+    loaded.preempt_when(lambda: False)
     operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     stopping.hold(loaded, SETTINGS)
-    loaded.give_way_when(lambda: True)
+    loaded.preempt_when(lambda: True)
     with pytest.raises(CancelledError, match="a stop came first"):
         operate.resume_program(loaded, SETTINGS)
     assert read_status(loaded, SETTINGS).held

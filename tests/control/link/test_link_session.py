@@ -14,7 +14,7 @@ from pkm_post.control.link.errors import (
 )
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.program import PmacProgram
-from pkm_post.control.link.session import ATTEMPTS, OpenBufferPolicy
+from pkm_post.control.link.session import QUERY_ATTEMPTS, OpenBufferPolicy
 from pkm_post.control.simulator import SerialPort
 
 
@@ -29,17 +29,17 @@ def wire(request):
 def test_any_handshake_is_brought_into_step(wire, handshake, sums, errors):
     assert not wire.line.refusal(f"I3={handshake} I4={sums} I6={errors} I9=0")
     with wire.session() as session:
-        assert session.ask("I3 I6 I9") == ("2", "1", "3")
+        assert session.query("I3 I6 I9") == ("2", "1", "3")
 
 
 def test_answers_and_refusals(wire):
     with wire.session() as session:
-        session.order("P1=25 P2=50")
-        assert session.ask("P1 P2") == ("25", "50")
+        session.command("P1=25 P2=50")
+        assert session.query("P1 P2") == ("25", "50")
         with pytest.raises(RefusedError, match="ERR003, not understood") as refused:
-            session.order("FOO")
+            session.command("FOO")
         assert (refused.value.number, refused.value.command) == (3, "FOO")
-        assert session.ask("P1") == ("25",)
+        assert session.query("P1") == ("25",)
 
 
 def lose(wire, when):
@@ -56,7 +56,7 @@ def test_a_query_is_asked_again_and_then_given_up(wire):
         wire.sent.clear()
         lose(wire, b"P77")
         with pytest.raises(LinkLostError):
-            session.ask("P77")
+            session.query("P77")
     assert wire.now < 60
 
 
@@ -69,7 +69,7 @@ def test_a_query_survives_an_answer_that_got_lost(wire):
             return b"" if not out and count[0] == 2 else data
 
         wire.fault = fault
-        assert session.ask("P1") == ("0",)
+        assert session.query("P1") == ("0",)
 
 
 @pytest.mark.parametrize("kind", ["serial", "tcp"])
@@ -87,9 +87,9 @@ def test_a_set_whose_answer_is_lost_is_not_sent_again(kind):
 
     wire.fault = fault
     with pytest.raises(OutcomeUnknownError, match="I68=7"):
-        session.order("I68=7")
+        session.command("I68=7")
     assert gone[0] and wire.sent.count(b"I68=7") == 1
-    assert session.ask("I68") == ("7",)  # the state tells, and the session is in step again
+    assert session.query("I68") == ("7",)  # the state tells, and the session is in step again
 
 
 def test_a_query_is_asked_so_often_and_no_more():
@@ -97,8 +97,8 @@ def test_a_query_is_asked_so_often_and_no_more():
     with wire.session() as session:
         wire.fault = lambda data, out: b"" if not out and b"P77" in wire.sent[-11:] else data
         with pytest.raises(LinkLostError, match="P77"):
-            session.ask("P77")
-    assert wire.sent.count(b"P77") == ATTEMPTS
+            session.query("P77")
+    assert wire.sent.count(b"P77") == QUERY_ATTEMPTS
 
 
 def test_a_buffer_that_was_left_open_is_made_empty(wire, caplog):
@@ -106,17 +106,17 @@ def test_a_buffer_that_was_left_open_is_made_empty(wire, caplog):
     for line in ("OPEN PROG 10", "CLEAR", "ABS", "LINEAR"):
         assert not wire.line.refusal(line)
     with wire.session() as session, owned(session, "download"):
-        assert "was made empty" in caplog.text
+        assert "it was cleared" in caplog.text
         assert verify_listing(session, PmacProgram(10, ())).same
 
 
-@pytest.mark.parametrize("leftover", [OpenBufferPolicy.LEAVE, OpenBufferPolicy.STOP])
-def test_a_buffer_that_is_open_is_left_alone_by_who_watches_or_stops(wire, leftover):
+@pytest.mark.parametrize("open_buffer", [OpenBufferPolicy.LEAVE, OpenBufferPolicy.STOP])
+def test_a_buffer_that_is_open_is_left_alone_by_who_watches_or_stops(wire, open_buffer):
     wire.session().open()  # the handshake is agreed from here on
     for line in ("OPEN PROG 10", "CLEAR", "ABS"):
         assert not wire.line.refusal(line)
-    with wire.session(leftover=leftover) as session:
-        assert session.ask("I3") == ("2",)
+    with wire.session(open_buffer=open_buffer) as session:
+        assert session.query("I3") == ("2",)
     assert not wire.line.refusal("LINEAR")
     assert wire.line.refusal("CLOSE") == 0
     assert [line for line in listed(wire.controller) if line != "RETURN"] == ["ABS", "LINEAR"]
@@ -128,8 +128,8 @@ def test_who_only_watches_does_not_agree_anew_while_a_buffer_is_open(wire):
     with pytest.raises(LinkLostError, match="a program buffer is open"):
         wire.session().open()
     assert not wire.line.refusal("CLOSE") and listed(wire.controller)[:1] == ["ABS"]
-    with wire.session(leftover=OpenBufferPolicy.STOP) as session:
-        assert session.ask("I3") == ("2",)
+    with wire.session(open_buffer=OpenBufferPolicy.STOP) as session:
+        assert session.query("I3") == ("2",)
 
 
 def test_a_buffer_that_another_port_has_open_is_left_alone(wire):
@@ -144,7 +144,7 @@ def test_a_buffer_that_another_port_has_open_is_left_alone(wire):
 
 def test_no_controller(wire):
     wire.fault = lambda data, out: b""
-    with pytest.raises(LinkLostError, match="no controller that can be understood"):
+    with pytest.raises(LinkLostError, match="no controller answers as expected"):
         wire.session().open()
     assert wire.now < 60
 
@@ -153,40 +153,40 @@ def test_what_programs_say_is_kept():
     wire = Wire(controller())
     with wire.session() as session:
         wire.fault = lambda data, out: data if out or data[:1] != b"0" else b"\x02HELLO\r" + data
-        assert session.ask("P1") == ("0",)
+        assert session.query("P1") == ("0",)
         assert session.messages == ["HELLO"]
 
 
 def test_a_query_that_takes_long_is_left_for_a_stop(wire):
     """One that does not is waited for: to connect anew would take longer."""
     with wire.session() as session:
-        session.give_way_when(lambda: True)
-        assert session.ask("P1") == ("0",)
+        session.preempt_when(lambda: True)
+        assert session.query("P1") == ("0",)
         wire.delay = lambda: 0.4 if wire.sent.endswith((b"P77", b"P77\r")) else 0.0
-        session.ask("P77")
+        session.query("P77")
         connections = session.connections
         lose(wire, b"P78")
         with pytest.raises(CancelledError, match="a stop came first"):
-            session.ask("P78")
+            session.query("P78")
         wire.fault = lambda data, out: data
-        session.order("P1=5")
-        assert session.ask("P1") == ("5",) and session.connections == connections + 1
+        session.command("P1=5")
+        assert session.query("P1") == ("5",) and session.connections == connections + 1
 
 
 def test_a_link_that_does_not_come_back_is_left_for_a_stop(wire):
     with wire.session() as session:
         wire.fault = lambda data, out: b""
-        session.give_way_when(lambda: True)
+        session.preempt_when(lambda: True)
         began = wire.now
         with pytest.raises(CancelledError):
-            session.ask("P1")
+            session.query("P1")
         assert wire.now - began < 3.0
 
 
 def test_a_stop_is_not_left_for_another(wire):
     """What changes something runs to its end, or nobody would know of it."""
     with wire.session() as session:
-        session.give_way_when(lambda: True)
+        session.preempt_when(lambda: True)
         lose(wire, b"P5=1")
         with pytest.raises(LinkLostError):
-            session.order("P5=1")
+            session.command("P5=1")

@@ -224,14 +224,14 @@ def test_a_machine_that_is_not_ready_is_sent_nothing():
 
 
 @KINDS
-@pytest.mark.parametrize("leftover", [OpenBufferPolicy.STOP, OpenBufferPolicy.LEAVE])
-def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, leftover):
+@pytest.mark.parametrize("open_buffer", [OpenBufferPolicy.STOP, OpenBufferPolicy.LEAVE])
+def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, open_buffer):
     wire = wired(kind)
     other = Wire(wire.controller, kind, line=wire.line, moves=True)
 
     def progress(done, sent, total):
         if not other.sent and wire.controller.runs_program() and wire.controller.memory.rotaries[1].lines:
-            with other.session(leftover=leftover) as session:
+            with other.session(open_buffer=open_buffer) as session:
                 assert stopping.hold(session, SETTINGS).held
                 other.sleep(1.0)
                 operate.resume_program(session, SETTINGS)

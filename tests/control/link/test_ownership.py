@@ -39,7 +39,7 @@ class Shared(Wire):
     def sleep(self, seconds):
         super().sleep(seconds)
         act, self.meanwhile = self.meanwhile, None
-        if act is not None and seconds == ownership.LOOK_S:
+        if act is not None and seconds == ownership.POLL_S:
             act()
         self.meanwhile = act
 
@@ -71,7 +71,7 @@ ORDERS = {
 def test_what_moves_or_loads_needs_the_right_and_gives_it_back(kind, name):
     with two(kind) as (wire, one, other):
         with owned(one, "jog"), pytest.raises(NotOwnerError) as refused:
-            wire.meanwhile = lambda: one.ask("I3")
+            wire.meanwhile = lambda: one.query("I3")
             sent = len(wire.sent)
             ORDERS[name](other)
         wire.meanwhile = None
@@ -100,14 +100,14 @@ def test_others_watch_and_stop(kind):
 def test_an_owner_that_died_is_passed_over_when_nothing_is_seen_of_it(kind, caplog):
     with two(kind) as (wire, one, other):
         claim(one, "download")
-        one.order("OPEN PROG 10")
-        one.order("CLEAR")
-        one.order("ABS")
+        one.command("OPEN PROG 10")
+        one.command("CLEAR")
+        one.command("ABS")
         one.keeper = None  # it is gone, and its buffer is open
         began = wire.now
         assert download(other, PROGRAM).lines == len(PROGRAM.lines)
         assert SILENCE_S <= wire.now - began < 3 * SILENCE_S
-        assert "it is passed over" in caplog.text and "was made empty" in caplog.text
+        assert "its ownership is overridden" in caplog.text and "it was cleared" in caplog.text
 
 
 @KINDS
@@ -115,16 +115,16 @@ def test_an_owner_that_counts_or_loads_or_moves_is_not_passed_over(kind):
     with two(kind, moves=True) as (wire, one, other):
         download(one, SLOW)
         claim(one, "run")
-        wire.meanwhile = lambda: one.ask("I3")
+        wire.meanwhile = lambda: one.query("I3")
         with pytest.raises(NotOwnerError, match="C210"):
             download(other, PROGRAM)
         wire.meanwhile = lambda: one.load(["A1:0"])
         for line in ("CLOSE", "OPEN PROG 11"):
-            one.order(line)
+            one.command(line)
         with pytest.raises(NotOwnerError, match="C210"):
             download(other, PROGRAM)
         wire.meanwhile = None
-        one.order("CLOSE")
+        one.command("CLOSE")
         operate.start_program(one, SETTINGS, SLOW, FIRST)
         wire.sleep(SILENCE_S)
         with pytest.raises(NotOwnerError, match="C210.*run"):
@@ -132,7 +132,7 @@ def test_an_owner_that_counts_or_loads_or_moves_is_not_passed_over(kind):
         stopping.hold(other, SETTINGS)
         with pytest.raises(NotOwnerError, match="C210.*run"):  # a program that is held is somebody's, however silent
             download(other, PROGRAM)
-        wire.meanwhile = lambda: one.ask("I3")
+        wire.meanwhile = lambda: one.query("I3")
         with pytest.raises(NotOwnerError, match="C210.*run"):
             operate.resume_program(other, SETTINGS)
         wire.meanwhile = None
@@ -147,7 +147,7 @@ def test_an_owner_that_was_silent_looks_before_it_sends(kind):
         with owned(other, "jog"):
             sent = len(wire.sent)
             with pytest.raises(NotOwnerError, match="C211.*jog"):
-                one.order("P5=1")
+                one.command("P5=1")
             assert b"P5=1" not in wire.sent[sent:]
         assert read_record(other).owner == 0
 
@@ -156,14 +156,14 @@ def test_an_owner_that_was_silent_looks_before_it_sends(kind):
 def test_of_two_that_take_it_at_once_one_gets_it(kind):
     """Between the look of one and its assignment the other takes it."""
     with two(kind) as (_, one, other):
-        asked, taken = one.ask, []
+        asked, taken = one.query, []
 
         def ask(text, most=1 << 16):
             if "INT(1/" in text and not taken:
                 taken.append(claim(other, "run"))
             return asked(text, most)
 
-        one.ask = ask
+        one.query = ask
         with pytest.raises(NotOwnerError, match="C210.*run"):
             claim(one, "jog")
         assert taken and other.keeper is taken[0] and one.keeper is None
@@ -176,8 +176,8 @@ def test_a_controller_that_was_reset_has_forgotten_its_owner():
         wire.controller.reset()
         wire.line.receive(b"I3=2\rI6=1\r")
         wire.sleep(SILENCE_S)
-        one.order("P5=1")
-        assert read_record(one).owner and one.ask("P5") == ("1",)
+        one.command("P5=1")
+        assert read_record(one).owner and one.query("P5") == ("1",)
 
 
 @pytest.mark.parametrize("value", ["0.5", "-3"])
@@ -191,7 +191,7 @@ def test_variables_of_somebody_else_are_named(value):
 def test_an_answer_without_sense_is_a_link_that_is_lost():
     with two("tcp") as (_, one, __):
         for told in ((), ("1",), ("a", "b", "c", "d", "e"), ("nan",) * 5):
-            one.ask = lambda text, most=0, told=told: told
+            one.query = lambda text, most=0, told=told: told
             with pytest.raises((LinkLostError, DiagnosedError)):
                 read_record(one)
 
@@ -215,7 +215,7 @@ session = Session(port_named(sys.argv[1]))
 session.open()
 claim(session, "download")
 for line in ("OPEN PROG 10", "CLEAR", "ABS"):
-    session.order(line)
+    session.command(line)
 print("taken", flush=True)
 sys.stdin.read()
 """

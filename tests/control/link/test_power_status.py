@@ -30,7 +30,7 @@ class Port:
     def link(self):
         return ShellLink(self.shells, self)
 
-    def conversation(self):
+    def protocol(self):
         return GpasciiProtocol(self.silence)
 
     def sleep(self, seconds):
@@ -56,7 +56,7 @@ def test_struts_are_told_in_mm(shell, session):
     status = read_status(session, SETTINGS)
     assert np.allclose(status.length, 500.0 + np.arange(6), atol=NANOMETRE)
     assert np.allclose(status.following_error, 0.0005, atol=NANOMETRE)
-    assert status.words() == () and status.standing and not status.running and all(status.homed)
+    assert status.fault_texts() == () and status.standing and not status.running and all(status.homed)
     assert "no program runs, override 100 %" in state_text(status)
 
 
@@ -72,18 +72,18 @@ def test_struts_are_told_in_mm(shell, session):
 )
 def test_bits_of_a_motor_in_words(shell, session, bit, said):
     shell.motors[1] |= 1 << bit
-    assert read_status(session, SETTINGS).words() == (said,)
+    assert read_status(session, SETTINGS).fault_texts() == (said,)
 
 
 def test_a_motor_that_is_not_in_closed_loop_is_in_open_loop(shell, session):
     shell.motors[4] = READY & ~CLOSED_LOOP
-    assert read_status(session, SETTINGS).words() == ("strut 5: in open loop",)
+    assert read_status(session, SETTINGS).fault_texts() == ("strut 5: in open loop",)
 
 
 @pytest.mark.parametrize(("bit", "said"), [(58, "a following error was too large"), (60, "an upper limit was met")])
 def test_bits_of_the_coordinate_system_in_words(shell, session, bit, said):
     shell.system = 1 << bit
-    assert read_status(session, SETTINGS).words() == (said,)
+    assert read_status(session, SETTINGS).fault_texts() == (said,)
 
 
 def test_a_program_is_held_and_aborted(shell, session):
@@ -100,19 +100,19 @@ def test_a_refusal_leaves_the_session_in_step(shell, session, acknowledges, spli
     shell.acknowledges_refusals, shell.splits = acknowledges, splits
     for _ in range(3):
         with pytest.raises(RefusedError, match="error #20, illegal command") as refused:
-            session.order("foo")
+            session.command("foo")
         assert refused.value.number == 20
-        assert session.ask("cid") == ("604020",)
+        assert session.query("cid") == ("604020",)
 
 
 def test_a_query_is_asked_again_in_another_shell_and_a_set_is_not():
     deaf, well = Shell(), Shell()
     with Port(deaf, well, well, well).session() as session:
         deaf.garble = lambda said: said[:5]
-        assert session.ask("cid") == ("604020",)
+        assert session.query("cid") == ("604020",)
         well.garble = lambda said: said[:-4]
         with pytest.raises(OutcomeUnknownError):
-            session.order("&1h")
+            session.command("&1h")
         assert well.said.count("&1h") == 1
 
 
@@ -120,7 +120,7 @@ def test_a_computer_without_gpascii():
     shell = Shell()
     shell.garble = lambda said: b"sh: gpascii: not found\r\n"
     port = Port(shell)
-    with pytest.raises(LinkLostError, match="no controller that can be understood"):
+    with pytest.raises(LinkLostError, match="no controller answers as expected"):
         port.session().open()
     assert port.now < 60
 

@@ -35,7 +35,7 @@ def port(server, tmp_path):
 def test_a_session_with_a_password_of_the_environment(server, port, monkeypatch):
     monkeypatch.setenv(ssh_link.PASSWORD, PASSWORD)
     with Session(port) as session:
-        assert session.ask("cid") == ("604020",)
+        assert session.query("cid") == ("604020",)
     assert server.shell.said[0] == "echo 7"
 
 
@@ -45,7 +45,7 @@ def test_a_session_with_a_key(server, port, tmp_path):
     key.write_private_key_file(str(tmp_path / ".ssh" / "id_ecdsa"))
     server.user_key = key
     with Session(port) as session:
-        assert session.ask("cid") == ("604020",)
+        assert session.query("cid") == ("604020",)
     assert set(server.tried) == {"publickey"}
 
 
@@ -55,7 +55,7 @@ def test_a_user_is_asked_once_for_his_password(server, port, monkeypatch):
     monkeypatch.setattr("getpass.getpass", lambda prompt: asked.append(prompt) or PASSWORD)
     with Session(port, pause=0.01) as session:
         server.cut()
-        assert session.ask("cid") == ("604020",)  # asked again in a new shell
+        assert session.query("cid") == ("604020",)  # asked again in a new shell
     assert asked == ["password of engineer at 127.0.0.1: "]
 
 

@@ -132,7 +132,7 @@ def test_motors_keep_their_power_while_nobody_knows_that_they_move(moving):
     wire, session = moving
     wire.fault = lambda data, out: data if out else b""  # every answer is lost
     began = wire.now
-    session.give_way_when(lambda: wire.now - began > 8.0)
+    session.preempt_when(lambda: wire.now - began > 8.0)
     with pytest.raises(CancelledError):
         stopping.hold(session, SETTINGS)
     assert all(wire.controller.motors.enabled[:6]) and not wire.controller.runs_program()
@@ -151,7 +151,7 @@ def test_a_link_that_comes_back_stops_the_machine_then(moving):
         wire.mends = wire.mends or wire.now > restart_at
         return False
 
-    session.give_way_when(mend)
+    session.preempt_when(mend)
     assert stopping.hold(session, SETTINGS).standing
     assert wire.now > restart_at
     assert_at_rest(wire)
@@ -173,7 +173,7 @@ def test_over_a_noisy_line_a_stop_ends_at_rest(seed):
 def test_another_stop_that_waits_takes_over(moving):
     """It may be the one that is to stop at once; the abort was sent before."""
     wire, session = moving
-    session.give_way_when(lambda: True)
+    session.preempt_when(lambda: True)
     began = wire.now
     with suppress(CancelledError):  # unless the struts stand at once
         stopping.abort(session, SETTINGS)

@@ -91,7 +91,7 @@ ASKING = {
     "set-up": lambda session: check_setup(session, SETTINGS, STROKE),
     "status": lambda session: read_status(session, SETTINGS),
     "record": read_record,
-    "lines ahead": lambda session: RotaryBuffer(session, SETTINGS, ["A1:0"], 100).ahead(),
+    "lines ahead": lambda session: RotaryBuffer(session, SETTINGS, ["A1:0"], 100).lines_ahead(),
 }
 
 
@@ -99,17 +99,17 @@ ASKING = {
 def test_every_question_ends_in_a_fault_of_the_link_or_of_the_machine(what):
     choice, wire = random.Random(what), Wire(controller(), "tcp")
     with wire.session() as session:
-        honest = session.ask
+        honest = session.query
         for share in [0.05, 0.2, 0.5, 1.0] * 10:
 
             def ask(text, most=1 << 16, share=share):
                 told = tuple(choice.choice(JUNK) if choice.random() < share else each for each in honest(text, most))
                 return told if choice.random() > share / 4 else (told[:-1], (*told, "1"))[choice.randrange(2)]
 
-            session.ask = ask
+            session.query = ask
             try:
                 ASKING[what](session)
             except PmacError as fault:
                 assert str(fault)
-        session.ask = honest
+        session.query = honest
         ASKING[what](session)

@@ -11,7 +11,7 @@ from station import MACHINE, SETTINGS, START, job
 
 from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.program import read_job
-from pkm_post.control.link.tool_pose import Pose, deviation_from_start, start_faults
+from pkm_post.control.link.tool_pose import deviation_from_start, start_faults
 from pkm_post.control.numerical_control import manual_moves as moves
 from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.manual_moves import CartesianJog
@@ -19,6 +19,7 @@ from pkm_post.control.numerical_control.single_block import read_blocks
 from pkm_post.machine import strut_lengths
 from pkm_post.model import ToolChange
 from pkm_post.posting.steps import post
+from pkm_post.toolpath import ToolPose
 from pkm_post.writing.controllers import pmac
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
@@ -121,7 +122,7 @@ def test_the_first_point_of_another_program_is_approached(station):
 def test_a_machine_at_the_start_has_no_way_to_go(station, posted):
     plan, _ = station.control.plan_approach(posted)
     assert plan is None or np.abs(plan.job.motion.length - posted.first).max() < COUNT
-    at_start = Pose(np.array([0.0, 0.0, 300.0]), UP, 0.0)
+    at_start = ToolPose(np.array([0.0, 0.0, 300.0]), UP, 0.0)
     trajectory, told = moves.approach_trajectory(MACHINE, at_start, at_start, TOOL, 20.0)
     assert trajectory is None and [fault.code for fault in told] == ["C201"]
 
@@ -139,7 +140,9 @@ def test_the_way_goes_up_along_the_axis_and_across_above_everything(seed):
 
     def pose():
         axis = rng.normal(size=3) * [0.2, 0.2, 0] + UP
-        return Pose(rng.uniform([-80, -80, 150], [80, 80, 350]), axis / np.linalg.norm(axis), rng.uniform(-0.2, 0.2))
+        return ToolPose(
+            rng.uniform([-80, -80, 150], [80, 80, 350]), axis / np.linalg.norm(axis), rng.uniform(-0.2, 0.2)
+        )
 
     here, start, safe = pose(), pose(), rng.uniform(200, 330)
     machine = dataclasses.replace(MACHINE, tool_change=ToolChange(np.array([0, 0, 500.0]), UP, 0.0, safe))
@@ -165,8 +168,8 @@ def test_a_way_out_of_reach_is_no_plan(station, posted):
 
 
 def test_a_tool_that_lies_flat_is_not_retracted():
-    flat = Pose(np.array([0.0, 0.0, 200.0]), np.array([np.sqrt(1 - 0.0081), 0.0, 0.09]), 0.0)
-    trajectory, told = moves.approach_trajectory(MACHINE, flat, Pose(np.array([0.0, 0, 300]), UP, 0.0), TOOL, 20.0)
+    flat = ToolPose(np.array([0.0, 0.0, 200.0]), np.array([np.sqrt(1 - 0.0081), 0.0, 0.09]), 0.0)
+    trajectory, told = moves.approach_trajectory(MACHINE, flat, ToolPose(np.array([0.0, 0, 300]), UP, 0.0), TOOL, 20.0)
     assert trajectory is None and [fault.code for fault in told] == ["K142"]
 
 
@@ -188,7 +191,7 @@ def test_a_line_by_hand_goes_straight_whatever_the_safe_height(station):
 
     pose = ToolChange(np.array([0.0, 0.0, 500.0]), UP, 0.0, 290.0)
     machine = dataclasses.replace(MACHINE, tool_change=pose, spin_up_time=2.0, largest_tool_diameter=40.0)
-    here = Pose(np.array([0.0, 0.0, 200.0]), UP, 0.0)
+    here = ToolPose(np.array([0.0, 0.0, 200.0]), UP, 0.0)
     trajectory, told = mdi_trajectory("G0 X10", machine, here, TOOL)
     assert told == () and len(trajectory) == 1 and trajectory.operations == ("",)
     np.testing.assert_allclose(trajectory.tip, [[10.0, 0.0, 200.0]], atol=1e-6)

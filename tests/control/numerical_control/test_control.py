@@ -60,7 +60,7 @@ def test_a_jog_leads_where_it_says(station, jog, tip, axis, spin):
     state = station.to_rest()
     assert np.allclose(state.status.commanded, lengths_at(station.machine, tip, axis, spin), atol=2 * MICRON)
     assert np.allclose(state.pose.tip, tip, atol=5 * MICRON) and state.pose.spin == pytest.approx(spin, abs=1e-5)
-    assert state.status.words() == () and b"B999R" in station.sent() and b"PROG 10" not in station.sent()
+    assert state.status.fault_texts() == () and b"B999R" in station.sent() and b"PROG 10" not in station.sent()
 
 
 @pytest.mark.parametrize(("strut", "by"), [(1, 5.0), (4, -8.0)])
@@ -322,7 +322,7 @@ def test_a_start_that_may_have_been_carried_out_is_an_emergency(station):
 def test_a_stop_ends_a_download_and_nothing_is_started(station):
     """It gets through between two lines; nothing is left under the number."""
     plan, _ = station.control.plan_jog(CartesianJog((20, 0, 0)), FEED)
-    station.control.give_way_when(lambda: station.sent().endswith(b"\0") or b"PVT" in station.sent())
+    station.control.preempt_when(lambda: station.sent().endswith(b"\0") or b"PVT" in station.sent())
     with pytest.raises(CancelledError, match="a stop came first|nothing is left under program 999"):
         station.control.execute(plan)
     assert b"B999R" not in station.sent() and not station.wire.controller.runs_program()
@@ -331,8 +331,8 @@ def test_a_stop_ends_a_download_and_nothing_is_started(station):
 
 def test_a_reading_that_gives_way_to_a_stop_is_no_lost_link(station):
     before = station.control.poll()
-    station.control.give_way_when(lambda: True)
+    station.control.preempt_when(lambda: True)
     station.wire.fault = lambda data, out: b""
     assert station.control.poll() is before
-    station.control.give_way_when(lambda: False)
+    station.control.preempt_when(lambda: False)
     assert station.control.poll().lost

@@ -67,7 +67,7 @@ def test_a_simulated_machine_is_homed_and_jogged():
     try:
         worker = connection.worker
         until(lambda: worker.state.status is not None)
-        assert connection.simulated and not any(worker.state.status.homed) and worker.state.status.words() == ()
+        assert connection.simulated and not any(worker.state.status.homed) and worker.state.status.fault_texts() == ()
         worker.submit(lambda control: control.home(SIMULATED_HOMING)).result(LONGEST_S)
         until(lambda: worker.state.homing is not None and worker.state.homing.phase is not HomingPhase.SEARCHING)
         assert worker.state.homing.phase is HomingPhase.DONE and all(worker.state.status.homed)

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from station import MACHINE, SETTINGS, TOOL
 
-from pkm_post.control.link.tool_pose import Pose
 from pkm_post.control.numerical_control.control import TOLERANCES
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog, jog_trajectory, mdi_trajectory
-from pkm_post.control.numerical_control.plan import _followed, planned
+from pkm_post.control.numerical_control.plan import _end_pose, planned
+from pkm_post.toolpath import ToolPose
 
 MICRON = 1e-3
-HERE = Pose(np.array([10.0, -20.0, 280.0]), np.array([0.0, 0.0, 1.0]), 0.02)
+HERE = ToolPose(np.array([10.0, -20.0, 280.0]), np.array([0.0, 0.0, 1.0]), 0.02)
 
 
 def way(jog=CartesianJog((15, 0, 0), (0.1, 0.0))):  # noqa: B008 - frozen
@@ -33,7 +33,7 @@ def test_the_poses_of_the_lengths_are_looked_at_by_themselves():
     trajectory = way()
     plan, _ = planned(trajectory, MACHINE, SETTINGS, TOLERANCES)
     narrow = dataclasses.replace(MACHINE, platform_cone=np.full(6, np.radians(1.0)))
-    end, told = _followed(plan.job.motion, trajectory, narrow)
+    end, told = _end_pose(plan.job.motion, trajectory, narrow)
     assert end is not None and {fault.code for fault in told} == {"K104"}
 
 
@@ -42,7 +42,7 @@ def test_lengths_that_lead_nowhere_are_refused():
     motion = planned(trajectory, MACHINE, SETTINGS, TOLERANCES)[0].job.motion
     length = motion.length.copy()
     length[-1] = [750.0, 1250, 750, 1250, 750, 1250]
-    end, told = _followed(dataclasses.replace(motion, length=length), trajectory, MACHINE)
+    end, told = _end_pose(dataclasses.replace(motion, length=length), trajectory, MACHINE)
     assert end is None and [fault.code for fault in told] == ["V107"]
 
 

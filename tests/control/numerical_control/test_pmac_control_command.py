@@ -151,7 +151,7 @@ def test_behind_a_stop(simulator, capsys, tmp_path):
     assert pmac("resume", port) == 1
     assert "no program is held; after a stop (M0, M1) continue it" in capsys.readouterr().err
     assert pmac("continue", port, file, "--stop", 2) == 1
-    assert "there is none with number 2" in capsys.readouterr().err
+    assert "there is no stop 2" in capsys.readouterr().err
     assert pmac("continue", port, file, "--stop", 1) == 0
     assert "a program runs" in capsys.readouterr().out
     until_it_rests(made)

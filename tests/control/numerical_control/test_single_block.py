@@ -107,7 +107,7 @@ def test_each_start_runs_one_line_and_rests_at_its_end(posted, kind):
         state = station.to_rest()
         assert not state.status.running and state.block.number == number + 1
         assert np.linalg.norm(state.pose.tip - origin(blocks) - end) < 5 * MICRON
-        assert target_deviation(state.status, plan.lengths) < 2 * COUNT and state.status.words() == ()
+        assert target_deviation(state.status, plan.lengths) < 2 * COUNT and state.status.fault_texts() == ()
         spindle[line], coolant[line] = read("P", 7001), read("P", 7002)
     assert spindle == dict.fromkeys(ENDS, 1) | {16: 0}  # M5 stands behind all that moves
     assert coolant == {line: int(10 <= line < 16) for line in ENDS}  # M8 stands behind line 6: with the next that moves

@@ -55,9 +55,9 @@ def test_from_stop_to_stop_to_the_end(station):
     made = job(station.settings, EVENTS)
     first, second = program_stops(made)
     assert np.allclose(run(station, made).status.commanded, first.length, atol=COUNT) and spindle(station) == 0
-    assert station.control.go_on(made, 1).running
+    assert station.control.continue_after_stop(made, 1).running
     assert np.allclose(station.to_rest().status.commanded, second.length, atol=COUNT) and spindle(station) == 1
-    station.control.go_on(made, 2)
+    station.control.continue_after_stop(made, 2)
     assert np.allclose(station.to_rest().status.commanded, made.motion.length[-1], atol=COUNT)
 
 
@@ -65,7 +65,7 @@ def test_behind_a_stop_in_front_of_the_first_move(station):
     made = job(station.settings, (Event(0, STOP, 0.0), Event(0, SPINDLE, 500.0)))
     run(station, made)
     assert spindle(station) == 0
-    station.control.go_on(made, 1)
+    station.control.continue_after_stop(made, 1)
     assert np.allclose(station.to_rest().status.commanded, made.motion.length[-1], atol=COUNT) and spindle(station) == 1
 
 
@@ -74,15 +74,15 @@ def test_behind_a_stop_in_front_of_the_first_move(station):
     [
         ((), 1, "the program has 0 stops"),
         ((Event(3 * PER_BLOCK, STOP, 0.0),), 1, "the program has 0 stops"),
-        (EVENTS, 3, "the program has 2 stops .* there is none with number 3"),
-        (EVENTS, 0, "there is none with number 0"),
+        (EVENTS, 3, "the program has 2 stops .* there is no stop 3"),
+        (EVENTS, 0, "there is no stop 0"),
         (EVENTS, 1, "mm from the first point of the program"),
     ],
 )
 def test_nothing_is_started_on_a_guess(station, events, number, said):
     station.wait(0.1)
     with pytest.raises(NotReadyError, match=said):
-        station.control.go_on(job(station.settings, events), number)
+        station.control.continue_after_stop(job(station.settings, events), number)
     assert b"OPEN" not in station.sent() and not station.wire.controller.runs_program()
 
 
@@ -96,7 +96,7 @@ def test_an_aborted_program_is_not_gone_on_with(station):
     station.to_rest()
     for stop in (1, 2):
         with pytest.raises(NotReadyError, match="mm from the first point of the program"):
-            station.control.go_on(made, stop)
+            station.control.continue_after_stop(made, stop)
     with pytest.raises(NotReadyError, match="no program is held; after a stop"):
         station.control.resume()
 

@@ -22,10 +22,10 @@ class Stub:
     def __init__(self):
         self.polls = 0
         self.done = []
-        self.gives_way = None
+        self.is_preempted = None
 
-    def give_way_when(self, is_waited_for):
-        self.gives_way = is_waited_for
+    def preempt_when(self, stop_pending):
+        self.is_preempted = stop_pending
 
     def attended_while(self, is_attended):
         self.is_attended = is_attended
@@ -102,14 +102,14 @@ def test_what_is_being_done_is_told_that_a_stop_waits(worker, stub):
     begun = threading.Event()
 
     def long(control):
-        before = stub.gives_way()
+        before = stub.is_preempted()
         begun.set()
-        until(stub.gives_way)
+        until(stub.is_preempted)
         return before
 
     first = worker.submit(long)
     assert begun.wait(LONGEST_S)
-    hold = worker.submit(lambda control: stub.gives_way(), urgent=True)
+    hold = worker.submit(lambda control: stub.is_preempted(), urgent=True)
     assert first.result(LONGEST_S) is False
     assert hold.result(LONGEST_S) is False, "a stop does not wait for itself"
 
@@ -117,7 +117,7 @@ def test_what_is_being_done_is_told_that_a_stop_waits(worker, stub):
 def test_what_is_being_done_gives_way_to_the_end(stub):
     worker = Worker(stub, period=0.005)
     begun = threading.Event()
-    first = worker.submit(lambda control: begun.set() or until(stub.gives_way) or "given way")
+    first = worker.submit(lambda control: begun.set() or until(stub.is_preempted) or "given way")
     assert begun.wait(LONGEST_S)
     worker.close()
     assert first.result(0) == "given way"
@@ -130,7 +130,7 @@ def test_a_stop_that_is_being_done_does_not_give_way_to_the_end(stub):
     def stop(control):
         begun.set()
         until(lambda: worker._ended)
-        return stub.gives_way()
+        return stub.is_preempted()
 
     aborted = worker.submit(stop, urgent=True)
     assert begun.wait(LONGEST_S)
@@ -210,7 +210,7 @@ def test_the_end_waits_for_a_stop_but_not_for_ever(worker, stub):
 
     def stop(control):
         begun.set()
-        while not control.gives_way():
+        while not control.is_preempted():
             time.sleep(0.005)
         raise NotReadyError(["given up"])
 

@@ -9,7 +9,7 @@ from machines import direction, example
 from rig import SETTINGS, Wire, controller
 
 from pkm_post.control.link.errors import LinkLostError
-from pkm_post.control.link.status import MotorBits, Status, SystemBits, _status_of, read_status
+from pkm_post.control.link.status import MotorBits, Status, SystemBits, _turbo_status, read_status
 from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_text, state_text
 from pkm_post.machine import strut_lengths
 
@@ -26,7 +26,7 @@ def status():
 
 def test_the_state_of_a_controller_at_rest(status):
     assert np.allclose(status.length, 500.0) and np.allclose(status.following_error, 0.0)
-    assert status.override == 100.0 and status.standing and not status.running and status.words() == ()
+    assert status.override == 100.0 and status.standing and not status.running and status.fault_texts() == ()
 
 
 def test_poses_from_lengths(status):
@@ -56,7 +56,7 @@ def test_each_bit_has_its_word(status):
         (3, "amplifier_fault", "amplifier fault"),
     ):  # fmt: skip
         motor = MotorBits(1 << bits)
-        assert motor.has(name) and motor.words() == (word,)
+        assert motor.has(name) and motor.fault_texts() == (word,)
     motors = (*status.motors[:3], MotorBits(1 << 2), *status.motors[4:])
     text = state_text(dataclasses.replace(status, motors=motors))
     assert "strut 4: following error too large, switched off" in text and "NOT HOMED" in text
@@ -66,15 +66,15 @@ def test_bits_are_where_the_manual_has_them():
     # word 1 bit 0: a program runs; word 2 bit 23: held; word 2 bit 22: run-time error; word 3 bit 1: limit
     assert SystemBits(int("000001000000000000", 16)).has("running")
     assert SystemBits(int("000000800000000000", 16)).has("held")
-    assert SystemBits(int("000000400000000000", 16)).words() == ("the program ended with an error",)
-    assert SystemBits(int("000000000000000002", 16)).words() == ("a limit was met",)
+    assert SystemBits(int("000000400000000000", 16)).fault_texts() == ("the program ended with an error",)
+    assert SystemBits(int("000000000000000002", 16)).fault_texts() == ("a limit was met",)
     motor = MotorBits(int(GOOD, 16))
-    assert motor.has("activated") and motor.has("amplifier_enabled") and motor.has("homed") and not motor.words()
+    assert motor.has("activated") and motor.has("amplifier_enabled") and motor.has("homed") and not motor.fault_texts()
 
 
 def test_counts_become_lengths():
     told = [GOOD, "12345.5", "-20"] * 6 + ["0" * 18, "50"]
-    state = _status_of(tuple(told), SETTINGS)
+    state = _turbo_status(tuple(told), SETTINGS)
     assert isinstance(state, Status)
     assert state.length[0] == pytest.approx(501.23455) and state.following_error[5] == pytest.approx(-0.002)
 
@@ -84,7 +84,7 @@ def test_counts_become_lengths():
 )
 def test_an_answer_without_sense_is_told(told):
     class Session:
-        def ask(self, query):
+        def query(self, query):
             return tuple(told)
 
     with pytest.raises(LinkLostError):

@@ -72,7 +72,7 @@ def test_an_error_without_ack_ends_in_silence(talk):
 
 @pytest.mark.parametrize("said", [b"", b"#1", b"#1p\r\n", b"#1p\r\n5", b"#1p\r\n5\r\n"])
 def test_silence(talk, said):
-    talk.begin(Command("#1p", patience=2.0), 0.0)
+    talk.begin(Command("#1p", answer_timeout=2.0), 0.0)
     talk.receive(said, 1.0)
     assert talk.deadline == (3.0 if said else 2.0)
     talk.expire(3.0)

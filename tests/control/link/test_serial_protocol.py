@@ -45,7 +45,7 @@ def test_a_line_that_never_arrives_right_was_not_carried_out(talk):
 
 
 def test_silence_behind_cr_leaves_it_open_whether_it_was_carried_out(talk):
-    talk.begin(Command("J/", CommandKind.SET, patience=2.0), 0.0)
+    talk.begin(Command("J/", CommandKind.SET, answer_timeout=2.0), 0.0)
     talk.receive(b"\x79", 0.5)
     talk.outgoing()
     assert talk.deadline == pytest.approx(2.5)

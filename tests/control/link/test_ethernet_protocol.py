@@ -66,7 +66,7 @@ def test_a_strange_answer_to_lines(talk):
 
 
 def test_silence(talk):
-    talk.begin(Command("P1", patience=2.0), 0.0)
+    talk.begin(Command("P1", answer_timeout=2.0), 0.0)
     assert talk.deadline == 2.0
     talk.receive(b"1", 1.0)
     assert talk.deadline == 3.0
